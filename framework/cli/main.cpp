@@ -1,0 +1,55 @@
+// tumble VERB ...: reads the words, runs the verb, turns errors into exit codes.
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+
+#include "framework/cli/verb.h"
+#include "framework/core/not_implemented.h"
+
+namespace {
+
+using tumble::ExitCode;
+
+// The build tree is where this program lies (build/bin/tumble); the source tree is told by the launcher, else it is the
+// build tree's parent.
+void find_trees(tumble::cli::Context& context) {
+  const auto program = std::filesystem::canonical("/proc/self/exe");
+  context.build = program.parent_path().parent_path();
+  const char* told = std::getenv("TUMBLE_ROOT");
+  context.root = told != nullptr ? std::filesystem::path(told) : context.build.parent_path();
+}
+
+int run(int argc, char** argv) {
+  tumble::cli::Context context;
+  find_trees(context);
+  for (int i = 0; i < argc; ++i) context.command_line += (i > 0 ? " " : "") + std::string(i > 0 ? argv[i] : "tumble");
+  tumble::register_assignments(context.registry);
+
+  CLI::App app{"Tumble: a course on rigid-body simulation that grades itself", "tumble"};
+  app.require_subcommand(1);
+  app.set_help_all_flag("--help-all", "Help of every verb");
+  tumble::cli::add_verbs(app, context);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUserError);
+  }
+  return static_cast<int>(context.exit);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const tumble::UserError& error) {
+    std::fprintf(stderr, "tumble: %s\n", error.what());
+    return static_cast<int>(ExitCode::kUserError);
+  } catch (const tumble::NotImplemented& missing) {
+    std::fprintf(stderr, "tumble: not attempted: %s\n", missing.what());
+    return static_cast<int>(ExitCode::kNotAttempted);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "tumble: this is our bug, please report it with the command: %s\n", error.what());
+    return static_cast<int>(ExitCode::kOurBug);
+  }
+}

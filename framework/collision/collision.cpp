@@ -1,0 +1,1 @@
+#include "framework/geometry/shape.h"

@@ -1,0 +1,15 @@
+/// The few Eigen names that every folder and every student's file uses. Core and Geometry only: they compile quickly.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace tumble {
+
+using Eigen::Matrix3d;
+using Eigen::Quaterniond;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+}  // namespace tumble

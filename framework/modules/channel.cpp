@@ -1,0 +1,76 @@
+#include "framework/modules/channel.h"
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+namespace tumble::modules {
+namespace {
+
+struct Header {
+  std::uint32_t size;
+  std::uint8_t kind;
+  std::uint8_t padding[3];
+};
+
+}  // namespace
+
+void Channel::wait(int fd, short events, Clock::time_point deadline) {
+  for (;;) {
+    int timeout_ms = -1;
+    if (deadline != Clock::time_point::max()) {
+      const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+      if (left <= 0) throw ChannelTimeout("no answer before the deadline");
+      timeout_ms = static_cast<int>(std::min<long long>(left + 1, 1 << 30));
+    }
+    pollfd waiting{fd, events, 0};
+    const int ready = ::poll(&waiting, 1, timeout_ms);
+    if (ready > 0) return;
+    if (ready < 0 && errno != EINTR) throw ChannelClosed("poll failed");
+  }
+}
+
+void Channel::send(MessageKind kind, const Bytes& payload, Clock::time_point deadline) {
+  Bytes frame(sizeof(Header) + payload.size());
+  const Header header{static_cast<std::uint32_t>(payload.size()), static_cast<std::uint8_t>(kind), {0, 0, 0}};
+  std::memcpy(frame.data(), &header, sizeof header);
+  if (!payload.empty()) std::memcpy(frame.data() + sizeof header, payload.data(), payload.size());
+  for (std::size_t sent = 0; sent < frame.size();) {
+    // MSG_NOSIGNAL: a dead reader is an error code here, not a SIGPIPE. MSG_DONTWAIT: a reader that never reads cannot hold us.
+    ssize_t n = ::send(write_fd_, frame.data() + sent, frame.size() - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (n < 0 && errno == ENOTSOCK) n = ::write(write_fd_, frame.data() + sent, frame.size() - sent);
+    if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
+      wait(write_fd_, POLLOUT, deadline);
+      continue;
+    }
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) throw ChannelClosed("the other end closed the channel");
+    sent += static_cast<std::size_t>(n);
+  }
+}
+
+Message Channel::receive(Clock::time_point deadline) {
+  const auto read_exactly = [&](void* data, std::size_t size) {
+    auto* at = static_cast<std::uint8_t*>(data);
+    while (size > 0) {
+      wait(read_fd_, POLLIN, deadline);
+      const ssize_t n = ::read(read_fd_, at, size);
+      if (n < 0 && (errno == EINTR || errno == EAGAIN)) continue;
+      if (n <= 0) throw ChannelClosed("the other end closed the channel");
+      at += n;
+      size -= static_cast<std::size_t>(n);
+    }
+  };
+  Header header{};
+  read_exactly(&header, sizeof header);
+  if (header.size > kMaxPayload) throw WireError("a message larger than the limit");
+  Message message{static_cast<MessageKind>(header.kind), Bytes(header.size)};
+  if (header.size > 0) read_exactly(message.payload.data(), header.size);
+  return message;
+}
+
+}  // namespace tumble::modules

@@ -1,0 +1,56 @@
+/// Messages over a pair of file descriptors, with a deadline and a size limit.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <stdexcept>
+
+#include "framework/modules/wire.h"
+
+namespace tumble::modules {
+
+enum class MessageKind : std::uint8_t {
+  kCall = 1,         // judge to worker: function number, arguments
+  kReturn,           // worker to judge: the value
+  kCallback,         // worker to judge: callback number, arguments
+  kCallbackReturn,   // judge to worker: the value
+  kNotImplemented,   // worker to judge: function, handout
+  kException,        // worker to judge: what()
+};
+
+struct Message {
+  MessageKind kind;
+  Bytes payload;
+};
+
+/// The other end is gone: it exited, crashed or closed its descriptor.
+class ChannelClosed : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+/// Nothing complete arrived before the deadline.
+class ChannelTimeout : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+class Channel {
+ public:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::uint32_t kMaxPayload = 16u << 20;  // bytes: a state of 10^5 bodies is 10 MB; more is an attack
+
+  /// Does not own the descriptors. Either may be a socket or a pipe.
+  Channel(int read_fd, int write_fd) : read_fd_(read_fd), write_fd_(write_fd) {}
+
+  /// @throws ChannelClosed, ChannelTimeout
+  void send(MessageKind kind, const Bytes& payload, Clock::time_point deadline = Clock::time_point::max());
+  /// @throws ChannelClosed, ChannelTimeout, WireError (size above kMaxPayload)
+  Message receive(Clock::time_point deadline = Clock::time_point::max());
+
+ private:
+  void wait(int fd, short events, Clock::time_point deadline);
+
+  int read_fd_, write_fd_;
+};
+
+}  // namespace tumble::modules

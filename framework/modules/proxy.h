@@ -1,0 +1,130 @@
+/// Third body of a module: a table whose functions are answered by another process. Derived from the signatures; no line
+/// a function. Functions passed as arguments are called back across the boundary, run here, and counted here.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <utility>
+
+#include "framework/core/not_implemented.h"
+#include "framework/modules/channel.h"
+#include "framework/modules/wire.h"
+
+namespace tumble::modules {
+
+/// What a proxy needs of whoever runs the other process.
+class Connection {
+ public:
+  virtual ~Connection() = default;
+  /// The channel to a running worker; starts one where none runs. Called once a call, before anything is sent.
+  virtual Channel& begin_call(const char* function) = 0;
+  /// Each callback served, before it runs. May throw to end the call (a budget of evaluations is spent).
+  virtual void count_callback() = 0;
+  virtual Channel::Clock::time_point deadline() const = 0;
+  /// The worker's answer cannot be had: turn the transport error into a verdict. Must throw; the call is over.
+  [[noreturn]] virtual void fail(const char* function, std::exception_ptr transport_error) = 0;
+  /// The worker answered with an exception of its own, or with bytes that are no answer.
+  [[noreturn]] virtual void refuse(const char* function, const std::string& what) = 0;
+  [[noreturn]] virtual void not_implemented(const char* function, const std::string& handout) = 0;
+};
+
+namespace detail {
+
+template <class R, class... A>
+Bytes run_callback(const std::function<R(A...)>& f, Reader& reader) {
+  std::tuple<std::decay_t<A>...> arguments;
+  std::apply([&](auto&... a) { (reader.value(a), ...); }, arguments);
+  reader.expect_end();
+  Writer writer;
+  writer.value(std::apply(f, arguments));
+  return std::move(writer.bytes);
+}
+
+template <class R, class... A>
+R call(Connection& connection, std::uint32_t index, const char* name, const A&... arguments) {
+  std::vector<std::function<Bytes(Reader&)>> callbacks;
+  Writer writer;
+  writer.value(index);
+  const auto write = [&](const auto& a) {
+    using T = std::decay_t<decltype(a)>;
+    if constexpr (is_function<T>::value) {
+      writer.value(static_cast<std::uint32_t>(callbacks.size()));
+      callbacks.push_back([&a](Reader& reader) { return run_callback(a, reader); });
+    } else {
+      writer.value(a);
+    }
+  };
+  (write(arguments), ...);
+
+  Channel& channel = connection.begin_call(name);
+  const auto deadline = connection.deadline();
+  const auto transport = [&](auto&& action) {
+    try {
+      return action();
+    } catch (const ChannelClosed&) {
+      connection.fail(name, std::current_exception());
+    } catch (const ChannelTimeout&) {
+      connection.fail(name, std::current_exception());
+    } catch (const WireError& error) {
+      connection.refuse(name, std::string("answered with bytes that are no answer: ") + error.what());
+    }
+    throw;  // unreachable: fail and refuse throw
+  };
+  transport([&] { channel.send(MessageKind::kCall, writer.bytes, deadline); return 0; });
+  for (;;) {
+    const Message message = transport([&] { return channel.receive(deadline); });
+    Reader reader(message.payload);
+    switch (message.kind) {
+      case MessageKind::kReturn:
+        return transport([&] {
+          R result;
+          reader.value(result);
+          reader.expect_end();
+          return result;
+        });
+      case MessageKind::kCallback: {
+        connection.count_callback();
+        const Bytes answer = transport([&] {
+          std::uint32_t which = 0;
+          reader.value(which);
+          if (which >= callbacks.size()) throw WireError("a callback that was never passed");
+          return callbacks[which](reader);
+        });
+        transport([&] { channel.send(MessageKind::kCallbackReturn, answer, deadline); return 0; });
+        break;
+      }
+      case MessageKind::kNotImplemented: {
+        const std::string handout = transport([&] { std::string text; reader.value(text); return text; });
+        connection.not_implemented(name, handout);
+      }
+      case MessageKind::kException: {
+        const std::string what = transport([&] { std::string text; reader.value(text); return text; });
+        connection.refuse(name, "threw an exception: " + what);
+      }
+      default:
+        connection.refuse(name, "answered with a message of unknown kind");
+    }
+  }
+}
+
+template <class R, class... A>
+std::function<R(A...)> proxy_function(Connection& connection, std::uint32_t index, const char* name, const std::function<R(A...)>*) {
+  return [&connection, index, name](A... arguments) -> R { return call<R>(connection, index, name, arguments...); };
+}
+
+}  // namespace detail
+
+/// A table whose functions are answered over `connection`, which must outlive it.
+template <class Module>
+Module make_proxy(Connection& connection) {
+  Module module;
+  std::uint32_t index = 0;
+  Module::visit(module, [&](const char* name, auto& field) {
+    field = detail::proxy_function(connection, index++, name, &field);
+  });
+  return module;
+}
+
+}  // namespace tumble::modules

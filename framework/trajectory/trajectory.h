@@ -1,0 +1,103 @@
+/// A recorded run: frames, events, counters. Engines push into a sink; pictures, plots and judges read a Trajectory.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "framework/core/math.h"
+
+namespace tumble {
+
+/// Where a body is, and how it moves, at one instant. World frame.
+struct BodyPose {
+  Vector3d com_world;              // [m]
+  Quaterniond world_from_body;     // unit
+  Vector3d velocity_world;         // [m/s]
+  Vector3d omega_world;            // [rad/s]
+};
+
+/// All bodies at a redraw time.
+struct Frame {
+  double time;                     // [s]
+  std::vector<BodyPose> poses;     // by body index
+  double kinetic_energy;           // [J], movable bodies
+  double potential_energy;         // [J]
+  Vector3d momentum_world;         // [kg m/s], movable bodies
+  Vector3d angular_momentum_world; // [kg m^2/s], movable bodies, about the world's origin
+  double smallest_gap;             // [m], over all pairs that may collide; +infinity where there is none
+};
+
+enum class EventKind : std::uint8_t { kCollision = 1, kRest, kForceOn, kForceOff };
+
+/// A discontinuity that was committed.
+struct Event {
+  double time;                     // [s]
+  EventKind kind;
+  int body_a, body_b;              // body_b is -1 where there is one body only
+  Vector3d point_world;            // [m]
+  Vector3d normal_b_to_a_world;    // unit
+  double impulse;                  // [N s], along the normal
+  double normal_velocity_before;   // [m/s], negative when approaching
+};
+
+/// What a run cost, as counts (deterministic) and times (not).
+struct Counters {
+  std::map<std::string, std::uint64_t> counts;   // "integrations", "undone_integrations", "gap_evaluations", "rollbacks", ...
+  std::map<std::string, double> stage_seconds;   // "integration", "collision", "forces", ...; kept out of anything compared byte by byte
+};
+
+struct TrajectoryBody {
+  std::string name;
+  bool immovable;
+};
+
+struct TrajectoryInfo {
+  std::string command, version, scene_name, scene_hash, engine, impulse_source, integrator_source;
+  double step_s = 0.0;
+  double frame_rate_hz = 0.0;
+  std::uint64_t seed = 0;
+};
+
+struct Trajectory {
+  TrajectoryInfo info;
+  std::vector<TrajectoryBody> bodies;
+  std::vector<Frame> frames;       // in order of time, the first at 0
+  std::vector<Event> events;       // in order of time
+  Counters counters;
+  std::string stopped_by;          // empty: ran to the end; else what stopped it (body, time, effect), frames kept up to there
+};
+
+/// What an engine pushes into.
+class TrajectorySink {
+ public:
+  virtual ~TrajectorySink() = default;
+  virtual void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) = 0;
+  virtual void frame(const Frame& frame) = 0;
+  virtual void event(const Event& event) = 0;
+  virtual void end(const Counters& counters, const std::string& stopped_by) = 0;
+};
+
+/// Keeps everything in memory.
+class TrajectoryRecorder final : public TrajectorySink {
+ public:
+  void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override;
+  void frame(const Frame& frame) override { trajectory_.frames.push_back(frame); }
+  void event(const Event& event) override { trajectory_.events.push_back(event); }
+  void end(const Counters& counters, const std::string& stopped_by) override;
+  const Trajectory& trajectory() const { return trajectory_; }
+
+ private:
+  Trajectory trajectory_;
+};
+
+/// Writes the one file format of a run (binary, little-endian, versioned), whole or not at all. Times of stages are left out,
+/// so that the same run gives the same bytes.
+/// @throws UserError when the file cannot be written
+void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory);
+/// @throws UserError naming the byte where a file stops being a trajectory
+Trajectory read_trajectory(const std::filesystem::path& file);
+
+}  // namespace tumble
