@@ -98,10 +98,12 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
       case MessageKind::kNotImplemented: {
         const std::string handout = transport([&] { std::string text; reader.value(text); return text; });
         connection.not_implemented(name, handout);
+        break;
       }
       case MessageKind::kException: {
         const std::string what = transport([&] { std::string text; reader.value(text); return text; });
         connection.refuse(name, "threw an exception: " + what);
+        break;
       }
       default:
         connection.refuse(name, "answered with a message of unknown kind");
