@@ -1,6 +1,8 @@
 /// The few Eigen names that every folder and every student's file uses. Core and Geometry only: they compile quickly.
 #pragma once
 
+#include <limits>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -11,5 +13,7 @@ using Eigen::Quaterniond;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
+
+inline constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();  // an unset number is loud
 
 }  // namespace tumble

@@ -4,13 +4,10 @@
 /// Units: SI. Orientation: unit Hamilton quaternion, body to world.
 #pragma once
 
-#include <limits>
-
 #include "framework/core/math.h"
 
 namespace tumble {
 
-inline constexpr double kUnset = std::numeric_limits<double>::quiet_NaN();  // an unset number is loud
 inline Vector3d unset_vector() { return Vector3d::Constant(kUnset); }
 
 /// How a body resists being moved.

@@ -1,33 +1,17 @@
-/// Ordinary differential equations y' = f(t, y), and roots along their solutions: the words that integrators share.
+/// Ordinary differential equations y' = f(t, y), and a rigid body's state as their y.
 #pragma once
 
 #include <functional>
 #include <stdexcept>
 
 #include "framework/core/math.h"
+#include "framework/core/root.h"
 #include "framework/dynamics/body.h"
 
 namespace tumble {
 
 /// Right-hand side: the derivative of y at time t. @return (n), as y, per second
 using OdeFunction = std::function<VectorXd(double t, const VectorXd& y)>;
-
-/// A scalar function of time whose sign change is looked for, e.g. the gap between two bodies [m].
-using ScalarFunction = std::function<double(double t)>;
-
-enum class RootStatus {
-  kConverged,    // the bracket is as small as asked, or the function is exactly zero
-  kNoSignChange, // f(t_low) and f(t_high) have the same strict sign: nothing was searched
-  kNotConverged, // the iteration limit was reached first; `time` is the best so far
-};
-
-/// What a root finder found, and how good it is.
-struct RootResult {
-  RootStatus status = RootStatus::kNotConverged;
-  double time = kUnset;       // [s]
-  double residual = kUnset;   // f(time)
-  int evaluations = 0;        // of f (not of its derivative)
-};
 
 /// Layout of a rigid body's state as a vector (13): com_world (3), quaternion w x y z (4), momentum (3), angular momentum (3).
 inline constexpr int kStateSize = 13;

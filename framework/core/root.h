@@ -1,0 +1,27 @@
+/// Roots of a scalar function of time: the words that root finders and collision finding share.
+#pragma once
+
+#include <functional>
+
+#include "framework/core/math.h"
+
+namespace tumble {
+
+/// A scalar function of time whose sign change is looked for, e.g. the gap between two bodies [m].
+using ScalarFunction = std::function<double(double t)>;
+
+enum class RootStatus {
+  kConverged,    // the bracket is as small as asked, or the function is exactly zero
+  kNoSignChange, // f(t_low) and f(t_high) have the same strict sign: nothing was searched
+  kNotConverged, // the iteration limit was reached first; `time` is the best so far
+};
+
+/// What a root finder found, and how good it is.
+struct RootResult {
+  RootStatus status = RootStatus::kNotConverged;
+  double time = kUnset;       // [s]
+  double residual = kUnset;   // f(time)
+  int evaluations = 0;        // of f (not of its derivative)
+};
+
+}  // namespace tumble
