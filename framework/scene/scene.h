@@ -71,6 +71,8 @@ struct CheckSpec {
   std::string unit;
   std::string why;                  // the tolerance's reason
   std::string body;                 // where the check is about one body
+  std::string other;                // where it is about a pair: the second body
+  std::optional<Vector3d> axis;     // where it is about a direction: unit, in the frame that the kind says
   std::vector<double> expected;     // where it compares with a truth
   double at_s = 0.0;                // where it is about an instant; 0: the end
 };
