@@ -1,0 +1,129 @@
+#include "framework/scene/check_scene.h"
+
+#include <algorithm>
+#include <map>
+
+#include <Eigen/Eigenvalues>
+
+#include "framework/scene/document.h"
+
+namespace tumble::scene {
+namespace {
+
+void check_mass(const BodySpec& body, const Refuse& refuse) {
+  if (body.immovable) {
+    if (body.density_kg_m3) refuse("density_kg_m3", "it is immovable and has a density", "An immovable body has infinite mass: delete density_kg_m3, or \"immovable\".");
+    if (body.mass_kg) refuse("mass_kg", "it is immovable and has a mass", "An immovable body has infinite mass: delete mass_kg, or \"immovable\".");
+    if (body.inertia_body_kg_m2) refuse("inertia_body_kg_m2", "it is immovable and has moments of inertia", "Delete inertia_body_kg_m2, or \"immovable\".");
+    return;
+  }
+  if (std::holds_alternative<PlaneSpec>(body.shape)) refuse("shape/plane", "a plane has no end, so it cannot move freely", "Add \"immovable\": true, or use a box.");
+  if (body.density_kg_m3 && body.mass_kg) refuse("mass_kg", "it has both a density and a mass", "Keep the one that you mean.");
+  if (!body.density_kg_m3 && !body.mass_kg) refuse("", "it has neither density_kg_m3 nor mass_kg", "Give one of the two, or \"immovable\": true.");
+  if (body.inertia_body_kg_m2 && !body.mass_kg) refuse("inertia_body_kg_m2", "moments of inertia of its own need a mass of its own", "Give mass_kg instead of density_kg_m3.");
+  const auto* sphere = std::get_if<SphereSpec>(&body.shape);
+  if (sphere != nullptr && sphere->radius_m == 0.0 && !body.mass_kg) refuse("density_kg_m3", "a point (radius 0) has no volume", "Give mass_kg.");
+}
+
+void check_inertia(const Matrix3d& inertia, const Refuse& refuse) {
+  if ((inertia - inertia.transpose()).cwiseAbs().maxCoeff() > 1e-12 * inertia.cwiseAbs().maxCoeff())
+    refuse("inertia_body_kg_m2", "the matrix is not symmetric", "An inertia tensor is: check the entries beside the diagonal, whose sign is that of -sum m x y.");
+  const Vector3d moments = Eigen::SelfAdjointEigenSolver<Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();   // ascending
+  if (!(moments[0] > 0)) refuse("inertia_body_kg_m2", "a principal moment is not above 0", "Every moment of a solid is positive.");
+  // Equality is a flat plate; 1e-9 forgives its rounding.
+  if (moments[0] + moments[1] < moments[2] * (1 - 1e-9))
+    refuse("inertia_body_kg_m2", "no solid has these moments: the largest exceeds the sum of the two others", "Ixx + Iyy >= Izz must hold, in any order.");
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), 8); ++i) text += (i > 0 ? ", " : "") + names[i];
+  return text + (names.size() > 8 ? ", ..." : "");
+}
+
+/// Refuses the name of a body that is not there.
+class Names {
+ public:
+  Names(const Scene& scene, const Refuse& refuse) : refuse_(refuse) {
+    for (const auto& body : scene.bodies) names_.push_back(body.name);
+  }
+  void expect(const std::string& name, const std::string& pointer) const {
+    if (std::find(names_.begin(), names_.end(), name) == names_.end())
+      refuse_(pointer, "no body is named '" + name + "'." + did_you_mean(name, names_), "Bodies: " + listed(names_) + ".");
+  }
+
+ private:
+  const Refuse& refuse_;
+  std::vector<std::string> names_;
+};
+
+/// What a kind of check cannot do without.
+struct CheckNeeds {
+  bool body, other, axis, expected;
+};
+const std::map<std::string, CheckNeeds>& check_needs() {
+  static const std::map<std::string, CheckNeeds> needs = {
+      {"energy", {false, false, false, false}},      {"momentum", {false, false, false, false}},
+      {"angular_momentum", {false, false, false, false}}, {"gap", {false, false, false, false}},
+      {"final_position", {true, false, false, true}}, {"final_velocity", {true, false, false, true}},
+      {"impact_times", {true, true, false, true}},   {"event_count", {false, false, false, true}},
+      {"restitution_law", {false, false, false, false}}, {"side_of_wall", {true, true, true, false}},
+      {"flips", {true, false, true, true}},
+  };
+  return needs;
+}
+
+void check_check(const CheckSpec& check, const std::string& pointer, const Names& names, const Refuse& refuse) {
+  const auto found = check_needs().find(check.kind);
+  if (found == check_needs().end()) refuse(pointer + "/kind", "unknown kind of check '" + check.kind + "'", "");
+  const CheckNeeds& needs = found->second;
+  const auto need = [&](bool needed, bool given, const char* key) {
+    if (needed && !given) refuse(pointer, "a check of kind " + check.kind + " needs the key '" + key + "'", "Add it.");
+  };
+  need(needs.body, !check.body.empty(), "body");
+  need(needs.other, !check.other.empty(), "other");
+  need(needs.axis, check.axis.has_value(), "axis");
+  need(needs.expected, !check.expected.empty(), "expected");
+  if (!check.body.empty()) names.expect(check.body, pointer + "/body");
+  if (!check.other.empty()) names.expect(check.other, pointer + "/other");
+  if (check.axis && check.axis->norm() == 0.0) refuse(pointer + "/axis", "found the zero vector, expected a direction", "");
+  const bool is_vector = check.kind == "final_position" || check.kind == "final_velocity";
+  if (is_vector && check.expected.size() != 3)
+    refuse(pointer + "/expected", "found a list of " + std::to_string(check.expected.size()) + ", expected [x, y, z]", "");
+  const bool is_count = check.kind == "event_count" || check.kind == "flips";
+  if (is_count && check.expected.size() != 1)
+    refuse(pointer + "/expected", "found a list of " + std::to_string(check.expected.size()) + ", expected a list of one count", "");
+}
+
+}  // namespace
+
+void check_body(const BodySpec& body, const Refuse& refuse) {
+  check_mass(body, refuse);
+  if (body.inertia_body_kg_m2) check_inertia(*body.inertia_body_kg_m2, refuse);
+  if (body.motion && !body.immovable) refuse("motion", "a movable body moves by the laws, not by a motion of its own", "Add \"immovable\": true, or give velocity_m_s.");
+  if (body.immovable && !body.velocity_m_s.isZero(0)) refuse("velocity_m_s", "it is immovable and has a velocity", "Give \"motion\": {\"velocity_m_s\": ...} to move it along its own law.");
+  if (body.immovable && !body.omega_world_rad_s.isZero(0)) refuse("angular_velocity_rad_s", "it is immovable and spins", "An immovable body does not turn: delete angular_velocity_rad_s.");
+}
+
+void check_scene(const Scene& scene, const std::vector<std::string>& body_pointers, const Refuse& refuse) {
+  if (scene.bodies.empty()) refuse("/bodies", "the scene has no body", "Add one, here or under \"repeat\".");
+  if (scene.step_s > scene.duration_s) refuse("/step_s", "the step is longer than the whole run", "Give a shorter step_s or a longer duration_s.");
+  std::map<std::string, std::string> first;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const auto [at, is_new] = first.emplace(scene.bodies[i].name, body_pointers[i]);
+    if (!is_new) refuse(body_pointers[i] + "/name", "the name '" + scene.bodies[i].name + "' is taken by " + at->second, "Give every body a name of its own.");
+  }
+  const Names names(scene, refuse);
+  for (std::size_t i = 0; i < scene.point_forces.size(); ++i) {
+    const PointForceSpec& force = scene.point_forces[i];
+    const std::string pointer = "/point_forces/" + std::to_string(i) + "/body";
+    names.expect(force.body, pointer);
+    const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(), [&](const BodySpec& b) { return b.name == force.body; });
+    if (body != scene.bodies.end() && body->immovable) refuse(pointer, "body '" + force.body + "' is immovable: no force moves it", "Name a movable body.");
+  }
+  if ((scene.camera.eye_m - scene.camera.target_m).norm() == 0.0) refuse("/camera/target_m", "the camera stands where it looks", "Move eye_m or target_m.");
+  if (scene.camera.follow) names.expect(*scene.camera.follow, "/camera/follow");
+  for (std::size_t i = 0; i < scene.checks.size(); ++i) check_check(scene.checks[i], "/checks/" + std::to_string(i), names, refuse);
+}
+
+}  // namespace tumble::scene

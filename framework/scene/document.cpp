@@ -1,0 +1,268 @@
+#include "framework/scene/document.h"
+
+#include <algorithm>
+#include <optional>
+#include <set>
+
+#include <valijson/adapters/nlohmann_json_adapter.hpp>
+#include <valijson/schema.hpp>
+#include <valijson/schema_parser.hpp>
+#include <valijson/validator.hpp>
+
+namespace tumble::scene {
+namespace {
+
+using nlohmann::json;
+
+/// Iterator over the text that lets the parser's position be seen from its callback.
+struct WatchedIterator {
+  using iterator_category = std::input_iterator_tag;
+  using value_type = char;
+  using difference_type = std::ptrdiff_t;
+  using pointer = const char*;
+  using reference = const char&;
+
+  const char* at;
+  const char** seen;
+  const char& operator*() const { return *at; }
+  WatchedIterator& operator++() {
+    *seen = ++at;
+    return *this;
+  }
+  bool operator==(const WatchedIterator& other) const { return at == other.at; }
+  bool operator!=(const WatchedIterator& other) const { return at != other.at; }
+};
+
+std::string escaped(const std::string& key) {
+  std::string text;
+  for (const char c : key) text += c == '~' ? "~0" : c == '/' ? "~1" : std::string(1, c);
+  return text;
+}
+
+/// Follows the parser's events and notes the line of every value.
+class LineNotes {
+ public:
+  LineNotes(const std::string& text, const char* const* seen) : text_(text), seen_(seen) {}
+
+  bool operator()(json::parse_event_t event, const json& parsed) {
+    using Event = json::parse_event_t;
+    switch (event) {
+      case Event::object_start:
+      case Event::array_start:
+        note_value();
+        levels_.push_back({pointer(), event == Event::array_start ? 0 : -1, ""});
+        break;
+      case Event::object_end:
+      case Event::array_end:
+        levels_.pop_back();
+        advance();
+        break;
+      case Event::key:
+        levels_.back().key = parsed.get<std::string>();
+        if (!lines.emplace(pointer(), line()).second && !twice) twice = pointer();
+        break;
+      case Event::value:
+        note_value();
+        advance();
+        break;
+    }
+    return true;
+  }
+
+  std::map<std::string, int> lines;
+  std::optional<std::string> twice;   // first key that stands twice in one object
+
+ private:
+  struct Level {
+    std::string prefix;
+    int index;         // of the next element; -1 in an object
+    std::string key;
+  };
+
+  std::string pointer() const {
+    if (levels_.empty()) return "";
+    const Level& level = levels_.back();
+    return level.prefix + '/' + (level.index >= 0 ? std::to_string(level.index) : escaped(level.key));
+  }
+  void note_value() { lines.emplace(pointer(), line()); }   // keeps the key's line where there is one
+  void advance() {
+    if (!levels_.empty() && levels_.back().index >= 0) ++levels_.back().index;
+  }
+  int line() {
+    // The parser may have read one character past the token: never count that one's line feed.
+    const char* end = std::max(counted_ == nullptr ? text_.data() : counted_, *seen_ - 1);
+    const char* begin = counted_ == nullptr ? text_.data() : counted_;
+    line_ += static_cast<int>(std::count(begin, end, '\n'));
+    counted_ = end;
+    return line_;
+  }
+
+  const std::string& text_;
+  const char* const* seen_;
+  const char* counted_ = nullptr;
+  int line_ = 1;
+  std::vector<Level> levels_;
+};
+
+std::string line_and_column(const std::string& text, std::size_t byte) {
+  const std::size_t end = std::min(byte > 0 ? byte - 1 : 0, text.size());
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');
+  const std::size_t start = end == 0 ? std::string::npos : text.rfind('\n', end - 1);
+  return std::to_string(line) + ':' + std::to_string(end - (start == std::string::npos ? 0 : start + 1) + 1);
+}
+
+/// What is wrong in a message of nlohmann::json, without its own prefix and position.
+std::string essence(const std::string& what) {
+  const std::size_t dash = what.find(" - ");
+  if (dash != std::string::npos) return what.substr(dash + 3);
+  const std::size_t bracket = what.find("] ");
+  return bracket == std::string::npos ? what : what.substr(bracket + 2);
+}
+
+const json& resolve(const json& schema, const json& node) {
+  const auto ref = node.find("$ref");
+  return ref == node.end() ? node : schema.at(json::json_pointer(ref->get<std::string>().substr(1)));
+}
+
+std::string description(const json& schema, const json& node) {
+  if (node.contains("description")) return node.at("description");
+  const json& target = resolve(schema, node);
+  return target.contains("description") ? target.at("description").get<std::string>() : "something else";
+}
+
+std::vector<std::string> keys(const json& object) {
+  std::vector<std::string> names;
+  for (const auto& item : object.items()) names.push_back(item.key());
+  return names;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const auto& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+bool has_type(const json& value, const std::string& type) {
+  if (type == "object") return value.is_object();
+  if (type == "array") return value.is_array();
+  if (type == "string") return value.is_string();
+  if (type == "boolean") return value.is_boolean();
+  if (type == "integer") return value.is_number_integer();
+  return value.is_number();
+}
+
+/// Says what is wrong with one value, whose children are all right.
+[[noreturn]] void explain(const Document& document, const std::string& pointer, const json& schema, const json& node) {
+  const json& value = document.json.at(json::json_pointer(pointer));
+  const json& rule = resolve(schema, node);
+  const std::string expected = description(schema, node);
+  if (rule.contains("type") && has_type(value, rule.at("type")) && value.is_object()) {
+    const auto known = rule.contains("properties") ? keys(rule.at("properties")) : std::vector<std::string>{};
+    for (const auto& key : keys(value))
+      if (std::find(known.begin(), known.end(), key) == known.end())
+        document.refuse(pointer + '/' + escaped(key), "unknown key '" + key + "'." + did_you_mean(key, known), "Known here: " + joined(known) + ".");
+    for (const auto& key : rule.value("required", std::vector<std::string>{}))
+      if (!value.contains(key))
+        document.refuse(pointer, "key '" + key + "' is missing: " + description(schema, rule.at("properties").at(key)), "Add it.");
+    document.refuse(pointer, "found the keys " + (value.empty() ? "(none)" : joined(keys(value))) + ", expected " + expected);
+  }
+  if (rule.contains("enum")) {
+    const auto words = rule.at("enum").get<std::vector<std::string>>();
+    const std::string hint = value.is_string() ? did_you_mean(value.get<std::string>(), words) : "";
+    document.refuse(pointer, "found " + show(value) + ", expected one of " + joined(words) + "." + hint);
+  }
+  if (value.is_array() && rule.value("type", "") == "array" && value.size() != rule.value("minItems", value.size()))
+    document.refuse(pointer, "found a list of " + std::to_string(value.size()) + ", expected " + expected);
+  document.refuse(pointer, "found " + show(value) + ", expected " + expected);
+}
+
+}  // namespace
+
+void Document::refuse(const std::string& pointer, const std::string& problem, const std::string& remedy) const {
+  std::string at = pointer;
+  while (!lines.contains(at) && !at.empty()) at.erase(at.rfind('/'));
+  const int line = lines.contains(at) ? lines.at(at) : 1;
+  throw UserError(file.string() + ':' + std::to_string(line) + (pointer.empty() ? "" : ": " + pointer), problem, remedy);
+}
+
+Document parse_document(const std::string& text, const std::filesystem::path& file) {
+  Document document;
+  document.file = file;
+  const char* seen = text.data();
+  LineNotes notes(text, &seen);
+  try {
+    document.json = json::parse(WatchedIterator{text.data(), &seen}, WatchedIterator{text.data() + text.size(), &seen},
+                                [&](int, json::parse_event_t event, json& parsed) { return notes(event, parsed); });
+  } catch (const json::parse_error& error) {
+    throw UserError(file.string() + ':' + line_and_column(text, error.byte), "this is not JSON: " + essence(error.what()),
+                    "JSON wants double quotes, a comma between entries and none after the last, and no NaN or infinity.");
+  } catch (const json::exception& error) {   // a number beyond a double
+    throw UserError(file.string() + ':' + line_and_column(text, static_cast<std::size_t>(seen - text.data())), essence(error.what()));
+  }
+  document.lines = std::move(notes.lines);
+  if (notes.twice) document.refuse(*notes.twice, "this key stands twice in the same object", "Delete one of the two.");
+  return document;
+}
+
+void check_against_schema(const Document& document, const json& schema) {
+  valijson::Schema rules;
+  valijson::SchemaParser parser;
+  parser.populateSchema(valijson::adapters::NlohmannJsonAdapter(schema), rules);
+  valijson::Validator validator(valijson::Validator::kStrongTypes);
+  valijson::ValidationResults results;
+  if (validator.validate(rules, valijson::adapters::NlohmannJsonAdapter(document.json), &results)) return;
+
+  // The innermost complaint, the first among equals, is the cause; those around it are its consequences.
+  std::vector<std::string> deepest;
+  for (const auto& error : results)
+    if (error.context.size() > deepest.size()) deepest = error.context;
+  std::string pointer;
+  const json* node = &schema;
+  for (std::size_t i = 1; i < deepest.size(); ++i) {
+    const std::string token = deepest[i].substr(1, deepest[i].size() - 2);   // "[name]"
+    const json& rule = resolve(schema, *node);
+    if (rule.contains("properties") && rule.at("properties").contains(token)) {
+      node = &rule.at("properties").at(token);
+    } else if (rule.contains("items")) {
+      node = &rule.at("items");
+    } else {
+      break;   // an unknown key, or inside a choice that is explained as a whole
+    }
+    pointer += '/' + escaped(token);
+  }
+  explain(document, pointer, schema, *node);
+}
+
+std::string show(const json& value) {
+  std::string text = value.dump(-1, ' ', false, json::error_handler_t::replace);
+  if (text.size() > 60) text = text.substr(0, 57) + "...";
+  return (value.is_string() ? "the text " : value.is_object() ? "the object " : value.is_array() ? "the list " : "") + text;
+}
+
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates) {
+  std::string nearest;
+  std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
+  for (const auto& candidate : candidates) {
+    // Edit distance, a row at a time; "mass" for "mass_kg" counts as one slip.
+    std::vector<std::size_t> row(candidate.size() + 1);
+    for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
+    for (std::size_t i = 1; i <= word.size(); ++i) {
+      std::size_t diagonal = row[0];
+      row[0] = i;
+      for (std::size_t j = 1; j < row.size(); ++j) {
+        const std::size_t swapped = diagonal + (word[i - 1] == candidate[j - 1] ? 0 : 1);
+        diagonal = row[j];
+        row[j] = std::min({row[j] + 1, row[j - 1] + 1, swapped});
+      }
+    }
+    const bool unit_differs = candidate.starts_with(word) || word.starts_with(candidate.substr(0, candidate.find('_')) + '_');
+    const std::size_t distance = unit_differs ? std::min<std::size_t>(row.back(), 1) : row.back();
+    if (distance < least) {
+      least = distance;
+      nearest = candidate;
+    }
+  }
+  return nearest.empty() ? "" : " Did you mean '" + nearest + "'?";
+}
+
+}  // namespace tumble::scene

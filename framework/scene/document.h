@@ -1,0 +1,35 @@
+/// A JSON text that remembers its lines, checked against a schema. For the .cpp files of this folder only.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "framework/core/error.h"
+
+namespace tumble::scene {
+
+struct Document {
+  nlohmann::json json;
+  std::map<std::string, int> lines;   // by JSON pointer: the line (from 1) where the value or its key begins
+  std::filesystem::path file;
+
+  /// Refuses the value at `pointer` ("" is the whole file); a pointer without a line of its own is reported at its parent's.
+  [[noreturn]] void refuse(const std::string& pointer, const std::string& problem, const std::string& remedy = "") const;
+};
+
+/// @throws UserError with line and column for text that is no JSON, a key given twice, or a number too large for a double
+Document parse_document(const std::string& text, const std::filesystem::path& file);
+
+/// @throws UserError for the innermost value that the schema does not allow
+void check_against_schema(const Document& document, const nlohmann::json& schema);
+
+/// A value as an error shows it: shortened to one line.
+std::string show(const nlohmann::json& value);
+
+/// " Did you mean 'x'?" for the candidate nearest to a mistyped word, or "".
+std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates);
+
+}  // namespace tumble::scene
