@@ -1,12 +1,88 @@
 #include "framework/grading/test_program.h"
 
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <iostream>
+
 #include <gtest/gtest.h>
 
-namespace tumble::grading {
+#include "framework/grading/verdict_table.h"
 
-int run_tests(int argc, char** argv) {
+namespace tumble::grading {
+namespace {
+
+struct Words {
+  std::string json, rubric;
+  bool debug = false;
+  TestLimits limits;
+  std::string filter;   // GoogleTest's, patterns joined by ':'
+};
+
+Words read_words(int argc, char** argv) {
+  Words words;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const auto value = [&]() -> std::string {
+      if (i + 1 >= argc) throw UserError(word, "needs a value");
+      return argv[++i];
+    };
+    if (word == "--json") words.json = value();
+    else if (word == "--rubric") words.rubric = value();
+    else if (word == "--wall-s") words.limits.wall_s = std::atof(value().c_str());
+    else if (word == "--debug") words.debug = true;
+    else if (word.starts_with("--gtest_")) continue;  // GoogleTest has read it
+    else if (word.starts_with("-")) throw UserError(word, "is not known here", "Known: --json FILE, --rubric FILE, --wall-s S, --debug, and patterns of test names.");
+    else words.filter += (words.filter.empty() ? "" : ":") + word;
+  }
+  return words;
+}
+
+// GoogleTest's own pattern language, '*' and '?', so that a pattern means the same with --debug.
+bool matches(const char* pattern, const char* text) {
+  if (*pattern == '*') return matches(pattern + 1, text) || (*text != '\0' && matches(pattern, text + 1));
+  if (*pattern == '\0') return *text == '\0';
+  return *text != '\0' && (*pattern == '?' || *pattern == *text) && matches(pattern + 1, text + 1);
+}
+
+bool chosen(const std::string& test, const std::string& filter) {
+  if (filter.empty()) return true;
+  for (std::size_t from = 0; from <= filter.size();) {
+    const std::size_t to = std::min(filter.find(':', from), filter.size());
+    if (matches(filter.substr(from, to - from).c_str(), test.c_str())) return true;
+    from = to + 1;
+  }
+  return false;
+}
+
+int run(int argc, char** argv) {
   ::testing::InitGoogleTest(&argc, argv);
-  return RUN_ALL_TESTS();
+  const Words words = read_words(argc, argv);
+  if (words.debug) {
+    if (!words.filter.empty()) ::testing::GTEST_FLAG(filter) = words.filter;
+    return RUN_ALL_TESTS();
+  }
+  std::vector<TestResult> results;
+  for (const std::string& test : linked_tests())
+    if (chosen(test, words.filter)) results.push_back(run_isolated(test, words.limits, Process::kStudents));
+  if (results.empty()) throw UserError(words.filter, "no test has such a name", "--debug --gtest_list_tests lists them.");
+  const Rubric rubric = words.rubric.empty() ? Rubric{} : read_rubric(words.rubric);
+  if (!words.json.empty()) write_results(words.json, results);
+  print_verdicts(std::cout, results, rubric, ::isatty(STDOUT_FILENO) == 1);
+  return static_cast<int>(exit_code(results));
+}
+
+}  // namespace
+
+int run_check_program(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const UserError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return static_cast<int>(ExitCode::kUserError);
+  }
 }
 
 }  // namespace tumble::grading

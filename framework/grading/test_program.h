@@ -1,19 +1,24 @@
-/// Runs GoogleTest's tests one by one, each with a verdict of its own: the student's loop and the judge share it.
+/// main() of a student's check program: the tests linked into it, one by one, each with a verdict and a story of its own.
 #pragma once
 
+#include "framework/grading/call_log.h"
+#include "framework/grading/test_runner.h"
 #include "framework/modules/under_test.h"
 
 namespace tumble::grading {
 
-/// Runs every test linked into this program against the functions linked into this program. Returns an exit code.
-int run_tests(int argc, char** argv);
+/// Words of a check program:
+///   check_a1 [--json FILE] [--rubric FILE] [--wall-s S] [--debug] [PATTERN...]
+/// PATTERNs are GoogleTest filters ("CollisionImpulse.*"). --debug runs GoogleTest plainly in this one process, for gdb.
+/// @return an exit code: 0 all right, 1 something is wrong, 2 wrong words, 4 the rest is right but not all is attempted
+int run_check_program(int argc, char** argv);
 
-/// main() of a student's check program.
+/// The tests against the functions linked into this program.
 template <class Module>
 int run_linked_tests(int argc, char** argv) {
-  static const Module module = Module::linked();
+  static const Module module = observed(Module::linked());
   modules::UnderTest<Module>::table = &module;
-  return run_tests(argc, argv);
+  return run_check_program(argc, argv);
 }
 
 }  // namespace tumble::grading

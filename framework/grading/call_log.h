@@ -1,0 +1,75 @@
+/// The calls into a module during one test, kept where the parent process can read them after the test's process died.
+#pragma once
+
+#include <cstddef>
+#include <exception>
+#include <functional>
+#include <new>
+#include <string>
+
+#include "framework/core/not_implemented.h"
+#include "framework/grading/verdict.h"
+
+namespace tumble::grading {
+
+/// Lies in memory shared between a test's process and its parent. Plain data: it must outlive a crash.
+struct CallLog {
+  static constexpr std::size_t kStory = 4096;  // bytes: a compiler-made exception text may be long, a story is not
+  char last_call[96] = "";
+  char story[kStory] = "";
+  long calls = 0;
+  bool in_call = false;
+  bool noted = false;
+  Verdict verdict = Verdict::kGraderFault;
+
+  void begin(const char* function);
+  void end() { in_call = false; }
+  /// The first thing noted stands: what follows from it is not the student's slip.
+  void note(Verdict verdict, const std::string& story);
+};
+
+/// Of the test that is running in this process.
+CallLog& call_log();
+
+namespace detail {
+
+template <class R, class... A>
+std::function<R(A...)> observe(const char* name, std::function<R(A...)> function) {
+  return [name, function](A... arguments) -> R {
+    CallLog& log = call_log();
+    log.begin(name);
+    try {
+      if constexpr (std::is_void_v<R>) {
+        function(std::forward<A>(arguments)...);
+        log.end();
+      } else {
+        R result = function(std::forward<A>(arguments)...);
+        log.end();
+        return result;
+      }
+    } catch (const NotImplemented& missing) {
+      log.note(Verdict::kNotAttempted, missing.what());
+      throw;
+    } catch (const std::bad_alloc&) {
+      log.note(Verdict::kOutOfResources, std::string(name) + " asked for more memory than it may have");
+      throw;
+    } catch (const std::exception& error) {
+      log.note(Verdict::kCrashed, std::string(name) + " threw an exception: " + error.what());
+      throw;
+    } catch (...) {
+      log.note(Verdict::kCrashed, std::string(name) + " threw something that is not a std::exception");
+      throw;
+    }
+  };
+}
+
+}  // namespace detail
+
+/// The same table, each call noted in the log before it runs.
+template <class Module>
+Module observed(Module module) {
+  Module::visit(module, [](const char* name, auto& field) { field = detail::observe(name, field); });
+  return module;
+}
+
+}  // namespace tumble::grading

@@ -1,0 +1,39 @@
+/// What each test of an assignment is worth: assignments/aN_name/rubric.json for the public ones,
+/// solutions_private/aN_name/rubric_hidden.json for the hidden ones.
+///
+///   {"assignment": "a1", "title": "Impulse",
+///    "tests": [{"test": "Suite.Name", "points": 5, "level": "basic", "title": "short human title"}]}
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace tumble::grading {
+
+struct RubricItem {
+  std::string test;      // "Suite.Name"
+  double points = 0.0;
+  std::string level;     // basic, intermediate, advanced
+  std::string title;     // for people
+  bool hidden = false;
+};
+
+struct Rubric {
+  std::string assignment;   // "a1"
+  std::string title;
+  std::vector<RubricItem> items;
+
+  /// @return null when no item names the test
+  const RubricItem* find(const std::string& test) const;
+  double total() const;
+};
+
+/// @throws UserError that names the file and the entry: unreadable, a field missing or of another type, a test named twice,
+///         points below 0, an unknown level
+Rubric read_rubric(const std::filesystem::path& file, bool hidden = false);
+
+/// Public and hidden items as one. @throws UserError when both name a test or the points do not sum to 100
+Rubric joined(const Rubric& open, const Rubric& hidden);
+
+}  // namespace tumble::grading

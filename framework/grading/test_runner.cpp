@@ -1,0 +1,250 @@
+#include "framework/grading/test_runner.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <new>
+
+#include <gtest/gtest.h>
+
+#include "framework/grading/call_log.h"
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define TUMBLE_SANITIZED 1   // reserves terabytes of address space: no limit on it can be set
+#else
+#define TUMBLE_SANITIZED 0
+#endif
+
+namespace tumble::grading {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+CallLog* shared_log = nullptr;
+
+constexpr std::size_t kPrinted = 4000;     // bytes kept of what a test's process printed
+constexpr rlim_t kPrintedFile = 1u << 20;  // bytes it may print at all
+
+// What the test's process tells its parent when it ends in an orderly way: one byte of outcome, then the failures.
+enum class Outcome : char { kPassed = 'p', kFailed = 'f', kSkipped = 's' };
+
+class FailureCollector : public ::testing::EmptyTestEventListener {
+ public:
+  std::string text;
+  bool skipped = false;
+
+  void OnTestPartResult(const ::testing::TestPartResult& part) override {
+    if (part.skipped()) skipped = true;
+    if (!part.failed()) return;
+    // A story (tests/support/story.h) starts its own line. A bare EXPECT has no story: say where it stands.
+    std::string message = part.message();
+    const bool bare = message.find("\n  expected:") == std::string::npos;
+    if (bare && part.file_name() != nullptr) message += std::string("\n(") + part.file_name() + ":" + std::to_string(part.line_number()) + ")";
+    constexpr const char* kFailed = "Failed\n";
+    if (message.starts_with(kFailed)) message.erase(0, std::strlen(kFailed));
+    text += (text.empty() ? "" : "\n") + message;
+  }
+};
+
+void write_all(int fd, const std::string& text) {
+  for (std::size_t sent = 0; sent < text.size();) {
+    const ssize_t n = ::write(fd, text.data() + sent, text.size() - sent);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return;
+    sent += static_cast<std::size_t>(n);
+  }
+}
+
+[[noreturn]] void run_in_child(const std::string& test, const TestLimits& limits, int answer_fd, int printed_fd) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  ::dup2(printed_fd, STDOUT_FILENO);
+  ::dup2(printed_fd, STDERR_FILENO);
+  ::signal(SIGXFSZ, SIG_IGN);  // a flood of output ends in failed writes, not in a signal that is nobody's slip
+  const rlimit file{kPrintedFile, kPrintedFile}, core{0, 0}, memory{limits.memory_bytes, limits.memory_bytes};
+  ::setrlimit(RLIMIT_FSIZE, &file);
+  ::setrlimit(RLIMIT_CORE, &core);
+  if (!TUMBLE_SANITIZED) ::setrlimit(RLIMIT_AS, &memory);
+
+  auto& listeners = ::testing::UnitTest::GetInstance()->listeners();
+  delete listeners.Release(listeners.default_result_printer());
+  auto* collector = new FailureCollector;
+  listeners.Append(collector);
+  ::testing::GTEST_FLAG(filter) = test;
+  ::testing::GTEST_FLAG(catch_exceptions) = true;
+  ::testing::GTEST_FLAG(also_run_disabled_tests) = false;
+  const bool passed = RUN_ALL_TESTS() == 0 && ::testing::UnitTest::GetInstance()->test_to_run_count() == 1;
+  const Outcome outcome = collector->skipped ? Outcome::kSkipped : passed ? Outcome::kPassed : Outcome::kFailed;
+  std::fflush(nullptr);
+  write_all(answer_fd, static_cast<char>(outcome) + collector->text);
+  ::_exit(0);
+}
+
+struct Answer {
+  std::string text;
+  bool in_time = true;
+};
+
+Answer read_answer(int fd, double wall_s) {
+  constexpr std::size_t kCap = 1u << 20;  // bytes of failures: more helps nobody
+  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wall_s));
+  Answer answer;
+  char buffer[4096];
+  while (answer.text.size() < kCap) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+    if (left <= 0) return answer.in_time = false, answer;
+    pollfd waiting{fd, POLLIN, 0};
+    if (::poll(&waiting, 1, static_cast<int>(left) + 1) <= 0) continue;
+    const ssize_t n = ::read(fd, buffer, sizeof buffer);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) return answer;
+    answer.text.append(buffer, static_cast<std::size_t>(n));
+  }
+  return answer;
+}
+
+// Waits for a child that has closed its pipe, so is about to end; one that is not gets a second and is killed.
+int reap(pid_t child) {
+  constexpr int kTries = 1000;
+  int status = 0;
+  for (int i = 0; i < kTries; ++i) {
+    if (::waitpid(child, &status, WNOHANG) != 0) return status;
+    ::usleep(i < 10 ? 50 : 1000);
+  }
+  ::kill(child, SIGKILL);
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {}
+  return status;
+}
+
+std::string read_printed(int fd) {
+  std::string text(kPrinted + 1, '\0');
+  const ssize_t n = ::pread(fd, text.data(), text.size(), 0);
+  text.resize(n > 0 ? static_cast<std::size_t>(n) : 0);
+  if (text.size() > kPrinted) text.resize(kPrinted), text += "\n[cut here]";
+  return text;
+}
+
+std::string signal_story(int signal, const CallLog& log) {
+  std::string text = std::string(::sigabbrev_np(signal) ? std::string("SIG") + ::sigabbrev_np(signal) : "signal") + ": " + ::strsignal(signal);
+  if (signal == SIGSEGV) text += " (an index or pointer out of range, or a recursion without end)";
+  if (signal == SIGFPE) text += " (an integer divided by zero)";
+  if (signal == SIGABRT) text += " (a failed assertion inside a library, e.g. Eigen sizes that do not match)";
+  return text + (log.in_call ? ", in " : ", after the last call, which was ") + (log.last_call[0] ? log.last_call : "none");
+}
+
+// What happened to a process of the student's that gave no orderly answer.
+void judge_death(TestResult& result, const CallLog& log, int status, bool in_time, const TestLimits& limits) {
+  if (!in_time) {
+    result.verdict = Verdict::kOutOfResources;
+    char text[64];
+    std::snprintf(text, sizeof text, "no answer within %g s", limits.wall_s);
+    result.story = std::string(text) + (log.in_call ? std::string(", in ") + log.last_call : "") + " (a loop that does not end?)";
+  } else if (WIFSIGNALED(status)) {
+    result.verdict = Verdict::kCrashed;
+    result.story = signal_story(WTERMSIG(status), log);
+  } else {
+    result.verdict = Verdict::kCrashed;
+    result.story = "the program was ended with exit code " + std::to_string(WEXITSTATUS(status)) + (log.in_call ? std::string(" in ") + log.last_call : "");
+  }
+}
+
+void judge_answer(TestResult& result, const CallLog& log, const std::string& answer) {
+  const auto outcome = static_cast<Outcome>(answer[0]);
+  if (log.noted) {
+    result.verdict = log.verdict;
+    result.story = log.story;
+  } else if (outcome == Outcome::kPassed) {
+    result.verdict = Verdict::kRight;
+  } else if (outcome == Outcome::kFailed) {
+    result.verdict = Verdict::kWrong;
+    result.story = answer.substr(1);
+  } else {
+    result.story = "the test was skipped, which says nothing";
+  }
+}
+
+}  // namespace
+
+void CallLog::begin(const char* function) {
+  std::snprintf(last_call, sizeof last_call, "%s", function);
+  ++calls;
+  in_call = true;
+}
+
+void CallLog::note(Verdict what, const std::string& text) {
+  in_call = false;
+  if (noted) return;
+  noted = true;
+  verdict = what;
+  std::snprintf(story, sizeof story, "%s", text.c_str());
+}
+
+CallLog& call_log() {
+  static CallLog outside_of_tests;
+  return shared_log != nullptr ? *shared_log : outside_of_tests;
+}
+
+std::vector<std::string> linked_tests() {
+  std::vector<std::string> names;
+  const auto* all = ::testing::UnitTest::GetInstance();
+  for (int i = 0; i < all->total_test_suite_count(); ++i) {
+    const auto* suite = all->GetTestSuite(i);
+    for (int k = 0; k < suite->total_test_count(); ++k) names.push_back(std::string(suite->name()) + "." + suite->GetTestInfo(k)->name());
+  }
+  return names;
+}
+
+TestResult run_isolated(const std::string& test, const TestLimits& limits, Process owner) {
+  TestResult result;
+  result.test = test;
+  if (shared_log == nullptr) {
+    void* page = ::mmap(nullptr, sizeof(CallLog), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (page == MAP_FAILED) return result.story = "no memory for the log of calls", result;
+    shared_log = static_cast<CallLog*>(page);
+  }
+  CallLog& log = *new (shared_log) CallLog;
+  const auto start = Clock::now();
+  int answer_pipe[2];
+  const int printed = ::memfd_create("printed", MFD_CLOEXEC);
+  if (printed < 0 || ::pipe2(answer_pipe, O_CLOEXEC) != 0) return result.story = "no descriptor left", result;
+  std::fflush(nullptr);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::close(answer_pipe[0]);
+    run_in_child(test, limits, answer_pipe[1], printed);
+  }
+  ::close(answer_pipe[1]);
+  if (child < 0) {
+    result.story = "no process could be started";
+  } else {
+    const Answer answer = read_answer(answer_pipe[0], limits.wall_s);
+    if (!answer.in_time) ::kill(child, SIGKILL);
+    const int status = reap(child);
+    if (answer.in_time && !answer.text.empty() && WIFEXITED(status) && WEXITSTATUS(status) == 0) judge_answer(result, log, answer.text);
+    else judge_death(result, log, status, answer.in_time, limits);
+    if (owner == Process::kGraders && !log.noted && result.verdict != Verdict::kRight && result.verdict != Verdict::kWrong) {
+      result.verdict = Verdict::kGraderFault;
+      result.story = "the judge's own test process ended without a verdict: " + result.story;
+    }
+    if (owner == Process::kStudents) result.printed = read_printed(printed);
+  }
+  result.last_call = log.last_call;
+  result.calls = log.calls;
+  ::close(answer_pipe[0]);
+  ::close(printed);
+  result.wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+  return result;
+}
+
+}  // namespace tumble::grading

@@ -1,0 +1,45 @@
+/// What can be said of one test of one submission, and the record that carries it from a test program to a page.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/core/error.h"
+
+namespace tumble::grading {
+
+enum class Verdict {
+  kRight,
+  kWrong,           // answered, and the answer is not right
+  kNotAttempted,    // the stub is still there
+  kCrashed,         // a signal, an exit, or an exception where an answer was due
+  kOutOfResources,  // out of time or memory
+  kGraderFault,     // ours: never counted against a submission
+};
+
+/// "right", "wrong", "not attempted", "crashed", "out of time or memory", "fault of the grader"
+const char* words(Verdict verdict);
+/// The inverse of words(). @return empty for anything else
+std::optional<Verdict> verdict_from_words(const std::string& text);
+
+struct TestResult {
+  std::string test;                                // "Suite.Name"
+  Verdict verdict = Verdict::kGraderFault;         // fail-closed: only a seen answer makes it anything else
+  std::string story;                               // what went wrong, for the student; empty when right
+  std::string last_call;                           // the last function of the module that was called
+  long calls = 0;                                  // of the module's functions
+  std::string printed;                             // what the student's code wrote to stdout and stderr, cut short
+  double wall_s = 0.0;                             // kept out of everything that is compared
+};
+
+/// What a program says with its exit code: 3 for a fault of ours, 1 when something is wrong, 4 when all that is missing is
+/// not attempted, else 0.
+ExitCode exit_code(const std::vector<TestResult>& results);
+
+/// Writes and reads the record of a test program (JSON).
+/// @throws UserError when the file cannot be written, read or understood
+void write_results(const std::string& file, const std::vector<TestResult>& results);
+std::vector<TestResult> read_results(const std::string& file);
+
+}  // namespace tumble::grading
