@@ -18,10 +18,10 @@ namespace tumble::testing {
 inline constexpr double kEps = 2.220446049250313e-16;  // spacing of doubles at 1
 
 struct Story {
-  std::string scene;     // what was set up, with numbers and units
-  std::string steps;     // what was done to it, where more than one call
-  std::string slip;      // the mistake that gives such an answer most often
-  std::string handout;   // file and anchor
+  std::string scene = "";     // what was set up, with numbers and units
+  std::string steps = "";     // what was done to it, where more than one call
+  std::string slip = "";      // the mistake that gives such an answer most often
+  std::string handout = "";   // file and anchor
 };
 
 inline std::string tell(const Story& story, const std::string& expected, const std::string& found, const std::string& unit,
