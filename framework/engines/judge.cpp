@@ -1,0 +1,252 @@
+#include "framework/engines/judge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "framework/core/error.h"
+
+namespace tumble::engines {
+namespace {
+
+using scene::CheckSpec;
+using scene::Scene;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The worst that a check found.
+struct Finding {
+  double value = 0.0;
+  std::string detail;
+
+  /// Keeps the larger; NaN is worse than anything.
+  void worst(double candidate, const std::string& where) {
+    if (std::isnan(value) || candidate <= value) return;
+    value = candidate;
+    detail = where;
+  }
+};
+
+using Measure = Finding (*)(const CheckSpec&, const Scene&, const Trajectory&);
+
+std::string at_time(double time) { return fmt::format("at t = {:.6g} s", time); }
+
+int index_of(const std::string& name, const Trajectory& run) {
+  for (std::size_t i = 0; i < run.bodies.size(); ++i)
+    if (run.bodies[i].name == name) return static_cast<int>(i);
+  throw UserError("check", "the run has no body '" + name + "'", "Judge a run by the scene that it was made from.");
+}
+
+double total_energy(const Frame& frame) { return frame.kinetic_energy + frame.potential_energy; }
+
+/// What energies are compared with: potential energy has no zero of its own, kinetic energy has.
+double energy_scale(const Trajectory& run) {
+  double scale = 0.0;
+  for (const Frame& frame : run.frames) scale = std::max(scale, std::abs(frame.kinetic_energy));
+  return scale > 0 ? scale : 1.0;
+}
+
+Finding energy(const CheckSpec& check, const Scene&, const Trajectory& run) {
+  Finding finding;
+  const Frame* first = nullptr;
+  for (const Frame& frame : run.frames) {
+    if (frame.time < check.at_s) continue;
+    if (first == nullptr) first = &frame;
+    finding.worst(std::abs(total_energy(frame) - total_energy(*first)) / energy_scale(run), at_time(frame.time));
+  }
+  if (first == nullptr) finding.worst(kInfinity, "the run ended before at_s");
+  return finding;
+}
+
+Finding energy_not_rising(const CheckSpec& check, const Scene&, const Trajectory& run) {
+  Finding finding;
+  double least = kInfinity;
+  for (const Frame& frame : run.frames) {
+    if (frame.time < check.at_s) continue;
+    finding.worst((total_energy(frame) - std::min(least, total_energy(frame))) / energy_scale(run), at_time(frame.time));
+    least = std::min(least, total_energy(frame));
+  }
+  return finding;
+}
+
+/// Constancy from at_s on, or the true value at the end.
+Finding conserved(const CheckSpec& check, const Trajectory& run, Vector3d Frame::*quantity) {
+  Finding finding;
+  if (!check.expected.empty()) {
+    const Vector3d& found = run.frames.back().*quantity;
+    finding.worst((found - Eigen::Map<const Vector3d>(check.expected.data())).norm(), fmt::format("({:.6g}, {:.6g}, {:.6g}) at the end", found.x(), found.y(), found.z()));
+    return finding;
+  }
+  const Frame* first = nullptr;
+  for (const Frame& frame : run.frames) {
+    if (frame.time < check.at_s) continue;
+    if (first == nullptr) first = &frame;
+    finding.worst((frame.*quantity - first->*quantity).norm(), at_time(frame.time));
+  }
+  if (first == nullptr) finding.worst(kInfinity, "the run ended before at_s");
+  return finding;
+}
+Finding momentum(const CheckSpec& check, const Scene&, const Trajectory& run) { return conserved(check, run, &Frame::momentum_world); }
+Finding angular_momentum(const CheckSpec& check, const Scene&, const Trajectory& run) { return conserved(check, run, &Frame::angular_momentum_world); }
+
+Finding gap(const CheckSpec&, const Scene&, const Trajectory& run) {
+  Finding finding{kInfinity, "no pair may collide"};
+  for (const Frame& frame : run.frames) {
+    if (std::isnan(finding.value) || frame.smallest_gap >= finding.value) continue;   // NaN is not >=: it is kept
+    finding = {frame.smallest_gap, at_time(frame.time)};
+  }
+  return finding;
+}
+
+const Frame* frame_at(double time, const Trajectory& run) {
+  if (time == 0.0) return &run.frames.back();
+  // Frames are recorded at multiples of the frame time, which rounding shifts by far less than a microsecond.
+  constexpr double kSameInstant = 1e-6;   // s
+  for (const Frame& frame : run.frames)
+    if (std::abs(frame.time - time) <= kSameInstant) return &frame;
+  return nullptr;
+}
+
+Finding vector_at(const CheckSpec& check, const Trajectory& run, Vector3d BodyPose::*quantity) {
+  const Frame* frame = frame_at(check.at_s, run);
+  if (frame == nullptr) return {kInfinity, fmt::format("no frame was recorded {}", at_time(check.at_s))};
+  const Vector3d& found = frame->poses[static_cast<std::size_t>(index_of(check.body, run))].*quantity;
+  Finding finding;
+  finding.worst((found - Eigen::Map<const Vector3d>(check.expected.data())).norm(),
+                fmt::format("({:.6g}, {:.6g}, {:.6g}) {}", found.x(), found.y(), found.z(), at_time(frame->time)));
+  return finding;
+}
+Finding final_position(const CheckSpec& check, const Scene&, const Trajectory& run) { return vector_at(check, run, &BodyPose::com_world); }
+Finding final_velocity(const CheckSpec& check, const Scene&, const Trajectory& run) { return vector_at(check, run, &BodyPose::velocity_world); }
+
+/// Collisions of the bodies that the check names; of all where it names none.
+std::vector<const Event*> collisions(const CheckSpec& check, const Trajectory& run) {
+  const int body = check.body.empty() ? -1 : index_of(check.body, run);
+  const int other = check.other.empty() ? -1 : index_of(check.other, run);
+  const auto takes_part = [](const Event& event, int who) { return who < 0 || event.body_a == who || event.body_b == who; };
+  std::vector<const Event*> found;
+  for (const Event& event : run.events)
+    if (event.kind == EventKind::kCollision && takes_part(event, body) && takes_part(event, other)) found.push_back(&event);
+  return found;
+}
+
+Finding impact_times(const CheckSpec& check, const Scene&, const Trajectory& run) {
+  const auto impacts = collisions(check, run);
+  if (impacts.size() < check.expected.size())
+    return {kInfinity, fmt::format("{} impacts, expected {}: the next at {:.6g} s", impacts.size(), check.expected.size(), check.expected[impacts.size()])};
+  Finding finding;
+  for (std::size_t i = 0; i < check.expected.size(); ++i)
+    finding.worst(std::abs(impacts[i]->time - check.expected[i]), fmt::format("impact {} at {:.9g} s, expected {:.9g} s", i + 1, impacts[i]->time, check.expected[i]));
+  return finding;
+}
+
+Finding event_count(const CheckSpec& check, const Scene&, const Trajectory& run) {
+  const double count = static_cast<double>(collisions(check, run).size());
+  return {std::abs(count - check.expected[0]), fmt::format("{} collisions, expected {}", count, check.expected[0])};
+}
+
+Finding restitution_law(const CheckSpec& check, const Scene& scene, const Trajectory& run) {
+  Finding finding{0.0, "no collision"};
+  const auto events = collisions(check, run);
+  if (!events.empty()) finding.detail = fmt::format("all {} collisions", events.size());
+  for (const Event* event : events) {
+    const double e = std::min(scene.bodies[static_cast<std::size_t>(event->body_a)].restitution, scene.bodies[static_cast<std::size_t>(event->body_b)].restitution);
+    const double before = event->normal_velocity_before;
+    // The scene's rule: what would part more slowly than this ends in rest.
+    const double wanted = e * std::abs(before) < scene.rest_speed_m_s ? 0.0 : -e * before;
+    finding.worst(std::abs(event->normal_velocity_after - wanted) / std::abs(before),
+                  fmt::format("{}: {:.6g} m/s before, {:.6g} m/s after, e = {:.6g}", at_time(event->time), before, event->normal_velocity_after, e));
+  }
+  return finding;
+}
+
+Finding side_of_wall(const CheckSpec& check, const Scene&, const Trajectory& run) {
+  const auto body = static_cast<std::size_t>(index_of(check.body, run)), other = static_cast<std::size_t>(index_of(check.other, run));
+  const auto along = [&](const Frame& frame) { return check.axis->dot(frame.poses[body].com_world - frame.poses[other].com_world); };
+  const double side = along(run.frames.front()) < 0 ? -1.0 : 1.0;
+  Finding finding{kInfinity, ""};
+  for (const Frame& frame : run.frames) {
+    const double distance = side * along(frame);
+    if (!std::isnan(finding.value) && !(distance >= finding.value)) finding = {distance, at_time(frame.time)};
+  }
+  return finding;
+}
+
+Finding flips(const CheckSpec& check, const Scene&, const Trajectory& run) {
+  const auto body = static_cast<std::size_t>(index_of(check.body, run));
+  const Vector3d first = run.frames.front().poses[body].world_from_body * *check.axis;
+  int count = 0;
+  bool is_over = false;
+  std::string times;
+  for (const Frame& frame : run.frames) {
+    const double cosine = first.dot(frame.poses[body].world_from_body * *check.axis);
+    // Turned over when it has passed 120 degrees, back when it has passed 60: trembling about 90 is no flip.
+    if (is_over ? cosine > 0.5 : cosine < -0.5) {
+      is_over = !is_over;
+      ++count;
+      times += fmt::format("{}{:.3g}", times.empty() ? "" : ", ", frame.time);
+    }
+  }
+  return {std::abs(count - check.expected[0]), fmt::format("{} flips, expected {}{}", count, check.expected[0], times.empty() ? "" : "; at t = " + times + " s")};
+}
+
+struct Kind {
+  Measure measure;
+  const char* unit;
+  bool at_least = false;
+};
+
+const std::map<std::string, Kind>& kinds() {
+  static const std::map<std::string, Kind> table = {
+      {"energy", {energy, ""}},
+      {"energy_not_rising", {energy_not_rising, ""}},
+      {"momentum", {momentum, "kg m/s"}},
+      {"angular_momentum", {angular_momentum, "kg m^2/s"}},
+      {"gap", {gap, "m", true}},
+      {"final_position", {final_position, "m"}},
+      {"final_velocity", {final_velocity, "m/s"}},
+      {"impact_times", {impact_times, "s"}},
+      {"event_count", {event_count, ""}},
+      {"restitution_law", {restitution_law, ""}},
+      {"side_of_wall", {side_of_wall, "m", true}},
+      {"flips", {flips, ""}},
+  };
+  return table;
+}
+
+std::string subject_of(const CheckSpec& check) {
+  if (check.body.empty()) return "all";
+  return check.other.empty() ? check.body : check.body + ", " + check.other;
+}
+
+CheckResult judge(const CheckSpec& check, const Scene& scene, const Trajectory& run) {
+  const auto found = kinds().find(check.kind);
+  if (found == kinds().end()) throw UserError(scene.file.string(), "unknown kind of check '" + check.kind + "'");
+  const Kind& kind = found->second;
+  const Finding finding = run.frames.empty() ? Finding{kUnset, "the run has no frame"} : kind.measure(check, scene, run);
+  CheckResult result;
+  result.kind = check.kind;
+  result.subject = subject_of(check);
+  result.value = finding.value;
+  result.at_least = kind.at_least;
+  result.threshold = kind.at_least ? 0.0 - check.tolerance : check.tolerance;
+  result.unit = check.unit.empty() ? kind.unit : check.unit;
+  result.passed = kind.at_least ? result.value >= result.threshold : result.value <= result.threshold;   // never true of NaN
+  result.why = check.why;
+  result.detail = finding.detail;
+  return result;
+}
+
+}  // namespace
+
+std::vector<CheckResult> judge_run(const Scene& scene, const Trajectory& run) {
+  std::vector<CheckResult> results;
+  for (const CheckSpec& check : scene.checks) results.push_back(judge(check, scene, run));
+  return results;
+}
+
+}  // namespace tumble::engines
