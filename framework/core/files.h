@@ -1,0 +1,20 @@
+/// Files written whole or not at all.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace tumble {
+
+/// Calls `make(draft)` to write a file beside the one wanted, then renames it: a reader sees the old file or the new one,
+/// never half. The draft keeps the file's extension. Makes missing folders; leaves no draft behind when `make` throws.
+/// @throws UserError when the file cannot be put in place, and whatever `make` throws
+void make_whole(const std::filesystem::path& file, const std::function<void(const std::filesystem::path& draft)>& make);
+
+/// The same, for bytes at hand.
+/// @throws UserError when the file cannot be written
+void write_whole(const std::filesystem::path& file, std::string_view bytes);
+
+}  // namespace tumble

@@ -1,0 +1,155 @@
+#include "framework/report/html.h"
+
+#include "framework/core/error.h"
+#include "framework/core/files.h"
+
+namespace tumble::report {
+namespace {
+
+// Nothing from the network, no script at all; pictures and video from beside the page (`file:` for pages opened from disk).
+constexpr const char* kPolicy =
+    "default-src 'none'; img-src 'self' file: data:; media-src 'self' file: data:; style-src 'unsafe-inline'; "
+    "base-uri 'none'; form-action 'none'";
+
+// Colours pass 4.5:1 against their ground and differ in lightness, not in hue alone.
+constexpr const char* kStyle = R"(
+:root { --ink: #1c2733; --soft: #5b6875; --line: #d9e0e6; --wash: #f4f7f9; --good: #00664b; --warn: #8a5a00; --bad: #a82c00; --link: #005a96; }
+* { box-sizing: border-box; }
+body { margin: 0 auto; padding: 2.2rem 1.4rem 3rem; max-width: 68rem; color: var(--ink); background: #fff;
+  font: 16px/1.5 "DejaVu Sans", "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif; }
+header { border-bottom: 3px solid var(--ink); margin-bottom: 1.4rem; }
+h1 { font-size: 1.75rem; margin: 0 0 .2rem; } header p { margin: 0 0 .8rem; color: var(--soft); }
+h2 { font-size: 1.25rem; margin: 2.2rem 0 .6rem; border-bottom: 1px solid var(--line); } h3 { font-size: 1.02rem; margin: 1.5rem 0 .4rem; }
+p { max-width: 52rem; } a { color: var(--link); } nav a { margin-right: 1.2rem; }
+table { border-collapse: collapse; margin: .8rem 0 1.2rem; font-size: .93rem; }
+caption { text-align: left; color: var(--soft); padding-bottom: .3rem; }
+th, td { padding: .32rem .8rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
+thead th { border-bottom: 2px solid var(--ink); white-space: nowrap; } tbody tr:nth-child(even) { background: var(--wash); }
+.number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
+.muted { color: var(--soft); } .good { color: var(--good); font-weight: 600; } .warning { color: var(--warn); font-weight: 600; }
+.bad { color: var(--bad); font-weight: 700; }
+pre { background: var(--wash); border-left: 4px solid var(--line); padding: .7rem 1rem; overflow-x: auto;
+  font: .84rem/1.45 "DejaVu Sans Mono", Menlo, Consolas, monospace; white-space: pre-wrap; overflow-wrap: anywhere; }
+details { margin: .5rem 0; } summary { cursor: pointer; font-weight: 600; }
+.figures { display: flex; flex-wrap: wrap; gap: 1.2rem; margin: 1rem 0; }
+figure { margin: 0; flex: 1 1 20rem; max-width: 100%; } figure img, figure video { width: 100%; height: auto; display: block; border: 1px solid var(--line); }
+figure .label { font-weight: 600; margin: 0 0 .3rem; } figcaption { color: var(--soft); font-size: .88rem; margin-top: .35rem; }
+.tiles { display: flex; flex-wrap: wrap; gap: 1rem; } .tile { border: 1px solid var(--line); border-top: 4px solid var(--ink); padding: .6rem 1.1rem; min-width: 8rem; }
+.tile b { display: block; font-size: 1.5rem; font-variant-numeric: tabular-nums; } .tile span { color: var(--soft); font-size: .86rem; }
+footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--soft); font-size: .8rem; overflow-wrap: anywhere; }
+@media print { body { padding: 0; max-width: none; font-size: 11pt; } a { color: inherit; text-decoration: none; }
+  tr, figure, .tile { break-inside: avoid; } h2, h3 { break-after: avoid; } nav { display: none; } details > * { display: block; } }
+)";
+
+const char* class_of(Look look) {
+  switch (look) {
+    case Look::kMuted: return "muted";
+    case Look::kGood: return "good";
+    case Look::kWarning: return "warning";
+    case Look::kBad: return "bad";
+    case Look::kPlain: break;
+  }
+  return "";
+}
+
+// A link is a path made by link_to or an anchor; a scheme (javascript:, http:) in its place is a bug.
+std::string linked(const Cell& cell) {
+  if (cell.link.empty()) return html_escape(cell.text);
+  require(cell.link.find(':') == std::string::npos, "report: a link must be made by link_to or be \"#id\", not: " + cell.link);
+  return "<a href=\"" + html_escape(cell.link) + "\">" + html_escape(cell.text) + "</a>";
+}
+
+std::string class_attribute(Look look, bool is_number = false) {
+  std::string classes = class_of(look);
+  if (is_number) classes += classes.empty() ? "number" : " number";
+  return classes.empty() ? "" : " class=\"" + classes + '"';
+}
+
+std::string figure_html(const Figure& figure) {
+  std::string html = "<figure>";
+  if (!figure.label.empty()) html += "<p class=\"label\">" + html_escape(figure.label) + "</p>";
+  const std::string alt = html_escape(figure.caption);
+  if (!figure.video.empty()) {
+    html += "<video controls loop muted preload=\"metadata\" src=\"" + link_to(figure.video) + '"';
+    if (!figure.picture.empty()) html += " poster=\"" + link_to(figure.picture) + '"';
+    html += " aria-label=\"" + alt + "\"></video>";
+  } else if (!figure.picture.empty()) {
+    html += "<img src=\"" + link_to(figure.picture) + "\" alt=\"" + alt + "\">";
+  }
+  if (!figure.caption.empty()) html += "<figcaption>" + alt + "</figcaption>";
+  return html + "</figure>\n";
+}
+
+}  // namespace
+
+Page::Page(std::string title, std::string subtitle) : title_(std::move(title)), subtitle_(std::move(subtitle)) {}
+
+void Page::heading(std::string_view text, int level, std::string_view id) {
+  require(level == 2 || level == 3, "report: a heading's level is 2 or 3");
+  const std::string tag = "h" + std::to_string(level);
+  body_ += '<' + tag + (id.empty() ? "" : " id=\"" + html_escape(id) + '"') + '>' + html_escape(text) + "</" + tag + ">\n";
+}
+
+void Page::paragraph(std::string_view text, Look look) {
+  body_ += "<p" + class_attribute(look) + '>' + html_escape(text) + "</p>\n";
+}
+
+void Page::links(const std::vector<Cell>& links) {
+  body_ += "<nav>";
+  for (const Cell& link : links) body_ += linked(link) + ' ';
+  body_ += "</nav>\n";
+}
+
+void Page::preformatted(std::string_view text) { body_ += "<pre>" + html_escape(text) + "</pre>\n"; }
+
+void Page::fold(std::string_view summary, std::string_view text, bool open) {
+  body_ += std::string("<details") + (open ? " open" : "") + "><summary>" + html_escape(summary) + "</summary><pre>" +
+           html_escape(text) + "</pre></details>\n";
+}
+
+void Page::table(const Table& table) {
+  body_ += "<table>";
+  if (!table.caption.empty()) body_ += "<caption>" + html_escape(table.caption) + "</caption>";
+  body_ += "<thead><tr>";
+  for (const Column& column : table.columns)
+    body_ += "<th scope=\"col\"" + class_attribute(Look::kPlain, column.is_number) + '>' + html_escape(column.name) + "</th>";
+  body_ += "</tr></thead>\n<tbody>\n";
+  for (const auto& row : table.rows) {
+    require(row.size() == table.columns.size(), "report: a table's row has another number of cells than the table has columns");
+    body_ += "<tr>";
+    for (std::size_t i = 0; i < row.size(); ++i)
+      body_ += "<td" + class_attribute(row[i].look, table.columns[i].is_number) + '>' + linked(row[i]) + "</td>";
+    body_ += "</tr>\n";
+  }
+  body_ += "</tbody></table>\n";
+}
+
+void Page::figures(const std::vector<Figure>& figures) {
+  body_ += "<div class=\"figures\">\n";
+  for (const Figure& figure : figures) body_ += figure_html(figure);
+  body_ += "</div>\n";
+}
+
+void Page::tiles(const std::vector<std::pair<std::string, Cell>>& tiles) {
+  body_ += "<div class=\"tiles\">";
+  for (const auto& [name, value] : tiles)
+    body_ += "<div class=\"tile\"><b" + class_attribute(value.look) + '>' + linked(value) + "</b><span>" + html_escape(name) + "</span></div>";
+  body_ += "</div>\n";
+}
+
+void Page::record(std::string_view text) { record_ = html_escape(text); }
+
+std::string Page::html() const {
+  const std::string title = html_escape(title_);
+  std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
+  html += std::string("<meta http-equiv=\"Content-Security-Policy\" content=\"") + kPolicy + "\">\n";
+  html += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" + title + "</title>\n<style>" + kStyle +
+          "</style>\n</head>\n<body>\n<header><h1>" + title + "</h1>";
+  html += (subtitle_.empty() ? "" : "<p>" + html_escape(subtitle_) + "</p>") + "</header>\n<main>\n" + body_ + "</main>\n";
+  if (!record_.empty()) html += "<footer><p>" + record_ + "</p></footer>\n";
+  return html + "</body>\n</html>\n";
+}
+
+void Page::write(const std::filesystem::path& file) const { write_whole(file, html()); }
+
+}  // namespace tumble::report

@@ -1,0 +1,89 @@
+/// Pages that people read in a browser or print: one look, and one place where text becomes HTML.
+///
+///   Page page("Assignment a1", "submission alice");
+///   page.heading("Score");
+///   page.table({.columns = {{"Test"}, {"Points", true}}, .rows = {{{"impulse"}, {.text = "3", .look = Look::kGood}}}});
+///   page.figures({{.picture = "run.png", .video = "run.mp4", .caption = "A poked box"}});
+///   page.write("out/index.html");
+///
+/// Whatever a submission printed or named is text to these functions: it is escaped here and nowhere else, and the page
+/// forbids scripts and anything from the network, so that a story cannot act on its reader.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace tumble::report {
+
+/// Text as HTML shows it: markup escaped; terminal colour codes, control characters and characters that reverse the
+/// direction of writing dropped; bytes that are not UTF-8 shown as U+FFFD. Newline and tab stay.
+std::string html_escape(std::string_view text);
+
+/// A file's path, relative to the page, as a link: every byte outside [A-Za-z0-9._~/-] as %XX.
+std::string link_to(const std::filesystem::path& relative);
+
+/// How a piece of text is meant. Shown by colour and by weight, so that print and colour-blind readers see it too.
+enum class Look { kPlain, kMuted, kGood, kWarning, kBad };
+
+struct Cell {
+  std::string text;
+  std::string link;          // result of link_to, or "#id"; empty: none
+  Look look = Look::kPlain;
+};
+
+struct Column {
+  std::string name;
+  bool is_number = false;    // set flush right
+};
+
+struct Table {
+  std::string caption;
+  std::vector<Column> columns;
+  std::vector<std::vector<Cell>> rows;
+};
+
+/// A picture, a video, or a video with the picture shown until it plays. Paths are relative to the page.
+struct Figure {
+  std::filesystem::path picture;
+  std::filesystem::path video;
+  std::string caption;
+  std::string label;         // small heading above, e.g. "reference"
+};
+
+/// One page, written top to bottom. Every `text` is escaped.
+class Page {
+ public:
+  /// @param subtitle  second line of the head; may be empty
+  explicit Page(std::string title, std::string subtitle = "");
+
+  /// @param level  2 (section) or 3;  @param id  anchor for links "#id", letters, digits, - and _ only; may be empty
+  void heading(std::string_view text, int level = 2, std::string_view id = "");
+  void paragraph(std::string_view text, Look look = Look::kPlain);
+  /// A line of links: {{text, link}, ...}
+  void links(const std::vector<Cell>& links);
+  /// Text as it stands, in a fixed-width font: stories, commands, compiler output.
+  void preformatted(std::string_view text);
+  /// A fold that opens on a click (and is open in print): one line, then text as it stands.
+  void fold(std::string_view summary, std::string_view text, bool open = false);
+  void table(const Table& table);
+  /// Side by side while the page is wide enough.
+  void figures(const std::vector<Figure>& figures);
+  /// A large number with a name: scores at the head of a page.
+  void tiles(const std::vector<std::pair<std::string, Cell>>& tiles);
+  /// Last line of the page: command, version, hash.
+  void record(std::string_view text);
+
+  /// The whole page.
+  std::string html() const;
+  /// Whole or not at all. Makes missing folders.
+  /// @throws UserError when the file cannot be written
+  void write(const std::filesystem::path& file) const;
+
+ private:
+  std::string title_, subtitle_, body_, record_;
+};
+
+}  // namespace tumble::report
