@@ -1,0 +1,137 @@
+// A rigid body as y: world inertia (A2.3), derivative of the state (A2.4), (A2.5).
+#include "tests/a2_integration/a2_fixtures.h"
+
+namespace tumble::a2_testing {
+namespace {
+
+constexpr double kRoundoff = 20 * kEps;  // relative; the numbers are small and exact, at most 20 roundings
+
+TEST(InertiaInWorld, TurnsWithTheBody) {
+  const Matrix3d found = a2_module().inertia_in_world(Vector3d(1, 2, 4).asDiagonal(), third_turn());
+  // Body x now lies along world y, y along z, z along x.
+  expect_near(found, Matrix3d(Vector3d(4, 1, 2).asDiagonal()), kRoundoff * 4, "kg m^2",
+              {.scene = "moments 1, 2, 4 kg m^2 about body x, y, z, turned by 120 degrees about (1, 1, 1)",
+               .slip = likely(found,
+                              Slips<Matrix3d>{{Vector3d(2, 4, 1).asDiagonal(), "R and R^T swapped: R I R^T, not R^T I R"},
+                                              {Vector3d(1, 2, 4).asDiagonal(), "body inertia where world inertia belongs"}},
+                              "R I R^T"),
+               .handout = equation(3)});
+}
+
+TEST(InertiaInWorld, MixesAxesOnASkewTurn) {
+  // 45 degrees about z: R = (c, -s, 0; s, c, 0; 0, 0, 1), c = s = sqrt(1/2).
+  const Quaterniond q(std::cos(M_PI / 8), 0, 0, std::sin(M_PI / 8));
+  const Matrix3d found = a2_module().inertia_in_world(Vector3d(1, 3, 5).asDiagonal(), q);
+  Matrix3d expected, swapped;
+  expected << 2, -1, 0, -1, 2, 0, 0, 0, 5;
+  swapped << 2, 1, 0, 1, 2, 0, 0, 0, 5;
+  expect_near(found, expected, kRoundoff * 5, "kg m^2",
+              {.scene = "moments 1, 3, 5 kg m^2, turned by 45 degrees about z",
+               .slip = likely(found, Slips<Matrix3d>{{swapped, "R and R^T swapped: R I R^T, not R^T I R"},
+                                                     {Vector3d(1, 3, 5).asDiagonal(), "body inertia where world inertia belongs"}},
+                              "R I R^T with R on the left and its transpose on the right"),
+               .handout = equation(3)});
+}
+
+TEST(RigidBodyDerivative, MovesTheCentreOfMassAndPassesForces) {
+  RigidBodyState state = resting();
+  state.momentum_world = {6, -2, 4};
+  const VectorXd found = a2_module().rigid_body_derivative(state, block(), {{1, 2, 3}, {4, 5, 6}});
+  const VectorXd expected = vector({3, -1, 2, 0, 0, 0, 0, 1, 2, 3, 4, 5, 6});
+  VectorXd undivided = expected, swapped = expected;
+  undivided.head<3>() *= 2;
+  swapped.tail<6>() << 4, 5, 6, 1, 2, 3;
+  expect_near(found, expected, kRoundoff * 6, "(x', q', P', L')",
+              {.scene = "2 kg with momentum (6, -2, 4) kg m/s, not turning; force (1, 2, 3) N, torque (4, 5, 6) N m",
+               .slip = found.size() != 13
+                           ? "the derivative has 13 numbers, as pack() orders them"
+                           : likely(found,
+                                    Slips<VectorXd>{{undivided, "x' = P / m: momentum is not velocity"}, {swapped, "force and torque are swapped: P' = F, L' = tau"}},
+                                    "x' = P / m, P' = F, L' = tau in the order of pack()"),
+               .handout = equation(4)});
+}
+
+TEST(RigidBodyDerivative, TurnsTheQuaternion) {
+  RigidBodyState state = resting();
+  state.world_from_body = third_turn();
+  state.angular_momentum_world = {8, 2, 4};
+  // World moments 4, 1, 2: w = (2, 2, 2). q' = 1/2 (0, w) q = 1/2 (-3, 1, 1, 1).
+  VectorXd found = a2_module().rigid_body_derivative(state, block(), no_wrench());
+  if (found.size() != kStateSize) found = VectorXd::Constant(kStateSize, kUnset);
+  const VectorXd q_rate = found.segment<4>(3);
+  expect_near(q_rate, vector({-1.5, 0.5, 0.5, 0.5}), kRoundoff * 3, "1/s (w x y z)",
+              {.scene = "a body turned by 120 degrees about (1, 1, 1) turns about that line at w = (2, 2, 2) rad/s",
+               .slip = likely(q_rate,
+                              Slips<VectorXd>{{vector({-3, 1, 1, 1}), "the factor 1/2 of q' = 1/2 (0, w) q is forgotten"},
+                                              {vector({0.5, 0.5, 0.5, -1.5}), "the order of the quaternion: pack() puts w first, coeffs() puts it last"},
+                                              {vector({-3, 2.5, -2, 5.5}) / 2, "body and world swapped: w = R I^-1 R^T L"},
+                                              {vector({1.5, -0.5, -0.5, -0.5}), "the sign of w"}},
+                              "q' = 1/2 (0, w) q with w = R I^-1 R^T L"),
+               .handout = equation(4)});
+}
+
+TEST(RigidBodyDerivative, KnowsInWhichFrameItTurns) {
+  RigidBodyState state = resting();
+  state.world_from_body = third_turn();
+  state.angular_momentum_world = {4, 2, 0};
+  // World moments 4, 1, 2: w_world = (1, 2, 0), w_body = R^T w = (2, 0, 1).
+  // (0, w) q = (-w.v, q_w w + w x v) with v = (.5, .5, .5): (-1.5; 0.5 + 1, 1 - 0.5, 0 - 0.5), and half of it.
+  VectorXd found = a2_module().rigid_body_derivative(state, block(), no_wrench());
+  if (found.size() != kStateSize) found = VectorXd::Constant(kStateSize, kUnset);
+  const VectorXd q_rate = found.segment<4>(3);
+  // What the slips give: body angular velocity from the left, world from the right, inertia not turned, R for R^T.
+  const auto half_product = [](const Vector3d& w, bool from_left) {
+    const Quaterniond spin(0, w.x(), w.y(), w.z()), rate = from_left ? spin * third_turn() : third_turn() * spin;
+    return vector({rate.w() / 2, rate.x() / 2, rate.y() / 2, rate.z() / 2});
+  };
+  const VectorXd expected = vector({-0.75, 0.75, 0.25, -0.25});
+  expect_near(q_rate, expected, kRoundoff * 3, "1/s (w x y z)",
+              {.scene = "moments 1, 2, 4 kg m^2, turned by 120 degrees about (1, 1, 1), L = (4, 2, 0) kg m^2/s in the world",
+               .slip = likely(q_rate,
+                              Slips<VectorXd>{{2 * expected, "the factor 1/2 of q' = 1/2 (0, w) q is forgotten"},
+                                              {vector({0.75, 0.25, -0.25, -0.75}), "the order of the quaternion: pack() puts w first, coeffs() puts it last"},
+                                              {half_product({1, 2, 0}, false), "the side of the product: w in the world frame stands left of q"},
+                                              {half_product({2, 0, 1}, true), "the body's angular velocity stands left of q: turn it into the world first"},
+                                              {half_product({4, 1, 0}, true), "body inertia where world inertia belongs: w = R I^-1 R^T L"},
+                                              {half_product({2, 0.5, 0}, true), "R and R^T swapped: w = R I^-1 R^T L"},
+                                              {half_product({16, 2, 0}, true), "inertia where inverse inertia belongs"},
+                                              {half_product({4, 2, 0}, true), "angular momentum is not angular velocity: w = R I^-1 R^T L"}},
+                              "q' = 1/2 (0, w) q with w = R I^-1 R^T L"),
+               .handout = equation(5)});
+}
+
+TEST(RigidBodyDerivative, InfiniteMassStaysWhereItIs) {
+  Inertia wall{INFINITY, 0.0, Matrix3d::Constant(kUnset), Matrix3d::Zero()};
+  const VectorXd found = a2_module().rigid_body_derivative(resting(), wall, no_wrench());
+  expect_near(found, VectorXd::Zero(kStateSize), 0.0, "(x', q', P', L')",
+              {.scene = "a wall: infinite mass, inverse mass 0, no forces",
+               .slip = "infinite mass: use inverse_mass and inverse_inertia_body, never mass or inertia_body",
+               .handout = equation(4)});
+}
+
+TEST(RigidBodyDerivative, FollowsASymmetricTop) {
+  // A disc, moments 1, 1, 2, precesses about L at |L| / 1 and spins in itself at w3 (1 - 2) / 1: q(t) = q_L(|L| t) q_3(-5 t).
+  const Vector3d L(0.4, 0.3, 10.0);
+  const auto q_at = [&](double t) {
+    return Quaterniond(Eigen::AngleAxisd(L.norm() * t, L.normalized())) * Quaterniond(Eigen::AngleAxisd(-5.0 * t, Vector3d::UnitZ()));
+  };
+  const Inertia disc{1.0, 1.0, Vector3d(1, 1, 2).asDiagonal(), Vector3d(1, 1, 0.5).asDiagonal()};
+  for (const double t : {0.0, 0.3, 2.0}) {
+    RigidBodyState state = resting();
+    state.world_from_body = q_at(t);
+    state.angular_momentum_world = L;
+    VectorXd found = a2_module().rigid_body_derivative(state, disc, no_wrench());
+    if (found.size() != kStateSize) found = VectorXd::Constant(kStateSize, kUnset);
+    // The closed form, differentiated by the product rule.
+    const Quaterniond along_L(0, L.x(), L.y(), L.z()), along_3(0, 0, 0, -5);
+    const Quaterniond left = along_L * q_at(t), right = q_at(t) * along_3;
+    const VectorXd expected = vector({left.w() + right.w(), left.x() + right.x(), left.y() + right.y(), left.z() + right.z()}) / 2;
+    expect_near(VectorXd(found.segment<4>(3)), expected, 10 * kRoundoff * 10, "1/s (w x y z)",  // |L| = 10, and the angle's rounding
+                {.scene = "a free disc, moments 1, 1, 2 kg m^2, L = (0.4, 0.3, 10) kg m^2/s, t = " + show(t) + " s, in closed form",
+                 .slip = "frames in w = R I^-1 R^T L, or the factor 1/2",
+                 .handout = equation(5)});
+  }
+}
+
+}  // namespace
+}  // namespace tumble::a2_testing

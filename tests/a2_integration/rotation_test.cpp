@@ -1,0 +1,121 @@
+// Orientations that have drifted (A2.6), (A2.7), and Euler angles (A2.8), (A2.9).
+#include "tests/a2_integration/a2_fixtures.h"
+
+namespace tumble::a2_testing {
+namespace {
+
+constexpr double kRoundoff = 20 * kEps;  // of numbers of size 1, at most 20 roundings
+constexpr double kRightAngle = M_PI / 2;
+
+const VectorXd numbers(const Quaterniond& q) { return vector({q.w(), q.x(), q.y(), q.z()}); }
+
+TEST(Renormalize, GivesUnitLength) {
+  const Quaterniond found = a2_module().renormalize({1.5, -1.5, 4.5, -0.5});  // of length 5
+  const Slips<Quaterniond> slips = {{{1.5, -1.5, 4.5, -0.5}, "no renormalising at all"},
+                                    {Quaterniond(0.06, -0.06, 0.18, -0.02), "divided by |q|^2: the root is missing"}};
+  expect_near(numbers(found), vector({0.3, -0.3, 0.9, -0.1}), kRoundoff, "(w x y z)",
+              {.scene = "q = (1.5, -1.5, 4.5, -0.5), of length 5", .slip = likely(found, slips, "q / |q|"), .handout = equation(6)});
+}
+
+TEST(Renormalize, RepairsASmallDriftWithoutTurningAround) {
+  const double drift = 1 + 1e-6;
+  const Quaterniond q(-0.5, 0.5, -0.5, 0.5);
+  const Quaterniond found = a2_module().renormalize({-0.5 * drift, 0.5 * drift, -0.5 * drift, 0.5 * drift});
+  const Slips<Quaterniond> slips = {{{0.5, -0.5, 0.5, -0.5}, "q and -q turn alike, but do not jump from one to the other"}};
+  expect_near(numbers(found), numbers(q), kRoundoff, "(w x y z)",
+              {.scene = "q = (1 + 1e-6) (-0.5, 0.5, -0.5, 0.5)", .slip = likely(found, slips, "no renormalising, or a first-order repair only"), .handout = equation(6)});
+}
+
+TEST(Orthonormalize, TakesOffProjectionsColumnByColumn) {
+  Matrix3d drifted, only_first, scaled;
+  drifted << 2, 3, 4, 0, 5, 6, 0, 0, 7;        // columns (2,0,0), (3,5,0), (4,6,7): Gram-Schmidt gives the unit axes
+  only_first << 1, 0, 0, 0, 1, 6 / std::sqrt(85.0), 0, 0, 7 / std::sqrt(85.0);
+  scaled = drifted.colwise().normalized();
+  const Matrix3d found = a2_module().orthonormalize(drifted);
+  expect_near(found, Matrix3d(Matrix3d::Identity()), kRoundoff, "",
+              {.scene = "columns (2, 0, 0), (3, 5, 0), (4, 6, 7)",
+               .slip = likely(found,
+                              Slips<Matrix3d>{{only_first, "the second projection is not taken off the third column: (y . c) y"},
+                                              {scaled, "the columns are made unit, but no projection is taken off"},
+                                              {drifted, "nothing is done"}},
+                              "columns or rows: the columns of R are the body's axes; a comes first"),
+               .handout = equation(7)});
+}
+
+TEST(Orthonormalize, RepairsADriftedRotation) {
+  Matrix3d drift;
+  drift << 3, -1, 2, 4, 2, -3, -2, 5, 1;
+  const Matrix3d drifted = third_turn().toRotationMatrix() + 1e-4 * drift;
+  const Matrix3d R = a2_module().orthonormalize(drifted);
+  const Story story{.scene = "a rotation matrix whose entries have drifted by up to 5e-4", .slip = "(y . c) y: the second projection is not taken off, or a column is not unit", .handout = equation(7)};
+  expect_near(Matrix3d(R.transpose() * R), Matrix3d(Matrix3d::Identity()), kRoundoff, "(R^T R)", story);
+  expect_near(R.determinant(), 1.0, kRoundoff, "(determinant)", story);
+  expect_near(R.col(0), drifted.col(0).normalized(), kRoundoff, "(first column)",
+              {.scene = story.scene, .slip = "the first column keeps its direction: start with it, and take columns, not rows", .handout = equation(7)});
+  expect_near(R.col(1).dot(drifted.col(0).cross(drifted.col(1)).normalized()), 0.0, kRoundoff, "(second column off the plane of a and b)",
+              {.scene = story.scene, .slip = "the second column stays in the plane of a and b", .handout = equation(7)});
+}
+
+TEST(EulerAngles, EachTurnsItsOwnAxis) {
+  Matrix3d yaw, pitch, roll;
+  yaw << 0, -1, 0, 1, 0, 0, 0, 0, 1;
+  pitch << 0, 0, 1, 0, 1, 0, -1, 0, 0;
+  roll << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  const auto check = [](const std::string& name, const Matrix3d& found, const Matrix3d& expected) {
+    const Matrix3d in_degrees = Eigen::AngleAxisd(kRightAngle * M_PI / 180, name == "yaw" ? Vector3d::UnitZ() : name == "pitch" ? Vector3d::UnitY() : Vector3d::UnitX()).toRotationMatrix();
+    expect_near(found, expected, kRoundoff, "",
+                {.scene = name + " of 90 degrees alone",
+                 .slip = likely(found, Slips<Matrix3d>{{expected.transpose(), "the sense of the turn: a positive angle turns right-handed"},
+                                                       {in_degrees, "degrees taken for radians"}},
+                                "yaw turns about z, pitch about y, roll about x"),
+                 .handout = equation(8)});
+  };
+  check("yaw", a2_module().rotation_from_euler_angles(kRightAngle, 0, 0), yaw);
+  check("pitch", a2_module().rotation_from_euler_angles(0, kRightAngle, 0), pitch);
+  check("roll", a2_module().rotation_from_euler_angles(0, 0, kRightAngle), roll);
+}
+
+TEST(EulerAngles, YawComesFirstAndCarriesTheOtherAxes) {
+  const Matrix3d found = a2_module().rotation_from_euler_angles(kRightAngle, 0, kRightAngle);
+  Matrix3d expected, reversed;  // the nose (body x) points along world y; body y points up
+  expected << 0, 0, 1, 1, 0, 0, 0, 1, 0;
+  reversed << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  expect_near(found, expected, kRoundoff, "",
+              {.scene = "yaw 90 degrees, then roll 90 degrees about the nose, which yaw has turned to world y",
+               .slip = likely(found, Slips<Matrix3d>{{reversed, "the order of the turns: R_z(yaw) R_y(pitch) R_x(roll), roll nearest to the body"}},
+                              "R_z(yaw) R_y(pitch) R_x(roll)"),
+               .handout = equation(8)});
+}
+
+TEST(EulerAngles, ComeBackFromTheMatrix) {
+  const a2::EulerAngles found = a2_module().euler_angles_from_rotation(
+      Eigen::AngleAxisd(2.5, Vector3d::UnitZ()).toRotationMatrix() * Eigen::AngleAxisd(-0.7, Vector3d::UnitY()).toRotationMatrix() *
+      Eigen::AngleAxisd(-3.0, Vector3d::UnitX()).toRotationMatrix());
+  const VectorXd angles = vector({found.yaw, found.pitch, found.roll});
+  expect_near(angles, vector({2.5, -0.7, -3.0}), 10 * kRoundoff, "rad (yaw, pitch, roll)",
+              {.scene = "the matrix of yaw 2.5, pitch -0.7, roll -3.0 rad",
+               .slip = likely(angles,
+                              Slips<VectorXd>{{vector({2.5 - M_PI, -0.7, -3.0 + M_PI}), "atan for atan2: the quadrant is lost"},
+                                              {vector({-3.0, -0.7, 2.5}), "yaw and roll are swapped"},
+                                              {vector({2.5, 0.7, -3.0}), "the sign of pitch: R_20 = -sin(pitch)"}},
+                              "atan2 of the entries named in the equation"),
+               .handout = equation(9)});
+}
+
+TEST(EulerAngles, GimbalLockKeepsTheRotation) {
+  for (const double pitch_sign : {1.0, -1.0}) {
+    // Yaw 0.5 and roll 0.3 at pitch +-90 degrees: only yaw -+ roll is left.
+    const double turn = 0.5 - pitch_sign * 0.3;
+    Matrix3d R;
+    R << 0, -std::sin(turn), pitch_sign * std::cos(turn), 0, std::cos(turn), pitch_sign * std::sin(turn), -pitch_sign, 0, 0;
+    const a2::EulerAngles found = a2_module().euler_angles_from_rotation(R);
+    const bool is_nan = !std::isfinite(found.yaw + found.pitch + found.roll);
+    expect_near(vector({found.yaw, found.pitch, found.roll}), vector({turn, pitch_sign * kRightAngle, 0}), 1e-8, "rad (yaw, pitch, roll)",
+                {.scene = "yaw 0.5, pitch " + std::string(pitch_sign > 0 ? "+" : "-") + "90 degrees, roll 0.3",
+                 .slip = is_nan ? "a division by cos(pitch) = 0" : "gimbal lock: where cos(pitch) < 1e-8, roll = 0 and yaw = atan2(-R_01, R_11)",
+                 .handout = equation(9)});
+  }
+}
+
+}  // namespace
+}  // namespace tumble::a2_testing
