@@ -1,1 +1,55 @@
-#include "framework/trajectory/trajectory.h"
+#include "framework/engines/run.h"
+
+#include <cmath>
+
+#include "framework/core/error.h"
+#include "framework/engines/retroactive.h"
+
+namespace tumble::engines {
+namespace {
+
+template <class Law>
+void need(const Law& law, const scene::Scene& scene, const char* what, const char* assignment) {
+  if (law) return;
+  throw UserError(scene.name, std::string("needs ") + what + ", and no module provides it",
+                  std::string("assignment ") + assignment + " provides it: run with --modules reference, or fill in that assignment first");
+}
+
+void check_laws(const scene::Scene& scene, const Laws& laws) {
+  need(laws.integrate_step, scene, "a step of integration", "a2 (or the framework's library laws)");
+  need(laws.state_derivative, scene, "the derivative of a rigid body's state", "a2 (or the framework's library laws)");
+  need(laws.renormalize, scene, "the renormalisation of quaternions", "a2 (or the framework's library laws)");
+  if (!scene.point_forces.empty()) need(laws.wrench_of_point_force, scene, "the force and torque of a point force", "a1");
+  if (scene.bodies.size() > 1) {
+    need(laws.relative_normal_velocity, scene, "the relative normal velocity of two bodies", "a1");
+    need(laws.collision_impulse, scene, "the impulse of a collision", "a1");
+    need(laws.apply_impulse, scene, "the effect of an impulse", "a1");
+  }
+}
+
+}  // namespace
+
+void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink) {
+  if (options.engine != "rd") throw UserError("--engine " + options.engine, "there is no engine of that name", "use rd (retroactive detection)");
+  const double step = options.step_s.value_or(scene.step_s), duration = options.duration_s.value_or(scene.duration_s);
+  if (!(step > 0) || !std::isfinite(step)) throw UserError(scene.name, "the step must be a positive time", "give \"step_s\" in seconds");
+  if (!(duration >= 0) || !std::isfinite(duration)) throw UserError(scene.name, "the duration must not be negative", "give \"duration_s\" in seconds");
+  if (!(options.frame_rate_hz > 0)) throw UserError("--frame-rate-hz", "must be positive", "60 suits most scenes");
+  check_laws(scene, laws);
+
+  TrajectoryInfo info;
+  info.command = options.command;
+  info.scene_name = scene.name;
+  info.scene_hash = scene.hash;
+  info.engine = options.engine;
+  info.impulse_source = laws.impulse_source;
+  info.integrator_source = laws.integrator_source;
+  info.step_s = step;
+  info.frame_rate_hz = options.frame_rate_hz;
+  std::vector<TrajectoryBody> bodies;
+  for (const scene::BodySpec& body : scene.bodies) bodies.push_back({body.name, body.immovable});
+  sink.begin(info, bodies);
+  run_retroactive(scene, laws, options, sink);
+}
+
+}  // namespace tumble::engines

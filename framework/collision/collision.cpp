@@ -1,1 +1,0 @@
-#include "framework/geometry/shape.h"

@@ -1,0 +1,57 @@
+/// A solid prepared once for collision: convex pieces with a rounding radius, and a tree of balls over them.
+///
+/// Sphere: one point and its radius. Box and convex model: one polytope. Other models: one flat piece a face, so that a
+/// pair of solids is a set of pairs of convex pieces, for which bounds on the time of impact exist. A half-space has no
+/// pieces; every other shape meets it by its vertices.
+#pragma once
+
+#include <vector>
+
+#include "framework/collision/polytope.h"
+#include "framework/geometry/shape.h"
+
+namespace tumble::collision {
+
+/// Where a body is. World frame.
+struct Pose {
+  Vector3d com_world = Vector3d::Zero();                 // [m]
+  Quaterniond world_from_body = Quaterniond::Identity(); // unit
+};
+
+/// A ball around a part of the pieces.
+struct BallNode {
+  Vector3d center_body;
+  double radius;
+  int first_child = -1;   // the second stands behind it; -1: a leaf
+  int second_child = -1;
+  int piece = -1;
+};
+
+class CollisionShape {
+ public:
+  explicit CollisionShape(const Shape& shape);
+
+  bool is_half_space() const { return pieces_.empty(); }
+  bool is_ball() const { return pieces_.size() == 1 && pieces_[0].vertices.size() == 1; }
+  bool is_closed_surface() const { return pieces_.size() > 1; }
+  /// Thickness around the pieces. [m]
+  double radius() const { return radius_; }
+  /// Of the smallest ball about the centre of mass that holds the solid; infinite for a half-space. [m]
+  double bounding_radius() const { return bounding_radius_; }
+  const std::vector<Polytope>& pieces() const { return pieces_; }
+  const std::vector<BallNode>& nodes() const { return nodes_; }   // the first is the root
+  const std::vector<Vector3d>& vertices() const { return vertices_; }
+  /// Faces of a solid made of flat pieces, for the question whether a point is inside.
+  bool holds_point(const Vector3d& point_body) const;
+
+ private:
+  int build_node(std::vector<int>& order, int begin, int end);
+
+  std::vector<Polytope> pieces_;
+  std::vector<BallNode> nodes_;
+  std::vector<Vector3d> vertices_;
+  double radius_ = 0.0;
+  double bounding_radius_ = 0.0;
+};
+
+}  // namespace tumble::collision

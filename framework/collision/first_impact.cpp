@@ -1,0 +1,133 @@
+#include "framework/collision/first_impact.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "framework/collision/time_bound.h"
+
+namespace tumble::collision {
+namespace {
+
+// Advancement never goes by less than this part of the interval: a body of acceleration A enters and leaves another within
+// that time by at most A (1e-8 h)^2 / 8, which is below round-off for every h and A that a step can resolve.
+constexpr double kLeastAdvance = 1e-8;
+constexpr int kPatience = 2000;  // rounds of advancement before the least advance starts to grow: creeping contacts must end
+
+struct Search {
+  const CollisionShape& a;
+  const CollisionShape& b;
+  const Motion& motion_a;
+  const Motion& motion_b;
+  const ImpactOptions& options;
+  ImpactCost& cost;
+
+  double gap_at(double t) const {
+    ++cost.gap_evaluations;
+    return compute_gap(a, motion_a.at(t).pose, b, motion_b.at(t).pose).distance;
+  }
+  double rate_at(double t) const {
+    const MotionState sa = motion_a.at(t), sb = motion_b.at(t);
+    ++cost.gap_evaluations;
+    return gap_rate(compute_gap(a, sa.pose, b, sb.pose), sa, sb);
+  }
+  Impact impact_at(double t) const {
+    const MotionState sa = motion_a.at(t), sb = motion_b.at(t);
+    const Gap gap = compute_gap(a, sa.pose, b, sb.pose);
+    return {t, gap, gap_rate(gap, sa, sb)};
+  }
+};
+
+double next_after(double t) { return std::nextafter(t, std::numeric_limits<double>::infinity()); }
+
+// Shrinks low (gap >= 0) and high (gap < 0) to adjacent doubles, first by strides that double from a guess near the root.
+double last_instant_apart(const Search& search, double low, double high) {
+  double stride = next_after(low) - low;
+  while (low + stride < high) {
+    const double probe = low + stride;
+    if (search.gap_at(probe) < 0) {
+      high = probe;
+      break;
+    }
+    low = probe;
+    stride *= 4;
+  }
+  for (;;) {
+    const double middle = low + 0.5 * (high - low);
+    if (!(middle > low && middle < high)) return low;
+    (search.gap_at(middle) < 0 ? high : low) = middle;
+  }
+}
+
+// gap(low) >= 0 > gap(high)
+Impact refine(const Search& search, double low, double high) {
+  if (search.options.root_finder) {
+    ++search.cost.root_findings;
+    const double tolerance = 4 * (next_after(high) - high);
+    const RootResult root = search.options.root_finder([&](double t) { return search.gap_at(t); },
+                                                       [&](double t) { return search.rate_at(t); }, low, high, tolerance);
+    // Whatever came back, only its sign counts; nonsense leaves the bracket as it was.
+    if (root.time > low && root.time < high) {
+      const double behind = root.time - 2 * (next_after(root.time) - root.time);
+      if (search.gap_at(root.time) >= 0) {
+        low = root.time;
+      } else {
+        high = root.time;
+        if (behind > low && search.gap_at(behind) >= 0) low = behind;
+      }
+    }
+  }
+  return search.impact_at(last_instant_apart(search, low, high));
+}
+
+// Where the gap closes almost linearly, a time just behind the root; nothing where it bends too much to tell.
+std::optional<double> behind_the_root(const Search& search, double t, double t1) {
+  const MotionState sa = search.motion_a.at(t), sb = search.motion_b.at(t);
+  const Gap gap = compute_gap(search.a, sa.pose, search.b, sb.pose);
+  const double rate = gap_rate(gap, sa, sb);
+  if (!(rate < 0) || gap.distance < 0) return std::nullopt;
+  const auto bend = [](const CollisionShape& shape, const MotionBounds& m) {
+    const double arm = shape.is_half_space() ? 0.0 : shape.bounding_radius() - shape.radius();
+    return m.acceleration_world.norm() + m.acceleration_deviation + arm * (m.angular_acceleration + m.angular_speed * m.angular_speed);
+  };
+  const double wait = gap.distance / -rate;
+  if ((bend(search.a, search.motion_a.bounds) + bend(search.b, search.motion_b.bounds)) * wait > 0.1 * -rate) return std::nullopt;
+  const double behind = t + std::max(1.5 * wait, 8 * (next_after(t) - t));
+  if (behind > t1) return std::nullopt;
+  return behind;
+}
+
+}  // namespace
+
+double gap_rate(const Gap& gap, const MotionState& a, const MotionState& b) {
+  const Vector3d velocity_a = a.velocity_world + a.omega_world.cross(gap.point_a_world - a.pose.com_world);
+  const Vector3d velocity_b = b.velocity_world + b.omega_world.cross(gap.point_b_world - b.pose.com_world);
+  return gap.normal_b_to_a_world.dot(velocity_a - velocity_b);
+}
+
+std::optional<Impact> first_impact(const CollisionShape& a, const Motion& motion_a, const CollisionShape& b, const Motion& motion_b,
+                                   double t0, double t1, const ImpactOptions& options, ImpactCost* cost) {
+  ImpactCost unasked;
+  const Search search{a, b, motion_a, motion_b, options, cost ? *cost : unasked};
+  double least = kLeastAdvance * (t1 - t0);
+  double t = t0, t_apart = t0;
+  for (int round = 0;; ++round) {
+    ++search.cost.gap_evaluations;
+    const TimeBound bound =
+        bound_time_apart(a, motion_a.at(t), motion_a.bounds, b, motion_b.at(t), motion_b.bounds, t1 - t);
+    if (bound.gap < 0) return t > t_apart ? refine(search, t_apart, t) : search.impact_at(t);
+    if (bound.duration >= t1 - t) return std::nullopt;
+    t_apart = t;
+    if (round > 0 && bound.gap < std::numeric_limits<double>::infinity()) {
+      if (const auto behind = behind_the_root(search, t, t1); behind && search.gap_at(*behind) < 0) return refine(search, t, *behind);
+    }
+    if (round > kPatience) least *= 1.01;
+    t = std::min(t1, std::max(t + std::max(bound.duration, least), next_after(t)));
+    if (t >= t1) {
+      if (search.gap_at(t1) < 0) return refine(search, t_apart, t1);
+      return std::nullopt;
+    }
+  }
+}
+
+}  // namespace tumble::collision

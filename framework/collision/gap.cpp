@@ -1,0 +1,100 @@
+#include "framework/collision/gap.h"
+
+#include <cmath>
+#include <limits>
+
+#include "framework/collision/piece_pairs.h"
+
+namespace tumble::collision {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Gap flipped(Gap gap) {
+  std::swap(gap.point_a_world, gap.point_b_world);
+  gap.normal_b_to_a_world = -gap.normal_b_to_a_world;
+  return gap;
+}
+
+// Against a half-space the nearest point is the vertex that lies lowest along the normal.
+Gap gap_to_half_space(const CollisionShape& a, const Pose& pose_a, const Pose& plane) {
+  const Matrix3d rotation = pose_a.world_from_body.toRotationMatrix();
+  const Vector3d n = plane.world_from_body.toRotationMatrix().col(2);
+  const Vector3d offset = pose_a.com_world - plane.com_world;
+  double lowest = kInfinity;
+  Vector3d arm = Vector3d::Zero();
+  for (const Vector3d& v : a.vertices()) {
+    const Vector3d turned = rotation * v;
+    const double height = n.dot(turned);
+    if (height < lowest) {
+      lowest = height;
+      arm = turned;
+    }
+  }
+  Gap gap;
+  gap.distance = (n.dot(offset) + lowest) - a.radius();
+  gap.normal_b_to_a_world = n;
+  gap.point_a_world = pose_a.com_world + arm - a.radius() * n;
+  gap.point_b_world = gap.point_a_world - gap.distance * n;
+  return gap;
+}
+
+Gap gap_of_balls(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b) {
+  const Vector3d between = pose_a.com_world - pose_b.com_world;
+  const double distance = between.norm();
+  Gap gap;
+  gap.normal_b_to_a_world = distance > 0 ? Vector3d(between / distance) : Vector3d::UnitZ();
+  gap.distance = distance - (a.radius() + b.radius());
+  gap.point_a_world = pose_a.com_world - a.radius() * gap.normal_b_to_a_world;
+  gap.point_b_world = pose_b.com_world + b.radius() * gap.normal_b_to_a_world;
+  return gap;
+}
+
+Gap gap_of_pieces(const CollisionShape& a, const CollisionShape& b, const Query& query, const Vector3d& com_b_world) {
+  PolytopeGap best{kInfinity, Vector3d::Zero(), Vector3d::Zero(), Vector3d::UnitZ()};
+  PlacedPolytope placed_a, placed_b;
+  visit_piece_pairs(
+      query, [&](double bound) { return bound > best.distance; },
+      [&](int i, int j) {
+        placed_a.place(a.pieces()[i], query.rotation_a, query.offset);
+        placed_b.place(b.pieces()[j], query.rotation_b, Vector3d::Zero());
+        const PolytopeGap found = polytope_gap(placed_a, placed_b, query.size);
+        if (found.distance < best.distance) best = found;
+      });
+  Gap gap;
+  gap.distance = best.distance - (a.radius() + b.radius());
+  gap.normal_b_to_a_world = best.normal_b_to_a;
+  gap.point_a_world = com_b_world + best.point_a - a.radius() * best.normal_b_to_a;
+  gap.point_b_world = com_b_world + best.point_b + b.radius() * best.normal_b_to_a;
+  return gap;
+}
+
+bool holds_some_point_of(const CollisionShape& outer, const Pose& outer_pose, const CollisionShape& inner, const Pose& inner_pose) {
+  if (!outer.is_closed_surface() || inner.is_half_space()) return false;
+  const Vector3d point_world = inner_pose.com_world + inner_pose.world_from_body * inner.vertices()[0];
+  return outer.holds_point(outer_pose.world_from_body.conjugate() * (point_world - outer_pose.com_world));
+}
+
+}  // namespace
+
+Gap compute_gap(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b) {
+  if (a.is_half_space() && b.is_half_space()) return {kInfinity, Vector3d::Zero(), Vector3d::Zero(), Vector3d::UnitZ()};
+  if (b.is_half_space()) return gap_to_half_space(a, pose_a, pose_b);
+  if (a.is_half_space()) return flipped(gap_to_half_space(b, pose_b, pose_a));
+  if (a.is_ball() && b.is_ball()) return gap_of_balls(a, pose_a, b, pose_b);
+  return gap_of_pieces(a, b, Query(a, pose_a, b, pose_b), pose_b.com_world);
+}
+
+bool overlapping(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double allowance) {
+  if (compute_gap(a, pose_a, b, pose_b).distance < -allowance) return true;
+  return holds_some_point_of(a, pose_a, b, pose_b) || holds_some_point_of(b, pose_b, a, pose_a);
+}
+
+double gap_scale(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b) {
+  double scale = std::max(pose_a.com_world.cwiseAbs().maxCoeff(), pose_b.com_world.cwiseAbs().maxCoeff());
+  if (!a.is_half_space()) scale += a.bounding_radius();
+  if (!b.is_half_space()) scale += b.bounding_radius();
+  return scale;
+}
+
+}  // namespace tumble::collision

@@ -1,0 +1,33 @@
+/// How far two solids are apart, where they are nearest, and which way they would be pushed.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "framework/collision/collision_shape.h"
+
+namespace tumble::collision {
+
+/// Two solids at one instant. World frame.
+struct Gap {
+  double distance;               // [m]; > 0 apart, 0 touching, < 0 overlapping
+  Vector3d point_a_world;        // witness points: the nearest points of the two surfaces [m]
+  Vector3d point_b_world;
+  Vector3d normal_b_to_a_world;  // unit
+};
+
+/// The gap between two solids.
+/// Round shapes and half-spaces: closed forms, also when overlapping. Polytopes: see polytope.h. Surfaces that are not
+/// convex: the smallest over their faces; an overlap is any negative number, and a solid wholly inside another is not
+/// noticed here (see `overlapping`).
+/// @return distance to a few roundings of the solids' size and of the distance of their centres. Infinite between two half-spaces.
+Gap compute_gap(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b);
+
+/// Whether two solids share a point of their insides, also when one lies wholly inside the other. For initial states.
+/// @param allowance  an overlap this deep still counts as touching [m]
+bool overlapping(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double allowance);
+
+/// A length whose round-off bounds that of a gap: the solids' sizes and the distance of their centres. [m]
+double gap_scale(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b);
+
+}  // namespace tumble::collision

@@ -1,0 +1,148 @@
+#include "framework/collision/time_bound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "framework/collision/piece_pairs.h"
+
+namespace tumble::collision {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// One vertex of (E.1): height over the supporting plane, rate along the normal, and half the bound on its acceleration.
+struct VertexLine {
+  double height, rate, bend;
+  double at(double t) const { return height + (rate - bend * t) * t; }
+};
+
+// Lines of all vertices of a placed piece. `side` is +1 for A (heights along n) and -1 for B (heights along -n).
+void collect_lines(const PlacedPolytope& piece, const Vector3d& center, const MotionState& state, const MotionBounds& bounds,
+                   const Vector3d& n, double side, std::vector<VertexLine>& lines) {
+  lines.clear();
+  const double bend_of_arm = 0.5 * (bounds.angular_acceleration + bounds.angular_speed * bounds.angular_speed);
+  const Vector3d turn = n.cross(state.omega_world);  // n . (w x r) = (n x w) . r
+  double lowest = kInfinity;
+  for (const Vector3d& v : piece.vertices) {
+    const Vector3d arm = v - center;
+    const double length = arm.norm();
+    const double height = side * n.dot(v);
+    lowest = std::min(lowest, height);
+    lines.push_back({height, side * turn.dot(arm) - bounds.angular_velocity_error * length, bend_of_arm * length});
+  }
+  for (VertexLine& line : lines) line.height -= lowest;
+}
+
+double lowest_at(const std::vector<VertexLine>& lines, double t, const VertexLine*& line) {
+  double lowest = kInfinity;
+  for (const VertexLine& candidate : lines) {
+    const double value = candidate.at(t);
+    if (value < lowest) {
+      lowest = value;
+      line = &candidate;
+    }
+  }
+  return lowest;
+}
+
+// Largest t up to `horizon` with (E.1) holding on [0, t]: from the right, always to the first root of the pair that is lowest.
+// Every pair's curve must bend down or be straight, so that one above zero at t was never below it before.
+double duration_of_lines(double gap, double rate, double half_acceleration, const std::vector<VertexLine>& a,
+                         const std::vector<VertexLine>& b, double horizon) {
+  if (a.size() == 1 && b.size() == 1) {
+    return std::min(horizon, first_root_of_quadratic(gap, rate + a[0].rate + b[0].rate, half_acceleration - a[0].bend - b[0].bend));
+  }
+  half_acceleration = std::min(half_acceleration, 0.0);
+  double t = horizon;
+  while (t > 0) {
+    const VertexLine *va = nullptr, *vb = nullptr;
+    if (gap + lowest_at(a, t, va) + lowest_at(b, t, vb) + (rate + half_acceleration * t) * t > 0) return t;
+    const double root = first_root_of_quadratic(gap + va->height + vb->height, rate + va->rate + vb->rate,
+                                                half_acceleration - va->bend - vb->bend);
+    if (!(root < t)) return t;
+    t = root;
+  }
+  return 0.0;
+}
+
+// Two balls whose centres move straight against each other: the first root of |d + u t|^2 = r^2, exactly.
+double duration_of_balls(const Vector3d& d, const Vector3d& u, double gap, double radius) {
+  const double approach = d.dot(u);
+  if (approach >= 0) return kInfinity;
+  const double excess = gap * (gap + 2 * radius);  // d.d - r^2 without cancellation
+  const double discriminant = approach * approach - u.squaredNorm() * excess;
+  return discriminant < 0 ? kInfinity : excess / (-approach + std::sqrt(discriminant));
+}
+
+struct Relative {
+  Vector3d velocity, acceleration;
+  double deviation, turning_reach;   // [m/s^2], [m/s]
+
+  double reach(double t) const {
+    return ((velocity.norm() + turning_reach) + 0.5 * (acceleration.norm() + deviation) * t) * t;
+  }
+};
+
+}  // namespace
+
+double first_root_of_quadratic(double g, double c, double q) {
+  const double discriminant = c * c - 4 * q * g;
+  if (discriminant < 0) return kInfinity;
+  if (c < 0) return 2 * g / (-c + std::sqrt(discriminant));
+  if (q >= 0) return kInfinity;
+  return (c + std::sqrt(discriminant)) / (-2 * q);
+}
+
+TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a, const MotionBounds& bounds_a, const CollisionShape& b,
+                           const MotionState& state_b, const MotionBounds& bounds_b, double horizon) {
+  if (a.is_half_space()) return bound_time_apart(b, state_b, bounds_b, a, state_a, bounds_a, horizon);
+  const double radius = a.radius() + b.radius();
+  if (a.is_ball() && b.is_ball() && bounds_a.acceleration_world == bounds_b.acceleration_world &&
+      bounds_a.acceleration_deviation + bounds_b.acceleration_deviation == 0.0) {
+    const Vector3d between = state_a.pose.com_world - state_b.pose.com_world;
+    const double gap = between.norm() - radius;
+    const double duration = duration_of_balls(between, state_a.velocity_world - state_b.velocity_world, std::max(gap, 0.0), radius);
+    return {std::min(horizon, duration), gap};
+  }
+  const Query query(a, state_a.pose, b, state_b.pose);
+  Relative relative{state_a.velocity_world - state_b.velocity_world, bounds_a.acceleration_world - bounds_b.acceleration_world,
+                    bounds_a.acceleration_deviation + bounds_b.acceleration_deviation, 0.0};
+  TimeBound bound{horizon, kInfinity};
+  const std::vector<VertexLine> nothing_turns{{0.0, 0.0, 0.0}};
+  std::vector<VertexLine> lines_a, lines_b;
+  PlacedPolytope placed_a, placed_b;
+  const auto along = [&](double gap, const Vector3d& n, const std::vector<VertexLine>& of_b) {
+    const double half_acceleration = 0.5 * (n.dot(relative.acceleration) - relative.deviation);
+    const double duration =
+        duration_of_lines(std::max(gap, 0.0), n.dot(relative.velocity), half_acceleration, lines_a, of_b, bound.duration);
+    bound.duration = std::min(bound.duration, duration);
+    bound.gap = std::min(bound.gap, gap);
+  };
+
+  if (b.is_half_space()) {
+    const Vector3d n = query.rotation_b.col(2);
+    Polytope all;
+    all.vertices = a.vertices();
+    placed_a.place(all, query.rotation_a, query.offset);
+    collect_lines(placed_a, query.offset, state_a, bounds_a, n, 1.0, lines_a);
+    along(compute_gap(a, state_a.pose, b, state_b.pose).distance, n, nothing_turns);
+    return bound;
+  }
+  const double turning = 1.0 + 1e-12;  // the bounding radii are rounded
+  relative.turning_reach = turning * ((a.bounding_radius() - a.radius()) * (bounds_a.angular_speed + bounds_a.angular_velocity_error) +
+                                      (b.bounding_radius() - b.radius()) * (bounds_b.angular_speed + bounds_b.angular_velocity_error));
+  visit_piece_pairs(
+      query, [&](double core_bound) { return core_bound - radius > relative.reach(bound.duration); },
+      [&](int i, int j) {
+        placed_a.place(a.pieces()[i], query.rotation_a, query.offset);
+        placed_b.place(b.pieces()[j], query.rotation_b, Vector3d::Zero());
+        const PolytopeGap found = polytope_gap(placed_a, placed_b, query.size);
+        collect_lines(placed_a, query.offset, state_a, bounds_a, found.normal_b_to_a, 1.0, lines_a);
+        collect_lines(placed_b, Vector3d::Zero(), state_b, bounds_b, found.normal_b_to_a, -1.0, lines_b);
+        along(found.distance - radius, found.normal_b_to_a, lines_b);
+      });
+  return bound;
+}
+
+}  // namespace tumble::collision

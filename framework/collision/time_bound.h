@@ -1,0 +1,30 @@
+/// How long two moving solids certainly stay apart: a lower bound on the time of impact.
+///
+/// For a pair of convex pieces that are `gap` apart along the unit normal n (from B to A), every vertex a of A stays above every
+/// vertex b of B along the fixed direction n while
+///   gap + h_a + h_b + (n.u + n.(w_A x r_a) - n.(w_B x r_b)) tau + (n.a_rel - A_a - A_b) tau^2 / 2 > 0        (E.1)
+/// where h are the heights of the vertices over the supporting planes, u and a_rel the relative velocity and acceleration of the
+/// centres, r the arms from them, and A = (|alpha| + |w|^2) |r| the most that turning can bend a vertex's path. The piece pairs of
+/// solids that are not convex are all looked at that can come near within the bound.
+/// Source: B. Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems, PhD thesis, Berkeley 1996, ch. 2, extended to
+/// arms of single vertices.
+#pragma once
+
+#include "framework/collision/gap.h"
+#include "framework/collision/motion.h"
+
+namespace tumble::collision {
+
+struct TimeBound {
+  double duration;   // [s], in [0, horizon]: no contact before; exactly the horizon where none can happen in it
+  double gap;        // [m]: of the nearest pieces looked at; only a lower bound of the distance where all were far
+};
+
+/// @param horizon  [s], >= 0: how far ahead to look; the motion bounds must hold that long
+TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a, const MotionBounds& bounds_a, const CollisionShape& b,
+                           const MotionState& state_b, const MotionBounds& bounds_b, double horizon);
+
+/// First t >= 0 at which g + c t + q t^2 falls below zero, given g >= 0; infinite where it never does.
+double first_root_of_quadratic(double g, double c, double q);
+
+}  // namespace tumble::collision

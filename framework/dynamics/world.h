@@ -1,0 +1,70 @@
+/// The bodies of a scene and the effects on them, ready to be advanced. Plain data: engines move it, nothing here does.
+///
+/// An effect that the scene does not ask for is absent (an empty optional or list): no code of it runs.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/dynamics/body.h"
+#include "framework/geometry/shape.h"
+#include "framework/scene/scene.h"
+
+namespace tumble {
+
+/// A body of a world. Its state is where it is at the world's time.
+struct WorldBody {
+  std::string name;
+  Inertia inertia;
+  Shape shape;
+  double restitution = 1.0;
+  RigidBodyState state;                           // of a movable body
+  scene::PrescribedMotion motion;                 // of an immovable one, about com_at_0
+  Vector3d com_at_0_world = Vector3d::Zero();     // [m]
+
+  bool immovable() const { return inertia.inverse_mass == 0.0; }
+};
+
+/// A constant force on a point fixed in a body, for a while.
+struct PointForce {
+  int body;
+  Vector3d force_world;      // [N]
+  Vector3d point_world;      // where the point is at `start` [m]
+  double start, end;         // [s]
+};
+
+struct World {
+  std::vector<WorldBody> bodies;
+  std::optional<Vector3d> gravity_world;          // [m/s^2]
+  std::vector<PointForce> point_forces;           // in the scene's order
+};
+
+/// Builds what the scene's entries ask for, and nothing else.
+/// @throws UserError naming the body or the force that cannot be built
+World build_world(const scene::Scene& scene);
+
+/// Place of an immovable body at a time: start + v t + A sin(w t). [m]
+Vector3d prescribed_position(const WorldBody& body, double time);
+/// Its velocity, exact. [m/s]
+Vector3d prescribed_velocity(const WorldBody& body, double time);
+
+/// Angular velocity that belongs to a state. World frame. [rad/s]
+Vector3d omega_of(const RigidBodyState& state, const Inertia& inertia);
+/// Angular momentum of a body turning at omega_world. [kg m^2/s]
+Vector3d angular_momentum_of(const Vector3d& omega_world, const Quaterniond& world_from_body, const Inertia& inertia);
+
+/// Of one movable body. [J]
+double kinetic_energy(const RigidBodyState& state, const Inertia& inertia);
+
+/// Sums over the movable bodies of a world.
+struct Invariants {
+  double kinetic_energy = 0.0;                            // [J]
+  double potential_energy = 0.0;                          // -m g.x [J]
+  Vector3d momentum_world = Vector3d::Zero();             // [kg m/s]
+  Vector3d angular_momentum_world = Vector3d::Zero();     // about the world's origin [kg m^2/s]
+};
+/// @param states  by body index; those of immovable bodies are not looked at
+Invariants invariants_of(const World& world, const std::vector<RigidBodyState>& states);
+
+}  // namespace tumble

@@ -1,0 +1,241 @@
+#include "framework/engines/moving_world.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/core/error.h"
+#include "framework/dynamics/rotation_bounds.h"
+
+namespace tumble::engines {
+namespace {
+
+// What the laws' integration makes of a constant acceleration a: x(h) = x0 + v h + bend a h^2 / 2. Asked once, so that bounds hold
+// for whichever method a student wrote.
+double measure_path_bend(const Laws& laws) {
+  constexpr int kHeight = 0, kSpeed = 1;
+  const OdeFunction fall = [](double, const VectorXd& y) {
+    VectorXd dy(2);
+    dy << y[kSpeed], 1.0;
+    return dy;
+  };
+  const VectorXd end = laws.integrate_step(fall, 0.0, VectorXd::Zero(2), 1.0);
+  return end.size() == 2 && std::isfinite(end[kHeight]) ? 2.0 * end[kHeight] : 1.0;
+}
+
+}  // namespace
+
+MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters)
+    : world_(std::move(world)), laws_(laws), counters_(counters), rests_(world_.bodies.size()), force_points_body_(world_.point_forces.size()),
+      paths_(world_.bodies.size()) {
+  for (const WorldBody& body : world_.bodies) {
+    shapes_.emplace_back(body.shape);
+    states_.push_back(body.state);
+  }
+  path_bend_ = measure_path_bend(laws);
+}
+
+void MovingWorld::put_to_rest(int body, int support) {
+  rests_[body] = Rest{support, states_[body].com_world - prescribed_position(world_.bodies[support], time_)};
+  states_[body] = still_state(body, time_);
+  ++counters_.bodies_put_to_rest;
+}
+
+void MovingWorld::wake(int body) {
+  states_[body] = still_state(body, time_);
+  rests_[body].reset();
+  ++counters_.bodies_woken;
+}
+
+void MovingWorld::switch_force(int index, bool on) {
+  const PointForce& force = world_.point_forces[index];
+  if (!on) {
+    active_forces_.erase(std::remove(active_forces_.begin(), active_forces_.end(), index), active_forces_.end());
+    return;
+  }
+  if (resting(force.body)) wake(force.body);
+  const RigidBodyState& state = states_[force.body];
+  force_points_body_[index] = state.world_from_body.conjugate() * (force.point_world - state.com_world);
+  active_forces_.push_back(index);
+}
+
+RigidBodyState MovingWorld::still_state(int body, double t) const {
+  const WorldBody& b = world_.bodies[body];
+  RigidBodyState state = states_[body];
+  if (b.immovable()) {
+    state.com_world = prescribed_position(b, t);
+    return state;
+  }
+  const WorldBody& support = world_.bodies[rests_[body]->support];
+  state.com_world = prescribed_position(support, t) + rests_[body]->offset_from_support_world;
+  state.momentum_world = b.inertia.mass * prescribed_velocity(support, t);
+  state.angular_momentum_world.setZero();
+  return state;
+}
+
+Vector3d MovingWorld::velocity_of(int body, double t) const {
+  const WorldBody& b = world_.bodies[body];
+  if (b.immovable()) return prescribed_velocity(b, t);
+  if (rests_[body]) return prescribed_velocity(world_.bodies[rests_[body]->support], t);
+  return b.inertia.inverse_mass * states_[body].momentum_world;
+}
+
+Wrench MovingWorld::wrench_on(int body, const RigidBodyState& state) {
+  Wrench sum{Vector3d::Zero(), Vector3d::Zero()};
+  if (world_.gravity_world) {
+    ++counters_.gravity_calls;
+    sum.force_world += world_.bodies[body].inertia.mass * *world_.gravity_world;
+  }
+  for (const int index : active_forces_) {
+    const PointForce& force = world_.point_forces[index];
+    if (force.body != body) continue;
+    ++counters_.point_force_calls;
+    const Vector3d point_world = state.com_world + state.world_from_body.normalized() * force_points_body_[index];
+    const Wrench wrench = laws_.wrench_of_point_force(force.force_world, point_world, state.com_world);
+    sum.force_world += wrench.force_world;
+    sum.torque_world += wrench.torque_world;
+  }
+  return sum;
+}
+
+RigidBodyState MovingWorld::integrate(int body, double duration, double start_time, const VectorXd& start) {
+  const Inertia& inertia = world_.bodies[body].inertia;
+  const OdeFunction derivative = [&](double, const VectorXd& y) {
+    ++counters_.derivative_evaluations;
+    const RigidBodyState state = unpack(y);
+    return laws_.state_derivative(state, inertia, wrench_on(body, state));
+  };
+  ++counters_.integrations;
+  ++integrations_in_step_;
+  RigidBodyState state = unpack(laws_.integrate_step(derivative, start_time, start, duration));
+  state.world_from_body = laws_.renormalize(state.world_from_body);
+  return state;
+}
+
+void MovingWorld::begin_step(double target) {
+  const StageTimer timer(counters_.integration_seconds);
+  target_ = target;
+  integrations_in_step_ = 0;
+  for (int i = 0; i < size(); ++i) {
+    Path& path = paths_[i];
+    path.bounds.reset();
+    path.memo_time = kUnset;
+    if (!can_move(i)) continue;
+    path.start = pack(states_[i]);
+    Vector3d force = Vector3d::Zero();
+    for (const int index : active_forces_)
+      if (world_.point_forces[index].body == i) force += world_.point_forces[index].force_world;
+    path.acceleration_world = force * world_.bodies[i].inertia.inverse_mass;
+    if (world_.gravity_world) path.acceleration_world += *world_.gravity_world;
+    path.acceleration_world *= path_bend_;
+    path.end = integrate(i, target - time_, time_, path.start);
+  }
+}
+
+RigidBodyState MovingWorld::path(int body, double t) {
+  if (!can_move(body)) return still_state(body, t);
+  if (t == time_) return states_[body];
+  Path& path = paths_[body];
+  if (t == target_) return path.end;
+  if (t != path.memo_time) {
+    path.memo = integrate(body, t - time_, time_, path.start);
+    path.memo_time = t;
+  }
+  return path.memo;
+}
+
+collision::MotionState MovingWorld::motion_at(int body, double t) {
+  const RigidBodyState state = path(body, t);
+  collision::MotionState motion;
+  motion.pose = {state.com_world, state.world_from_body};
+  if (!can_move(body)) {
+    motion.velocity_world = velocity_of(body, t);
+    return motion;
+  }
+  // The rate of the path, which for a method of first order is not the state's momentum over the mass.
+  const Inertia& inertia = world_.bodies[body].inertia;
+  motion.velocity_world = inertia.inverse_mass * states_[body].momentum_world + (t - time_) * paths_[body].acceleration_world;
+  if (!shapes_[body].is_ball()) motion.omega_world = omega_of(state, inertia);
+  return motion;
+}
+
+double MovingWorld::torque_bound(int body) const {
+  double bound = 0.0;
+  for (const int index : active_forces_)
+    if (world_.point_forces[index].body == body) bound += world_.point_forces[index].force_world.norm() * force_points_body_[index].norm();
+  return bound;
+}
+
+collision::MotionBounds MovingWorld::work_out_bounds(int body) {
+  collision::MotionBounds bounds;
+  const WorldBody& b = world_.bodies[body];
+  if (!can_move(body)) {
+    const scene::PrescribedMotion& m = b.immovable() ? b.motion : world_.bodies[rests_[body]->support].motion;
+    bounds.acceleration_deviation = m.amplitude_m.norm() * m.angular_frequency_rad_s * m.angular_frequency_rad_s;
+    return bounds;
+  }
+  bounds.acceleration_world = paths_[body].acceleration_world;
+  if (shapes_[body].is_ball()) return bounds;  // however it turns, it looks the same
+  const double h = target_ - time_;
+  const RotationBounds rotation = bound_rotation(states_[body], b.inertia, torque_bound(body), h);
+  bounds.angular_speed = rotation.angular_speed;
+  bounds.angular_acceleration = rotation.angular_acceleration;
+  if (rotation.angular_speed > 0) {
+    // A step against two half steps tells how far the path's turning is from the state's angular velocity: an error C h^(p+1) in the
+    // angle is at most (p + 1) C h^p in its rate, and shows as at least C h^(p+1) / 2 in the difference, for p = 1 to 4.
+    const RigidBodyState half = integrate(body, 0.5 * h, time_, paths_[body].start);
+    const RigidBodyState twice_half = integrate(body, 0.5 * h, time_ + 0.5 * h, pack(half));
+    bounds.angular_velocity_error = 6.0 * twice_half.world_from_body.angularDistance(paths_[body].end.world_from_body) / h;
+  }
+  return bounds;
+}
+
+collision::Motion MovingWorld::motion(int body) {
+  if (!paths_[body].bounds) paths_[body].bounds = work_out_bounds(body);
+  return {[this, body](double t) { return motion_at(body, t); }, *paths_[body].bounds};
+}
+
+collision::SweptBox MovingWorld::swept_box(int body) {
+  const double radius = shapes_[body].bounding_radius();
+  const double h = target_ - time_;
+  const Vector3d start = path(body, time_).com_world, end = path(body, target_).com_world;
+  // Between its ends a parabola leaves their box by at most a h^2 / 8; a shaken body by at most its amplitude.
+  Vector3d bulge = Vector3d::Zero();
+  if (can_move(body)) {
+    bulge = paths_[body].acceleration_world.cwiseAbs() * (h * h / 8);
+  } else {
+    const int mover = resting(body) ? rests_[body]->support : body;
+    const scene::PrescribedMotion& m = world_.bodies[mover].motion;
+    bulge = m.amplitude_m.cwiseAbs() * std::min(1.0, std::pow(m.angular_frequency_rad_s * h, 2) / 8);
+  }
+  constexpr double kRounding = 1e-14;  // of coordinates, so that bodies that just touch stay candidates
+  const Vector3d margin =
+      bulge + Vector3d::Constant(radius) + kRounding * (start.cwiseAbs() + end.cwiseAbs() + Vector3d::Constant(std::isfinite(radius) ? radius : 0.0));
+  return {start.cwiseMin(end) - margin, start.cwiseMax(end) + margin, can_move(body)};
+}
+
+void MovingWorld::commit(double t) {
+  const std::uint64_t before = integrations_in_step_;
+  std::vector<RigidBodyState> arrived;
+  {
+    const StageTimer timer(counters_.integration_seconds);
+    arrived.reserve(states_.size());
+    for (int i = 0; i < size(); ++i) arrived.push_back(path(i, t));
+  }
+  if (t < target_) counters_.undone_integrations += before;
+  states_ = std::move(arrived);
+  time_ = t;
+}
+
+Body MovingWorld::body_at_impact(int index) const {
+  const WorldBody& b = world_.bodies[index];
+  const RigidBodyState state = can_move(index) ? states_[index] : still_state(index, time_);
+  Body body;
+  body.inertia = b.inertia;
+  body.com_world = state.com_world;
+  body.world_from_body = state.world_from_body;
+  body.velocity_world = velocity_of(index, time_);
+  body.omega_world = can_move(index) ? omega_of(state, b.inertia) : Vector3d::Zero();
+  return body;
+}
+
+}  // namespace tumble::engines

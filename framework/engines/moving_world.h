@@ -1,0 +1,89 @@
+/// A world on the move: where every body is at the last committed time, and where the laws take it from there.
+///
+/// Within a step each body follows a path: the laws' integration from the committed state by any part of the step, always from
+/// the step's start. Collision finding, rollback and pictures all look at this one path.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "framework/collision/first_impact.h"
+#include "framework/collision/sweep.h"
+#include "framework/dynamics/laws.h"
+#include "framework/dynamics/world.h"
+#include "framework/engines/run_counters.h"
+
+namespace tumble::engines {
+
+/// A body that lies still on an immovable support and is left alone until something touches it.
+struct Rest {
+  int support;
+  Vector3d offset_from_support_world;   // [m]
+};
+
+class MovingWorld {
+ public:
+  MovingWorld(World world, const Laws& laws, RunCounters& counters);
+
+  const World& world() const { return world_; }
+  int size() const { return static_cast<int>(world_.bodies.size()); }
+  const collision::CollisionShape& shape(int body) const { return shapes_[body]; }
+  double time() const { return time_; }
+
+  /// Committed state of a movable body.
+  const RigidBodyState& state(int body) const { return states_[body]; }
+  const std::vector<RigidBodyState>& states() const { return states_; }
+  void set_state(int body, const RigidBodyState& state) { states_[body] = state; }
+  bool can_move(int body) const { return !world_.bodies[body].immovable() && !rests_[body]; }
+  bool resting(int body) const { return rests_[body].has_value(); }
+  void put_to_rest(int body, int support);
+  void wake(int body);
+  const std::vector<int>& active_forces() const { return active_forces_; }
+  void switch_force(int index, bool on);
+
+  /// Begins a step from the committed time: works out the motion's bounds and where all come out.
+  void begin_step(double target);
+  double target() const { return target_; }
+  /// Where a body's path is at time t in [time(), target()]; any t for immovable and resting ones.
+  RigidBodyState path(int body, double t);
+  collision::MotionState motion_at(int body, double t);
+  collision::Motion motion(int body);
+  collision::SweptBox swept_box(int body);
+  /// All bodies to where their paths are at t; what the step had computed beyond counts as undone when t is before its target.
+  void commit(double t);
+
+  /// As impulses need it, at the committed time.
+  Body body_at_impact(int body) const;
+  Vector3d velocity_of(int body, double t) const;
+
+ private:
+  struct Path {
+    VectorXd start;                 // packed
+    RigidBodyState end;
+    Vector3d acceleration_world;    // of the path, constant in the step
+    std::optional<collision::MotionBounds> bounds;
+    double memo_time;
+    RigidBodyState memo;
+  };
+
+  RigidBodyState integrate(int body, double duration, double start_time, const VectorXd& start);
+  Wrench wrench_on(int body, const RigidBodyState& state);
+  double torque_bound(int body) const;
+  collision::MotionBounds work_out_bounds(int body);
+  RigidBodyState still_state(int body, double t) const;
+
+  World world_;
+  const Laws& laws_;
+  RunCounters& counters_;
+  std::vector<collision::CollisionShape> shapes_;
+  std::vector<RigidBodyState> states_;
+  std::vector<std::optional<Rest>> rests_;
+  std::vector<int> active_forces_;               // indices into world_.point_forces
+  std::vector<Vector3d> force_points_body_;      // by force, from when it is switched on
+  std::vector<Path> paths_;
+  double time_ = 0.0, target_ = 0.0;
+  double path_bend_ = 1.0;   // how much of a constant acceleration the laws' integration puts into a path: 1 for order >= 2, 0 for Euler
+  std::uint64_t integrations_in_step_ = 0;
+};
+
+}  // namespace tumble::engines

@@ -1,0 +1,29 @@
+/// Frames of a run, at exact frame times, without touching the committed path.
+#pragma once
+
+#include "framework/engines/moving_world.h"
+
+namespace tumble::engines {
+
+class FrameRecorder {
+ public:
+  FrameRecorder(double rate_hz, double duration, TrajectorySink& sink) : rate_(rate_hz), duration_(duration), sink_(sink) {}
+
+  /// Pushes the frames that lie before `t`, from the paths of the step under way.
+  void record_before(MovingWorld& moving, double t);
+  /// Pushes the frame that lies at the committed time, if there is one.
+  void record_committed(MovingWorld& moving);
+
+ private:
+  double frame_time(long k) const { return static_cast<double>(k) / rate_; }
+  void push(MovingWorld& moving, double t);
+
+  double rate_, duration_;
+  TrajectorySink& sink_;
+  long next_ = 0;
+};
+
+/// Smallest gap over all pairs that may collide; infinite where there is none. [m]
+double smallest_gap(const MovingWorld& moving, const std::vector<RigidBodyState>& states);
+
+}  // namespace tumble::engines

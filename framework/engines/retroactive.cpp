@@ -1,0 +1,313 @@
+#include "framework/engines/retroactive.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "framework/core/error.h"
+#include "framework/engines/recorder.h"
+#include "framework/engines/sequential_impacts.h"
+
+namespace tumble::engines {
+namespace {
+
+constexpr double kEpsilon = 2.220446049250313e-16;
+// Contacts closer than this many roundings of their coordinates touch at one instant.
+constexpr double kTouching = 64 * kEpsilon;
+constexpr int kMostIdleSteps = 1000;      // in a row without progress of time
+constexpr int kMostImpactsAStep = 20000;  // of one pair: a Zeno sequence that needs a lasting contact
+
+struct Earliest {
+  double time;
+  std::size_t pair;
+};
+
+class RetroactiveRun {
+ public:
+  RetroactiveRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink)
+      : scene_(scene), laws_(laws), sink_(sink), step_(options.step_s.value_or(scene.step_s)),
+        duration_(options.duration_s.value_or(scene.duration_s)), moving_(build_world(scene), laws, counters_),
+        impacts_(laws, {scene.rest_speed_m_s, step_ / 100}, counters_), recorder_(options.frame_rate_hz, duration_, sink) {}
+
+  void run();
+
+ private:
+  void refuse_overlap();
+  double next_target() const;
+  void switch_forces();
+  void advance_to(double target);
+  std::vector<std::pair<int, int>> candidates();
+  bool may_meet(int a, int b);
+  std::optional<Earliest> find_earliest(const std::vector<std::pair<int, int>>& pairs);
+  std::optional<Earliest> find_missed(const std::vector<std::pair<int, int>>& pairs, double target);
+  double gap_on_path(std::pair<int, int> pair, double t);
+  collision::Gap committed_gap(std::pair<int, int> pair) const;
+  double touching_distance(std::pair<int, int> pair) const;
+  void separate(const std::vector<std::pair<int, int>>& pairs);
+  void resolve_at(const std::vector<std::pair<int, int>>& pairs, std::pair<int, int> trigger);
+  void settle(const std::vector<TouchingPair>& touching, const std::vector<Event>& events);
+  void watch_for_trouble();
+  std::string name(int body) const { return "'" + moving_.world().bodies[body].name + "'"; }
+
+  const scene::Scene& scene_;
+  const Laws& laws_;
+  TrajectorySink& sink_;
+  double step_, duration_;
+  RunCounters counters_;
+  MovingWorld moving_;
+  SequentialImpacts impacts_;
+  FrameRecorder recorder_;
+  long grid_index_ = 0;
+  std::set<double> switch_times_;
+  std::string stopped_by_;
+};
+
+double RetroactiveRun::next_target() const {
+  double target = std::min(static_cast<double>(grid_index_ + 1) * step_, duration_);
+  const auto next = switch_times_.upper_bound(moving_.time());
+  if (next != switch_times_.end()) target = std::min(target, *next);
+  return target;
+}
+
+void RetroactiveRun::refuse_overlap() {
+  for (int i = 0; i < moving_.size(); ++i) {
+    for (int j = i + 1; j < moving_.size(); ++j) {
+      if (moving_.world().bodies[i].immovable() && moving_.world().bodies[j].immovable()) continue;
+      const auto pose = [&](int k) { return moving_.motion_at(k, 0.0).pose; };
+      const double allowance = kTouching * collision::gap_scale(moving_.shape(i), pose(i), moving_.shape(j), pose(j));
+      if (!collision::overlapping(moving_.shape(i), pose(i), moving_.shape(j), pose(j), allowance)) continue;
+      const double depth = -collision::compute_gap(moving_.shape(i), pose(i), moving_.shape(j), pose(j)).distance;
+      throw UserError(scene_.file.empty() ? scene_.name : scene_.file.string(),
+                      depth > 0 ? fmt::format("bodies {} and {} overlap at the start, by about {:.3g} m", name(i), name(j), depth)
+                                : fmt::format("at the start one of the bodies {} and {} is inside the other", name(i), name(j)),
+                      "move one of them away (\"position_m\") until they are apart or just touch");
+    }
+  }
+}
+
+void RetroactiveRun::switch_forces() {
+  const auto& forces = moving_.world().point_forces;
+  for (int k = 0; k < static_cast<int>(forces.size()); ++k) {
+    const auto& active = moving_.active_forces();
+    const bool is_on = std::find(active.begin(), active.end(), k) != active.end();
+    const bool should_be_on = moving_.time() >= forces[k].start && moving_.time() < forces[k].end;
+    if (is_on == should_be_on) continue;
+    moving_.switch_force(k, should_be_on);
+    const double size = forces[k].force_world.norm();
+    sink_.event({moving_.time(), should_be_on ? EventKind::kForceOn : EventKind::kForceOff, forces[k].body, -1, forces[k].point_world,
+                 size > 0 ? Vector3d(forces[k].force_world / size) : Vector3d::UnitZ(), 0.0, 0.0});
+  }
+}
+
+// Planes without end are in every box: whether the ball around a body reaches one is asked directly.
+bool RetroactiveRun::may_meet(int a, int b) {
+  if (moving_.shape(a).is_half_space()) std::swap(a, b);
+  if (!moving_.shape(b).is_half_space()) return true;
+  const collision::SweptBox box = moving_.swept_box(a);
+  const collision::Pose start = moving_.motion_at(b, moving_.time()).pose, end = moving_.motion_at(b, moving_.target()).pose;
+  const Vector3d n = start.world_from_body.toRotationMatrix().col(2);
+  const Vector3d middle = 0.5 * (box.low + box.high), half = 0.5 * (box.high - box.low);
+  const double lowest = n.dot(middle) - n.cwiseAbs().dot(half);
+  const scene::PrescribedMotion& m = moving_.world().bodies[b].motion;
+  const double shake = m.amplitude_m.norm() * std::min(2.0, std::pow(m.angular_frequency_rad_s * (moving_.target() - moving_.time()), 2));
+  return lowest <= std::max(n.dot(start.com_world), n.dot(end.com_world)) + shake;
+}
+
+std::vector<std::pair<int, int>> RetroactiveRun::candidates() {
+  std::vector<collision::SweptBox> boxes;
+  for (int i = 0; i < moving_.size(); ++i) boxes.push_back(moving_.swept_box(i));
+  auto pairs = collision::overlapping_pairs(boxes);
+  std::erase_if(pairs, [&](const std::pair<int, int>& pair) { return !may_meet(pair.first, pair.second); });
+  counters_.candidate_pairs += pairs.size();
+  return pairs;
+}
+
+std::optional<Earliest> RetroactiveRun::find_earliest(const std::vector<std::pair<int, int>>& pairs) {
+  const collision::ImpactOptions options{laws_.find_impact_time};
+  std::optional<Earliest> earliest;
+  double until = moving_.target();
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const auto [a, b] = pairs[k];
+    const auto impact = collision::first_impact(moving_.shape(a), moving_.motion(a), moving_.shape(b), moving_.motion(b), moving_.time(),
+                                                until, options, &counters_.collision);
+    if (!impact || (earliest && impact->time >= earliest->time)) continue;
+    earliest = Earliest{impact->time, k};
+    until = impact->time;
+    if (until <= moving_.time()) break;
+  }
+  return earliest;
+}
+
+double RetroactiveRun::gap_on_path(std::pair<int, int> pair, double t) {
+  ++counters_.collision.gap_evaluations;
+  return collision::compute_gap(moving_.shape(pair.first), moving_.motion_at(pair.first, t).pose, moving_.shape(pair.second),
+                                moving_.motion_at(pair.second, t).pose).distance;
+}
+
+collision::Gap RetroactiveRun::committed_gap(std::pair<int, int> pair) const {
+  const auto pose = [&](int k) { return collision::Pose{moving_.state(k).com_world, moving_.state(k).world_from_body}; };
+  return collision::compute_gap(moving_.shape(pair.first), pose(pair.first), moving_.shape(pair.second), pose(pair.second));
+}
+
+double RetroactiveRun::touching_distance(std::pair<int, int> pair) const {
+  const auto pose = [&](int k) { return collision::Pose{moving_.state(k).com_world, moving_.state(k).world_from_body}; };
+  // Times are doubles too: within one spacing of the time a pair moves by its speed times that.
+  const double speed = moving_.velocity_of(pair.first, moving_.time()).norm() + moving_.velocity_of(pair.second, moving_.time()).norm();
+  return kTouching * (collision::gap_scale(moving_.shape(pair.first), pose(pair.first), moving_.shape(pair.second), pose(pair.second))) +
+         4 * kEpsilon * moving_.time() * speed;
+}
+
+// The last guard: bounds hold for every method of integration that moves bodies smoothly, but what a student wrote may not. An
+// overlap at the end that is deeper than round-off is traced back to where it began.
+std::optional<Earliest> RetroactiveRun::find_missed(const std::vector<std::pair<int, int>>& pairs, double target) {
+  std::optional<Earliest> earliest;
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    double low = moving_.time(), high = target;
+    if (gap_on_path(pairs[k], high) >= -touching_distance(pairs[k])) continue;
+    for (double middle = 0.5 * (low + high); middle > low && middle < high; middle = 0.5 * (low + high))
+      (gap_on_path(pairs[k], middle) < 0 ? high : low) = middle;
+    if (!earliest || low < earliest->time) earliest = Earliest{low, k};
+  }
+  return earliest;
+}
+
+// What rounding leaves of an overlap is taken back by moving the lighter body along the normal; a few roundings at most.
+void RetroactiveRun::separate(const std::vector<std::pair<int, int>>& pairs) {
+  for (int round = 0; round < 20; ++round) {
+    bool clean = true;
+    for (const auto& pair : pairs) {
+      const collision::Gap gap = committed_gap(pair);
+      if (gap.distance >= 0) continue;
+      clean = false;
+      const double mass_a = moving_.can_move(pair.first) ? moving_.world().bodies[pair.first].inertia.inverse_mass : 0.0;
+      const double mass_b = moving_.can_move(pair.second) ? moving_.world().bodies[pair.second].inertia.inverse_mass : 0.0;
+      const int mover = mass_a >= mass_b ? pair.first : pair.second;
+      RigidBodyState state = moving_.state(mover);
+      const double spacing = kEpsilon * state.com_world.cwiseAbs().maxCoeff();
+      const double way = -gap.distance + spacing * round;
+      state.com_world += (mover == pair.first ? way : -way) * gap.normal_b_to_a_world;
+      moving_.set_state(mover, state);
+      ++counters_.nudges;
+    }
+    if (clean) return;
+  }
+}
+
+void RetroactiveRun::resolve_at(const std::vector<std::pair<int, int>>& pairs, std::pair<int, int> trigger) {
+  const StageTimer timer(counters_.impact_seconds);
+  for (const int body : {trigger.first, trigger.second})
+    if (moving_.resting(body)) moving_.wake(body);
+  std::vector<TouchingPair> touching;
+  std::size_t trigger_index = 0;
+  for (const auto& pair : pairs) {
+    const collision::Gap gap = committed_gap(pair);
+    if (pair != trigger && !(gap.distance <= touching_distance(pair))) continue;
+    if (pair == trigger) trigger_index = touching.size();
+    touching.push_back({pair.first, pair.second, gap});
+  }
+  const Resolution resolution = impacts_.resolve(moving_, touching, trigger_index);
+  for (const Event& event : resolution.events) sink_.event(event);
+  if (!resolution.settled)
+    stopped_by_ = fmt::format("at t = {:.6f} s the impacts between bodies that touch did not come to an end (bodies {} and {} among them)",
+                              moving_.time(), name(trigger.first), name(trigger.second));
+  settle(touching, resolution.events);
+  for (const TouchingPair& pair : resolution.micro_impacts)
+    if (!moving_.resting(pair.a) && !moving_.resting(pair.b)) impacts_.push_apart(moving_, pair);
+}
+
+// Rest: a ball that met an immovable support, which gravity presses it against, more slowly than the rest speed (or that does not
+// bounce at all) and moves no faster along it.
+void RetroactiveRun::settle(const std::vector<TouchingPair>& touching, const std::vector<Event>& events) {
+  if (!moving_.world().gravity_world || events.empty()) return;
+  double fastest = 0.0;
+  for (const Event& event : events) fastest = std::max(fastest, std::abs(event.normal_velocity_before));
+  for (const TouchingPair& pair : touching) {
+    const bool a_is_support = moving_.world().bodies[pair.a].immovable();
+    if (a_is_support == moving_.world().bodies[pair.b].immovable()) continue;
+    const int support = a_is_support ? pair.a : pair.b, body = a_is_support ? pair.b : pair.a;
+    const Vector3d up = a_is_support ? Vector3d(-pair.gap.normal_b_to_a_world) : pair.gap.normal_b_to_a_world;
+    if (moving_.world().bodies[support].motion.angular_frequency_rad_s != 0.0) continue;
+    if (!moving_.shape(body).is_ball() || !(moving_.world().gravity_world->dot(up) < 0)) continue;
+    const Vector3d relative = moving_.velocity_of(body, moving_.time()) - moving_.velocity_of(support, moving_.time());
+    const double restitution = std::min(moving_.world().bodies[body].restitution, moving_.world().bodies[support].restitution);
+    const bool slow = relative.norm() < scene_.rest_speed_m_s && relative.dot(up) <= restitution * scene_.rest_speed_m_s + kTouching * fastest;
+    if (!slow) continue;
+    RigidBodyState state = moving_.state(body);
+    state.com_world -= pair.gap.distance * up;
+    moving_.set_state(body, state);
+    moving_.put_to_rest(body, support);
+    sink_.event({moving_.time(), EventKind::kRest, pair.a, pair.b, pair.gap.point_b_world, pair.gap.normal_b_to_a_world, 0.0, 0.0});
+  }
+}
+
+void RetroactiveRun::watch_for_trouble() {
+  for (int i = 0; i < moving_.size(); ++i) {
+    if (moving_.world().bodies[i].immovable()) continue;
+    const VectorXd y = pack(moving_.state(i));
+    if (y.allFinite()) continue;
+    stopped_by_ = fmt::format("body {} has a state that is not a number at t = {:.6f} s (integrator: {}; impulses: {})", name(i), moving_.time(),
+                              laws_.integrator_source, laws_.impulse_source);
+    return;
+  }
+}
+
+void RetroactiveRun::advance_to(double target) {
+  int idle = 0, impacts = 0;
+  while (stopped_by_.empty() && moving_.time() < target) {
+    moving_.begin_step(target);
+    ++counters_.steps;
+    std::vector<std::pair<int, int>> pairs;
+    std::optional<Earliest> earliest;
+    {
+      const StageTimer timer(counters_.collision_seconds);
+      pairs = candidates();
+      earliest = find_earliest(pairs);
+      if (!earliest) earliest = find_missed(pairs, target);
+    }
+    const double before = moving_.time(), reached = earliest ? earliest->time : target;
+    recorder_.record_before(moving_, reached);
+    moving_.commit(reached);
+    watch_for_trouble();
+    if (!stopped_by_.empty()) return;
+    separate(pairs);
+    if (!earliest) continue;
+    ++counters_.rollbacks;
+    resolve_at(pairs, pairs[earliest->pair]);
+    idle = reached > before ? 0 : idle + 1;
+    if (idle > kMostIdleSteps || ++impacts > kMostImpactsAStep) {
+      const auto [a, b] = pairs[earliest->pair];
+      stopped_by_ = fmt::format("time stands still at t = {:.6f} s: bodies {} and {} meet again and again; a lasting contact is needed "
+                                "there, or a larger \"rest_speed_m_s\"", moving_.time(), name(a), name(b));
+    }
+  }
+}
+
+void RetroactiveRun::run() {
+  refuse_overlap();
+  for (const PointForce& force : moving_.world().point_forces) {
+    switch_times_.insert(force.start);
+    switch_times_.insert(force.end);
+  }
+  switch_forces();
+  recorder_.record_committed(moving_);
+  while (stopped_by_.empty() && moving_.time() < duration_) {
+    const double target = next_target();
+    advance_to(target);
+    if (!stopped_by_.empty()) break;
+    if (target >= static_cast<double>(grid_index_ + 1) * step_) ++grid_index_;
+    switch_forces();
+    recorder_.record_committed(moving_);
+  }
+  sink_.end(counters_.named(), stopped_by_);
+}
+
+}  // namespace
+
+void run_retroactive(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink) {
+  RetroactiveRun(scene, laws, options, sink).run();
+}
+
+}  // namespace tumble::engines

@@ -1,0 +1,37 @@
+/// What a run counts while it goes. Plain integers in the hot path; named when the run ends.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+#include "framework/collision/first_impact.h"
+#include "framework/trajectory/trajectory.h"
+
+namespace tumble::engines {
+
+struct RunCounters {
+  std::uint64_t steps = 0, integrations = 0, undone_integrations = 0, derivative_evaluations = 0;
+  std::uint64_t candidate_pairs = 0, rollbacks = 0, impacts = 0, impulses = 0, nudges = 0, micro_impacts = 0;
+  std::uint64_t bodies_put_to_rest = 0, bodies_woken = 0, gravity_calls = 0, point_force_calls = 0;
+  collision::ImpactCost collision;
+  double integration_seconds = 0.0, collision_seconds = 0.0, impact_seconds = 0.0, record_seconds = 0.0;
+
+  /// Effects that no entry called for are reported as 0 calls, so that a reader sees that they did not run.
+  Counters named() const;
+};
+
+/// Adds the time of its scope to a stage.
+class StageTimer {
+ public:
+  explicit StageTimer(double& seconds) : seconds_(seconds), start_(Clock::now()) {}
+  ~StageTimer() { seconds_ += std::chrono::duration<double>(Clock::now() - start_).count(); }
+  StageTimer(const StageTimer&) = delete;
+  StageTimer& operator=(const StageTimer&) = delete;
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  double& seconds_;
+  Clock::time_point start_;
+};
+
+}  // namespace tumble::engines

@@ -1,0 +1,58 @@
+/// What happens at the instant of an impact: the sequential law.
+///
+/// All pairs that touch at that instant are gone through in order of their body indices, lowest first; each pair that approaches
+/// gets the impulse of the laws; the round is repeated until no pair approaches faster than round-off. For equal balls in a row
+/// and restitution 1 this is Newton's cradle. Where restitution is below 1 the outcome depends on the order, which is therefore
+/// part of the law.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "framework/engines/moving_world.h"
+
+namespace tumble::engines {
+
+/// Two bodies that touch at the committed time.
+struct TouchingPair {
+  int a, b;               // a < b
+  collision::Gap gap;
+};
+
+/// What one resolution did.
+struct Resolution {
+  std::vector<Event> events;    // one an impulse, in order
+  bool settled = true;          // false: the rounds did not end
+  std::vector<TouchingPair> micro_impacts;   // pairs that meet again at once, or met without an impulse: see push_apart
+};
+
+struct ImpactRules {
+  double rest_speed;            // [m/s]
+  double micro_interval;        // a pair that meets again within this is a micro-impact [s]
+};
+
+class SequentialImpacts {
+ public:
+  SequentialImpacts(const Laws& laws, ImpactRules rules, RunCounters& counters) : laws_(laws), rules_(rules), counters_(counters) {}
+
+  /// @param pairs    sorted by (a, b)
+  /// @param trigger  which of them stopped the step
+  Resolution resolve(MovingWorld& moving, const std::vector<TouchingPair>& pairs, std::size_t trigger);
+
+  /// Sends a pair apart at the rest speed, if it separates more slowly. Without a lasting contact, a pair that gravity or turning
+  /// presses together would meet infinitely often in no time; what this adds in energy is below m * rest_speed^2.
+  void push_apart(MovingWorld& moving, const TouchingPair& pair);
+
+ private:
+  struct Work;
+  bool collide(Work& work, const TouchingPair& pair, double threshold);
+
+  const Laws& laws_;
+  ImpactRules rules_;
+  RunCounters& counters_;
+  std::map<std::pair<int, int>, double> last_meeting_;
+};
+
+}  // namespace tumble::engines
