@@ -17,6 +17,7 @@ echo "== minimal root in $folder"
 debootstrap --variant=minbase --include=ca-certificates bookworm "$folder" "$mirror" >"$folder.debootstrap.log" 2>&1 ||
   { tail -n 20 "$folder.debootstrap.log" >&2; exit 1; }
 # The host's way to the archive: sources, proxies, names.
+ls /etc/apt/sources.list.d/* >/dev/null 2>&1 && rm -f "$folder/etc/apt/sources.list"
 cp -r /etc/apt/sources.list /etc/apt/sources.list.d /etc/apt/apt.conf.d "$folder/etc/apt/" 2>/dev/null || true
 for file in /etc/resolv.conf /etc/hosts; do [ -f "$file" ] && cp -L "$file" "$folder$file"; done
 mkdir -p "$folder/usr/local/share/ca-certificates"
