@@ -1,6 +1,8 @@
 // Every assignment, a line each.
 #include "assignments/a1_impulse/a1_binding.h"
+#include "assignments/a1_impulse/a1_truths.h"
 #include "assignments/a2_integration/a2_binding.h"
+#include "assignments/a2_integration/a2_truths.h"
 #include "framework/modules/registry.h"
 
 namespace tumble {
@@ -8,6 +10,8 @@ namespace tumble {
 void register_assignments(modules::Registry& registry) {
   registry.add<a1::Module>("a1_impulse", "Impulse", a1::bind);
   registry.add<a2::Module>("a2_integration", "Integration", a2::bind);
+  a1::register_truths(registry);
+  a2::register_truths(registry);
 }
 
 }  // namespace tumble

@@ -11,6 +11,11 @@
 #include "framework/modules/proxy.h"
 #include "framework/modules/serve.h"
 
+namespace tumble::truths {
+struct Case;
+class Comparison;
+}  // namespace tumble::truths
+
 namespace tumble::modules {
 
 /// A table of functions of some module, its type known to the registration only.
@@ -26,6 +31,8 @@ struct ModuleKind {
   std::function<void(const AnyModule&, Laws&)> bind;                 // lets the module's functions be laws of a world
   std::function<void(const AnyModule&, Channel&)> serve;             // worker's side
   std::function<AnyModule(Connection&)> make_proxy;                  // judge's side
+  /// Families of truths (engines/truths) whose values this module's functions give directly, by name.
+  std::map<std::string, std::function<void(const AnyModule&, const truths::Case&, truths::Comparison&)>> truth_families;
 };
 
 class Registry {
@@ -47,6 +54,15 @@ class Registry {
       return std::make_shared<const Module>(modules::make_proxy<Module>(connection));
     };
     kinds_[kind.id] = std::move(kind);
+  }
+
+  /// A family of truths that a registered module's functions give directly.
+  /// @param compare  computes a case with the module and compares every output of it
+  template <class Module>
+  void add_truth_family(const std::string& family, void (*compare)(const Module&, const truths::Case&, truths::Comparison&)) {
+    kinds_.at(Module::kId).truth_families[family] = [compare](const AnyModule& module, const truths::Case& truth, truths::Comparison& comparison) {
+      compare(*static_cast<const Module*>(module.get()), truth, comparison);
+    };
   }
 
   /// @throws UserError naming the known ids

@@ -1,0 +1,66 @@
+/// Found against true: error, floor, pass mark and verdict of each output of a truth case.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "framework/engines/truths/truth_case.h"
+
+namespace tumble::truths {
+
+/// A closed form passes within this many times the error that double precision forces: a few dozen roundings.
+inline constexpr double kClosedFormFactor = 100.0;
+
+enum class Verdict {
+  kRight,
+  kWrong,
+  kNotAttempted,  // the module's function is a stub
+  kNotCompared,   // said why in the note: another law's answer, beyond double precision, ...
+};
+
+/// One output of one case.
+struct Line {
+  std::string output;         // "j", "rows[3].toi"
+  double error = kUnset;      // |found - true|, largest component, in the output's unit
+  double floor = kUnset;      // forced by double precision; NaN where the file gives none
+  double pass_mark = kUnset;
+  Verdict verdict = Verdict::kNotCompared;
+  std::string note;           // how the mark arose where it is not the closed form's; why not compared; what stopped it
+};
+
+/// Collects the lines of one case.
+class Comparison {
+ public:
+  const std::vector<Line>& lines() const { return lines_; }
+
+  /// One error against a mark. NaN and infinity never pass.
+  void check(const std::string& output, double error, double floor, double pass_mark, const std::string& note = "");
+  /// The closed form's mark: 100 times the floor.
+  void closed_form(const std::string& output, double error, double floor) { check(output, error, floor, kClosedFormFactor * floor); }
+  /// Scalar or vector of a case's outputs, by name; floor from the file. Of `found`, a list shorter than the file's is wrong.
+  void closed_form(const Case& truth, const std::string& output, double found);
+  void closed_form(const Case& truth, const std::string& output, const VectorXd& found);
+  /// Right or wrong without a number: a verdict, a count, a name.
+  void agree(const std::string& output, bool agrees, const std::string& note);
+  void not_compared(const std::string& output, const std::string& why);
+
+  /// Runs a group of comparisons of a module's functions: a stub makes one line "not attempted", an exception one "wrong".
+  void attempt(const std::string& outputs, const std::function<void()>& group);
+
+ private:
+  std::vector<Line> lines_;
+};
+
+/// Largest |found_i - expected_i|; NaN for different sizes or anything that is not finite.
+double largest_difference(const VectorXd& found, const VectorXd& expected);
+/// The same for unit quaternions, of which q and -q are one orientation. @param expected  (4), w first
+double quaternion_difference(const Quaterniond& found, const VectorXd& expected);
+
+/// The worst line of a case: what failed, else what was not attempted, else the one closest to its mark. Null when empty.
+const Line* worst_line(const std::vector<Line>& lines);
+/// Wrong if any line is wrong, else not attempted if any is, else right if any is, else not compared.
+Verdict verdict_of(const std::vector<Line>& lines);
+std::string word_of(Verdict verdict);
+
+}  // namespace tumble::truths

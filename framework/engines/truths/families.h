@@ -1,0 +1,22 @@
+/// The families of truths that the framework computes by itself, with the laws of whatever modules are chosen.
+/// Families that are about a module's own functions are registered by its assignment (modules/registry.h).
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "framework/dynamics/laws.h"
+#include "framework/engines/truths/comparison.h"
+#include "framework/engines/truths/truth_case.h"
+
+namespace tumble::truths {
+
+using FrameworkFamily = void (*)(const Case& truth, const Laws& laws, Comparison& comparison);
+
+/// By name of the family.
+const std::map<std::string, FrameworkFamily>& framework_families();
+
+// One a family; each compares every output of the case, or says why one is not compared.
+void compare_mass_properties(const Case& truth, const Laws& laws, Comparison& comparison);
+
+}  // namespace tumble::truths
