@@ -42,7 +42,7 @@ double next_after(double t) { return std::nextafter(t, std::numeric_limits<doubl
 
 // Shrinks low (gap >= 0) and high (gap < 0) to adjacent doubles, first by strides that double from a guess near the root.
 double last_instant_apart(const Search& search, double low, double high) {
-  double stride = next_after(low) - low;
+  double stride = next_after(high) - high;
   while (low + stride < high) {
     const double probe = low + stride;
     if (search.gap_at(probe) < 0) {
@@ -54,7 +54,7 @@ double last_instant_apart(const Search& search, double low, double high) {
   }
   for (;;) {
     const double middle = low + 0.5 * (high - low);
-    if (!(middle > low && middle < high)) return low;
+    if (!(middle > low && middle < high) || high - low <= 0.5 * (next_after(high) - high)) return low;
     (search.gap_at(middle) < 0 ? high : low) = middle;
   }
 }

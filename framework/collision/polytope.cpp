@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/collision/patch.h"
 #include "framework/collision/simplex.h"
 
 namespace tumble::collision {
@@ -11,6 +12,8 @@ namespace {
 constexpr double kRoundOff = 2.220446049250313e-16;
 // Below this part of the size, the direction between the nearest points carries fewer than ten digits: axes take over.
 constexpr double kNearZone = 1e-6;
+// Vertices within this part of the size of the foremost face the other body together: a face that leans by 1e-9 lies flat.
+constexpr double kFacing = 1e-9;
 // Edges more parallel than this (rad) span no axis of their own: faces and other edges cover them.
 constexpr double kParallel = 1e-9;
 
@@ -161,10 +164,8 @@ PolytopeGap polytope_gap(const PlacedPolytope& a, const PlacedPolytope& b, doubl
   if (found.apart && gap.distance > trusted && gap.distance > axis.separation * (1 + 1e-9)) return gap;
   gap.distance = axis.separation;
   gap.normal_b_to_a = axis.normal;
-  if (!found.apart) {
-    gap.point_a = a.vertices[lowest(a.vertices, axis.normal)];
-    gap.point_b = gap.point_a - axis.separation * axis.normal;
-  }
+  gap.point_a = flat_hull(facing_region(a, b, axis.normal, kFacing * size), axis.normal).middle;
+  gap.point_b = gap.point_a - axis.separation * axis.normal;
   return gap;
 }
 

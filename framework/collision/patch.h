@@ -1,0 +1,21 @@
+/// Where two convex polytopes touch: a point, a segment or a polygon.
+#pragma once
+
+#include <vector>
+
+#include "framework/collision/polytope.h"
+
+namespace tumble::collision {
+
+/// Corners of the region that the parts of A and B facing each other along `n` share, seen along `n`, on A's side. At least one.
+/// @param tolerance  how far behind the foremost vertex another still belongs to the facing part [m]
+std::vector<Vector3d> facing_region(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& normal_b_to_a, double tolerance);
+
+/// Corners of the convex hull of points in a plane, and the middle of that hull: of its area, its length, or the point itself.
+struct FlatHull {
+  std::vector<Vector3d> corners;
+  Vector3d middle;
+};
+FlatHull flat_hull(const std::vector<Vector3d>& points, const Vector3d& normal);
+
+}  // namespace tumble::collision

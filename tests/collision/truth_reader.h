@@ -1,0 +1,40 @@
+/// Reads a truth of tests/truths: numbers are decimal strings.
+#pragma once
+
+#include <cstdlib>
+#include <fstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "framework/core/math.h"
+
+namespace tumble::testing {
+
+inline nlohmann::json read_truth(const std::string& id) {
+  std::string name = id;
+  name.replace(name.find('/'), 1, "__");
+  std::ifstream file(std::string(TUMBLE_SOURCE_DIR) + "/tests/truths/" + name + ".json");
+  if (!file) throw std::runtime_error("no truth " + id);
+  return nlohmann::json::parse(file);
+}
+
+inline double number(const nlohmann::json& value) {
+  return value.is_string() ? std::strtod(value.get<std::string>().c_str(), nullptr) : value.get<double>();
+}
+inline Vector3d vector(const nlohmann::json& value) { return {number(value[0]), number(value[1]), number(value[2])}; }
+inline std::vector<double> numbers(const nlohmann::json& value) {
+  std::vector<double> all;
+  for (const auto& v : value) all.push_back(number(v));
+  return all;
+}
+inline nlohmann::json input(const nlohmann::json& truth, const std::string& name) { return truth.at("inputs").at(name).at("value"); }
+inline nlohmann::json output(const nlohmann::json& truth, const std::string& name) { return truth.at("outputs").at(name).at("value"); }
+/// 100 times what double precision itself forces.
+inline double pass_mark(const nlohmann::json& truth, const std::string& name) {
+  return 100 * number(truth.at("outputs").at(name).at("tolerance_floor"));
+}
+
+}  // namespace tumble::testing
