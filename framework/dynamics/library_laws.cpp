@@ -27,17 +27,17 @@ VectorXd odeint_step(const OdeFunction& f, double t, const VectorXd& y, double h
   return Eigen::Map<const VectorXd>(state.data(), static_cast<Eigen::Index>(state.size()));
 }
 
-/// y' for y = (x, q, P, L): x' = P/m, q' = (0, w) q / 2 with w in the world frame, P' = F, L' = tau.
+/// y' for y = (x, q, P, L), with the turning written in the body frame, where the inertia is constant:
+/// w_b = I_b^-1 (q* L q), q' = q (0, w_b) / 2.
 VectorXd newton_euler(const RigidBodyState& state, const Inertia& inertia, const Wrench& wrench) {
-  const Matrix3d R = state.world_from_body.toRotationMatrix();
-  // Through the body frame, where the inverse inertia is exact: R (I_b^-1 (R^T L)).
-  const Vector3d omega_world = R * (inertia.inverse_inertia_body * (R.transpose() * state.angular_momentum_world));
-  const Quaterniond spin(0.0, omega_world.x(), omega_world.y(), omega_world.z());
-  const Quaterniond rate = spin * state.world_from_body;
-  VectorXd derivative(kStateSize);
-  derivative << inertia.inverse_mass * state.momentum_world, 0.5 * rate.w(), 0.5 * rate.x(), 0.5 * rate.y(), 0.5 * rate.z(),
-      wrench.force_world, wrench.torque_world;
-  return derivative;
+  const Quaterniond& q = state.world_from_body;
+  const Vector3d omega_body = inertia.inverse_inertia_body * q.normalized().inverse()._transformVector(state.angular_momentum_world);
+  RigidBodyState rate;
+  rate.com_world = inertia.inverse_mass * state.momentum_world;
+  rate.world_from_body = q * Quaterniond(0.0, omega_body.x() / 2, omega_body.y() / 2, omega_body.z() / 2);
+  rate.momentum_world = wrench.force_world;
+  rate.angular_momentum_world = wrench.torque_world;
+  return pack(rate);
 }
 
 RootResult bracketed_root(const ScalarFunction& f, const ScalarFunction&, double low, double high, double tolerance) {
