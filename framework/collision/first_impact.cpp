@@ -80,6 +80,16 @@ Impact refine(const Search& search, double low, double high) {
   return search.impact_at(last_instant_apart(search, low, high));
 }
 
+// The bound promised that nothing touches between t_apart and t_overlap, up to rounding: the root lies just before the latter. The
+// start of the bracket moves up to it, away from a touch just left behind, where rounding makes the sign of the gap flicker.
+double shorten(const Search& search, double t_apart, double t_overlap) {
+  for (const double part : {1e-6, 1e-3, 0.5}) {
+    const double t = t_overlap - part * (t_overlap - t_apart);
+    if (t > t_apart && t < t_overlap && search.gap_at(t) >= 0) return t;
+  }
+  return t_apart;
+}
+
 // Where the gap closes almost linearly, a time just behind the root; nothing where it bends too much to tell.
 std::optional<double> behind_the_root(const Search& search, double t, double t1) {
   const MotionState sa = search.motion_a.at(t), sb = search.motion_b.at(t);
@@ -115,7 +125,7 @@ std::optional<Impact> first_impact(const CollisionShape& a, const Motion& motion
     ++search.cost.gap_evaluations;
     const TimeBound bound =
         bound_time_apart(a, motion_a.at(t), motion_a.bounds, b, motion_b.at(t), motion_b.bounds, t1 - t);
-    if (bound.gap < 0) return t > t_apart ? refine(search, t_apart, t) : search.impact_at(t);
+    if (bound.gap < 0) return t > t_apart ? refine(search, shorten(search, t_apart, t), t) : search.impact_at(t);
     if (bound.duration >= t1 - t) return std::nullopt;
     t_apart = t;
     if (round > 0 && bound.gap < std::numeric_limits<double>::infinity()) {
@@ -124,7 +134,7 @@ std::optional<Impact> first_impact(const CollisionShape& a, const Motion& motion
     if (round > kPatience) least *= 1.01;
     t = std::min(t1, std::max(t + std::max(bound.duration, least), next_after(t)));
     if (t >= t1) {
-      if (search.gap_at(t1) < 0) return refine(search, t_apart, t1);
+      if (search.gap_at(t1) < 0) return refine(search, shorten(search, t_apart, t1), t1);
       return std::nullopt;
     }
   }

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/collision/contact_patch.h"
 #include "framework/core/error.h"
 #include "framework/engines/recorder.h"
 #include "framework/engines/sequential_impacts.h"
@@ -17,6 +18,8 @@ namespace {
 constexpr double kEpsilon = 2.220446049250313e-16;
 // Contacts closer than this many roundings of their coordinates touch at one instant.
 constexpr double kTouching = 64 * kEpsilon;
+// Corners of two solids that touch belong to the touch within this part of the size: a face that leans by 1e-9 rad lies flat.
+constexpr double kSamePatch = 1e-9;
 constexpr int kMostIdleSteps = 1000;      // in a row without progress of time
 constexpr int kMostImpactsAStep = 20000;  // of one pair: a Zeno sequence that needs a lasting contact
 
@@ -46,6 +49,8 @@ class RetroactiveRun {
   double gap_on_path(std::pair<int, int> pair, double t);
   collision::Gap committed_gap(std::pair<int, int> pair) const;
   double touching_distance(std::pair<int, int> pair) const;
+  std::vector<Vector3d> touching_points(std::pair<int, int> pair, const collision::Gap& gap) const;
+  collision::Pose pose_of(int body) const { return {moving_.state(body).com_world, moving_.state(body).world_from_body}; }
   void separate(const std::vector<std::pair<int, int>>& pairs);
   void resolve_at(const std::vector<std::pair<int, int>>& pairs, std::pair<int, int> trigger);
   void settle(const std::vector<TouchingPair>& touching, const std::vector<Event>& events);
@@ -148,16 +153,26 @@ double RetroactiveRun::gap_on_path(std::pair<int, int> pair, double t) {
 }
 
 collision::Gap RetroactiveRun::committed_gap(std::pair<int, int> pair) const {
-  const auto pose = [&](int k) { return collision::Pose{moving_.state(k).com_world, moving_.state(k).world_from_body}; };
-  return collision::compute_gap(moving_.shape(pair.first), pose(pair.first), moving_.shape(pair.second), pose(pair.second));
+  return collision::compute_gap(moving_.shape(pair.first), pose_of(pair.first), moving_.shape(pair.second), pose_of(pair.second));
 }
 
 double RetroactiveRun::touching_distance(std::pair<int, int> pair) const {
-  const auto pose = [&](int k) { return collision::Pose{moving_.state(k).com_world, moving_.state(k).world_from_body}; };
   // Times are doubles too: within one spacing of the time a pair moves by its speed times that.
   const double speed = moving_.velocity_of(pair.first, moving_.time()).norm() + moving_.velocity_of(pair.second, moving_.time()).norm();
-  return kTouching * (collision::gap_scale(moving_.shape(pair.first), pose(pair.first), moving_.shape(pair.second), pose(pair.second))) +
+  return kTouching * (collision::gap_scale(moving_.shape(pair.first), pose_of(pair.first), moving_.shape(pair.second), pose_of(pair.second))) +
          4 * kEpsilon * moving_.time() * speed;
+}
+
+std::vector<Vector3d> RetroactiveRun::touching_points(std::pair<int, int> pair, const collision::Gap& gap) const {
+  const collision::CollisionShape &a = moving_.shape(pair.first), &b = moving_.shape(pair.second);
+  const Vector3d point_world = 0.5 * (gap.point_a_world + gap.point_b_world);
+  if (a.is_ball() || b.is_ball()) return {point_world};
+  const collision::FlatHull patch =
+      collision::contact_patch(a, pose_of(pair.first), b, pose_of(pair.second), gap, kSamePatch * (touching_distance(pair) / kTouching));
+  if (patch.corners.size() < 2) return {point_world};
+  std::vector<Vector3d> points{patch.middle};
+  points.insert(points.end(), patch.corners.begin(), patch.corners.end());
+  return points;
 }
 
 // The last guard: bounds hold for every method of integration that moves bodies smoothly, but what a student wrote may not. An
@@ -206,7 +221,7 @@ void RetroactiveRun::resolve_at(const std::vector<std::pair<int, int>>& pairs, s
     const collision::Gap gap = committed_gap(pair);
     if (pair != trigger && !(gap.distance <= touching_distance(pair))) continue;
     if (pair == trigger) trigger_index = touching.size();
-    touching.push_back({pair.first, pair.second, gap});
+    touching.push_back({pair.first, pair.second, gap, touching_points(pair, gap)});
   }
   const Resolution resolution = impacts_.resolve(moving_, touching, trigger_index);
   for (const Event& event : resolution.events) sink_.event(event);

@@ -11,8 +11,22 @@ namespace {
 constexpr double kRoundOffOfSpeed = 1e-13;
 constexpr int kMostRounds = 10000;  // restitution 0.99 in a row of 50 balls takes some hundred
 
-Contact contact_of(const TouchingPair& pair) {
-  return {0.5 * (pair.gap.point_a_world + pair.gap.point_b_world), pair.gap.normal_b_to_a_world};
+Contact contact_of(const TouchingPair& pair, const Vector3d& point_world) { return {point_world, pair.gap.normal_b_to_a_world}; }
+
+struct Approach {
+  double velocity;      // [m/s], negative when approaching
+  Vector3d point_world;
+};
+
+// The middle counts first, so that a flat landing does not tip over its corners in turn.
+Approach fastest_approach(const Laws& laws, const TouchingPair& pair, const Body& a, const Body& b, double threshold) {
+  Approach fastest{std::numeric_limits<double>::infinity(), pair.points_world[0]};
+  for (const Vector3d& point : pair.points_world) {
+    const double velocity = laws.relative_normal_velocity(contact_of(pair, point), a, b);
+    if (velocity < fastest.velocity) fastest = {velocity, point};
+    if (&point == &pair.points_world[0] && velocity < -threshold) break;
+  }
+  return fastest;
 }
 
 // By how much a unit impulse at the contact changes the relative normal velocity. [1/kg]
@@ -62,9 +76,9 @@ struct SequentialImpacts::Work {
 bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double threshold) {
   Body& a = work.body(pair.a);
   Body& b = work.body(pair.b);
-  const Contact contact = contact_of(pair);
-  const double approach = laws_.relative_normal_velocity(contact, a, b);
+  const auto [approach, point_world] = fastest_approach(laws_, pair, a, b, threshold);
   if (!(approach < -threshold)) return false;
+  const Contact contact = contact_of(pair, point_world);
   const double restitution = std::min(work.moving.world().bodies[pair.a].restitution, work.moving.world().bodies[pair.b].restitution);
   const double impulse = laws_.collision_impulse(contact, a, b, restitution);
   work.push(laws_, pair, contact, impulse);
@@ -76,8 +90,8 @@ bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double thr
 
 void SequentialImpacts::push_apart(MovingWorld& moving, const TouchingPair& pair) {
   Work work{moving, {}, {}, {}};
-  const Contact contact = contact_of(pair);
-  const double rate = laws_.relative_normal_velocity(contact, work.body(pair.a), work.body(pair.b));
+  const auto [rate, point_world] = fastest_approach(laws_, pair, work.body(pair.a), work.body(pair.b), rules_.rest_speed);
+  const Contact contact = contact_of(pair, point_world);
   if (rate >= rules_.rest_speed) return;
   const double impulse = (rules_.rest_speed - rate) / (compliance(contact, work.body(pair.a)) + compliance(contact, work.body(pair.b)));
   work.push(laws_, pair, contact, impulse);
@@ -89,7 +103,8 @@ Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<Tou
   Work work{moving, {}, {}, {}};
   double fastest = 0.0;
   for (const TouchingPair& pair : pairs)
-    fastest = std::max(fastest, std::abs(laws_.relative_normal_velocity(contact_of(pair), work.body(pair.a), work.body(pair.b))));
+    for (const Vector3d& point : pair.points_world)
+      fastest = std::max(fastest, std::abs(laws_.relative_normal_velocity(contact_of(pair, point), work.body(pair.a), work.body(pair.b))));
   const double threshold = kRoundOffOfSpeed * fastest;
 
   bool again = true;
@@ -103,11 +118,17 @@ Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<Tou
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const TouchingPair& pair = pairs[k];
     const auto [last, first_time] = last_meeting_.try_emplace({pair.a, pair.b}, -std::numeric_limits<double>::infinity());
-    const bool met = k == trigger || std::any_of(work.result.events.begin(), work.result.events.end(),
-                                                 [&](const Event& e) { return e.body_a == pair.a && e.body_b == pair.b; });
-    if (!met) continue;
-    const bool in_vain = k == trigger && work.result.events.empty();
-    if (in_vain || moving.time() - last->second < rules_.micro_interval) work.result.micro_impacts.push_back(pair);
+    double approach = 0.0;
+    bool hit = false;
+    for (const Event& event : work.result.events) {
+      if (event.body_a != pair.a || event.body_b != pair.b) continue;
+      hit = true;
+      approach = std::max(approach, -event.normal_velocity_before);
+    }
+    if (!hit && k != trigger) continue;
+    const bool in_vain = work.result.events.empty();
+    const bool soon_again = moving.time() - last->second < rules_.micro_interval && approach < rules_.rest_speed;
+    if (in_vain || soon_again) work.result.micro_impacts.push_back(pair);
     last->second = moving.time();
   }
   work.write_back();

@@ -1,7 +1,8 @@
 /// What happens at the instant of an impact: the sequential law.
 ///
 /// All pairs that touch at that instant are gone through in order of their body indices, lowest first; each pair that approaches
-/// gets the impulse of the laws; the round is repeated until no pair approaches faster than round-off. For equal balls in a row
+/// gets the impulse of the laws: at the middle of the region where the two touch, or, when the middle does not approach, at the corner
+/// of that region that approaches fastest; the round is repeated until no pair approaches faster than round-off. For equal balls in a row
 /// and restitution 1 this is Newton's cradle. Where restitution is below 1 the outcome depends on the order, which is therefore
 /// part of the law.
 #pragma once
@@ -17,8 +18,9 @@ namespace tumble::engines {
 
 /// Two bodies that touch at the committed time.
 struct TouchingPair {
-  int a, b;               // a < b
+  int a, b;                           // a < b
   collision::Gap gap;
+  std::vector<Vector3d> points_world; // the middle of where they touch, then its corners, if it is more than a point
 };
 
 /// What one resolution did.
@@ -30,7 +32,7 @@ struct Resolution {
 
 struct ImpactRules {
   double rest_speed;            // [m/s]
-  double micro_interval;        // a pair that meets again within this is a micro-impact [s]
+  double micro_interval;        // a pair that meets again within this, slower than the rest speed, has a micro-impact [s]
 };
 
 class SequentialImpacts {
