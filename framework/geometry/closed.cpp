@@ -1,0 +1,197 @@
+#include "framework/geometry/closed.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "framework/geometry/mass_properties.h"
+#include "framework/geometry/mesh_edges.h"
+#include "framework/geometry/open_surface.h"
+#include "framework/geometry/parts.h"
+
+namespace tumble {
+namespace {
+
+// Sine of a face's smallest angle below which its area is round-off: coordinates are exact in 2^-53, and the cross product
+// adds a few of these.
+constexpr double kZeroArea = 1e-15;
+
+std::string plural(std::size_t n, const char* one, const char* many) { return fmt::format("{} {}", n, n == 1 ? one : many); }
+
+// What must hold before anything can be measured: faces, indices, finite numbers.
+std::vector<Defect> find_unusable(const TriangleMesh& mesh) {
+  if (mesh.faces.empty()) {
+    return {{DefectKind::kNoFaces, "no faces", "A rigid body needs a closed surface: model one, or leave the object out."}};
+  }
+  const int n = static_cast<int>(mesh.vertices.size());
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    for (int v : mesh.faces[f]) {
+      if (v >= 0 && v < n) continue;
+      return {{DefectKind::kBadIndex, fmt::format("face {} names vertex {}, and there are vertices 0 to {}", f, v, n - 1),
+               "The file is damaged: export it again."}};
+    }
+  }
+  for (int v = 0; v < n; ++v) {
+    if (mesh.vertices[v].allFinite()) continue;
+    return {{DefectKind::kNotFinite, fmt::format("vertex {} is not finite: {}", v, show_point(mesh.vertices[v])),
+             "The file is damaged: export it again."}};
+  }
+  return {};
+}
+
+bool has_area(const TriangleMesh& mesh, const Face& face) {
+  const Vector3d u = mesh.vertices[face[1]] - mesh.vertices[face[0]];
+  const Vector3d v = mesh.vertices[face[2]] - mesh.vertices[face[0]];
+  return u.cross(v).norm() > kZeroArea * u.norm() * v.norm();
+}
+
+template <class Keep>
+TriangleMesh keep_faces(const TriangleMesh& mesh, Keep keep) {
+  TriangleMesh kept{mesh.vertices, {}};
+  std::copy_if(mesh.faces.begin(), mesh.faces.end(), std::back_inserter(kept.faces), keep);
+  return kept;
+}
+
+// Faces on the same three vertices: a wall without thickness (looking both ways), or the same face twice.
+std::vector<Defect> find_coincident_faces(const TriangleMesh& mesh) {
+  std::map<Face, int> first_with;
+  std::size_t count = 0;
+  std::pair<int, int> first{-1, -1};
+  for (int f = 0; f < static_cast<int>(mesh.faces.size()); ++f) {
+    Face sorted = mesh.faces[f];
+    std::sort(sorted.begin(), sorted.end());
+    const auto [place, is_new] = first_with.try_emplace(sorted, f);
+    if (is_new) continue;
+    if (count++ == 0) first = {place->second, f};
+  }
+  if (count == 0) return {};
+  const auto& [a, b, c] = mesh.faces[first.first];
+  const Vector3d middle = (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3.0;
+  return {{DefectKind::kLampshade,
+           fmt::format("a wall one polygon thick, like a lampshade: {} on another, the first two are faces {} and {} at {}",
+                       plural(count, "face lies", "faces lie"), first.first, first.second, show_point(middle)),
+           "Give the wall a thickness, or remove one of its two layers."}};
+}
+
+std::vector<Defect> find_edges_of_many_faces(const TriangleMesh& mesh, const std::vector<EdgeUse>& uses) {
+  std::size_t count = 0;
+  std::string first;
+  for_each_edge(uses, [&](const EdgeUse* begin, const EdgeUse* end) {
+    if (end - begin <= 2 || count++ > 0) return;
+    first = fmt::format("{} belongs to {} faces", show_edge(mesh, begin->low, begin->high), end - begin);
+  });
+  if (count == 0) return {};
+  return {{DefectKind::kEdgeOfManyFaces,
+           fmt::format("{} of three or more faces, the first: {}", plural(count, "edge", "edges"), first),
+           "Remove inner walls, and separate parts that touch along an edge."}};
+}
+
+// Spreads a choice of sides over each part. An edge that both its faces run along in the same direction asks for a turn of one.
+std::vector<Defect> find_disagreement(const TriangleMesh& mesh, const std::vector<EdgeUse>& uses) {
+  const int n = static_cast<int>(mesh.faces.size());
+  std::vector<std::vector<std::pair<int, bool>>> neighbours(n);
+  std::size_t count = 0;
+  std::string first;
+  for_each_edge(uses, [&](const EdgeUse* begin, const EdgeUse* end) {
+    if (end - begin != 2) return;
+    const bool disagree = begin[0].forward == begin[1].forward;
+    neighbours[begin[0].face].push_back({begin[1].face, disagree});
+    neighbours[begin[1].face].push_back({begin[0].face, disagree});
+    if (disagree && count++ == 0) first = fmt::format("faces {} and {} at {}", begin[0].face, begin[1].face,
+                                                      show_edge(mesh, begin->low, begin->high));
+  });
+  if (count == 0) return {};
+
+  constexpr int kUnvisited = -1;
+  std::vector<int> turned(n, kUnvisited);
+  for (int start = 0; start < n; ++start) {
+    if (turned[start] != kUnvisited) continue;
+    turned[start] = 0;
+    std::vector<int> to_do{start};
+    while (!to_do.empty()) {
+      const int f = to_do.back();
+      to_do.pop_back();
+      for (const auto& [g, disagree] : neighbours[f]) {
+        const int wanted = turned[f] ^ (disagree ? 1 : 0);
+        if (turned[g] == kUnvisited) {
+          turned[g] = wanted;
+          to_do.push_back(g);
+        } else if (turned[g] != wanted) {
+          return {{DefectKind::kOneSided, "a one-sided surface (like a Moebius strip): no choice of inside exists; " + first +
+                                              " disagree whichever way they are turned",
+                   "A solid has an inside: cut the strip and close it differently."}};
+        }
+      }
+    }
+  }
+  return {{DefectKind::kOrientation,
+           fmt::format("faces disagree on which side is outside along {}, the first: {}", plural(count, "edge", "edges"), first),
+           "Unify the normals in the modelling program, all outward."}};
+}
+
+std::vector<int> parts_by_edges(const TriangleMesh& mesh, const std::vector<EdgeUse>& uses) {
+  DisjointSets sets(static_cast<int>(mesh.faces.size()));
+  for_each_edge(uses, [&](const EdgeUse* begin, const EdgeUse* end) {
+    for (const EdgeUse* use = begin + 1; use < end; ++use) sets.unite(begin->face, use->face);
+  });
+  std::vector<int> part(mesh.faces.size());
+  for (std::size_t f = 0; f < part.size(); ++f) part[f] = sets.find(static_cast<int>(f));
+  return part;
+}
+
+void append(std::vector<Defect>& to, std::vector<Defect> more) {
+  to.insert(to.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
+}
+
+// The whole check of a mesh whose numbers are usable.
+ClosedReport examine(const TriangleMesh& mesh) {
+  ClosedReport report;
+  report.mesh = mesh;
+  const std::vector<EdgeUse> uses = edge_uses(mesh);
+  const std::vector<int> part_of_face = parts_by_edges(mesh, uses);
+  report.parts = static_cast<int>(std::set<int>(part_of_face.begin(), part_of_face.end()).size());
+
+  append(report.defects, find_coincident_faces(mesh));
+  if (report.defects.empty()) append(report.defects, find_edges_of_many_faces(mesh, uses));
+  append(report.defects, describe_open_edges(mesh, uses, part_of_face));
+  append(report.defects, find_disagreement(mesh, uses));
+  if (!report.is_closed()) return report;
+
+  report.mesh = double_pinched_vertices(mesh, uses, report.notices);
+  append(report.defects, orient_parts(part_of_face, report.mesh, report.notices));
+  if (!report.is_closed()) report.mesh = mesh;
+  return report;
+}
+
+}  // namespace
+
+ClosedReport check_closed(const TriangleMesh& mesh) {
+  if (std::vector<Defect> unusable = find_unusable(mesh); !unusable.empty()) return {std::move(unusable), {}, mesh, 0};
+
+  // A face that names a vertex twice is no triangle at all.
+  std::vector<std::string> notices;
+  const TriangleMesh triangles = keep_faces(mesh, [](const Face& f) { return f[0] != f[1] && f[1] != f[2] && f[2] != f[0]; });
+  const std::size_t lines = mesh.faces.size() - triangles.faces.size();
+  if (lines > 0) notices.push_back(fmt::format("dropped {} that named a vertex twice", plural(lines, "face", "faces")));
+  if (triangles.faces.empty()) {
+    return {{{DefectKind::kNoFaces, "no face has an area", "Model a surface: lines and points bound no volume."}}, notices, mesh, 0};
+  }
+
+  // Faces of zero area may close a seam (then they stay) or be in the way (then they go).
+  ClosedReport report = examine(triangles);
+  if (!report.is_closed()) {
+    const TriangleMesh solid_faces = keep_faces(triangles, [&](const Face& f) { return has_area(triangles, f); });
+    const std::size_t flat = triangles.faces.size() - solid_faces.faces.size();
+    if (flat > 0 && !solid_faces.faces.empty()) {
+      report = examine(solid_faces);
+      notices.push_back(fmt::format("dropped {} of zero area", plural(flat, "face", "faces")));
+    }
+  }
+  report.notices.insert(report.notices.begin(), notices.begin(), notices.end());
+  return report;
+}
+
+}  // namespace tumble

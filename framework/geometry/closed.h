@@ -1,0 +1,52 @@
+/// Is a surface the boundary of a solid? Says what is wrong, where, and what to do about it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/geometry/triangle_mesh.h"
+
+namespace tumble {
+
+enum class DefectKind {
+  kNoFaces,
+  kBadIndex,          // a face names a vertex that does not exist
+  kNotFinite,         // NaN or infinite coordinate
+  kSinglePolygon,     // open and flat
+  kTerrain,           // open, and every face looks up
+  kMissingFace,       // one or more holes in an otherwise closed surface
+  kLampshade,         // one polygon thick: a tube open at both ends, or two layers of faces lying on each other
+  kCrack,             // open edges that lie beside each other
+  kEdgeOfManyFaces,   // three or more faces at an edge
+  kOrientation,       // neighbours disagree on which side is outside
+  kOneSided,          // like a Moebius strip: no choice of sides exists
+  kNestedOutward,     // a part inside another that is not its cavity: its volume would count twice
+  kZeroVolume,
+};
+
+/// One thing that is wrong with a surface.
+struct Defect {
+  DefectKind kind;
+  std::string problem;  // what and where: "2 open edges, the first at (0, 0, 1)-(1, 0, 1)"
+  std::string remedy;
+};
+
+/// What check_closed found.
+struct ClosedReport {
+  std::vector<Defect> defects;       // none: the surface is closed
+  std::vector<std::string> notices;  // what was repaired, or is odd but legal
+  TriangleMesh mesh;                 // the surface as repaired: no unused vertices, outward; as given where defects remain
+  int parts = 0;                     // connected pieces; cavities count
+  bool is_closed() const { return defects.empty(); }
+};
+
+/// Whether a mesh is a closed, orientable manifold that bounds a volume; every defect with its place.
+/// Several parts and cavities are legal. Repaired with a notice: a part that is inside out is turned; faces of zero area that
+/// stand in the way are dropped; a vertex at which two fans of faces touch is doubled; unused vertices are dropped.
+/// Not looked for: faces that pass through each other (their overlap counts twice in the volume).
+/// @param mesh  equal positions already share a vertex (geometry/load_3ds.h welds)
+/// @post  when is_closed(): report.mesh has every edge in exactly two faces, once in each direction, and positive volume
+/// Cost: O(n log n) in the faces, plus O(k n) for k parts inside each other's bounding boxes.
+ClosedReport check_closed(const TriangleMesh& mesh);
+
+}  // namespace tumble

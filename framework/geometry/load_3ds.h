@@ -1,0 +1,34 @@
+/// Reads .3ds files: objects as welded triangle meshes in the file's frame (z up), each with the verdict whether it is closed.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "framework/geometry/closed.h"
+
+namespace tumble {
+
+struct Load3dsOptions {
+  double metres_per_unit = 1.0;  // length of the file's unit [m], > 0: the format does not say it
+};
+
+struct LoadedObject {
+  std::string name;     // as in the file; "name#2" for the second of that name
+  ClosedReport report;  // report.mesh: mesh frame = the file's world frame, scaled to metres; exactly equal positions welded
+};
+
+struct LoadedFile {
+  std::string where;                  // the path, for messages
+  std::vector<LoadedObject> objects;  // in the file's order; at least one
+};
+
+/// All objects of a .3ds file, with node transforms and pivots applied. Open surfaces are loaded too: see their reports.
+/// @throws UserError when the file cannot be read, is not 3DS, is truncated or damaged (with the byte offset), or holds no mesh
+LoadedFile load_3ds(const std::filesystem::path& path, const Load3dsOptions& options = {});
+
+/// The same from memory. @param where  said in errors
+LoadedFile parse_3ds(std::string_view bytes, const std::string& where, const Load3dsOptions& options = {});
+
+}  // namespace tumble

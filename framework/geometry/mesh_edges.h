@@ -1,0 +1,58 @@
+/// Who shares an edge with whom: the table that the closed check, convexity and rays are built on.
+#pragma once
+
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "framework/geometry/triangle_mesh.h"
+
+namespace tumble {
+
+/// One use of an edge by a face.
+struct EdgeUse {
+  int low, high;   // vertices, low < high
+  int face;
+  int corner;      // the face runs from faces[face][corner] to the next corner
+  bool forward;    // it runs from low to high
+};
+
+/// Every use of every edge, sorted by (low, high, face): uses of the same edge stand together. Cost: O(n log n)
+std::vector<EdgeUse> edge_uses(const TriangleMesh& mesh);
+
+/// Calls group(first, last) for every run of uses of the same edge, in order.
+template <class Group>
+void for_each_edge(const std::vector<EdgeUse>& uses, Group group) {
+  for (std::size_t first = 0; first < uses.size();) {
+    std::size_t last = first + 1;
+    while (last < uses.size() && uses[last].low == uses[first].low && uses[last].high == uses[first].high) ++last;
+    group(uses.data() + first, uses.data() + last);
+    first = last;
+  }
+}
+
+/// Disjoint sets with the smallest member as the name of each.
+class DisjointSets {
+ public:
+  explicit DisjointSets(int size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
+  int find(int i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void unite(int a, int b) {
+    a = find(a);
+    b = find(b);
+    if (a < b) parent_[b] = a;
+    else parent_[a] = b;
+  }
+
+ private:
+  std::vector<int> parent_;
+};
+
+/// "(0, 0.5, 1)": a place in messages.
+std::string show_point(const Vector3d& point);
+/// "(0, 0, 1)-(1, 0, 1)"
+std::string show_edge(const TriangleMesh& mesh, int from, int to);
+
+}  // namespace tumble
