@@ -64,7 +64,8 @@ Matrix3d inertia_in_world(const Matrix3d& inertia_body, const Quaterniond& world
 ///   x' = P / m,   q' = 1/2 (0, w_world) q,   P' = F,   L' = tau                                              (A2.4)
 ///   w_world = R ( I_body^-1 ( R^T L ) )                                                                      (A2.5)
 /// (0, w) q is a Hamilton product with the angular velocity, in the world frame, on the left. (A2.5) goes through the body
-/// frame on purpose: a world inverse inertia R I_body^-1 R^T costs a needle (moments 1e-6 : 1) six digits.
+/// frame on purpose: a world inverse inertia R I_body^-1 R^T costs a needle (moments 1e-6 : 1) six digits of its turning end
+/// over end.
 /// @param state    x: com_world [m];  q: world_from_body, as near to unit as an integrator keeps it;
 ///                 P: momentum_world [kg m/s];  L: angular_momentum_world, about the centre of mass [kg m^2/s]
 /// @param inertia  1/m: inverse_mass [1/kg];  I_body^-1: inverse_inertia_body [1/(kg m^2)]
@@ -150,7 +151,7 @@ RootResult impact_time_bisection(const ScalarFunction& gap, double t_low, double
 /// that the bracket closes from the other side too.
 /// @param gap_rate    g' [m/s]; may be 0, or wrong by rounding, or infinite: the answer is right all the same, only later
 /// @param gap, t_low, t_high, tolerance  as for bisection
-/// @return see above; evaluations <= 20 for a smooth gap with one simple root and a tolerance of 1e-12 of the interval,
+/// @return see above; evaluations <= 30 for a smooth gap with one simple root and a tolerance of 1e-12 of the interval,
 ///         and at most 10 + 4 times those of bisection for any gap
 /// Source: NR, section 9.4.   Tests: ImpactTimeNewton.*   Hints: handouts/a2_integration.md#hint-newton
 RootResult impact_time_newton(const ScalarFunction& gap, const ScalarFunction& gap_rate, double t_low, double t_high, double tolerance);
