@@ -4,8 +4,8 @@
 namespace tumble::cli {
 
 void add_verbs(CLI::App& app, Context& context) {
-  (void)app;
-  (void)context;
+  add_run(app, context);
+  add_truths(app, context);
 }
 
 }  // namespace tumble::cli

@@ -1,0 +1,40 @@
+/// Whose laws a scene runs by: turns the words after --modules into laws.
+///
+/// A word is `student` (build/modules/aN_student.so), `reference`, `library` (Boost.Odeint: motion only), a shared object
+/// PATH.so, or a source file PATH.cpp, which is compiled first. `a1=WORD,a2=WORD` chooses for each module, a WORD alone for all.
+/// What is not named: the scene's own assignment runs on the student's file; other modules that the scene needs run on the
+/// reference where there is one; what it does not need comes from the library where that has it. So a later assignment
+/// never fails for an earlier bug, and scenes run before a student has written an integrator.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "framework/cli/verb.h"
+#include "framework/dynamics/laws.h"
+#include "framework/scene/scene.h"
+
+namespace tumble::cli {
+
+/// By module id; the id "" is for all modules that are not named.
+using ModuleWords = std::map<std::string, std::string>;
+
+/// @param text  "a1=student,a2=library" or "reference"; empty: nothing is told
+/// @throws UserError for an id that is no module, or a module named twice
+ModuleWords parse_module_words(const std::string& text, const modules::Registry& registry);
+
+struct ChosenModule {
+  std::string id;      // "a1"
+  std::string source;  // "student", "reference", "library", or a path
+};
+
+struct ChosenLaws {
+  Laws laws;
+  std::vector<ChosenModule> modules;  // those that the scene needs or that were named, by id
+};
+
+/// @throws UserError when a word names nothing that can be loaded, with what to do
+ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words);
+
+}  // namespace tumble::cli

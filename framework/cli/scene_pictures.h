@@ -1,0 +1,12 @@
+/// The pictures that a run was asked for.
+#pragma once
+
+#include "framework/cli/scene_run.h"
+#include "framework/trajectory/trajectory.h"
+
+namespace tumble::cli {
+
+/// Writes words.png, words.sheet and words.video where they are named, and says so on stderr.
+void write_pictures(const Context& context, const scene::Scene& scene, const Trajectory& run, const RunWords& words, const PictureSize& size);
+
+}  // namespace tumble::cli

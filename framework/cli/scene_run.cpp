@@ -1,0 +1,188 @@
+#include "framework/cli/scene_run.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <limits>
+#include <set>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "framework/cli/scene_pictures.h"
+#include "framework/engines/judge.h"
+#include "framework/engines/run.h"
+#include "framework/scene/load_scene.h"
+
+namespace tumble::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using engines::CheckResult;
+
+std::string modules_line(const ChosenLaws& chosen) {
+  return fmt::format("impulses by {} · motion by {}", chosen.laws.impulse_source, chosen.laws.integrator_source);
+}
+
+const char* name_of(EventKind kind) {
+  switch (kind) {
+    case EventKind::kCollision: return "collisions";
+    case EventKind::kRest: return "coming to rest";
+    case EventKind::kForceOn: return "force on";
+    case EventKind::kForceOff: return "force off";
+  }
+  return "other";
+}
+
+std::map<std::string, int> count_events(const Trajectory& run) {
+  std::map<std::string, int> counts;
+  for (const Event& event : run.events) ++counts[name_of(event.kind)];
+  return counts;
+}
+
+std::string number(double value) { return fmt::format("{:.3g}", value == 0.0 ? 0.0 : value); }
+
+void print_check(const CheckResult& check) {
+  fmt::print("    {}  {:<18} {:<14} {} ({} {} allowed){}{}\n", check.passed ? "right" : "WRONG", check.kind, check.subject, number(check.value),
+             check.at_least ? ">=" : "<=", number(check.threshold), check.unit.empty() ? "" : " ", check.unit);
+  if (!check.detail.empty() && (!check.passed || check.kind == "flips")) fmt::print("             found: {}\n", check.detail);
+  if (!check.passed && !check.why.empty()) fmt::print("             why this limit: {}\n", check.why);
+}
+
+void print_summary(const scene::Scene& scene, const ChosenLaws& chosen, const Trajectory& run, const std::vector<CheckResult>& checks, const std::string& extra) {
+  fmt::print("{}\n", scene.title);
+  if (!extra.empty()) fmt::print("  {}\n", extra);
+  if (!scene.about.empty()) fmt::print("  {}\n", scene.about);
+  fmt::print("  laws     {}\n", modules_line(chosen));
+  const double end = run.frames.empty() ? 0.0 : run.frames.back().time;
+  fmt::print("  run      engine {}, step {:.6g} s, {:.6g} s simulated, {} bodies, {} frames\n", run.info.engine, run.info.step_s, end, run.bodies.size(), run.frames.size());
+  std::string events;
+  for (const auto& [name, count] : count_events(run)) events += fmt::format("{}{} {}", events.empty() ? "" : " · ", name, count);
+  fmt::print("  events   {}\n", events.empty() ? "none" : events);
+  std::string counts;
+  for (const auto& [name, count] : run.counters.counts) counts += fmt::format("{}{} {}", counts.empty() ? "" : " · ", name, count);
+  if (!counts.empty()) fmt::print("  counts   {}\n", counts);
+  if (!run.stopped_by.empty()) fmt::print("  STOPPED  {}\n", run.stopped_by);
+  if (checks.empty()) return;
+  std::size_t passed = 0;
+  for (const auto& check : checks) passed += check.passed ? 1 : 0;
+  fmt::print("  checks   {} of {} right\n", passed, checks.size());
+  for (const auto& check : checks) print_check(check);
+}
+
+void print_json(const scene::Scene& scene, const ChosenLaws& chosen, const Trajectory& run, const std::vector<CheckResult>& checks) {
+  nlohmann::ordered_json page;
+  page["scene"] = scene.name;
+  page["title"] = scene.title;
+  page["scene_hash"] = scene.hash;
+  page["command"] = run.info.command;
+  page["version"] = run.info.version;
+  page["engine"] = run.info.engine;
+  page["impulse_source"] = chosen.laws.impulse_source;
+  page["integrator_source"] = chosen.laws.integrator_source;
+  page["step_s"] = run.info.step_s;
+  page["end_s"] = run.frames.empty() ? 0.0 : run.frames.back().time;
+  page["bodies"] = run.bodies.size();
+  page["events"] = count_events(run);
+  page["counts"] = run.counters.counts;
+  page["stopped_by"] = run.stopped_by;
+  page["checks"] = nlohmann::json::array();
+  for (const auto& check : checks)   // a value that is not finite becomes null
+    page["checks"].push_back({{"kind", check.kind}, {"subject", check.subject}, {"value", check.value}, {"threshold", check.threshold}, {"unit", check.unit},
+                              {"right_when", check.at_least ? ">=" : "<="}, {"passed", check.passed}, {"detail", check.detail}, {"why", check.why}});
+  fmt::print("{}\n", page.dump(2));
+}
+
+std::vector<fs::path> scenes_of(const Context& context) {
+  std::set<fs::path> files;
+  std::error_code ignored;
+  for (const auto* kind : context.registry.all())
+    for (const auto& entry : fs::directory_iterator(context.root / "assignments" / kind->folder / "scenes", ignored))
+      if (entry.path().extension() == ".json") files.insert(entry.path());
+  return {files.begin(), files.end()};
+}
+
+/// A run that was asked to be shorter than the scene is not judged by what it cannot have reached.
+scene::Scene judged_part(scene::Scene scene, const RunWords& words) {
+  const bool is_shorter = words.duration_s && *words.duration_s < scene.duration_s;
+  if (is_shorter) std::erase_if(scene.checks, [](const scene::CheckSpec& check) { return !check.expected.empty(); });
+  return scene;
+}
+
+}  // namespace
+
+void add_run_words(CLI::App& verb, RunWords& words) {
+  verb.add_option("scene", words.scene, "A scene file, or the bare name of one under assignments/*/scenes")->required()->type_name("SCENE");
+  verb.add_option("--modules", words.modules, "Whose laws: student, reference, library, PATH.so or PATH.cpp, for all or each: a1=student,a2=library")->type_name("WORDS");
+  verb.add_option("--engine", words.engine, "rd: retroactive detection with fixed step")->capture_default_str();
+  verb.add_option("--step-s", words.step_s, "Step of the integrator [s] instead of the scene's")->check(CLI::PositiveNumber);
+  verb.add_option("--out", words.out, "Write the recorded run (.tumble)")->type_name("FILE");
+  verb.add_option("--png", words.png, "Write one picture")->type_name("FILE");
+  verb.add_option("--at-s", words.at_s, "Instant of the picture [s]; default the end")->check(CLI::NonNegativeNumber);
+  verb.add_option("--sheet", words.sheet, "Write a contact sheet (.png)")->type_name("FILE");
+  verb.add_option("--video", words.video, "Write a video (.mp4)")->type_name("FILE");
+  verb.add_option("--size", words.size, "Of pictures and video, in pixels")->type_name("WxH")->capture_default_str();
+  verb.add_flag("--json", words.json, "For machines");
+}
+
+PictureSize parse_size(const std::string& text) {
+  PictureSize size{0, 0};
+  char rest = 0;
+  const bool is_read = std::sscanf(text.c_str(), "%dx%d%c", &size.width, &size.height, &rest) == 2;
+  const auto fits = [](int pixels) { return pixels >= 16 && pixels <= 4096; };
+  if (!is_read || !fits(size.width) || !fits(size.height)) throw UserError("--size " + text, "expected WIDTHxHEIGHT in pixels, each from 16 to 4096", "For example --size 640x480.");
+  return size;
+}
+
+Vector3d parse_vector(const std::string& flag, const std::string& text) {
+  Vector3d v;
+  char rest = 0;
+  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &v.x(), &v.y(), &v.z(), &rest) != 3 || !v.allFinite())
+    throw UserError(flag + " " + text, "expected three numbers with commas between them and no spaces", "For example " + flag + " 0,0,5.");
+  return v;
+}
+
+scene::Scene find_scene(const Context& context, const std::string& word) {
+  if (fs::exists(word)) return scene::load_scene(word);
+  std::string known;
+  for (const auto& file : scenes_of(context)) {
+    if (file.stem() == word) return scene::load_scene(file);
+    known += (known.empty() ? "" : ", ") + file.stem().string();
+  }
+  throw UserError(word, "there is no such scene", "Give the path of a scene file, or one of: " + known + ".");
+}
+
+void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const RunWords& words, const std::string& extra) {
+  const PictureSize size = parse_size(words.size);   // refused before the run, not after it
+  engines::RunOptions options;
+  options.engine = words.engine;
+  options.step_s = words.step_s;
+  options.duration_s = words.duration_s;
+  options.command = context.command_line;
+  TrajectoryRecorder recorder;
+  const auto start = std::chrono::steady_clock::now();
+  engines::run_scene(scene, chosen.laws, options, recorder);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const Trajectory& run = recorder.trajectory();
+
+  const auto checks = engines::judge_run(judged_part(scene, words), run);
+  if (words.json) print_json(scene, chosen, run, checks);
+  else print_summary(scene, chosen, run, checks, extra);
+  std::fflush(stdout);
+
+  fmt::print(stderr, "ran in {:.2f} s", seconds);
+  for (const auto& [stage, spent] : run.counters.stage_seconds) fmt::print(stderr, " · {} {:.2f} s", stage, spent);
+  fmt::print(stderr, "\n");
+  if (!words.out.empty()) {
+    throw UserError("--out", "runs cannot be written yet");
+    fmt::print(stderr, "wrote {}\n", words.out);
+  }
+  write_pictures(context, scene, run, words, size);
+
+  bool passed = run.stopped_by.empty();
+  for (const auto& check : checks) passed = passed && check.passed;
+  context.exit = passed ? ExitCode::kFine : ExitCode::kCheckFailed;
+}
+
+}  // namespace tumble::cli

@@ -1,0 +1,46 @@
+/// What `run` and `poke` share: the words of a run, finding a scene by name, running it and telling how it went.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "framework/cli/module_choice.h"
+#include "framework/cli/verb.h"
+#include "framework/scene/scene.h"
+
+namespace tumble::cli {
+
+/// The words of the command line that say how a scene is run and shown.
+struct RunWords {
+  std::string scene;                   // a path, or a bare name
+  std::string modules;
+  std::string engine = "rd";
+  std::optional<double> step_s, duration_s;
+  std::string out, png, sheet, video;  // files to write; empty: none
+  double at_s = -1.0;                  // of the PNG; negative: the end
+  std::string size = "640x480";
+  bool json = false;
+};
+
+struct PictureSize {
+  int width, height;
+};
+
+/// Declares the words on a verb. `words` must outlive the parse.
+void add_run_words(CLI::App& verb, RunWords& words);
+
+/// @throws UserError unless "WxH" with both in [16, 4096]
+PictureSize parse_size(const std::string& text);
+
+/// Three comma-separated numbers after a flag, such as "1,0,-2".
+Vector3d parse_vector(const std::string& flag, const std::string& text);
+
+/// @param word  path of a scene file, or the bare name of one under assignments/*/scenes
+/// @throws UserError naming the scenes there are
+scene::Scene find_scene(const Context& context, const std::string& word);
+
+/// Runs the scene, writes the files asked for, prints the summary and sets context.exit.
+/// @param extra  a line of talk that stands in the summary under the title (may be empty)
+void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const RunWords& words, const std::string& extra = "");
+
+}  // namespace tumble::cli
