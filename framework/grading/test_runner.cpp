@@ -20,6 +20,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/grading/call_log.h"
+#include "framework/grading/death.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define TUMBLE_SANITIZED 1   // reserves terabytes of address space: no limit on it can be set
@@ -135,27 +136,18 @@ std::string read_printed(int fd) {
   return text;
 }
 
-std::string signal_story(int signal, const CallLog& log) {
-  std::string text = std::string(::sigabbrev_np(signal) ? std::string("SIG") + ::sigabbrev_np(signal) : "signal") + ": " + ::strsignal(signal);
-  if (signal == SIGSEGV) text += " (an index or pointer out of range, or a recursion without end)";
-  if (signal == SIGFPE) text += " (an integer divided by zero)";
-  if (signal == SIGABRT) text += " (a failed assertion inside a library, e.g. Eigen sizes that do not match)";
-  return text + (log.in_call ? ", in " : ", after the last call, which was ") + (log.last_call[0] ? log.last_call : "none");
-}
-
-// What happened to a process of the student's that gave no orderly answer.
+// What happened to a test's process that gave no orderly answer.
 void judge_death(TestResult& result, const CallLog& log, int status, bool in_time, const TestLimits& limits) {
-  if (!in_time) {
+  if (log.noted) {
+    result.verdict = log.verdict;
+    result.story = log.story;
+  } else if (!in_time) {
     result.verdict = Verdict::kOutOfResources;
-    char text[64];
-    std::snprintf(text, sizeof text, "no answer within %g s", limits.wall_s);
-    result.story = std::string(text) + (log.in_call ? std::string(", in ") + log.last_call : "") + " (a loop that does not end?)";
-  } else if (WIFSIGNALED(status)) {
-    result.verdict = Verdict::kCrashed;
-    result.story = signal_story(WTERMSIG(status), log);
+    result.story = timeout_story(limits.wall_s, log.last_call, log.in_call);
   } else {
     result.verdict = Verdict::kCrashed;
-    result.story = "the program was ended with exit code " + std::to_string(WEXITSTATUS(status)) + (log.in_call ? std::string(" in ") + log.last_call : "");
+    result.story = WIFSIGNALED(status) ? signal_story(WTERMSIG(status), log.last_call, log.in_call)
+                                       : exit_story(WEXITSTATUS(status), log.last_call, log.in_call);
   }
 }
 

@@ -20,6 +20,8 @@ class Connection {
   virtual ~Connection() = default;
   /// The channel to a running worker; starts one where none runs. Called once a call, before anything is sent.
   virtual Channel& begin_call(const char* function) = 0;
+  /// The worker has answered: it waits for the next call.
+  virtual void end_call() {}
   /// Each callback served, before it runs. May throw to end the call (a budget of evaluations is spent).
   virtual void count_callback() = 0;
   virtual Channel::Clock::time_point deadline() const = 0;
@@ -82,6 +84,7 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
           R result;
           reader.value(result);
           reader.expect_end();
+          connection.end_call();
           return result;
         });
       case MessageKind::kCallback: {

@@ -105,8 +105,14 @@ class Reader {
       if (has) value(x.emplace());
       else x.reset();
     } else if constexpr (is_vector<T>::value) {
-      x.resize(count(1));
-      for (auto& item : x) value(item);
+      // Grown as it is read: a count alone must not make us allocate a thousand times the message's size.
+      const std::uint32_t n = count(1);
+      x.clear();
+      for (std::uint32_t i = 0; i < n; ++i) {
+        typename T::value_type item;
+        value(item);
+        x.push_back(std::move(item));
+      }
     } else if constexpr (is_matrix<T>) {
       std::uint32_t rows = 0, cols = 0;
       value(rows);

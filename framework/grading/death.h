@@ -1,0 +1,15 @@
+/// What is said of code that ended without an answer.
+#pragma once
+
+#include <string>
+
+namespace tumble::grading {
+
+/// "SIGSEGV: Segmentation fault (an index or pointer out of range, or a recursion without end), in rk4_step"
+/// @param last_call  empty when no function of the module was called
+/// @param in_call    it had not returned
+std::string signal_story(int signal, const std::string& last_call, bool in_call);
+std::string exit_story(int code, const std::string& last_call, bool in_call);
+std::string timeout_story(double wall_s, const std::string& last_call, bool in_call);
+
+}  // namespace tumble::grading

@@ -1,0 +1,84 @@
+#include "framework/grading/judge_program.h"
+
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <iostream>
+
+#include <gtest/gtest.h>
+
+#include "framework/grading/test_runner.h"
+#include "framework/grading/test_words.h"
+#include "framework/grading/verdict_table.h"
+
+namespace tumble::grading {
+namespace {
+
+struct Words {
+  WorkerOptions worker;
+  std::string json, filter;
+  Rubric rubric;
+};
+
+Words read_words(const char* id, int argc, char** argv) {
+  Words words;
+  words.worker.id = id;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const auto value = [&]() -> std::string {
+      if (i + 1 >= argc) throw UserError(word, "needs a value");
+      return argv[++i];
+    };
+    if (word == "--submission") words.worker.module = value();
+    else if (word == "--json") words.json = value();
+    else if (word == "--plain") words.worker.sandboxed = false;
+    else if (word == "--rubric") {
+      const Rubric more = read_rubric(value());
+      words.rubric.items.insert(words.rubric.items.end(), more.items.begin(), more.items.end());
+    } else if (word.starts_with("-")) {
+      throw UserError(word, "is not known here", "Known: --submission FILE.so, --json FILE, --rubric FILE, --plain, and patterns of test names.");
+    } else {
+      words.filter += (words.filter.empty() ? "" : ":") + word;
+    }
+  }
+  if (words.worker.module.empty()) throw UserError("--submission", "is missing", "Give the shared object of a compiled submission.");
+  return words;
+}
+
+int run(const char* id, const std::function<void(modules::Connection&)>& attach, int argc, char** argv) {
+  ::testing::InitGoogleTest(&argc, argv);
+  const Words words = read_words(id, argc, argv);
+  // Keepers of sandboxes whose test has ended come to us, so that we leave only when all of them are gone.
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);
+  WorkerConnection connection(words.worker);
+  attach(connection);
+  TestLimits limits;
+  limits.wall_s = words.worker.session_wall_s + 10.0;  // the connection's own deadlines come first: past this the judge itself hangs
+  limits.memory_bytes = 4ull << 30;
+  std::vector<TestResult> results;
+  for (const std::string& test : linked_tests())
+    if (chosen(test, words.filter)) results.push_back(run_isolated(test, limits, Process::kGraders));
+  while (::waitpid(-1, nullptr, 0) > 0 || errno == EINTR) {}
+  if (!words.json.empty()) write_results(words.json, results);
+  print_verdicts(std::cout, results, words.rubric, ::isatty(STDOUT_FILENO) == 1);
+  return static_cast<int>(exit_code(results));
+}
+
+}  // namespace
+
+int run_judge_program(const char* id, const std::function<void(modules::Connection&)>& attach, int argc, char** argv) {
+  try {
+    return run(id, attach, argc, argv);
+  } catch (const UserError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return static_cast<int>(ExitCode::kUserError);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "the judge failed: %s\n", error.what());
+    return static_cast<int>(ExitCode::kOurBug);
+  }
+}
+
+}  // namespace tumble::grading
