@@ -29,6 +29,12 @@ Approach fastest_approach(const Laws& laws, const TouchingPair& pair, const Body
   return fastest;
 }
 
+// Not by the law that is being judged: a record of what the impulse did.
+double normal_velocity(const Contact& contact, const Body& a, const Body& b) {
+  const auto of_point = [&](const Body& body) { return body.velocity_world + body.omega_world.cross(contact.point_world - body.com_world); };
+  return contact.normal_b_to_a_world.dot(of_point(a) - of_point(b));
+}
+
 // By how much a unit impulse at the contact changes the relative normal velocity. [1/kg]
 double compliance(const Contact& contact, const Body& body) {
   const Vector3d arm = contact.point_world - body.com_world;
@@ -84,7 +90,7 @@ bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double thr
   work.push(laws_, pair, contact, impulse);
   ++counters_.impulses;
   work.result.events.push_back({work.moving.time(), EventKind::kCollision, pair.a, pair.b, contact.point_world,
-                                contact.normal_b_to_a_world, impulse, approach});
+                                contact.normal_b_to_a_world, impulse, approach, normal_velocity(contact, a, b)});
   return true;
 }
 

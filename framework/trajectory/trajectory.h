@@ -41,7 +41,7 @@ struct Event {
   Vector3d normal_b_to_a_world;    // unit
   double impulse;                  // [N s], along the normal
   double normal_velocity_before;   // [m/s], negative when approaching
-  double normal_velocity_after = kUnset;   // [m/s], of the same point by the same formula, when the impulse has been applied
+  double normal_velocity_after = kUnset;   // [m/s], of the same point, when the impulse has been applied; the framework measures it
 };
 
 /// What a run cost, as counts (deterministic) and times (not).
