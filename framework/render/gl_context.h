@@ -1,0 +1,50 @@
+/// Where OpenGL runs without a screen. One interface, two bodies: OSMesa, and EGL without a surface for a Mesa that has
+/// dropped OSMesa. Both draw into our own framebuffer object, so that their pictures match.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "framework/render/gl_functions.h"
+
+namespace tumble::render {
+
+/// An OpenGL 3.3 core context. A thread has one current context at most; hold a `Current` around every use.
+class GlContext {
+ public:
+  virtual ~GlContext() = default;
+  virtual void make_current() = 0;
+  virtual void release() = 0;
+  const GlFunctions& gl() const { return gl_; }
+  /// Name of the body, "osmesa" or "egl".
+  virtual const char* name() const = 0;
+
+ protected:
+  GlFunctions gl_;
+};
+
+/// Makes a context current for as long as this lives.
+class Current {
+ public:
+  explicit Current(GlContext& context) : context_(context) { context_.make_current(); }
+  ~Current() { context_.release(); }
+  Current(const Current&) = delete;
+  Current& operator=(const Current&) = delete;
+
+ private:
+  GlContext& context_;
+};
+
+/// The two bodies. Their libraries are opened when first asked for, so that no other command pays for them.
+/// @throws UserError saying what is missing
+std::unique_ptr<GlContext> make_osmesa_context();
+std::unique_ptr<GlContext> make_egl_context();
+
+/// @param choice  "osmesa", "egl", or empty: what the environment's TUMBLE_GL says, else OSMesa, else EGL with a line on stderr
+/// @throws UserError when the choice is unknown, or nothing works (both reasons)
+std::unique_ptr<GlContext> make_gl_context(const std::string& choice = "");
+
+/// Fills the table by asking `address` for each "gl..." name. @throws UserError naming the first that is missing
+GlFunctions load_gl_functions(void* (*address)(const char* name), const std::string& library);
+
+}  // namespace tumble::render

@@ -1,0 +1,33 @@
+/// A picture in memory, and its file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace tumble::render {
+
+/// 8-bit sRGB, three bytes a pixel, rows from the top.
+struct Image {
+  int width = 0, height = 0;           // pixels
+  std::vector<std::uint8_t> rgb;       // width * height * 3
+
+  Image() = default;
+  Image(int w, int h, std::uint8_t grey = 255) : width(w), height(h), rgb(static_cast<std::size_t>(w) * h * 3, grey) {}
+  std::uint8_t* pixel(int x, int y) { return &rgb[(static_cast<std::size_t>(y) * width + x) * 3]; }
+  const std::uint8_t* pixel(int x, int y) const { return &rgb[(static_cast<std::size_t>(y) * width + x) * 3]; }
+};
+
+/// Copies `part` into `whole` with its top left corner at (x, y). @pre it fits
+void paste(const Image& part, int x, int y, Image& whole);
+
+/// Words kept in the file beside the picture: (keyword, text), e.g. {"Scene hash", "..."}.
+using ImageNotes = std::vector<std::pair<std::string, std::string>>;
+
+/// Whole or not at all; the same pixels and notes give the same bytes (no date is written).
+/// @throws UserError when the file cannot be written
+void write_png(const std::filesystem::path& file, const Image& image, const ImageNotes& notes = {});
+
+}  // namespace tumble::render

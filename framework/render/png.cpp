@@ -1,0 +1,71 @@
+#include <csetjmp>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+#include <png.h>
+
+#include "framework/core/error.h"
+#include "framework/core/files.h"
+#include "framework/render/image.h"
+
+namespace tumble::render {
+namespace {
+
+// A fixed level and filter, so that the bytes do not depend on a library's default. 6: a fifth smaller than 3 at 640x480,
+// for 10 ms more.
+constexpr int kCompressionLevel = 6;
+
+void append(png_structp png, png_bytep data, png_size_t size) {
+  static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(data), size);
+}
+
+// libpng reports errors by longjmp, so nothing with a destructor is made between setjmp and the end.
+bool encode(const Image& image, std::vector<png_text>& notes, std::vector<png_bytep>& rows, std::string& bytes) {
+  png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
+  png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;
+  if (info == nullptr || setjmp(png_jmpbuf(png)) != 0) {
+    png_destroy_write_struct(&png, &info);
+    return false;
+  }
+  png_set_write_fn(png, &bytes, append, nullptr);
+  png_set_compression_level(png, kCompressionLevel);
+  png_set_filter(png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
+  png_set_IHDR(png, info, static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height), 8, PNG_COLOR_TYPE_RGB,
+               PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+  png_set_text(png, info, notes.data(), static_cast<int>(notes.size()));
+  png_set_rows(png, info, rows.data());
+  png_write_png(png, info, PNG_TRANSFORM_IDENTITY, nullptr);
+  png_destroy_write_struct(&png, &info);
+  return true;
+}
+
+}  // namespace
+
+void paste(const Image& part, int x, int y, Image& whole) {
+  require(x >= 0 && y >= 0 && x + part.width <= whole.width && y + part.height <= whole.height, "paste: the part does not fit");
+  for (int row = 0; row < part.height; ++row)
+    std::memcpy(whole.pixel(x, y + row), part.pixel(0, row), static_cast<std::size_t>(part.width) * 3);
+}
+
+void write_png(const std::filesystem::path& file, const Image& image, const ImageNotes& notes) {
+  require(image.width > 0 && image.height > 0, "write_png: an empty picture");
+  ImageNotes held = notes;
+  std::vector<png_text> texts;
+  for (auto& [keyword, text] : held) {
+    if (keyword.empty() || keyword.size() > 79 || text.empty()) continue;  // PNG's limit for keywords
+    png_text note{};
+    note.compression = PNG_ITXT_COMPRESSION_NONE;  // UTF-8
+    note.key = keyword.data();
+    note.text = text.data();
+    texts.push_back(note);
+  }
+  std::vector<png_bytep> rows;
+  for (int y = 0; y < image.height; ++y) rows.push_back(const_cast<png_bytep>(image.pixel(0, y)));
+  std::string bytes;
+  if (!encode(image, texts, rows, bytes)) throw UserError(file.string(), "cannot be encoded as PNG");
+  write_whole(file, bytes);
+}
+
+}  // namespace tumble::render

@@ -1,0 +1,263 @@
+#include "framework/render/stage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "framework/core/error.h"
+#include "framework/render/surfaces.h"
+#include "framework/scene/build_shape.h"
+
+namespace tumble::render {
+namespace {
+
+// The first geometries of every stage; models follow.
+enum { kBallFine, kBallCoarse, kBoxGeometry, kPlate, kArrow, kTube, kFirstMesh };
+
+constexpr std::size_t kManyBodies = 60;   // from here on balls are coarse: a picture then shows each in a few pixels
+constexpr std::size_t kExtentFrames = 400;  // frames looked at to find where things go: enough, and quick for long runs
+
+// Colours that readers with any colour vision tell apart (Okabe and Ito 2008), as linear RGB; without the yellow and the
+// black, which are lost on light ground and in shadow.
+const Vector3d kPalette[] = {{0.000, 0.168, 0.445}, {0.665, 0.112, 0.000}, {0.000, 0.342, 0.171},
+                             {0.791, 0.347, 0.000}, {0.604, 0.191, 0.386}, {0.093, 0.456, 0.815}};
+const Vector3d kImmovableColor(0.42, 0.45, 0.48);
+
+TriangleMesh two_sided(TriangleMesh mesh) {
+  const std::vector<Face> front = mesh.faces;
+  for (const auto& [a, b, c] : front) mesh.faces.push_back({a, c, b});
+  return mesh;
+}
+
+// The next of 1, 2, 5, 10, ... at or above x.
+double round_length(double x) {
+  const double decade = std::pow(10.0, std::floor(std::log10(x)));
+  for (const double step : {1.0, 2.0, 5.0})
+    if (step * decade >= x * (1.0 - 1e-9)) return step * decade;
+  return 10.0 * decade;
+}
+
+// Whether the segment from the eye to a point passes through an actor's surface (Moeller and Trumbore, Journal of Graphics
+// Tools 2(1), 1997; only whether, so degenerate triangles may answer either way).
+bool hides(const TriangleMesh& mesh_body, const BodyPose& pose, const Vector3d& eye_world, const Vector3d& point_world) {
+  const Quaterniond body_from_world = pose.world_from_body.conjugate();
+  const Vector3d from = body_from_world * (eye_world - pose.com_world), along = body_from_world * (point_world - eye_world);
+  for (const auto& [i, j, k] : mesh_body.faces) {
+    const Vector3d& a = mesh_body.vertices[i];
+    const Vector3d ab = mesh_body.vertices[j] - a, ac = mesh_body.vertices[k] - a, p = along.cross(ac);
+    const double determinant = ab.dot(p);
+    if (determinant == 0.0) continue;
+    const Vector3d s = from - a, q = s.cross(ab);
+    const double u = s.dot(p) / determinant, v = along.dot(q) / determinant, t = ac.dot(q) / determinant;
+    if (u >= 0 && v >= 0 && u + v <= 1 && t > 0 && t < 1) return true;
+  }
+  return false;
+}
+
+std::size_t stride_of(const Trajectory& run) { return std::max<std::size_t>(1, run.frames.size() / kExtentFrames); }
+
+}  // namespace
+
+Stage::Stage(const scene::Scene& scene, const Trajectory& run, const PictureOptions& options) : scene_(scene), run_(run), options_(options) {
+  if (run.frames.empty()) throw UserError(scene.name, "the run has no frame to draw", run.stopped_by);
+  if (run.bodies.size() != scene.bodies.size())
+    throw UserError(scene.name, "the run has " + std::to_string(run.bodies.size()) + " bodies and the scene " + std::to_string(scene.bodies.size()),
+                    "Draw a run with the scene that it was made from.");
+  std::vector<Shape> shapes;
+  for (const scene::Solid& solid : scene::build_solids(scene, options.root)) shapes.push_back(solid.shape);
+  add_actors(shapes);
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    if (scene.camera.follow == scene.bodies[i].name) followed_ = static_cast<int>(i);
+  for (const Event& event : run.events)
+    if (event.kind == EventKind::kCollision) strongest_impulse_ = std::max(strongest_impulse_, event.impulse);
+  find_extent();
+  lay_ground();
+  turn_walls_to_glass();
+  place_scale_bar();
+}
+
+void Stage::add_actors(const std::vector<Shape>& shapes) {
+  geometries_.resize(kFirstMesh);
+  geometries_[kBallFine] = unit_ball(4);
+  geometries_[kBallCoarse] = unit_ball(2);
+  geometries_[kBoxGeometry] = shaded_surface(surface_of(Box{Vector3d::Ones()}));
+  geometries_[kPlate] = shaded_surface(two_sided(surface_of(HalfSpace{}, 1.0)));
+  geometries_[kArrow] = unit_arrow();
+  geometries_[kTube] = unit_tube();
+  const int ball = shapes.size() < kManyBodies ? kBallFine : kBallCoarse;
+  for (std::size_t i = 0; i < shapes.size(); ++i) add_actor(scene_.bodies[i], shapes[i], i, ball);
+}
+
+void Stage::add_actor(const scene::BodySpec& spec, const Shape& shape, std::size_t index, int ball) {
+  Actor actor;
+  actor.immovable = spec.immovable;
+  actor.color = spec.color ? *spec.color : spec.immovable ? kImmovableColor : kPalette[index % std::size(kPalette)];
+  actor.radius_m = bounding_radius(shape);
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) {
+    // A point mass has no size: it is drawn as a dot.
+    const double radius = sphere->radius > 0.0 ? sphere->radius : 0.008 * sight_m();
+    actor.geometry = ball;
+    actor.scale = Vector3d::Constant(radius);
+    actor.radius_m = radius;
+    actor.quartered = !spec.immovable && sphere->radius > 0.0;
+  } else if (const auto* box = std::get_if<Box>(&shape)) {
+    actor.geometry = kBoxGeometry;
+    actor.scale = box->half_extents_body;
+  } else if (const auto* solid = std::get_if<MeshSolid>(&shape)) {
+    actor.geometry = geometry_of(solid->mesh_body);
+  } else {
+    const auto* plane = std::get_if<scene::PlaneSpec>(&spec.shape);
+    const double extent = plane != nullptr ? plane->drawn_half_extent_m : 5.0;
+    const Vector3d normal_world = spec.world_from_body * Vector3d::UnitZ();
+    const bool is_floor = normal_world.z() > 0.999 && !spec.motion;   // within 2.5 degrees of level
+    if (is_floor && floor_ < 0) floor_ = static_cast<int>(index);
+    actor.geometry = floor_ == static_cast<int>(index) ? -1 : static_cast<int>(kPlate);
+    actor.scale = {extent, extent, 1.0};
+    const bool is_upright = std::abs(normal_world.z()) < 0.5;
+    if (is_upright) actor.pass = Pass::kGlass, actor.opacity = 0.22;
+  }
+  actors_.push_back(actor);
+}
+
+int Stage::geometry_of(const TriangleMesh& mesh) {
+  for (std::size_t i = 0; i < meshes_.size(); ++i)
+    if (meshes_[i].vertices == mesh.vertices && meshes_[i].faces == mesh.faces) return kFirstMesh + static_cast<int>(i);
+  meshes_.push_back(mesh);
+  geometries_.push_back(shaded_surface(mesh));
+  return static_cast<int>(geometries_.size()) - 1;
+}
+
+void Stage::find_extent() {
+  for (std::size_t f = 0; f < run_.frames.size(); f += stride_of(run_)) {
+    for (std::size_t i = 0; i < actors_.size(); ++i) {
+      const Vector3d& com = run_.frames[f].poses[i].com_world;
+      if (!std::isfinite(actors_[i].radius_m) || !com.allFinite()) continue;
+      const Actor& actor = actors_[i];
+      // A box's own reach along the world's axes is tighter than its ball: a floor made of a thin box has little height.
+      Vector3d reach = Vector3d::Constant(actor.radius_m);
+      if (actor.geometry == kBoxGeometry) reach = run_.frames[f].poses[i].world_from_body.toRotationMatrix().cwiseAbs() * actor.scale;
+      extent_.extend(com - reach).extend(com + reach);
+    }
+  }
+  if (extent_.isEmpty()) extent_.extend(scene_.camera.target_m);
+}
+
+void Stage::lay_ground() {
+  ground_.shown = scene_.grid_spacing_m.has_value() || floor_ >= 0;
+  ground_.spacing_m = scene_.grid_spacing_m.value_or(round_length(sight_m() / 12.0));
+  ground_.height_m = scene_.grid_height_m;
+  if (floor_ >= 0) ground_.height_m = run_.frames.front().poses[static_cast<std::size_t>(floor_)].com_world.z();
+  // A grid without a floor is only a measure: it lies below everything, so that nothing seems to sink into it.
+  else if (followed_ < 0) ground_.height_m = std::min(ground_.height_m, extent_.min().z());
+  ground_.fade_m = 2.6 * sight_m();
+}
+
+View Stage::view_at(const Frame& frame) const {
+  if (followed_ < 0) return view_of(scene_.camera);
+  const auto i = static_cast<std::size_t>(followed_);
+  return view_of(scene_.camera, frame.poses[i].com_world - run_.frames.front().poses[i].com_world);
+}
+
+// An immovable body between the eye and a moving one would hide what is to be seen: it becomes glass, for the whole run.
+void Stage::turn_walls_to_glass() {
+  constexpr std::size_t kLooks = 40;
+  const std::size_t stride = std::max<std::size_t>(1, run_.frames.size() / kLooks);
+  for (std::size_t wall = 0; wall < actors_.size(); ++wall) {
+    Actor& actor = actors_[wall];
+    if (!actor.immovable || actor.geometry < 0 || actor.pass == Pass::kGlass) continue;
+    TriangleMesh surface;
+    if (actor.geometry == kBoxGeometry) surface = surface_of(Box{actor.scale});
+    else if (actor.geometry >= kFirstMesh) surface = meshes_[static_cast<std::size_t>(actor.geometry - kFirstMesh)];
+    else continue;
+    bool in_the_way = false;
+    for (std::size_t f = 0; f < run_.frames.size() && !in_the_way; f += stride) {
+      const Frame& frame = run_.frames[f];
+      for (std::size_t i = 0; i < actors_.size() && !in_the_way; ++i)
+        in_the_way = !actors_[i].immovable && hides(surface, frame.poses[wall], view_at(frame).eye_world, frame.poses[i].com_world);
+    }
+    if (in_the_way) actor.pass = Pass::kGlass, actor.opacity = 0.25;
+  }
+}
+
+// The bar lies between two lines of the grid, where it is seen well at the lower left, and stays there.
+void Stage::place_scale_bar() {
+  if (!ground_.shown || ground_.spacing_m <= 0.0 || followed_ >= 0 || !options_.captions) return;
+  const View view = view_of(scene_.camera);
+  const double w = options_.width, h = options_.height, step = ground_.spacing_m;
+  const Vector2d wanted(0.22 * w, 0.80 * h);
+  double best = std::numeric_limits<double>::infinity();
+  const int ci = static_cast<int>(std::lround(scene_.camera.target_m.x() / step)), cj = static_cast<int>(std::lround(scene_.camera.target_m.y() / step));
+  for (int i = ci - 30; i <= ci + 30; ++i) {
+    for (int j = cj - 30; j <= cj + 30; ++j) {
+      const Vector3d from(i * step, j * step, ground_.height_m), to = from + Vector3d(step, 0, 0);
+      const auto a = project(view, options_.width, options_.height, from), b = project(view, options_.width, options_.height, to);
+      if (!a || !b || (*a - *b).norm() < 0.045 * w) continue;
+      const bool inside = std::min(a->x(), b->x()) > 0.04 * w && std::max(a->x(), b->x()) < 0.96 * w && std::min(a->y(), b->y()) > 0.15 * h &&
+                          std::max(a->y(), b->y()) < 0.86 * h;
+      const double distance = (0.5 * (*a + *b) - wanted).norm();
+      if (!inside || distance >= best) continue;
+      best = distance;
+      scale_bar_from_ = from;
+      scale_bar_m_ = step;
+    }
+  }
+}
+
+std::size_t Stage::frame_at(double time_s) const {
+  constexpr double kRoundOff = 1e-9;   // s: a frame at 0.5 is the frame at 0.5, however its time was summed
+  const auto later = std::upper_bound(run_.frames.begin(), run_.frames.end(), time_s + kRoundOff,
+                                      [](double time, const Frame& frame) { return time < frame.time; });
+  return later == run_.frames.begin() ? 0 : static_cast<std::size_t>(later - run_.frames.begin()) - 1;
+}
+
+Moment Stage::moment(std::size_t index) const {
+  const Frame& frame = run_.frames[index];
+  Moment moment;
+  Drawing& drawing = moment.drawing;
+  drawing.view = view_at(frame);
+  const View& view = drawing.view;
+  // The key light stands above, to the left of the eye and on its side, so that what is seen is lit.
+  drawing.to_light_world = (-0.55 * view.right_world + 0.35 * view.right_world.cross(Vector3d::UnitZ()) + 0.95 * Vector3d::UnitZ()).normalized();
+  drawing.shadow_centre_world = extent_.center();
+  drawing.shadow_radius_m = 0.5 * extent_.diagonal().norm() + 1e-3 * sight_m();
+  // Where bodies go far, only what is near the middle of the picture throws a shadow, which keeps its edge sharp.
+  if (drawing.shadow_radius_m > sight_m()) {
+    drawing.shadow_centre_world = view.eye_world + sight_m() * view.forward_world;
+    drawing.shadow_radius_m = sight_m();
+  }
+  drawing.ground = ground_;
+  const Vector3d seen = view.eye_world + sight_m() * view.forward_world;
+  drawing.ground.centre_m = seen.head<2>();
+  const double reach = sight_m() + std::max(ground_.shown ? ground_.fade_m : 0.0, extent_.diagonal().norm());
+  drawing.far_m = 1.2 * reach + (view.eye_world - extent_.center()).norm();
+  drawing.near_m = drawing.far_m / 2000.0;
+  add_bodies(frame, drawing);
+  if (options_.paths) add_path(index, drawing);
+  add_scale_bar(moment);
+  if (options_.marks) {
+    add_impacts(frame, drawing);
+    add_forces(frame, moment);
+  }
+  return moment;
+}
+
+void Stage::add_bodies(const Frame& frame, Drawing& drawing) const {
+  std::vector<Batch> solid, glass;
+  for (int i = 0; i < static_cast<int>(geometries_.size()); ++i) {
+    solid.push_back({i, Pass::kSolid, {}});
+    glass.push_back({i, Pass::kGlass, {}});
+  }
+  for (std::size_t i = 0; i < actors_.size(); ++i) {
+    const Actor& actor = actors_[i];
+    const BodyPose& pose = frame.poses[i];
+    if (actor.geometry < 0 || !pose.com_world.allFinite()) continue;
+    Instance instance = placed(pose.com_world, pose.world_from_body.toRotationMatrix(), actor.scale, actor.color, actor.opacity);
+    instance.quartered = actor.quartered ? 1.0f : 0.0f;
+    (actor.pass == Pass::kGlass ? glass : solid)[static_cast<std::size_t>(actor.geometry)].instances.push_back(instance);
+  }
+  for (auto* batches : {&solid, &glass})
+    for (Batch& batch : *batches)
+      if (!batch.instances.empty()) drawing.batches.push_back(std::move(batch));
+}
+
+}  // namespace tumble::render

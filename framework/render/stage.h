@@ -1,0 +1,84 @@
+/// From a scene and its run to what is drawn at each instant. Internal to framework/render; no OpenGL here.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "framework/geometry/shape.h"
+#include "framework/render/drawing.h"
+#include "framework/render/picture.h"
+
+namespace tumble::render {
+
+/// A body as drawn: a geometry, how it is scaled and coloured.
+struct Actor {
+  int geometry = -1;                       // -1: not drawn as a body (the floor is the ground)
+  Vector3d scale = Vector3d::Ones();       // along the geometry's axes
+  Vector3d color;                          // linear RGB
+  Pass pass = Pass::kSolid;
+  double opacity = 1.0;
+  bool quartered = false;
+  bool immovable = false;
+  double radius_m = 0.0;                   // of a ball about its origin that holds it; infinite for planes
+};
+
+/// Words at a place of the world.
+struct Label {
+  Vector3d point_world;
+  std::string text;
+};
+
+/// What the stage says of one instant.
+struct Moment {
+  Drawing drawing;
+  std::vector<Label> labels;   // forces, the scale of the grid
+};
+
+class Stage {
+ public:
+  /// @throws UserError when the run is of another scene or has no frame
+  Stage(const scene::Scene& scene, const Trajectory& run, const PictureOptions& options);
+
+  const std::vector<Geometry>& geometries() const { return geometries_; }
+  /// Index of the last frame that is not later than `time_s`.
+  std::size_t frame_at(double time_s) const;
+  Moment moment(std::size_t frame) const;
+  /// Distance between the lines of the grid; 0 where there is none. [m]
+  double grid_spacing_m() const { return ground_.shown ? ground_.spacing_m : 0.0; }
+  /// Whether the grid's scale stands on the ground itself; else the caption must say it.
+  bool has_scale_bar() const { return scale_bar_m_ > 0.0; }
+
+ private:
+  void add_actors(const std::vector<Shape>& shapes);
+  void add_actor(const scene::BodySpec& spec, const Shape& shape, std::size_t index, int ball_level);
+  int geometry_of(const TriangleMesh& mesh);
+  void find_extent();
+  void lay_ground();
+  void turn_walls_to_glass();
+  void place_scale_bar();
+
+  void add_bodies(const Frame& frame, Drawing& drawing) const;
+  void add_scale_bar(Moment& moment) const;
+  void add_path(std::size_t frame, Drawing& drawing) const;
+  void add_forces(const Frame& frame, Moment& moment) const;
+  void add_impacts(const Frame& frame, Drawing& drawing) const;
+  View view_at(const Frame& frame) const;
+  double sight_m() const { return (scene_.camera.eye_m - scene_.camera.target_m).norm(); }
+
+  const scene::Scene& scene_;
+  const Trajectory& run_;
+  PictureOptions options_;
+  std::vector<Geometry> geometries_;
+  std::vector<TriangleMesh> meshes_;        // of geometries_ from kFirstMesh on, to find models used twice
+  std::vector<Actor> actors_;               // by body index
+  Eigen::AlignedBox3d extent_;              // of everything finite, over the run
+  Ground ground_;
+  int floor_ = -1;                          // body whose plane the ground is
+  int followed_ = -1;
+  Vector3d scale_bar_from_ = Vector3d::Zero();
+  double scale_bar_m_ = 0.0;                // its length; 0: none
+  double strongest_impulse_ = 0.0;          // [N s]
+};
+
+}  // namespace tumble::render

@@ -1,0 +1,129 @@
+#include "framework/render/text.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <ft2build.h>
+#include FT_FREETYPE_H
+
+#include "framework/core/error.h"
+
+namespace tumble::render {
+namespace {
+
+constexpr const char* kRegular = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+constexpr const char* kBold = "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf";
+constexpr double kFixed = 64.0;   // FreeType counts in 1/64 pixel
+
+// Characters of UTF-8; a byte that does not belong becomes U+FFFD.
+std::u32string characters(const std::string& text) {
+  std::u32string out;
+  for (std::size_t i = 0; i < text.size();) {
+    const auto first = static_cast<unsigned char>(text[i]);
+    const std::size_t length = first < 0x80 ? 1 : first < 0xc2 ? 0 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : first < 0xf5 ? 4 : 0;
+    char32_t code = length == 1 ? first : first & (0xff >> (length + 1));
+    bool fine = length > 0 && i + length <= text.size();
+    for (std::size_t k = 1; fine && k < length; ++k) {
+      const auto next = static_cast<unsigned char>(text[i + k]);
+      fine = (next & 0xc0) == 0x80;
+      code = (code << 6) | (next & 0x3f);
+    }
+    out += fine ? code : U'\ufffd';
+    i += fine ? length : 1;
+  }
+  return out;
+}
+
+void blend(std::uint8_t* pixel, const Ink& ink, double opacity) {
+  const std::uint8_t color[] = {ink.red, ink.green, ink.blue};
+  for (int i = 0; i < 3; ++i) pixel[i] = static_cast<std::uint8_t>(std::lround(pixel[i] + (color[i] - pixel[i]) * opacity));
+}
+
+// A letter's coverage put at a place of the picture.
+void stamp(Image& image, const FT_Bitmap& letter, int left, int top, const Ink& ink, double opacity) {
+  for (int row = 0; row < static_cast<int>(letter.rows); ++row) {
+    for (int column = 0; column < static_cast<int>(letter.width); ++column) {
+      const int x = left + column, y = top + row;
+      const int coverage = letter.buffer[row * letter.pitch + column];
+      if (coverage > 0 && x >= 0 && y >= 0 && x < image.width && y < image.height) blend(image.pixel(x, y), ink, opacity * coverage / 255.0);
+    }
+  }
+}
+
+}  // namespace
+
+struct TextWriter::Fonts {
+  FT_Library library = nullptr;
+  FT_Face regular = nullptr, bold = nullptr;
+
+  Fonts() {
+    const bool fine = FT_Init_FreeType(&library) == 0 && FT_New_Face(library, kRegular, 0, &regular) == 0 &&
+                      FT_New_Face(library, kBold, 0, &bold) == 0;
+    if (fine) return;
+    if (library != nullptr) FT_Done_FreeType(library);
+    throw UserError(kRegular, "this font cannot be read", "Install the package fonts-dejavu-core.");
+  }
+  ~Fonts() { FT_Done_FreeType(library); }   // with its faces
+
+  // Calls visit(glyph slot, pen) for each letter; returns where the pen ends. Without hinting, so that letters keep their
+  // shapes at every size.
+  template <class Visit>
+  double walk(const std::string& text, double size, bool is_bold, Visit visit) const {
+    FT_Face face = is_bold ? bold : regular;
+    FT_Set_Char_Size(face, 0, static_cast<FT_F26Dot6>(std::lround(size * kFixed)), 72, 72);
+    double pen = 0.0;
+    FT_UInt before = 0;
+    for (const char32_t code : characters(text)) {
+      const FT_UInt glyph = FT_Get_Char_Index(face, code);
+      FT_Vector kerning{};
+      FT_Get_Kerning(face, before, glyph, FT_KERNING_UNFITTED, &kerning);
+      pen += static_cast<double>(kerning.x) / kFixed;
+      if (FT_Load_Glyph(face, glyph, FT_LOAD_NO_HINTING) == 0) {
+        visit(face->glyph, pen);
+        pen += static_cast<double>(face->glyph->linearHoriAdvance) / 65536.0;
+      }
+      before = glyph;
+    }
+    return pen;
+  }
+};
+
+TextWriter::TextWriter() : fonts_(std::make_unique<Fonts>()) {}
+TextWriter::~TextWriter() = default;
+
+double TextWriter::width(const std::string& text, double size, bool bold) const {
+  return fonts_->walk(text, size, bold, [](FT_GlyphSlot, double) {});
+}
+
+std::string TextWriter::fitted(const std::string& text, double size, double room, bool bold) const {
+  if (width(text, size, bold) <= room) return text;
+  std::string kept = text;
+  while (!kept.empty() && width(kept + "…", size, bold) > room) {
+    while (!kept.empty() && (static_cast<unsigned char>(kept.back()) & 0xc0) == 0x80) kept.pop_back();
+    if (!kept.empty()) kept.pop_back();
+  }
+  return kept + "…";
+}
+
+void TextWriter::write(Image& image, const std::string& text, double x, double baseline, double size, const Ink& ink, Align align,
+                       bool bold) const {
+  if (align != Align::kLeft) x -= width(text, size, bold) * (align == Align::kCentre ? 0.5 : 1.0);
+  const auto draw = [&](const Ink& color, double opacity, int dx, int dy) {
+    fonts_->walk(text, size, bold, [&](FT_GlyphSlot slot, double pen) {
+      const double place = x + pen, whole = std::floor(place);
+      FT_Outline_Translate(&slot->outline, std::lround((place - whole) * kFixed), 0);
+      if (FT_Render_Glyph(slot, FT_RENDER_MODE_NORMAL) != 0) return;
+      const int left = static_cast<int>(whole) + slot->bitmap_left + dx;
+      stamp(image, slot->bitmap, left, static_cast<int>(std::lround(baseline)) - slot->bitmap_top + dy, color, opacity);
+    });
+  };
+  if (ink.halo > 0.0) {
+    const Ink light{250, 251, 252, 0.0};
+    for (int dy = -1; dy <= 1; ++dy)
+      for (int dx = -1; dx <= 1; ++dx)
+        if (dx != 0 || dy != 0) draw(light, ink.halo * 0.35, dx, dy);
+  }
+  draw(ink, 1.0, 0, 0);
+}
+
+}  // namespace tumble::render

@@ -1,0 +1,40 @@
+/// Words in pictures. Internal to framework/render; FreeType is seen in text.cpp alone.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "framework/render/image.h"
+
+namespace tumble::render {
+
+struct Ink {
+  std::uint8_t red = 28, green = 39, blue = 51;
+  double halo = 0.0;   // opacity of the light rim that keeps words legible over bodies [0, 1]
+};
+inline constexpr Ink kDark{28, 39, 51, 0.75};
+inline constexpr Ink kSoft{70, 84, 98, 0.6};
+inline constexpr Ink kAlarm{168, 44, 0, 0.9};
+
+enum class Align { kLeft, kCentre, kRight };
+
+class TextWriter {
+ public:
+  /// @throws UserError when the font (Debian's fonts-dejavu-core) is missing
+  TextWriter();
+  ~TextWriter();
+
+  /// One line. @param x, baseline  pixels;  @param size  height of the font [pixels];  @param text  UTF-8
+  void write(Image& image, const std::string& text, double x, double baseline, double size, const Ink& ink = kDark,
+             Align align = Align::kLeft, bool bold = false) const;
+  /// Pixels from the first letter to the end of the last.
+  double width(const std::string& text, double size, bool bold = false) const;
+  /// The text, cut with an ellipsis where it is wider than `room` pixels.
+  std::string fitted(const std::string& text, double size, double room, bool bold = false) const;
+
+ private:
+  struct Fonts;
+  std::unique_ptr<Fonts> fonts_;
+};
+
+}  // namespace tumble::render
