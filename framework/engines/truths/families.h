@@ -18,5 +18,14 @@ const std::map<std::string, FrameworkFamily>& framework_families();
 
 // One a family; each compares every output of the case, or says why one is not compared.
 void compare_mass_properties(const Case& truth, const Laws& laws, Comparison& comparison);
+void compare_free_top(const Case& truth, const Laws& laws, Comparison& comparison);
+void compare_times_of_impact(const Case& truth, const Laws& laws, Comparison& comparison);
+void compare_bouncing_ball(const Case& truth, const Laws& laws, Comparison& comparison);
+void compare_moving_floor(const Case& truth, const Laws& laws, Comparison& comparison);
+void compare_shaken_floor(const Case& truth, const Laws& laws, Comparison& comparison);
+void compare_cradle(const Case& truth, const Laws& laws, Comparison& comparison);
+void compare_hard_spheres(const Case& truth, const Laws& laws, Comparison& comparison);
+/// The part of toi_tunnel that runs a scene.
+void compare_tunnel_run(const Case& truth, const Laws& laws, Comparison& comparison);
 
 }  // namespace tumble::truths

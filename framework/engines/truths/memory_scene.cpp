@@ -1,0 +1,61 @@
+#include "framework/engines/truths/memory_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace tumble::truths {
+
+scene::Scene empty_scene(const std::string& name, double duration, double rest_speed) {
+  scene::Scene scene;
+  scene.name = name;
+  scene.duration_s = duration;
+  scene.rest_speed_m_s = rest_speed;
+  return scene;
+}
+
+scene::BodySpec ball(const std::string& name, double mass, double radius, const Vector3d& position, const Vector3d& velocity, double restitution) {
+  scene::BodySpec body;
+  body.name = name;
+  body.shape = scene::SphereSpec{radius};
+  body.mass_kg = mass;
+  body.position_m = position;
+  body.velocity_m_s = velocity;
+  body.restitution = restitution;
+  return body;
+}
+
+scene::BodySpec wall(const std::string& name, const Vector3d& position, const Vector3d& normal, double restitution) {
+  scene::BodySpec body;
+  body.name = name;
+  body.shape = scene::PlaneSpec{};
+  body.immovable = true;
+  body.position_m = position;
+  body.world_from_body = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal);
+  body.restitution = restitution;
+  return body;
+}
+
+Trajectory run_in_memory(const scene::Scene& scene, const Laws& laws, double frame_rate_hz) {
+  engines::RunOptions options;
+  options.frame_rate_hz = frame_rate_hz;
+  TrajectoryRecorder recorder;
+  engines::run_scene(scene, laws, options, recorder);
+  if (!recorder.trajectory().stopped_by.empty()) throw std::runtime_error("the run was stopped: " + recorder.trajectory().stopped_by);
+  return recorder.trajectory();
+}
+
+Frame frame_at(const scene::Scene& scene, const Laws& laws, double t) {
+  scene::Scene shorter = scene;
+  const double rate = 1.0 / t;
+  shorter.duration_s = std::max(t, 1.0 / rate);  // the frame falls on the rounded 1 / rate
+  return run_in_memory(shorter, laws, rate).frames.back();
+}
+
+std::vector<Event> impacts_of(const Trajectory& run) {
+  std::vector<Event> impacts;
+  std::copy_if(run.events.begin(), run.events.end(), std::back_inserter(impacts), [](const Event& event) { return event.kind == EventKind::kCollision; });
+  return impacts;
+}
+
+}  // namespace tumble::truths

@@ -1,0 +1,27 @@
+/// Scenes made in memory, run by the engine with the laws chosen: what truths about whole runs stand on.
+#pragma once
+
+#include "framework/engines/run.h"
+#include "framework/trajectory/trajectory.h"
+
+namespace tumble::truths {
+
+/// A scene without bodies: no gravity, the engine's usual step.
+/// @param rest_speed  impacts that separate more slowly end in rest [m/s]
+scene::Scene empty_scene(const std::string& name, double duration, double rest_speed);
+
+scene::BodySpec ball(const std::string& name, double mass, double radius, const Vector3d& position, const Vector3d& velocity, double restitution);
+/// Immovable half-space below a plane. @param normal  unit, world, out of the solid
+scene::BodySpec wall(const std::string& name, const Vector3d& position, const Vector3d& normal, double restitution);
+
+/// The whole run; `frame_rate_hz` as small as wanted where only events matter.
+/// @throws UserError as run_scene; std::runtime_error when the run was stopped early
+Trajectory run_in_memory(const scene::Scene& scene, const Laws& laws, double frame_rate_hz);
+
+/// All bodies at one instant of the run: a run that ends there. @param t  [s], > 0
+Frame frame_at(const scene::Scene& scene, const Laws& laws, double t);
+
+/// Impacts of a run, in order: rest and forces left out.
+std::vector<Event> impacts_of(const Trajectory& run);
+
+}  // namespace tumble::truths
