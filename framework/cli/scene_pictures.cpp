@@ -1,9 +1,31 @@
 #include "framework/cli/scene_pictures.h"
 
+#include <fmt/format.h>
+
+#include "framework/render/picture.h"
+
 namespace tumble::cli {
 
-void write_pictures(const Context&, const scene::Scene&, const Trajectory&, const RunWords& words, const PictureSize&) {
-  if (!words.png.empty() || !words.sheet.empty() || !words.video.empty()) throw UserError("--png, --sheet, --video", "pictures cannot be drawn yet");
+void write_pictures(const Context& context, const scene::Scene& scene, const Trajectory& run, const RunWords& words, const PictureSize& size) {
+  render::PictureOptions options;
+  options.width = size.width;
+  options.height = size.height;
+  options.speed = words.speed;
+  options.root = context.root;
+  const auto told = [](const std::string& file) { fmt::print(stderr, "wrote {}\n", file); };
+  if (!words.png.empty()) {
+    const double end = run.frames.empty() ? 0.0 : run.frames.back().time;
+    render::write_picture(words.png, scene, run, words.at_s < 0 ? end : words.at_s, options);
+    told(words.png);
+  }
+  if (!words.sheet.empty()) {
+    render::write_contact_sheet(words.sheet, scene, run, 9, options);
+    told(words.sheet);
+  }
+  if (!words.video.empty()) {
+    render::write_video(words.video, scene, run, options);
+    told(words.video);
+  }
 }
 
 }  // namespace tumble::cli

@@ -122,6 +122,7 @@ void add_run_words(CLI::App& verb, RunWords& words) {
   verb.add_option("--at-s", words.at_s, "Instant of the picture [s]; default the end")->check(CLI::NonNegativeNumber);
   verb.add_option("--sheet", words.sheet, "Write a contact sheet (.png)")->type_name("FILE");
   verb.add_option("--video", words.video, "Write a video (.mp4)")->type_name("FILE");
+  verb.add_option("--speed", words.speed, "Seconds of the run in a second of video: 0.25 is slow motion")->check(CLI::Range(1e-6, 1e6))->capture_default_str();
   verb.add_option("--size", words.size, "Of pictures and video, in pixels")->type_name("WxH")->capture_default_str();
   verb.add_flag("--json", words.json, "For machines");
 }

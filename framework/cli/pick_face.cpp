@@ -1,0 +1,48 @@
+#include "framework/cli/pick_face.h"
+
+#include "framework/core/error.h"
+#include "framework/scene/build_shape.h"
+
+namespace tumble::cli {
+namespace {
+
+bool meets_ball(const Ray& ray, const Vector3d& centre_world, double radius) {
+  if (!std::isfinite(radius)) return true;
+  const Vector3d to_centre = centre_world - ray.origin_world;
+  const double along = std::max(0.0, to_centre.dot(ray.direction_world) / ray.direction_world.squaredNorm());
+  // 1e-9: a ray that grazes the ball is asked about, not decided here.
+  return (to_centre - along * ray.direction_world).norm() <= radius * (1 + 1e-9);
+}
+
+double drawn_extent(const scene::BodySpec& body) {
+  const auto* plane = std::get_if<scene::PlaneSpec>(&body.shape);
+  return plane == nullptr ? 0.0 : plane->drawn_half_extent_m;
+}
+
+}  // namespace
+
+std::optional<PickedFace> pick_face(const scene::Scene& scene, const Laws& laws, const Ray& ray, const std::filesystem::path& root) {
+  if (!laws.intersect_ray_triangle) throw UserError("--modules", "no module here says where a ray meets a triangle", "Build a1, or name one: --modules a1=PATH.cpp");
+  const auto solids = scene::build_solids(scene, root);
+  std::optional<PickedFace> nearest;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    const scene::BodySpec& body = scene.bodies[i];
+    if (!meets_ball(ray, body.position_m, bounding_radius(solids[i].shape))) continue;
+    const TriangleMesh surface = surface_of(solids[i].shape, drawn_extent(body));
+    const auto world = [&](int vertex_index) -> Vector3d {
+      return body.position_m + body.world_from_body * surface.vertices[static_cast<std::size_t>(vertex_index)];
+    };
+    for (std::size_t k = 0; k < surface.faces.size(); ++k) {
+      const Face& face = surface.faces[k];
+      const auto hit = laws.intersect_ray_triangle(ray, {world(face[0]), world(face[1]), world(face[2])});
+      if (!hit || !(hit->t < least)) continue;
+      least = hit->t;
+      const Vector3d point_world = ray.origin_world + hit->t * ray.direction_world;
+      nearest = PickedFace{static_cast<int>(i), static_cast<int>(k), point_world, hit->t * ray.direction_world.norm()};
+    }
+  }
+  return nearest;
+}
+
+}  // namespace tumble::cli

@@ -1,0 +1,142 @@
+// tumble poke SCENE: pushes a body where a pixel, a ray or a point says, and shows what comes of it.
+#include <cmath>
+#include <cstdio>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "framework/cli/pick_face.h"
+#include "framework/cli/scene_run.h"
+#include "framework/render/camera.h"
+#include "framework/scene/build_shape.h"
+
+namespace tumble::cli {
+namespace {
+
+struct PokeWords : RunWords {
+  std::string pixel, ray, point;   // where; exactly one
+  std::string force;               // "FX,FY,FZ" [N]
+  double push_s = 0.0;
+};
+
+/// Where the force acts, and how it was found.
+struct Target {
+  std::string body;
+  Vector3d point_world;
+  std::string found;   // for people
+};
+
+std::string show(const Vector3d& v) {
+  const auto clean = [](double x) { return std::abs(x) < 1e-12 ? 0.0 : x; };   // no "-0" and no round-off in talk
+  return fmt::format("({:.4g}, {:.4g}, {:.4g})", clean(v.x()), clean(v.y()), clean(v.z()));
+}
+
+Ray ray_of_words(const PokeWords& words, const scene::Scene& scene) {
+  char rest = 0;
+  if (!words.pixel.empty()) {
+    double x = 0, y = 0;
+    const PictureSize size = parse_size(words.size);
+    if (std::sscanf(words.pixel.c_str(), "%lf,%lf%c", &x, &y, &rest) != 2 || !(x >= 0 && x < size.width && y >= 0 && y < size.height))
+      throw UserError("--pixel " + words.pixel, fmt::format("expected X,Y inside a picture of {}x{}; (0,0) is the top left corner", size.width, size.height),
+                      "Give the picture's size with --size where it is another.");
+    return render::pixel_ray(scene.camera, size.width, size.height, x + 0.5, y + 0.5);   // through the pixel's middle
+  }
+  Ray ray{Vector3d::Zero(), Vector3d::Zero()};
+  Vector3d& o = ray.origin_world;
+  Vector3d& d = ray.direction_world;
+  if (std::sscanf(words.ray.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf%c", &o.x(), &o.y(), &o.z(), &d.x(), &d.y(), &d.z(), &rest) != 6 || !o.allFinite() || !d.allFinite() || d.isZero(0))
+    throw UserError("--ray " + words.ray, "expected OX,OY,OZ,DX,DY,DZ: a point and a direction that is not 0", "For example --ray 0,-5,1,0,1,0.");
+  return ray;
+}
+
+Target named_point(const std::string& text, const scene::Scene& scene) {
+  const std::size_t comma = text.find(',');
+  if (comma == std::string::npos) throw UserError("--point " + text, "expected BODY,X,Y,Z", "For example --point box,0,0,1.");
+  return {text.substr(0, comma), parse_vector("--point BODY,", text.substr(comma + 1)), "point given by hand in scene " + scene.name};
+}
+
+Target find_target(const Context& context, const PokeWords& words, const scene::Scene& scene, const Laws& laws) {
+  if (!words.point.empty()) return named_point(words.point, scene);
+  const Ray ray = ray_of_words(words, scene);
+  const auto hit = pick_face(scene, laws, ray, context.root);
+  if (!hit)
+    throw UserError(words.pixel.empty() ? "--ray " + words.ray : "--pixel " + words.pixel, "nothing is hit: the ray from " + show(ray.origin_world) + " along " + show(ray.direction_world) + " passes all bodies",
+                    "Look at the scene first: tumble run " + scene.name + " --png look.png --at-s 0");
+  const std::string& body = scene.bodies[static_cast<std::size_t>(hit->body)].name;
+  return {body, hit->point_world, fmt::format("hit body '{}', face {}, at {} m, {:.4g} m from the eye", body, hit->face, show(hit->point_world), hit->distance)};
+}
+
+const scene::BodySpec& pushed_body(const scene::Scene& scene, const Target& target) {
+  std::string movable;
+  for (const auto& body : scene.bodies) {
+    if (body.name == target.body && !body.immovable) return body;
+    if (body.name == target.body) throw UserError("poke", "body '" + body.name + "' is immovable: no force moves it", "Aim at a movable body.");
+    if (!body.immovable && movable.size() < 200) movable += (movable.empty() ? "" : ", ") + body.name;
+  }
+  throw UserError("poke", "no body is named '" + target.body + "'", "Movable bodies: " + movable + ".");
+}
+
+/// The scene's checks speak of a run without the push: those that hold of any run stay, and a closed system's momentum is known.
+void replace_checks(const Context& context, scene::Scene& scene, const scene::PointForceSpec& push) {
+  std::erase_if(scene.checks, [](const scene::CheckSpec& check) { return check.kind != "gap" && check.kind != "restitution_law" && check.kind != "side_of_wall"; });
+  Vector3d momentum = push.duration_s * push.force_n;
+  double scale = momentum.norm();
+  const auto solids = scene::build_solids(scene, context.root);
+  bool is_closed = !scene.gravity_m_s2 && scene.point_forces.size() == 1;
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    if (solids[i].is_immovable()) {
+      is_closed = false;
+      continue;
+    }
+    const Vector3d own = solids[i].mass_kg * scene.bodies[i].velocity_m_s;
+    momentum += own;
+    scale += own.norm();
+  }
+  if (!is_closed) return;
+  scene::CheckSpec check;
+  check.kind = "momentum";
+  check.expected = {momentum.x(), momentum.y(), momentum.z()};
+  check.tolerance = 1e-9 * scale;
+  check.why = "exact: what was there, and force times time; 1e-9 of it for rounding";
+  scene.checks.insert(scene.checks.begin(), check);
+}
+
+void poke(Context& context, const PokeWords& words) {
+  if ((words.pixel.empty() ? 0 : 1) + (words.ray.empty() ? 0 : 1) + (words.point.empty() ? 0 : 1) != 1)
+    throw UserError("poke", "expected exactly one of --pixel, --ray, --point", "For example --pixel 320,240.");
+  scene::Scene scene = find_scene(context, words.scene);
+  const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(words.modules, context.registry));
+  if (!chosen.laws.wrench_of_point_force) throw UserError("--modules", "no module here turns a point force into force and torque", "Build a1, or name one: --modules a1=PATH.cpp");
+
+  const Vector3d force = parse_vector("--force", words.force);
+  const Target target = find_target(context, words, scene, chosen.laws);
+  const scene::BodySpec& body = pushed_body(scene, target);
+  const Wrench wrench = chosen.laws.wrench_of_point_force(force, target.point_world, body.position_m);
+  const std::string extra = fmt::format("{}\n  force {} N for {:.4g} s at an arm of {} m: force {} N on the centre of mass, torque {} N m about it", target.found, show(force),
+                                        words.push_s, show(target.point_world - body.position_m), show(wrench.force_world), show(wrench.torque_world));
+
+  const scene::PointForceSpec push{target.body, force, target.point_world, 0.0, words.push_s};
+  scene.point_forces.push_back(push);
+  scene.duration_s = std::max(scene.duration_s, words.push_s + 2.0);   // s: time to see what comes of it
+  scene.title += ", poked";
+  scene.about.clear();
+  replace_checks(context, scene, push);
+  run_and_tell(context, scene, chosen, words, extra);
+}
+
+}  // namespace
+
+void add_poke(CLI::App& app, Context& context) {
+  auto words = std::make_shared<PokeWords>();
+  CLI::App* verb = app.add_subcommand("poke", "Push a body where a pixel, a ray or a point says, and watch");
+  add_run_words(*verb, *words);
+  verb->add_option("--pixel", words->pixel, "X,Y in the scene's picture (see --size); (0,0) is the top left corner")->type_name("X,Y");
+  verb->add_option("--ray", words->ray, "OX,OY,OZ,DX,DY,DZ: from a point [m] along a direction, world")->type_name("RAY");
+  verb->add_option("--point", words->point, "BODY,X,Y,Z: a point that moves with the body, where it is at the start [m], world")->type_name("POINT");
+  verb->add_option("--force", words->force, "FX,FY,FZ [N], world, constant while it lasts")->required()->type_name("FORCE");
+  verb->add_option("--duration-s", words->push_s, "How long the force lasts [s]")->required()->check(CLI::PositiveNumber);
+  verb->footer("Example: tumble poke poked_box --pixel 300,260 --force 0,60,0 --duration-s 0.2 --video poke.mp4");
+  verb->callback([&context, words] { poke(context, *words); });
+}
+
+}  // namespace tumble::cli
