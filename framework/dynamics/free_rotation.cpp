@@ -133,12 +133,16 @@ Real complete_elliptic(Real complementary) {
   return std::acos(-1.0L) / (a + b);
 }
 
-/// Time after which w is the same again in the principal frame; infinite on the separatrix.
+struct RealTumbling {
+  Real modulus_m, period;
+};
+
+/// Modulus, and the time after which w is the same again in the principal frame; infinite on the separatrix.
 /// With I1 < I2 < I3 and the constants of (F.1) A = I3 (I3-I1) w3^2 + I2 (I2-I1) w2^2 = L^2 - 2 E I1 and
 /// B = I1 (I3-I1) w1^2 + I2 (I3-I2) w2^2 = 2 E I3 - L^2, in which nothing cancels:
 ///   larger = max(A (I3-I2), B (I2-I1)),  smaller = min(...),  m = smaller / larger,  T = 4 K(m) sqrt(I1 I2 I3 / larger)   (F.6)
 /// Source: Landau and Lifshitz, section 37.
-Real tumbling_period(const Real3& moments, const Real3& omega) {
+RealTumbling tumbling_of(const Real3& moments, const Real3& omega) {
   std::array<int, 3> order{0, 1, 2};
   std::sort(order.begin(), order.end(), [&](int a, int b) { return moments[a] < moments[b]; });
   const auto [i, j, k] = order;
@@ -148,17 +152,18 @@ Real tumbling_period(const Real3& moments, const Real3& omega) {
   const Real from_major = (I3 - I2) * (I3 * (I3 - I1) * w3), from_minor = (I2 - I1) * (I1 * (I3 - I1) * w1);
   const Real shared = I2 * (I2 - I1) * (I3 - I2) * w2;
   const Real larger = std::max(from_major, from_minor) + shared;
-  if (larger == 0.0L) return INFINITY;
+  if (larger == 0.0L) return {0.0L, INFINITY};  // at rest, or a spherical top
+  const Real modulus = (std::min(from_major, from_minor) + shared) / larger;
   const Real complementary = std::sqrt(std::abs(from_major - from_minor) / larger);
-  if (complementary == 0.0L) return INFINITY;
-  return 4.0L * complete_elliptic(complementary) * std::sqrt(I1 * I2 * I3 / larger);
+  if (complementary == 0.0L) return {modulus, INFINITY};
+  return {modulus, 4.0L * complete_elliptic(complementary) * std::sqrt(I1 * I2 * I3 / larger)};
 }
 
 /// After one period the body has turned about L by some angle; n periods turn it n times as far. So a long time costs one
 /// period and a rest, where the rest of the work is in the series.
 RealSpin turn_asymmetric(const Real3& I, const RealSpin& start, Real t) {
   constexpr Real kFewPeriods = 3.0L;  // below, going straight is no dearer
-  const Real period = tumbling_period(I, start.w);
+  const Real period = tumbling_of(I, start.w).period;
   if (!(std::abs(t) > kFewPeriods * period)) return turn_by_series(I, start, t);
 
   const Real periods = std::floor(t / period);
@@ -198,6 +203,11 @@ Spin FreeRotation::after(const Spin& start, double t) const {
   const Spin principal{start.world_from_body * body_from_principal_, body_from_principal_.conjugate() * start.omega_body};
   const Spin later = after_in_principal_frame(principal, t);
   return {(later.world_from_body * body_from_principal_.conjugate()).normalized(), body_from_principal_ * later.omega_body};
+}
+
+Tumbling FreeRotation::tumbling(const Vector3d& omega_body) const {
+  const RealTumbling found = tumbling_of(moments_.cast<Real>(), (body_from_principal_.conjugate() * omega_body).cast<Real>());
+  return {static_cast<double>(found.modulus_m), static_cast<double>(found.period)};
 }
 
 Spin FreeRotation::after_in_principal_frame(const Spin& start, double t) const {

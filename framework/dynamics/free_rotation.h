@@ -18,6 +18,12 @@ struct Spin {
   Vector3d omega_body = unset_vector();                         // (3), body frame [rad/s]
 };
 
+/// How an asymmetric top tumbles (Landau and Lifshitz, section 37).
+struct Tumbling {
+  double modulus_m = kUnset;  // of the elliptic functions: in [0, 1]; 1 on the separatrix
+  double period = kUnset;     // of the angular velocity seen by the body [s]; infinite on the separatrix
+};
+
 /// The free rotation of one body: made once, asked for any time.
 class FreeRotation {
  public:
@@ -30,6 +36,10 @@ class FreeRotation {
   ///         amplifies rounding (turning about the middle axis); unit to round-off
   /// Cost: spherical and symmetric tops O(1); others O(|w| t) up to a few periods of the tumbling, then O(period)
   Spin after(const Spin& start, double t) const;
+
+  /// Modulus and period of the tumbling. Spherical and symmetric tops have modulus 0.
+  /// @param omega_body  (3), body frame [rad/s]
+  Tumbling tumbling(const Vector3d& omega_body) const;
 
   /// Smallest relative difference of two moments at which a body counts as a symmetric top: what computing them leaves.
   static constexpr double kSameMoment = 4e-16;

@@ -46,12 +46,15 @@ double gap_rate(const Contact& contact, const Body& a, const Velocity& velocity_
 template <class Value>
 using Slips = std::vector<std::pair<Value, std::string>>;
 
+inline const std::string kNotANumber =
+    "no number came out: infinite mass (use inverse_mass and inverse_inertia_body, never mass or inertia_body) or a division by 0";
+
 /// The words of the slip whose answer was found; `otherwise` when it is none of them.
 inline std::string likely(double found, const Slips<double>& slips, const std::string& otherwise) {
   for (const auto& [gives, words] : slips) {
     if (std::abs(found - gives) <= 1e-9 * (1.0 + std::abs(gives))) return words;
   }
-  return std::isfinite(found) ? otherwise : "infinite mass: use inverse_mass and inverse_inertia_body, never mass or inertia_body";
+  return std::isfinite(found) ? otherwise : kNotANumber;
 }
 
 template <int n>
@@ -60,7 +63,7 @@ std::string likely(const Eigen::Matrix<double, n, 1>& found, const Slips<Eigen::
   for (const auto& [gives, words] : slips) {
     if ((found - gives).norm() <= 1e-9 * (1.0 + gives.norm())) return words;
   }
-  return found.allFinite() ? otherwise : "infinite mass: use inverse_mass and inverse_inertia_body, never mass or inertia_body";
+  return found.allFinite() ? otherwise : kNotANumber;
 }
 
 // ---- Seeded random scenes --------------------------------------------------------------------------------------------
