@@ -32,12 +32,11 @@ VectorXd odeint_step(const OdeFunction& f, double t, const VectorXd& y, double h
 VectorXd newton_euler(const RigidBodyState& state, const Inertia& inertia, const Wrench& wrench) {
   const Quaterniond& q = state.world_from_body;
   const Vector3d omega_body = inertia.inverse_inertia_body * q.normalized().inverse()._transformVector(state.angular_momentum_world);
-  RigidBodyState rate;
-  rate.com_world = inertia.inverse_mass * state.momentum_world;
-  rate.world_from_body = q * Quaterniond(0.0, omega_body.x() / 2, omega_body.y() / 2, omega_body.z() / 2);
-  rate.momentum_world = wrench.force_world;
-  rate.angular_momentum_world = wrench.torque_world;
-  return pack(rate);
+  const Quaterniond turning = q * Quaterniond(0.0, omega_body.x() / 2, omega_body.y() / 2, omega_body.z() / 2);
+  return pack({.com_world = state.momentum_world * inertia.inverse_mass,
+               .world_from_body = turning,
+               .momentum_world = wrench.force_world,
+               .angular_momentum_world = wrench.torque_world});
 }
 
 RootResult bracketed_root(const ScalarFunction& f, const ScalarFunction&, double low, double high, double tolerance) {
