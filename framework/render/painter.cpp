@@ -109,9 +109,9 @@ class Painter::Body {
     return text.data();
   }
 
-  GlName link(const char* vertex_source, const char* fragment_source) {
+  GlName link(const std::string& vertex_source, const std::string& fragment_source) {
     const GlName program = gl_.CreateProgram();
-    const std::pair<GlEnum, const char*> parts[] = {{gl::kVertexShader, vertex_source}, {gl::kFragmentShader, fragment_source}};
+    const std::pair<GlEnum, const char*> parts[] = {{gl::kVertexShader, vertex_source.c_str()}, {gl::kFragmentShader, fragment_source.c_str()}};
     for (const auto& [kind, source] : parts) {
       const GlName shader = gl_.CreateShader(kind);
       gl_.ShaderSource(shader, 1, &source, nullptr);

@@ -1,6 +1,8 @@
 /// The programs that run for each vertex and pixel (GLSL 3.30). Internal to framework/render: included by painter.cpp alone.
 #pragma once
 
+#include <string>
+
 namespace tumble::render {
 
 // Everything is computed in linear light; the framebuffer is sRGB, so the gamma curve is applied when a pixel is stored.
@@ -50,7 +52,7 @@ void main() {}
 )";
 
 // Share of the key light that arrives: nine comparisons, each interpolated between four texels by the hardware filter.
-#define TUMBLE_SHADER_SHADOW R"(
+inline const std::string kLightShare = R"(
 uniform sampler2DShadow shadow_map;
 uniform mat4 shadow_from_world;
 uniform float shadow_texel;
@@ -62,9 +64,9 @@ float light_share(vec3 p) {
     for (int j = -1; j <= 1; ++j) sum += texture(shadow_map, s + vec3(1.4 * shadow_texel * vec2(i, j), 0.0));
   return sum / 9.0;
 }
-)"
+)";
 
-inline constexpr const char* kBodyFragment = R"(#version 330 core
+inline const std::string kBodyFragment = std::string(R"(#version 330 core
 in vec3 at_world;
 in vec3 normal_world;
 in vec3 at_local;
@@ -75,7 +77,7 @@ uniform vec3 to_light;
 uniform vec3 to_fill;
 uniform float shadow_bias;
 out vec4 pixel;
-)" TUMBLE_SHADER_SHADOW R"(
+)") + kLightShare + R"(
 void main() {
   vec3 n = normalize(normal_world);
   vec3 v = normalize(eye - at_world);
@@ -149,13 +151,13 @@ void main() {
 
 // The ground is a shadow on light ground under a grid. Lines are as wide as a pixel at least, and fade where they would
 // be closer than a few pixels. Every fifth line is stronger.
-inline constexpr const char* kGroundFragment = R"(#version 330 core
+inline const std::string kGroundFragment = std::string(R"(#version 330 core
 in vec3 at_world;
 uniform vec3 centre;
 uniform float reach;
 uniform float spacing;
 out vec4 pixel;
-)" TUMBLE_SHADER_SHADOW R"(
+)") + kLightShare + R"(
 float lines(vec2 p, float step, float width) {
   vec2 q = p / step;
   vec2 blur = max(fwidth(q), vec2(1e-6));

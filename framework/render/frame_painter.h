@@ -1,0 +1,33 @@
+/// One run, drawn frame by frame: stage, painter and captions together. Internal to framework/render.
+#pragma once
+
+#include "framework/render/captions.h"
+#include "framework/render/painter.h"
+#include "framework/render/stage.h"
+
+namespace tumble::render {
+
+class FramePainter {
+ public:
+  /// @throws UserError as make_picture
+  FramePainter(const scene::Scene& scene, const Trajectory& run, const PictureOptions& options, std::string label = "", Words words = Words::kAll);
+
+  Image paint(std::size_t frame);
+  Image paint_at(double time_s) { return paint(stage_.frame_at(time_s)); }
+  double end_s() const { return run_.frames.back().time; }
+
+ private:
+  const scene::Scene& scene_;
+  const Trajectory& run_;
+  PictureOptions options_;
+  std::string label_;
+  Words words_;
+  Stage stage_;
+  Painter painter_;
+  TextWriter writer_;
+};
+
+/// What a PNG of this run says of itself.
+ImageNotes notes_of(const scene::Scene& scene, const Trajectory& run, double time_s);
+
+}  // namespace tumble::render

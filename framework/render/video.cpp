@@ -1,0 +1,54 @@
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "framework/core/error.h"
+#include "framework/core/files.h"
+#include "framework/render/frame_painter.h"
+#include "framework/render/picture.h"
+#include "framework/render/video_writer.h"
+
+namespace tumble::render {
+namespace {
+
+constexpr int kSeam = 2;   // between views side by side [pixels]
+
+// Instants of the run that the pictures of a video show, the last one held for as long as an eye needs to see it.
+std::vector<double> instants(double end_s, const PictureOptions& options) {
+  if (!(options.video_rate_hz > 0) || !(options.speed > 0)) throw UserError("video", "the rate and the speed must be above 0", "Choose others.");
+  std::vector<double> times;
+  const double step = options.speed / options.video_rate_hz;
+  const auto count = static_cast<std::size_t>(std::floor(end_s / step + 1e-9)) + 1;
+  for (std::size_t i = 0; i < count; ++i) times.push_back(static_cast<double>(i) * step);
+  times.insert(times.end(), static_cast<std::size_t>(std::ceil(options.video_rate_hz / 2)), end_s);
+  return times;
+}
+
+}  // namespace
+
+void write_side_by_side_video(const std::filesystem::path& mp4, const scene::Scene& scene, const std::vector<LabelledRun>& runs,
+                              const PictureOptions& options) {
+  if (runs.empty()) throw UserError(mp4.string(), "there is no run to draw", "Give one at least.");
+  std::vector<std::unique_ptr<FramePainter>> painters;
+  double end = 0.0;
+  for (const LabelledRun& run : runs) {
+    painters.push_back(std::make_unique<FramePainter>(scene, run.trajectory, options, run.label));
+    end = std::max(end, painters.back()->end_s());
+  }
+  const int count = static_cast<int>(runs.size());
+  Image whole(count * options.width + (count - 1) * kSeam, options.height);
+  make_whole(mp4, [&](const std::filesystem::path& draft) {
+    VideoWriter video(draft, whole.width, whole.height, options.video_rate_hz);
+    for (const double time : instants(end, options)) {
+      for (int i = 0; i < count; ++i) paste(painters[i]->paint_at(time), i * (options.width + kSeam), 0, whole);
+      video.add(whole);
+    }
+    video.finish();
+  });
+}
+
+void write_video(const std::filesystem::path& mp4, const scene::Scene& scene, const Trajectory& run, const PictureOptions& options) {
+  write_side_by_side_video(mp4, scene, {{run, ""}}, options);
+}
+
+}  // namespace tumble::render

@@ -1,0 +1,108 @@
+#include "framework/render/video_writer.h"
+
+#include <cerrno>
+#include <csignal>
+#include <stdexcept>
+#include <vector>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "framework/core/error.h"
+
+namespace tumble::render {
+namespace {
+
+// A pipe's reader may be gone: that is an error to tell, not a signal to die of.
+class WithoutPipeSignal {
+ public:
+  WithoutPipeSignal() {
+    struct sigaction ignore {};
+    ignore.sa_handler = SIG_IGN;
+    sigaction(SIGPIPE, &ignore, &before_);
+  }
+  ~WithoutPipeSignal() { sigaction(SIGPIPE, &before_, nullptr); }
+
+ private:
+  struct sigaction before_ {};
+};
+
+std::vector<std::string> ffmpeg_words(const std::filesystem::path& mp4, int width, int height, double rate_hz) {
+  return {"ffmpeg", "-nostdin", "-hide_banner", "-loglevel", "error", "-y",
+          "-f", "rawvideo", "-pix_fmt", "rgb24", "-video_size", fmt::format("{}x{}", width, height), "-framerate", fmt::format("{:g}", rate_hz), "-i", "pipe:0",
+          "-an", "-vf", "crop=trunc(iw/2)*2:trunc(ih/2)*2",
+          // Plays in every browser, from the first byte on; no date and no encoder's name, so that the same pictures give the same file.
+          "-c:v", "libx264", "-preset", "veryfast", "-crf", "21", "-pix_fmt", "yuv420p", "-threads", "2", "-movflags", "+faststart",
+          "-fflags", "+bitexact", "-flags:v", "+bitexact", "-map_metadata", "-1", "-f", "mp4", mp4.string()};
+}
+
+}  // namespace
+
+VideoWriter::VideoWriter(const std::filesystem::path& mp4, int width, int height, double rate_hz) : mp4_(mp4), width_(width), height_(height) {
+  int pipe_ends[2];
+  complaints_ = memfd_create("ffmpeg", MFD_CLOEXEC);
+  if (complaints_ < 0 || pipe2(pipe_ends, O_CLOEXEC) != 0) throw UserError(mp4.string(), "no pipe can be made", "Close some programs and try again.");
+  const std::vector<std::string> words = ffmpeg_words(mp4, width, height, rate_hz);
+  std::vector<char*> arguments;
+  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  ffmpeg_ = fork();
+  if (ffmpeg_ == 0) {
+    dup2(pipe_ends[0], 0);
+    dup2(complaints_, 1);
+    dup2(complaints_, 2);
+    execvp(arguments[0], arguments.data());
+    _exit(127);
+  }
+  close(pipe_ends[0]);
+  input_ = pipe_ends[1];
+  if (ffmpeg_ < 0) throw UserError(mp4.string(), "no process can be made for ffmpeg", "Close some programs and try again.");
+}
+
+VideoWriter::~VideoWriter() {
+  if (input_ >= 0) close(input_);
+  if (complaints_ >= 0) close(complaints_);
+  if (ffmpeg_ > 0) {
+    kill(ffmpeg_, SIGKILL);
+    waitpid(ffmpeg_, nullptr, 0);
+  }
+}
+
+std::string VideoWriter::complaints() const {
+  std::string text(2000, '\0');
+  const ssize_t count = pread(complaints_, text.data(), text.size(), 0);
+  text.resize(count > 0 ? static_cast<std::size_t>(count) : 0);
+  while (!text.empty() && text.back() == '\n') text.pop_back();
+  return text;
+}
+
+void VideoWriter::finish() {
+  close(input_);
+  input_ = -1;
+  int status = 0;
+  while (waitpid(ffmpeg_, &status, 0) < 0 && errno == EINTR) {}
+  ffmpeg_ = -1;
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return;
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 127)
+    throw UserError(mp4_.string(), "ffmpeg is not installed", "Install it (apt-get install ffmpeg), or ask for pictures instead of a video.");
+  const std::string words = complaints();
+  throw UserError(mp4_.string(), "ffmpeg gave up" + (words.empty() ? std::string() : ": " + words), "Look at the disk's free space and at ffmpeg's words.");
+}
+
+void VideoWriter::add(const Image& image) {
+  if (image.width != width_ || image.height != height_) throw std::logic_error("a video's pictures are all of one size");
+  const WithoutPipeSignal guard;
+  const auto* bytes = image.rgb.data();
+  for (std::size_t left = image.rgb.size(); left > 0;) {
+    const ssize_t written = write(input_, bytes, left);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return finish();   // it has ended before its time: this tells why
+    bytes += written;
+    left -= static_cast<std::size_t>(written);
+  }
+}
+
+}  // namespace tumble::render
