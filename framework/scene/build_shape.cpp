@@ -1,9 +1,13 @@
 #include "framework/scene/build_shape.h"
 
 #include <cmath>
+#include <cstdlib>
+#include <map>
 #include <numbers>
+#include <tuple>
 
 #include "framework/core/error.h"
+#include "framework/geometry/solid.h"
 
 namespace tumble::scene {
 namespace {
@@ -30,13 +34,53 @@ UnitSolid box(const Vector3d& h) {
   return {Box{h}, 8.0 * h.prod(), moments.asDiagonal()};
 }
 
-UnitSolid unit_solid(const BodySpec& body, const std::filesystem::path& scene_file, const std::filesystem::path& root) {
-  (void)scene_file;
-  (void)root;
+std::filesystem::path find_root(const std::filesystem::path& scene_file) {
+  if (const char* told = std::getenv("TUMBLE_ROOT")) return told;
+  const auto start = scene_file.empty() ? std::filesystem::current_path() : std::filesystem::absolute(scene_file).parent_path();
+  for (auto folder = start; folder != folder.root_path(); folder = folder.parent_path()) {
+    if (std::filesystem::is_directory(folder / "models")) return folder;
+  }
+  return std::filesystem::current_path();
+}
+
+std::filesystem::path find_model(const std::string& file, const std::filesystem::path& scene_file, const std::filesystem::path& root) {
+  const auto beside = scene_file.parent_path() / file;
+  if (std::filesystem::exists(beside)) return beside;
+  return (root.empty() ? find_root(scene_file) : root) / "models" / file;
+}
+
+/// The models of a scene, each read once.
+class Models {
+ public:
+  Models(const std::filesystem::path& scene_file, const std::filesystem::path& root) : scene_file_(scene_file), root_(root) {}
+
+  const UnitSolid& get(const ModelSpec& spec, const std::string& body) {
+    const Key key{spec.file, spec.object, spec.metres_per_unit};
+    const auto known = read_.find(key);
+    return known != read_.end() ? known->second : read_.emplace(key, read(spec, body)).first->second;
+  }
+
+ private:
+  using Key = std::tuple<std::string, std::string, double>;
+
+  UnitSolid read(const ModelSpec& spec, const std::string& body) const {
+    try {
+      SolidModel model = load_solid(find_model(spec.file, scene_file_, root_), spec.object, spec.metres_per_unit);
+      return {std::move(model.solid), model.volume, model.inertia_per_density_body / model.volume};
+    } catch (const UserError& error) {
+      throw UserError("body '" + body + "': " + error.where(), error.problem(), error.remedy());
+    }
+  }
+
+  std::filesystem::path scene_file_, root_;
+  std::map<Key, UnitSolid> read_;
+};
+
+UnitSolid unit_solid(const BodySpec& body, Models& models) {
   if (const auto* spec = std::get_if<SphereSpec>(&body.shape)) return sphere(spec->radius_m);
   if (const auto* spec = std::get_if<BoxSpec>(&body.shape)) return box(spec->half_extents_m);
-  if (std::holds_alternative<PlaneSpec>(body.shape)) return {};
-  throw UserError("body '" + body.name + "'", "models cannot be loaded yet");
+  if (const auto* spec = std::get_if<ModelSpec>(&body.shape)) return models.get(*spec, body.name);
+  return {};  // a half-space has neither volume nor inertia
 }
 
 Solid with_mass(const BodySpec& body, const UnitSolid& unit) {
@@ -51,12 +95,14 @@ Solid with_mass(const BodySpec& body, const UnitSolid& unit) {
 }  // namespace
 
 Solid build_solid(const BodySpec& body, const std::filesystem::path& scene_file, const std::filesystem::path& root) {
-  return with_mass(body, unit_solid(body, scene_file, root));
+  Models models(scene_file, root);
+  return with_mass(body, unit_solid(body, models));
 }
 
 std::vector<Solid> build_solids(const Scene& scene, const std::filesystem::path& root) {
+  Models models(scene.file, root);
   std::vector<Solid> solids;
-  for (const auto& body : scene.bodies) solids.push_back(build_solid(body, scene.file, root));
+  for (const auto& body : scene.bodies) solids.push_back(with_mass(body, unit_solid(body, models)));
   return solids;
 }
 
