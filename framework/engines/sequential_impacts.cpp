@@ -31,7 +31,7 @@ Approach fastest_approach(const Laws& laws, const TouchingPair& pair, const Body
 
 // Not by the law that is being judged: a record of what the impulse did.
 double normal_velocity(const Contact& contact, const Body& a, const Body& b) {
-  const auto of_point = [&](const Body& body) { return body.velocity_world + body.omega_world.cross(contact.point_world - body.com_world); };
+  const auto of_point = [&](const Body& body) -> Vector3d { return body.velocity_world + body.omega_world.cross(contact.point_world - body.com_world); };
   return contact.normal_b_to_a_world.dot(of_point(a) - of_point(b));
 }
 
