@@ -117,7 +117,7 @@ TEST(UserForce, ClickOnABlockMovesAndTurnsIt) {
                     .slip = "one of the parts: the tests of each part tell which",
                     .handout = "handouts/a1_impulse.md#user-selected-force"};
   if (!hit) {
-    ADD_FAILURE() << tell(story, "a hit", "a miss", "");
+    report_failure(tell(story, "a hit", "a miss", ""));
     return;
   }
   const Wrench wrench = student().wrench_of_point_force({0, 0, -8}, ray.origin_world + hit->t * ray.direction_world, body.com_world);

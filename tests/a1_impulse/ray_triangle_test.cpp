@@ -14,7 +14,7 @@ Ray straight_down(double x, double y) { return {{x, y, 2}, {0, 0, -1}}; }
 void expect_hit(const std::optional<RayHit>& found, double t, const Vector3d& weights, Story story, const Slips<double>& t_slips = {},
                 const Slips<Vector3d>& weight_slips = {}) {
   if (!found) {
-    ADD_FAILURE() << tell(story, "a hit at t = " + show(t), "a miss", "");
+    report_failure(tell(story, "a hit at t = " + show(t), "a miss", ""));
     return;
   }
   const std::string words = story.slip;

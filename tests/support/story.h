@@ -51,11 +51,20 @@ std::string show(const Eigen::MatrixBase<Derived>& m) {
   return text.str();
 }
 
+/// Fails the test with this story. The first three say it; more of them would only hide the next test's.
+inline void report_failure(const std::string& told) {
+  constexpr int kStoriesATest = 3;
+  const ::testing::TestInfo* test = ::testing::UnitTest::GetInstance()->current_test_info();
+  const int told_before = test ? test->result()->total_part_count() : 0;
+  if (told_before < kStoriesATest) ADD_FAILURE() << told;
+  if (told_before == kStoriesATest) ADD_FAILURE() << "\n  and more of the kind, left out here";
+}
+
 /// Absolute comparison. NaN never passes.
 inline void expect_near(double found, double expected, double tolerance, const std::string& unit, const Story& story) {
   const double difference = std::abs(found - expected);
   if (difference <= tolerance) return;
-  ADD_FAILURE() << tell(story, show(expected), show(found), unit, show(difference) + " (allowed " + show(tolerance) + ")");
+  report_failure(tell(story, show(expected), show(found), unit, show(difference) + " (allowed " + show(tolerance) + ")"));
 }
 
 /// Largest component.
@@ -65,11 +74,20 @@ void expect_near(const Eigen::MatrixBase<A>& found, const Eigen::MatrixBase<B>& 
   const bool same_size = found.rows() == expected.rows() && found.cols() == expected.cols();
   const double difference = same_size && found.allFinite() ? (found - expected).cwiseAbs().maxCoeff() : std::nan("");
   if (difference <= tolerance) return;
-  ADD_FAILURE() << tell(story, show(expected), show(found), unit, show(difference) + " (allowed " + show(tolerance) + ")");
+  const std::string off_by = show(difference) + " (allowed " + show(tolerance) + ")";
+  constexpr Eigen::Index kReadable = 16;  // numbers in a line
+  if (same_size && expected.size() > kReadable && found.allFinite()) {
+    Eigen::Index row = 0, column = 0;
+    (found - expected).cwiseAbs().maxCoeff(&row, &column);
+    const std::string where = " at [" + std::to_string(row) + "], the worst of " + std::to_string(expected.size());
+    report_failure(tell(story, show(expected(row, column)) + where, show(found(row, column)), unit, off_by));
+  } else {
+    report_failure(tell(story, show(expected), show(found), unit, off_by));
+  }
 }
 
 inline void expect_true(bool holds, const std::string& expected, const std::string& found, const Story& story) {
-  if (!holds) ADD_FAILURE() << tell(story, expected, found, "");
+  if (!holds) report_failure(tell(story, expected, found, ""));
 }
 
 }  // namespace tumble::testing

@@ -23,9 +23,7 @@ Matrix3d inertia_in_world(const Matrix3d& inertia_body, const Quaterniond& world
 }
 
 VectorXd rigid_body_derivative(const RigidBodyState& state, const Inertia& inertia, const Wrench& wrench) {
-  // (A2.5), multiplied from the right, so that no world inverse inertia is ever formed.
   const Quaterniond& q = state.world_from_body;
-  const Matrix3d R = q.toRotationMatrix();
   const Vector3d omega_world = inertia_in_world(inertia.inverse_inertia_body, q) * state.angular_momentum_world;
 
   // (A2.4). Eigen's constructor takes w first, its product is Hamilton's.
