@@ -5,6 +5,7 @@ namespace tumble::cli {
 
 void add_verbs(CLI::App& app, Context& context) {
   add_run(app, context);
+  add_inspect(app, context);
   add_release(app, context);
   add_truths(app, context);
 }

@@ -34,9 +34,12 @@ TriangleMesh icosahedron() {
   return mesh;
 }
 
-TriangleMesh unit_sphere() {
+}  // namespace
+
+TriangleMesh subdivided_sphere(int subdivisions) {
+  require(subdivisions >= 0, "subdivided_sphere: subdivisions must not be negative");
   TriangleMesh mesh = icosahedron();
-  for (int level = 0; level < kSphereSubdivisions; ++level) {
+  for (int level = 0; level < subdivisions; ++level) {
     std::map<std::pair<int, int>, int> known;
     std::vector<Face> finer;
     finer.reserve(4 * mesh.faces.size());
@@ -51,9 +54,11 @@ TriangleMesh unit_sphere() {
   return mesh;
 }
 
+namespace {
+
 TriangleMesh surface(const Sphere& sphere, double) {
   if (sphere.radius <= 0.0) return {};  // a point has no surface
-  TriangleMesh mesh = unit_sphere();
+  TriangleMesh mesh = subdivided_sphere(kSphereSubdivisions);
   for (Vector3d& vertex : mesh.vertices) vertex *= sphere.radius;
   return mesh;
 }

@@ -32,6 +32,10 @@ using Shape = std::variant<Sphere, Box, HalfSpace, MeshSolid>;
 /// @param extent  [m]; only for a half-space
 TriangleMesh surface_of(const Shape& shape, double extent = 50.0);
 
+/// Unit sphere from an icosahedron whose faces are cut in four again and again: 20 * 4^subdivisions faces, vertices on the sphere.
+/// @param subdivisions  >= 0
+TriangleMesh subdivided_sphere(int subdivisions);
+
 /// Radius of the smallest ball about the body's origin that holds the shape; infinite for a half-space. [m]
 double bounding_radius(const Shape& shape);
 
