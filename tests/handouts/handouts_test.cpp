@@ -1,0 +1,141 @@
+// Handouts are true: what they cite exists, what cites them is answered, and the points they print are the rubric's.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "framework/grading/rubric.h"
+
+namespace tumble::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kRoot = TUMBLE_SOURCE_DIR;
+const fs::path kPrivate = kRoot / "solutions_private";  // absent from what students get
+
+std::string contents_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+/// First group of each match.
+std::set<std::string> all(const std::string& text, const std::string& pattern) {
+  const std::regex regex(pattern);
+  std::set<std::string> found;
+  for (std::sregex_iterator it(text.begin(), text.end(), regex), end; it != end; ++it) found.insert((*it)[1]);
+  return found;
+}
+
+struct Assignment {
+  std::string id;      // "a1"
+  std::string folder;  // "a1_impulse"
+  std::string header, handout;
+  fs::path handout_file() const { return kRoot / "handouts" / (folder + ".md"); }
+};
+
+std::vector<Assignment> assignments() {
+  std::vector<Assignment> found;
+  for (const auto& entry : fs::directory_iterator(kRoot / "assignments")) {
+    const std::string folder = entry.path().filename();
+    if (!fs::exists(entry.path() / "rubric.json")) continue;
+    Assignment assignment{folder.substr(0, folder.find('_')), folder, contents_of(entry.path() / (folder + ".h")), ""};
+    assignment.handout = contents_of(assignment.handout_file());
+    found.push_back(assignment);
+  }
+  std::sort(found.begin(), found.end(), [](const Assignment& a, const Assignment& b) { return a.id < b.id; });
+  return found;
+}
+
+std::set<std::string> anchors_of(const std::string& handout) { return all(handout, "<a id=\"([a-z0-9-]+)\""); }
+
+std::string sources_below(const std::vector<std::string>& folders) {
+  std::string text;
+  for (const std::string& folder : folders)
+    for (const auto& entry : fs::recursive_directory_iterator(kRoot / folder))
+      if (entry.path().extension() == ".h" || entry.path().extension() == ".cpp") text += contents_of(entry.path()) + "\n";
+  return text;
+}
+
+TEST(Handouts, NumberTheEquationsOfTheHeader) {
+  for (const Assignment& a : assignments()) {
+    const std::string A = "A" + a.id.substr(1);
+    // In a header an equation's number stands at the end of its line; in a handout it opens the paragraph, below its anchor.
+    const std::set<std::string> in_header = all(a.header, " \\(" + A + "\\.(\\d+)[a-z]?\\)\\n");
+    const std::set<std::string> in_handout = all(a.handout, "\\n\\*\\*\\(" + A + "\\.(\\d+)\\)");
+    const std::set<std::string> anchored = all(a.handout, "<a id=\"eq-" + a.id + "-(\\d+)\"></a>\\n\\*\\*\\(" + A + "\\.\\d+\\)");
+    EXPECT_GE(in_header.size(), 8u) << a.folder << ": the equations of the header were not found";
+    EXPECT_EQ(in_header, in_handout) << a.folder;
+    EXPECT_EQ(in_handout, anchored) << a.folder;
+  }
+}
+
+TEST(Handouts, HaveTheAnchorsThatSourcesPointTo) {
+  const std::string sources = sources_below({"assignments", "framework", "tests"}) + (fs::exists(kPrivate) ? sources_below({"solutions_private"}) : "");
+  for (const Assignment& a : assignments()) {
+    const std::set<std::string> anchors = anchors_of(a.handout);
+    // Anchors put together at run time end in a dash here; the equations' test covers them.
+    const std::set<std::string> cited = all(sources, "handouts/" + a.folder + "\\.md#([a-z0-9-]*[a-z0-9])(?![a-z0-9-])");
+    EXPECT_GE(cited.size(), 8u) << a.folder << ": no citations were found";
+    for (const std::string& anchor : cited) EXPECT_TRUE(anchors.contains(anchor)) << a.handout_file().filename() << " has no #" << anchor;
+  }
+}
+
+TEST(Handouts, LinkToWhatExists) {
+  for (const Assignment& a : assignments()) {
+    const std::set<std::string> anchors = anchors_of(a.handout);
+    for (const std::string& link : all(a.handout, "\\]\\(([^)\\s]+)\\)")) {
+      if (link.starts_with("http")) continue;
+      if (link.starts_with("#")) EXPECT_TRUE(anchors.contains(link.substr(1))) << a.handout_file() << ": " << link;
+      else EXPECT_TRUE(fs::exists(kRoot / "handouts" / link)) << a.handout_file() << ": " << link;
+    }
+  }
+}
+
+TEST(Handouts, NameTestsAndScenesThatExist) {
+  for (const Assignment& a : assignments()) {
+    const std::string tests = sources_below({"tests/" + a.folder});
+    const auto exists = [&tests](const std::string& suite, const std::string& name) {
+      return std::regex_search(tests, std::regex("TEST(_F)?\\(" + suite + ", " + name + "\\)"));
+    };
+    for (const std::string& test : all(a.handout, "`([A-Z]\\w+\\.[A-Z]\\w+)`"))
+      EXPECT_TRUE(exists(test.substr(0, test.find('.')), test.substr(test.find('.') + 1))) << a.handout_file() << " names " << test;
+    for (const std::string& suite : all(a.header, "(\\w+)\\.\\*")) EXPECT_TRUE(exists(suite, "\\w+")) << a.folder << ".h names " << suite << ".*";
+    for (const std::string& scene : all(a.handout, "\\./tumble (?:run|poke) ([a-z0-9_]+)")) {
+      bool found = false;
+      for (const Assignment& other : assignments()) found = found || fs::exists(kRoot / "assignments" / other.folder / "scenes" / (scene + ".json"));
+      EXPECT_TRUE(found) << a.handout_file() << " runs the scene " << scene;
+    }
+  }
+}
+
+double points_of(const grading::Rubric& rubric, const std::string& level) {
+  double sum = 0;
+  for (const grading::RubricItem& item : rubric.items) sum += item.level == level ? item.points : 0;
+  return sum;
+}
+
+TEST(Handouts, PrintThePointsOfTheRubric) {
+  for (const Assignment& a : assignments()) {
+    const std::string table = a.handout.substr(std::min(a.handout.size(), a.handout.find("<!-- points: " + a.id + " -->")));
+    const grading::Rubric open = grading::read_rubric(kRoot / "assignments" / a.folder / "rubric.json");
+    for (const std::string level : {"basic", "intermediate", "advanced"}) {
+      std::smatch row;
+      ASSERT_TRUE(std::regex_search(table, row, std::regex("\\| " + level + " \\|[^|]*\\| (\\d+) \\| (\\d+) \\| (\\d+) \\|"))) << a.id << " " << level;
+      EXPECT_EQ(std::stod(row[1]), points_of(open, level)) << a.handout_file() << ", " << level << ", public";
+      EXPECT_EQ(std::stod(row[1]) + std::stod(row[2]), std::stod(row[3])) << a.handout_file() << ", " << level;
+      if (!fs::exists(kPrivate)) continue;
+      const grading::Rubric hidden = grading::read_rubric(kPrivate / a.folder / "rubric_hidden.json", true);
+      EXPECT_EQ(std::stod(row[2]), points_of(hidden, level)) << a.handout_file() << ", " << level << ", hidden";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tumble::testing
