@@ -30,7 +30,7 @@ enum class Look { kPlain, kMuted, kGood, kWarning, kBad };
 
 struct Cell {
   std::string text;
-  std::string link;          // result of link_to, or "#id"; empty: none
+  std::string link = {};     // result of link_to, or "#id"; empty: none
   Look look = Look::kPlain;
 };
 

@@ -1,0 +1,30 @@
+/// Builds and runs the program that checks a student's file.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/cli/verb.h"
+
+namespace tumble::cli {
+
+struct CheckWords {
+  std::string id;
+  std::optional<std::filesystem::path> file;   // instead of the stub
+  std::vector<std::string> patterns;           // of test names
+};
+
+/// Declares "a1 [FILE] [PATTERN...]" on a verb and gives what was said, when asked after the parse.
+void add_check_words(CLI::App& verb, std::vector<std::string>& rest, std::string& id);
+/// @throws UserError for an unknown assignment or a missing file
+CheckWords read_check_words(const Context& context, const std::string& id, const std::vector<std::string>& rest);
+
+/// The file that is checked.
+std::filesystem::path checked_file(const Context& context, const CheckWords& words);
+
+/// Builds, then runs the public tests, which print their table. A compiler's error is a verdict with its place.
+ExitCode check_once(const Context& context, const CheckWords& words);
+
+}  // namespace tumble::cli

@@ -1,0 +1,90 @@
+// tumble grade a1 FOLDER: a folder of submissions, graded.
+#include <cstdio>
+#include <memory>
+#include <thread>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "framework/cli/verb.h"
+#include "framework/grading/grade.h"
+#include "framework/grading/grade_pages.h"
+
+namespace tumble::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Words {
+  std::string id, folder, out;
+  int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  bool no_media = false;
+};
+
+std::string span_of(double seconds) {
+  if (seconds < 90.0) return fmt::format("{:.0f} s", seconds);
+  if (seconds < 5400.0) return fmt::format("{:.0f} min", seconds / 60.0);
+  return fmt::format("{:.1f} h", seconds / 3600.0);
+}
+
+// What a terminal must not act on: control characters of a name.
+std::string printable(std::string text) {
+  for (char& c : text)
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  return text;
+}
+
+void tell(const grading::GradeProgress& progress) {
+  std::string line = fmt::format("[{}/{}]", progress.done, progress.total);
+  if (!progress.finished.empty()) line += ' ' + printable(progress.finished);
+  if (progress.done < progress.total) line += progress.left_s >= 0.0 ? " · about " + span_of(progress.left_s) + " left" : " ...";
+  fmt::print(stderr, "{}\n", line);
+  std::fflush(stderr);
+}
+
+void print_table(const std::vector<grading::Grade>& grades) {
+  std::size_t widest = 10;
+  for (const auto& grade : grades) widest = std::max(widest, printable(grade.name).size());
+  for (const auto& grade : grades) {
+    fmt::print("{:<{}}  {}", printable(grade.name), widest, grading::summary_of(grade));
+    if (grade.taken_over) fmt::print("  (unchanged since the last run)");
+    if (!grade.change.empty() && !grade.taken_over) fmt::print("  ({})", grade.change);
+    for (const auto& note : grade.notes) fmt::print("  note: {}", printable(note));
+    if (grade.state == grading::GradeState::kNothingToCompile) fmt::print(": {}", printable(grade.story));
+    fmt::print("\n");
+  }
+}
+
+void grade(Context& context, const Words& words) {
+  const modules::ModuleKind& kind = context.registry.find(words.id);
+  const grading::Course course{context.root, context.build, &context.registry, context.command_line};
+  grading::judge_of(course, words.id);  // refused before anything is looked at
+  const auto submissions = grading::find_submissions(words.folder, kind);
+  grading::GradeOptions options;
+  options.jobs = words.jobs;
+  options.media = !words.no_media;
+  options.progress = tell;
+  const fs::path out = words.out.empty() ? fs::path("out") / ("grade_" + words.id) : fs::path(words.out);
+  fmt::print(stderr, "{} submission{} of {}, {} at a time, into {}\n", submissions.size(), submissions.size() == 1 ? "" : "s", words.id, words.jobs, out.string());
+  const auto grades = grading::grade_submissions(course, words.id, submissions, fs::absolute(out), options);
+  print_table(grades);
+  fmt::print("wrote {} and {}\n", (out / "index.html").string(), (out / "gradebook.csv").string());
+  for (const auto& grade : grades)
+    if (!grade.is_final()) context.exit = ExitCode::kOurBug;
+}
+
+}  // namespace
+
+void add_grade(CLI::App& app, Context& context) {
+  auto words = std::make_shared<Words>();
+  CLI::App* verb = app.add_subcommand("grade", "Grade a folder of submissions: scores, stories, pictures, a gradebook");
+  verb->add_option("assignment", words->id, "Which, e.g. a1")->required()->type_name("ID");
+  verb->add_option("folder", words->folder, "One submission a sub-folder")->required()->type_name("FOLDER");
+  verb->add_option("--out", words->out, "Where results go; default out/grade_ID. A run that was ended goes on from there")->type_name("FOLDER");
+  verb->add_option("--jobs", words->jobs, "Submissions at a time")->check(CLI::Range(1, 256))->capture_default_str();
+  verb->add_flag("--no-media", words->no_media, "Without pictures and videos: seconds instead of minutes a submission");
+  verb->footer("Exit: 0 all graded, 2 something to repair, 3 the grader failed somewhere (those scores are blank; run it again).");
+  verb->callback([&context, words] { grade(context, *words); });
+}
+
+}  // namespace tumble::cli

@@ -1,0 +1,91 @@
+// tumble watch a1 [FILE] [PATTERN...]: the student's loop on every save, until Ctrl-C.
+#include <poll.h>
+#include <sys/inotify.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <ctime>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "framework/cli/check_program.h"
+
+namespace tumble::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Tells when a file was saved, however the editor does it: written in place, or written aside and renamed over it. The
+/// folder is watched, not the file, since the second way puts a new file under the old name.
+class SaveWatch {
+ public:
+  explicit SaveWatch(const fs::path& file) : name_(file.filename().string()), fd_(::inotify_init1(IN_CLOEXEC)) {
+    const fs::path folder = file.parent_path();
+    if (fd_ < 0 || ::inotify_add_watch(fd_, folder.c_str(), IN_CLOSE_WRITE | IN_MOVED_TO) < 0)
+      throw UserError(folder.string(), std::string("cannot be watched: ") + std::strerror(errno), "Use ./tumble check after each change.");
+  }
+  ~SaveWatch() { ::close(fd_); }
+  SaveWatch(const SaveWatch&) = delete;
+  SaveWatch& operator=(const SaveWatch&) = delete;
+
+  /// Waits for a save, then until the editor has been quiet for a moment: some write twice.
+  void wait() {
+    constexpr int kForever = -1, kQuietMs = 60;
+    while (!saved(kForever)) {}
+    while (saved(kQuietMs)) {}
+  }
+
+ private:
+  bool saved(int timeout_ms) {
+    pollfd waiting{fd_, POLLIN, 0};
+    if (::poll(&waiting, 1, timeout_ms) <= 0) return false;
+    alignas(inotify_event) char buffer[4096];
+    const ssize_t size = ::read(fd_, buffer, sizeof buffer);
+    bool is_ours = false;
+    for (ssize_t at = 0; at < size;) {
+      const auto* event = reinterpret_cast<const inotify_event*>(buffer + at);
+      if (event->len > 0 && name_ == event->name) is_ours = true;
+      at += static_cast<ssize_t>(sizeof(inotify_event) + event->len);
+    }
+    return is_ours;
+  }
+
+  std::string name_;
+  int fd_;
+};
+
+void watch(Context& context, const CheckWords& words) {
+  const fs::path file = checked_file(context, words);
+  SaveWatch saves(file);
+  const bool screen = ::isatty(STDOUT_FILENO) == 1;
+  for (;;) {
+    if (screen) fmt::print("\033[2J\033[3J\033[H");
+    // The test program and the compiler have endings of their own; what the loop itself meets is told and outlived.
+    try {
+      check_once(context, words);
+    } catch (const UserError& error) {
+      fmt::print("{}\n", error.what());
+    }
+    const std::time_t now = std::time(nullptr);
+    char clock[16];
+    std::strftime(clock, sizeof clock, "%H:%M:%S", std::localtime(&now));
+    fmt::print("\n{}  waiting for {} to be saved; Ctrl-C ends\n", clock, file.filename().string());
+    std::fflush(stdout);
+    saves.wait();
+  }
+}
+
+}  // namespace
+
+void add_watch(CLI::App& app, Context& context) {
+  auto id = std::make_shared<std::string>();
+  auto rest = std::make_shared<std::vector<std::string>>();
+  CLI::App* verb = app.add_subcommand("watch", "The same as check, on every save");
+  add_check_words(*verb, *rest, *id);
+  verb->callback([&context, id, rest] { watch(context, read_check_words(context, *id, *rest)); });
+}
+
+}  // namespace tumble::cli

@@ -1,0 +1,27 @@
+/// From a submission's source to a shared object.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "framework/grading/course.h"
+
+namespace tumble::grading {
+
+struct BuiltSubmission {
+  enum class Outcome { kBuilt, kRefused, kGraderFault };
+  Outcome outcome = Outcome::kGraderFault;
+  std::string said;   // the compiler's words, cut short; or why it could not be asked
+};
+
+/// Compiles in the sandbox, where nothing of the project but headers can be seen.
+/// @param object  written where the outcome is kBuilt
+BuiltSubmission build_submission(const Course& course, const std::string& id, const std::filesystem::path& source, const std::filesystem::path& object);
+
+/// Compiles as the build does, in the open: for code of our own only.
+BuiltSubmission build_own(const Course& course, const std::filesystem::path& source, const std::filesystem::path& object);
+
+/// "file.cpp:12:5: error: ..." lines alone, paths shortened to the file's name; all of it where there is no such line.
+std::string compiler_story(const std::string& said, const std::filesystem::path& source);
+
+}  // namespace tumble::grading

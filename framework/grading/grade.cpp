@@ -1,0 +1,85 @@
+#include "framework/grading/grade.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "framework/core/files.h"
+#include "framework/grading/build_submission.h"
+#include "framework/grading/grade_files.h"
+#include "framework/grading/grade_key.h"
+#include "framework/grading/grade_pages.h"
+#include "framework/grading/scoring.h"
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The shared object, gone at the end of the scope.
+struct ObjectFile {
+  fs::path path;
+  ~ObjectFile() {
+    std::error_code ignored;
+    fs::remove(path, ignored);
+  }
+};
+
+void judge(const Course& course, const std::string& id, const Submission& submission, const Rubric& rubric, const ObjectFile& object, Grade& grade) {
+  if (!submission.problem.empty()) {
+    grade.state = GradeState::kNothingToCompile;
+    grade.story = "This submission " + submission.problem;
+    grade.tests = score_nothing(rubric, Verdict::kNotAttempted, "nothing to compile");
+    return;
+  }
+  const BuiltSubmission built = build_submission(course, id, submission.source, object.path);
+  if (built.outcome == BuiltSubmission::Outcome::kGraderFault) {
+    grade.story = "The compiler could not be asked: " + built.said;
+    grade.tests = score_nothing(rubric, Verdict::kGraderFault, grade.story);
+  } else if (built.outcome == BuiltSubmission::Outcome::kRefused) {
+    grade.state = GradeState::kDoesNotCompile;
+    grade.story = compiler_story(built.said, submission.source);
+    grade.tests = score_nothing(rubric, Verdict::kWrong, "the file does not compile, so no test ran");
+  } else {
+    grade.tests = score_tests(rubric, judge_module(course, id, object.path));
+    grade.state = GradeState::kJudged;
+  }
+}
+
+std::string record_of(const GradeKey& key) {
+  return fmt::format("Submission {} · grader {}{} · Tumble", key.submission, key.grader, key.pictures.empty() ? "" : " · pictures " + key.pictures);
+}
+
+}  // namespace
+
+bool Grade::is_final() const {
+  return state != GradeState::kGraderFault &&
+         std::none_of(tests.begin(), tests.end(), [](const ScoredTest& t) { return t.result.verdict == Verdict::kGraderFault; });
+}
+
+Grade grade_submission(const Course& course, const std::string& id, const Submission& submission, const fs::path& folder, const GradeOptions& options) {
+  const modules::ModuleKind& kind = course.registry->find(id);
+  const Rubric rubric = rubric_of(course, id);
+  fs::remove_all(folder);
+  fs::create_directories(folder);
+
+  Grade grade;
+  grade.name = submission.name;
+  grade.folder = folder.filename().string();
+  grade.notes = submission.notes;
+  const ObjectFile object{folder / ("." + kind.id + ".so")};
+  judge(course, id, submission, rubric, object, grade);
+  add_up(grade);
+  if (options.media && grade.state == GradeState::kJudged)
+    grade.media = make_media(course, id, options.scenes.empty() ? scenes_of(course, id) : options.scenes, object.path, folder / "media", options.media_options);
+
+  const GradeKey key{submission_digest(submission), grader_digest(course, id), pictures_digest(course, id, options)};
+  const std::string results = gradescope_json(grade);
+  write_whole(folder / "results.json", results);
+  submission_page(kind, grade, record_of(key)).write(folder / "index.html");
+  write_whole(folder / "record.json", record_json(grade, key, digest(results)));
+  return grade;
+}
+
+}  // namespace tumble::grading

@@ -1,0 +1,57 @@
+#include "framework/grading/grade_key.h"
+
+#include <algorithm>
+#include <fstream>
+
+#include <fmt/format.h>
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+
+}  // namespace
+
+std::string grader_digest(const Course& course, const std::string& id) {
+  const std::string folder = course.registry->find(id).folder;
+  std::vector<fs::path> files = {course.build / "bin" / ("judge_" + id), course.build / "bin" / ("worker_" + id), course.build / "bin" / "sandbox_init",
+                                 course.root / "assignments" / folder / "rubric.json", course.root / "solutions_private" / folder / "rubric_hidden.json",
+                                 "/proc/self/exe", "/usr/bin/g++"};
+  std::error_code ignored;
+  std::vector<fs::path> headers;
+  for (const auto& entry : fs::directory_iterator(course.root / "assignments" / folder, ignored))
+    if (entry.path().extension() == ".h") headers.push_back(entry.path());
+  std::sort(headers.begin(), headers.end());
+  files.insert(files.end(), headers.begin(), headers.end());
+  std::string digests;
+  for (const fs::path& file : files) digests += digest_of_file(file) + ' ';
+  return digest(digests);
+}
+
+std::string pictures_digest(const Course& course, const std::string& id, const GradeOptions& options) {
+  if (!options.media) return "";
+  const MediaOptions& m = options.media_options;
+  std::string text = fmt::format("{} {} {} {} {} ", m.width, m.height, m.samples, m.rate_hz, m.video);
+  for (const fs::path& scene : options.scenes.empty() ? scenes_of(course, id) : options.scenes) text += scene.filename().string() + digest_of_file(scene) + ' ';
+  return digest(text + digest_of_file(built_module(course, id, "reference")));
+}
+
+std::string submission_digest(const Submission& submission) {
+  std::string text = submission.problem + '\0';
+  for (const std::string& note : submission.notes) text += note + '\0';
+  return digest(text + (submission.source.empty() ? "" : digest_of_file(submission.source)));
+}
+
+std::string folder_of(const std::string& name) {
+  constexpr std::size_t kLongest = 80;  // bytes: a file system takes 255, and drafts need room
+  std::string plain;
+  for (const char c : name) {
+    const bool keep = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
+    plain += keep ? c : '_';
+  }
+  if (plain.size() > kLongest) plain.resize(kLongest);
+  const bool taken = plain.empty() || plain[0] == '.' || plain[0] == '-' || plain == "index.html" || plain == "gradebook.csv" || plain == "ledger.json" || plain == "times.json";
+  return plain == name && !taken ? plain : "_" + plain + "-" + digest(name).substr(0, 8);
+}
+
+}  // namespace tumble::grading

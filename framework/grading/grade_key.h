@@ -1,0 +1,18 @@
+/// What a grade depends on, as digests.
+#pragma once
+
+#include "framework/grading/grade.h"
+#include "framework/grading/grade_files.h"
+
+namespace tumble::grading {
+
+/// Digest of everything but the submission: programs, tests, rubrics, headers, compiler.
+std::string grader_digest(const Course& course, const std::string& id);
+/// Digest of the scenes and of how they are drawn; empty where no pictures are wanted.
+std::string pictures_digest(const Course& course, const std::string& id, const GradeOptions& options);
+std::string submission_digest(const Submission& submission);
+
+/// A name for a folder below OUT: the submission's own where it is plain, else made plain with a digest that keeps it its own.
+std::string folder_of(const std::string& name);
+
+}  // namespace tumble::grading

@@ -1,0 +1,240 @@
+// All submissions of a folder: a process for each, a few at a time, so that what happens in one stays in one.
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "framework/core/files.h"
+#include "framework/grading/grade.h"
+#include "framework/grading/grade_files.h"
+#include "framework/grading/grade_key.h"
+#include "framework/grading/grade_pages.h"
+#include "framework/grading/scoring.h"
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+struct Work {
+  const Submission* submission;
+  std::string folder;
+  GradeKey key;
+  std::optional<GradeRecord> old;
+  GradeRecord record;       // as it stands in the end
+  double seconds = 0.0;
+};
+
+class Batch {
+ public:
+  Batch(const Course& course, const std::string& id, const fs::path& out, const GradeOptions& options)
+      : course_(course), id_(id), out_(out), options_(options) {}
+
+  std::vector<Grade> run(const std::vector<Submission>& submissions) {
+    fs::create_directories(out_);
+    plan(submissions);
+    grade_open_ones();
+    return write_overview();
+  }
+
+ private:
+  // Takes over what is whole and unchanged.
+  void plan(const std::vector<Submission>& submissions) {
+    const std::string grader = grader_digest(course_, id_), pictures = pictures_digest(course_, id_, options_);
+    std::set<std::string> folders;
+    for (const Submission& submission : submissions) {
+      Work work{&submission, folder_of(submission.name), {submission_digest(submission), grader, pictures}, {}, {}, 0.0};
+      if (!folders.insert(work.folder).second) throw UserError(submission.name, "two submissions have this name", "Give each a name of its own.");
+      std::error_code ignored;
+      fs::remove_all(draft_of(work), ignored);  // of a run that was ended in the middle
+      work.old = read_record(out_ / work.folder / "record.json");
+      if (work.old && work.old->results_digest != digest_of_file(out_ / work.folder / "results.json")) work.old.reset();
+      work_.push_back(std::move(work));
+    }
+    for (Work& work : work_) {
+      if (is_current(work)) {
+        work.record = *work.old;
+        work.record.grade.taken_over = true;
+        ++done_;
+      } else {
+        open_.push_back(&work);
+      }
+    }
+  }
+
+  bool is_current(const Work& work) const {
+    if (!work.old || !work.old->grade.is_final()) return false;
+    const GradeKey& old = work.old->key;
+    const bool pictures_do = !options_.media || old.pictures == work.key.pictures;
+    return old.submission == work.key.submission && old.grader == work.key.grader && pictures_do;
+  }
+
+  void grade_open_ones() {
+    start_ = Clock::now();
+    tell("");
+    std::map<pid_t, std::pair<Work*, Clock::time_point>> running;
+    std::size_t next = 0;
+    while (next < open_.size() || !running.empty()) {
+      if (next < open_.size() && running.size() < static_cast<std::size_t>(std::max(1, options_.jobs))) {
+        Work* work = open_[next++];
+        running[start(*work)] = {work, Clock::now()};
+        continue;
+      }
+      int status = 0;
+      const pid_t child = ::waitpid(-1, &status, 0);
+      if (child < 0 && errno == EINTR) continue;
+      if (child < 0) throw std::runtime_error("a grading process was lost");
+      const auto it = running.find(child);
+      if (it == running.end()) continue;
+      Work& work = *it->second.first;
+      work.seconds = std::chrono::duration<double>(Clock::now() - it->second.second).count();
+      running.erase(it);
+      settle(work, status);
+      ++done_;
+      ++fresh_;
+      tell(work.submission->name);
+    }
+  }
+
+  fs::path draft_of(const Work& work) const { return out_ / (".making-" + work.folder); }
+
+  pid_t start(const Work& work) {
+    std::fflush(nullptr);
+    const pid_t child = ::fork();
+    if (child < 0) throw std::runtime_error("no process can be made");
+    if (child > 0) return child;
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    int code = 0;
+    try {
+      // The draft's name must not show in what is written: it is named as it will be.
+      GradeOptions own = options_;
+      own.progress = {};
+      grade_submission(course_, id_, *work.submission, draft_of(work) / work.folder, own);
+    } catch (const std::exception& error) {
+      std::error_code ignored;
+      fs::create_directories(draft_of(work), ignored);
+      if (std::FILE* file = std::fopen((draft_of(work) / "fault.txt").c_str(), "w")) {
+        std::fputs(error.what(), file);
+        std::fclose(file);
+      }
+      code = 1;
+    }
+    std::fflush(nullptr);
+    ::_exit(code);
+  }
+
+  // Puts a finished submission in place. A fault of ours leaves an old result standing.
+  void settle(Work& work, int status) {
+    const fs::path draft = draft_of(work), made = draft / work.folder, place = out_ / work.folder;
+    std::optional<GradeRecord> record = status == 0 ? read_record(made / "record.json") : std::nullopt;
+    if (!record) {
+      record = write_fault(work, status);
+    }
+    record->grade.name = work.submission->name;
+    const bool old_stands = work.old && work.old->grade.is_final() && work.old->key.submission == work.key.submission && !record->grade.is_final();
+    if (old_stands) {
+      work.record = *work.old;
+      work.record.grade.change = "the grader failed on a new run; this is the result of the earlier one";
+    } else {
+      if (work.old) record->grade.change = change(*work.old, *record);
+      if (!record->grade.change.empty()) write_whole(made / "record.json", record_json(record->grade, record->key, record->results_digest));
+      const fs::path old = draft / "old";
+      if (fs::exists(place)) fs::rename(place, old);
+      fs::rename(made, place);
+      work.record = *record;
+    }
+    std::error_code ignored;
+    fs::remove_all(draft, ignored);
+  }
+
+  static std::string change(const GradeRecord& old, const GradeRecord& now) {
+    if (old.grade.score == now.grade.score || !old.grade.is_final() || !now.grade.is_final()) return "";
+    const char* reason = old.key.submission != now.key.submission ? "the submission changed" : "the grader changed";
+    return fmt::format("{} -> {}: {}", points_text(old.grade.score), points_text(now.grade.score), reason);
+  }
+
+  // The grading process itself failed: a page that says so, and no score.
+  GradeRecord write_fault(const Work& work, int status) {
+    std::string why;
+    if (std::FILE* file = std::fopen((draft_of(work) / "fault.txt").c_str(), "r")) {
+      char buffer[4096];
+      why.assign(buffer, std::fread(buffer, 1, sizeof buffer, file));
+      std::fclose(file);
+    }
+    if (why.empty()) why = WIFSIGNALED(status) ? fmt::format("the grading process ended with signal {}", WTERMSIG(status)) : "the grading process left no result";
+    GradeRecord record;
+    record.key = work.key;
+    Grade& grade = record.grade;
+    grade.name = work.submission->name;
+    grade.folder = work.folder;
+    grade.notes = work.submission->notes;
+    grade.story = why;
+    grade.tests = score_nothing(rubric_of(course_, id_), Verdict::kGraderFault, why);
+    add_up(grade);
+    const fs::path made = draft_of(work) / work.folder;
+    fs::remove_all(made);
+    const std::string results = gradescope_json(grade);
+    record.results_digest = digest(results);
+    write_whole(made / "results.json", results);
+    submission_page(course_.registry->find(id_), grade, "Tumble").write(made / "index.html");
+    write_whole(made / "record.json", record_json(grade, record.key, record.results_digest));
+    return record;
+  }
+
+  void tell(const std::string& finished) const {
+    if (!options_.progress) return;
+    GradeProgress progress{done_, work_.size(), finished, -1.0};
+    if (fresh_ > 0) {
+      const double spent = std::chrono::duration<double>(Clock::now() - start_).count();
+      progress.left_s = spent / static_cast<double>(fresh_) * static_cast<double>(work_.size() - done_);
+    }
+    options_.progress(progress);
+  }
+
+  std::vector<Grade> write_overview() {
+    std::vector<Grade> grades;
+    std::vector<GradeRecord> records;
+    nlohmann::ordered_json times = {{"command", course_.command}, {"seconds", nlohmann::ordered_json::object()}};
+    for (Work& work : work_) {
+      work.record.grade.name = work.submission->name;
+      grades.push_back(work.record.grade);
+      records.push_back(work.record);
+      if (work.seconds > 0.0) times["seconds"][work.folder] = work.seconds;
+    }
+    const modules::ModuleKind& kind = course_.registry->find(id_);
+    write_whole(out_ / "gradebook.csv", gradebook_csv(kind.title, grades));
+    write_whole(out_ / "ledger.json", ledger_json(id_, records));
+    index_page(kind, grades).write(out_ / "index.html");
+    write_whole(out_ / "times.json", times.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
+    return grades;
+  }
+
+  const Course& course_;
+  const std::string id_;
+  const fs::path out_;
+  const GradeOptions& options_;
+  std::vector<Work> work_;
+  std::vector<Work*> open_;
+  std::size_t done_ = 0, fresh_ = 0;
+  Clock::time_point start_;
+};
+
+}  // namespace
+
+std::vector<Grade> grade_submissions(const Course& course, const std::string& id, const std::vector<Submission>& submissions, const fs::path& out,
+                                     const GradeOptions& options) {
+  return Batch(course, id, out, options).run(submissions);
+}
+
+}  // namespace tumble::grading

@@ -1,1 +1,0 @@
-#include "framework/trajectory/trajectory.h"

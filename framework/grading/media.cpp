@@ -1,0 +1,125 @@
+#include "framework/grading/media.h"
+
+#include <algorithm>
+
+#include "framework/engines/run.h"
+#include "framework/grading/call_log.h"
+#include "framework/modules/load.h"
+#include "framework/render/picture.h"
+#include "framework/scene/load_scene.h"
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+using modules::AnyModule;
+using modules::ModuleKind;
+
+bool needs(const scene::Scene& scene, const std::string& id) { return std::find(scene.needs.begin(), scene.needs.end(), id) != scene.needs.end(); }
+
+AnyModule reference_of(const Course& course, const ModuleKind& kind) {
+  const fs::path file = built_module(course, kind.id, "reference");
+  return fs::exists(file) ? modules::load_module(kind, file) : nullptr;
+}
+
+// The laws of a scene with one module's functions in their place: right neighbours around it, so that a slip is seen once.
+Laws laws_around(const Course& course, const ModuleKind& kind, const AnyModule& module, const scene::Scene& scene) {
+  Laws laws = library_laws();
+  for (const bool needed : {false, true}) {
+    if (needed) {  // over what nobody asked for stand the library's laws of motion
+      const Laws library = library_laws();
+      laws.integrate_step = library.integrate_step;
+      laws.state_derivative = library.state_derivative;
+      laws.renormalize = library.renormalize;
+      laws.find_impact_time = library.find_impact_time;
+    }
+    for (const ModuleKind* other : course.registry->all())
+      if (other->id != kind.id && needs(scene, other->id) == needed)
+        if (const AnyModule reference = reference_of(course, *other)) other->bind(reference, laws);
+  }
+  kind.bind(module, laws);
+  return laws;
+}
+
+struct Run {
+  Trajectory trajectory;
+  std::string story;
+  bool attempted = true;
+};
+
+// Runs to the end, or to where the submission fails; what was recorded before stays.
+Run run(const scene::Scene& scene, const Laws& laws) {
+  Run result;
+  TrajectoryRecorder recorder;
+  try {
+    engines::run_scene(scene, laws, {}, recorder);
+  } catch (const NotImplemented& missing) {
+    result.story = missing.what();
+    result.attempted = false;
+  } catch (const std::exception& error) {
+    result.story = error.what();
+  }
+  result.trajectory = recorder.trajectory();
+  if (result.story.empty()) result.story = result.trajectory.stopped_by;
+  else result.trajectory.stopped_by = result.story;
+  return result;
+}
+
+Run run_submission(const Course& course, const ModuleKind& kind, const fs::path& submission, const scene::Scene& scene, const MediaOptions& options) {
+  WorkerOptions worker;
+  worker.id = kind.id;
+  worker.module = submission;
+  worker.session_wall_s = options.wall_s;
+  worker.callback_budget = 100'000'000;  // a scene is thousands of steps; the wall limit comes first
+  call_log() = CallLog{};
+  WorkerConnection connection(worker);
+  Laws laws = laws_around(course, kind, kind.make_proxy(connection), scene);
+  laws.impulse_source = laws.integrator_source = "submission";
+  return run(scene, laws);
+}
+
+void draw(const scene::Scene& scene, const std::vector<render::LabelledRun>& runs, const fs::path& folder, const MediaOptions& options,
+          const Course& course, SceneMedia& media) {
+  render::PictureOptions picture;
+  picture.width = options.width;
+  picture.height = options.height;
+  picture.samples = options.samples;
+  picture.video_rate_hz = options.rate_hz;
+  picture.root = course.root;
+  media.picture = scene.name + ".png";
+  render::write_side_by_side_picture(folder / media.picture, scene, runs, render::telling_instant(runs.back().trajectory), picture);
+  if (!options.video) return;
+  media.video = scene.name + ".mp4";
+  render::write_side_by_side_video(folder / media.video, scene, runs, picture);
+}
+
+}  // namespace
+
+std::vector<SceneMedia> make_media(const Course& course, const std::string& id, const std::vector<fs::path>& scenes, const fs::path& submission,
+                                   const fs::path& folder, const MediaOptions& options, const std::function<void(const std::string&)>& told) {
+  const ModuleKind& kind = course.registry->find(id);
+  const AnyModule reference = reference_of(course, kind);
+  fs::create_directories(folder);
+  std::vector<SceneMedia> all;
+  for (const fs::path& file : scenes) {
+    const scene::Scene scene = scene::load_scene(file);
+    if (told) told(scene.title);
+    SceneMedia media;
+    media.scene = scene.name;
+    media.title = scene.title;
+    media.about = scene.about;
+    const Run theirs = run_submission(course, kind, submission, scene, options);
+    media.story = theirs.story;
+    media.attempted = theirs.attempted;
+    if (theirs.story.empty()) media.checks = engines::judge_run(scene, theirs.trajectory);
+    const Run ours = reference ? run(scene, laws_around(course, kind, reference, scene)) : Run{};
+    std::vector<render::LabelledRun> runs;
+    if (!theirs.trajectory.frames.empty()) runs.push_back({theirs.trajectory, "submission"});
+    if (!ours.trajectory.frames.empty()) runs.push_back({ours.trajectory, "reference"});
+    if (!runs.empty()) draw(scene, runs, folder, options, course, media);
+    all.push_back(std::move(media));
+  }
+  return all;
+}
+
+}  // namespace tumble::grading
