@@ -1,0 +1,169 @@
+// What a solid is not: one test for each refusal, with the words that a user reads; and what is repaired.
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "framework/core/error.h"
+#include "framework/geometry/closed.h"
+#include "framework/geometry/mass_properties.h"
+#include "framework/geometry/shape.h"
+#include "framework/geometry/solid.h"
+#include "models/catalogue.h"
+#include "models/surfaces.h"
+
+namespace tumble::testing {
+namespace {
+
+TriangleMesh unit_box() { return models::box({0, 0, 0}, {1, 1, 1}); }
+
+TriangleMesh broken(const std::string& name) {
+  for (const models::Model& model : models::broken_catalogue()) {
+    if (model.file == "broken/" + name + ".3ds") return model.objects.front().mesh;
+  }
+  ADD_FAILURE() << "no model broken/" << name;
+  return {};
+}
+
+TriangleMesh joined(TriangleMesh a, const TriangleMesh& b) {
+  const int first = static_cast<int>(a.vertices.size());
+  a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
+  for (const Face& f : b.faces) a.faces.push_back({first + f[0], first + f[1], first + f[2]});
+  return a;
+}
+
+TriangleMesh turned_inside_out(TriangleMesh mesh) {
+  for (Face& face : mesh.faces) std::swap(face[1], face[2]);
+  return mesh;
+}
+
+/// The first defect has this kind, says these words, and has a remedy.
+void expect_refused(const TriangleMesh& mesh, DefectKind kind, const std::string& words, const std::string& place) {
+  const ClosedReport report = check_closed(mesh);
+  ASSERT_FALSE(report.is_closed()) << "accepted, but should say: " << words;
+  const Defect& defect = report.defects.front();
+  EXPECT_EQ(defect.kind, kind) << defect.problem;
+  EXPECT_NE(defect.problem.find(words), std::string::npos) << "says: " << defect.problem << "\nexpected the words: " << words;
+  EXPECT_NE(defect.problem.find(place), std::string::npos) << "says: " << defect.problem << "\nexpected the place: " << place;
+  EXPECT_FALSE(defect.remedy.empty());
+}
+
+TEST(Closed, SinglePolygonIsRefused) { expect_refused(broken("single_polygon"), DefectKind::kSinglePolygon, "a single polygon", "(0, 0, 0)-(1, 0, 0)"); }
+TEST(Closed, TerrainIsRefused) { expect_refused(broken("terrain"), DefectKind::kTerrain, "a terrain", "(0, 0, 0)-(0.25, 0, 0.133681)"); }
+TEST(Closed, MissingFaceIsRefused) { expect_refused(broken("missing_face"), DefectKind::kMissingFace, "a face is missing", "(0.5, -0.5, 0.5)-(-0.5, -0.5, 0.5)"); }
+TEST(Closed, CracksAreRefused) { expect_refused(broken("cracked"), DefectKind::kCrack, "at most 0.001 m apart", "(0.5, -0.5, 0.5)-(-0.5, -0.5, 0.5)"); }
+TEST(Closed, LampshadeIsRefused) { expect_refused(broken("lampshade"), DefectKind::kLampshade, "one polygon thick", "(0.5, 0, 0)"); }
+TEST(Closed, EdgeOfThreeFacesIsRefused) { expect_refused(broken("edge_of_three_faces"), DefectKind::kEdgeOfManyFaces, "belongs to 3 faces", "(0.5, -0.5, 0.5)-(0.5, 0.5, 0.5)"); }
+TEST(Closed, DisagreeingOrientationIsRefused) { expect_refused(broken("mixed_winding"), DefectKind::kOrientation, "disagree on which side is outside along 4 edges", "faces 2 and 5"); }
+TEST(Closed, ZeroVolumeIsRefused) { expect_refused(broken("zero_volume"), DefectKind::kZeroVolume, "encloses no volume", "flat"); }
+TEST(Closed, NoFacesIsRefused) { expect_refused(broken("no_faces"), DefectKind::kNoFaces, "no faces", ""); }
+
+TEST(Closed, OneTriangleMissingOfASphereIsAHole) {
+  TriangleMesh mesh = subdivided_sphere(2);
+  mesh.faces.pop_back();
+  expect_refused(mesh, DefectKind::kMissingFace, "a hole (a face is missing): 3 open edges", "first at (");
+}
+
+TEST(Closed, LayersOnEachOtherAreALampshade) {
+  // Both sides modelled as faces on the same corners: closed by count, without thickness.
+  TriangleMesh mesh = broken("lampshade");
+  const std::vector<Face> outside = mesh.faces;
+  for (const Face& f : outside) mesh.faces.push_back({f[0], f[2], f[1]});
+  expect_refused(mesh, DefectKind::kLampshade, "a wall one polygon thick, like a lampshade", "faces 0 and 32");
+}
+
+TEST(Closed, NotANumberIsRefusedAtItsVertex) {
+  TriangleMesh mesh = unit_box();
+  mesh.vertices[5].y() = std::numeric_limits<double>::quiet_NaN();
+  expect_refused(mesh, DefectKind::kNotFinite, "vertex 5 is not finite", "nan");
+}
+
+TEST(Closed, InfinityIsRefusedAtItsVertex) {
+  TriangleMesh mesh = unit_box();
+  mesh.vertices[3].x() = std::numeric_limits<double>::infinity();
+  expect_refused(mesh, DefectKind::kNotFinite, "vertex 3 is not finite", "inf");
+}
+
+TEST(Closed, IndexWithoutVertexIsRefused) {
+  TriangleMesh mesh = unit_box();
+  mesh.faces[7][1] = 8;
+  expect_refused(mesh, DefectKind::kBadIndex, "face 7 names vertex 8, and there are vertices 0 to 7", "");
+}
+
+TEST(Closed, MoebiusStripClosedByADiscHasOneSide) {
+  // The projective plane on six vertices: every edge in two faces, and no choice of sides.
+  TriangleMesh mesh{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}, {1, 0, 1}},
+                    {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1}, {1, 2, 4}, {2, 3, 5}, {3, 4, 1}, {4, 5, 2}, {5, 1, 3}}};
+  expect_refused(mesh, DefectKind::kOneSided, "one-sided", "faces");
+}
+
+TEST(Closed, PartInsideAnotherThatIsNoCavityIsRefused) {
+  const TriangleMesh mesh = joined(models::box({0, 0, 0}, {4, 4, 4}), models::box({1, 1, 1}, {2, 2, 2}));
+  expect_refused(mesh, DefectKind::kNestedOutward, "its volume would count twice", "(1.5, 1.5, 1.5)");
+}
+
+TEST(Closed, SolidIsAcceptedWithoutNotice) {
+  const ClosedReport report = check_closed(unit_box());
+  EXPECT_TRUE(report.is_closed());
+  EXPECT_TRUE(report.notices.empty());
+  EXPECT_EQ(report.parts, 1);
+}
+
+TEST(Closed, WhollyInvertedSurfaceIsTurnedWithANotice) {
+  const ClosedReport report = check_closed(turned_inside_out(unit_box()));
+  ASSERT_TRUE(report.is_closed());
+  EXPECT_DOUBLE_EQ(signed_volume(report.mesh), 1.0);
+  ASSERT_EQ(report.notices.size(), 1u);
+  EXPECT_EQ(report.notices[0], "the surface was inside out: all its faces were turned");
+}
+
+TEST(Closed, OneInvertedPartOfTwoIsTurnedWithItsPlace) {
+  const ClosedReport report = check_closed(joined(unit_box(), turned_inside_out(models::box({2, 0, 0}, {3, 1, 1}))));
+  ASSERT_TRUE(report.is_closed());
+  EXPECT_DOUBLE_EQ(signed_volume(report.mesh), 2.0);
+  ASSERT_EQ(report.notices.size(), 1u);
+  EXPECT_NE(report.notices[0].find("about (2.5, 0.5, 0.5) was inside out"), std::string::npos) << report.notices[0];
+}
+
+TEST(Closed, CavityIsKept) {
+  const ClosedReport report = check_closed(joined(models::box({0, 0, 0}, {4, 4, 4}), turned_inside_out(models::box({1, 1, 1}, {2, 2, 2}))));
+  ASSERT_TRUE(report.is_closed());
+  EXPECT_DOUBLE_EQ(signed_volume(report.mesh), 63.0);
+  EXPECT_EQ(report.parts, 2);
+}
+
+TEST(Closed, TwoConesTouchingAtTheirTipsArePartedThere) {
+  const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 1}, {0, 1, 1}, {-1, -1, 1}, {1, 0, -1}, {0, 1, -1}, {-1, -1, -1}},
+                    {{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}, {0, 4, 5}, {0, 5, 6}, {0, 6, 4}, {4, 6, 5}}};
+  const ClosedReport report = check_closed(mesh);
+  ASSERT_TRUE(report.is_closed()) << report.defects.front().problem;
+  EXPECT_EQ(report.mesh.vertices.size(), 8u);
+  ASSERT_FALSE(report.notices.empty());
+  EXPECT_NE(report.notices[0].find("touches itself at 1 corner, the first at (0, 0, 0)"), std::string::npos) << report.notices[0];
+}
+
+TEST(Closed, SolidFromABrokenMeshSaysFileProblemAndRemedy) {
+  try {
+    solid_from_mesh(broken("missing_face"), "box.3ds: object 'lid'");
+    FAIL() << "accepted";
+  } catch (const UserError& error) {
+    const std::string said = error.what();
+    for (const char* words : {"box.3ds: object 'lid'", "4 open edges", "(0.5, -0.5, 0.5)-(-0.5, -0.5, 0.5)", "Cap the hole"}) {
+      EXPECT_NE(said.find(words), std::string::npos) << said;
+    }
+  }
+}
+
+TEST(Closed, RelativeFlatnessIsRefusedAndAThinPlateIsNot) {
+  EXPECT_TRUE(check_closed(models::box({0, 0, 0}, {1, 1, 1e-6})).is_closed());
+  EXPECT_FALSE(check_closed(models::box({0, 0, 0}, {1, 1, 0})).is_closed());
+}
+
+TEST(Convex, BoxAndBallAreConvexAndAnLIsNot) {
+  EXPECT_TRUE(is_convex(unit_box()));
+  EXPECT_TRUE(is_convex(models::rounded(subdivided_sphere(3))));
+  const TriangleMesh l_shape = models::extrude({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 5}, {3, 4, 5}}, 0, 1);
+  EXPECT_FALSE(is_convex(l_shape));
+}
+
+}  // namespace
+}  // namespace tumble::testing
