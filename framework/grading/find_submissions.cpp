@@ -77,11 +77,11 @@ std::string why_not(const fs::path& file) {
 void choose_source(const Found& found, const std::string& wanted, const fs::path& folder, Submission& submission) {
   if (found.cut) submission.notes.push_back("more than " + std::to_string(kMostFiles) + " files: only the first were looked at");
   if (found.named.size() > 1) {
-    submission.problem = "holds " + wanted + " " + std::to_string(found.named.size()) + " times: " + listed(found.named, folder) + ". Leave one, so that it is clear which counts.";
+    submission.problem = "Holds " + wanted + " " + std::to_string(found.named.size()) + " times: " + listed(found.named, folder) + ". Leave one, so that it is clear which counts.";
   } else if (found.named.empty() && found.sources.size() > 1) {
-    submission.problem = "holds no " + wanted + " but several other sources: " + listed(found.sources, folder) + ". Name the one that counts " + wanted + ".";
+    submission.problem = "Holds no " + wanted + " but several other sources: " + listed(found.sources, folder) + ". Name the one that counts " + wanted + ".";
   } else if (found.named.empty() && found.sources.empty()) {
-    submission.problem = "holds no " + wanted;
+    submission.problem = "Holds no " + wanted;
     submission.problem += found.archives.empty() ? "." : ", only an archive: " + listed(found.archives, folder) + ". Unpack it first.";
   } else {
     submission.source = found.named.empty() ? found.sources[0] : found.named[0];
@@ -110,7 +110,7 @@ std::vector<Submission> find_submissions(const fs::path& folder, const modules::
     if (submission.name.starts_with('.') || submission.name == "__MACOSX") continue;
     const auto status = fs::symlink_status(path, failed);
     if (fs::is_symlink(status)) {
-      submission.problem = "is a symbolic link, which is not followed. Copy the folder here.";
+      submission.problem = "This is a symbolic link, which is not followed. Copy the folder here.";
     } else if (!fs::is_directory(status)) {
       continue;  // a roster, an export's index: not a submission
     } else {

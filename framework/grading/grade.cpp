@@ -29,7 +29,7 @@ struct ObjectFile {
 void judge(const Course& course, const std::string& id, const Submission& submission, const Rubric& rubric, const ObjectFile& object, Grade& grade) {
   if (!submission.problem.empty()) {
     grade.state = GradeState::kNothingToCompile;
-    grade.story = "This submission " + submission.problem;
+    grade.story = submission.problem;
     grade.tests = score_nothing(rubric, Verdict::kNotAttempted, "nothing to compile");
     return;
   }

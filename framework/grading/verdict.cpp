@@ -46,7 +46,8 @@ std::vector<TestResult> read_results(const std::string& file) {
   if (!in) throw UserError(file, "cannot be read");
   try {
     std::vector<TestResult> results;
-    for (const auto& item : nlohmann::json::parse(in).at("tests")) {
+    const auto record = nlohmann::json::parse(in);  // named: a range over a part of a temporary would outlive it
+    for (const auto& item : record.at("tests")) {
       TestResult r;
       r.test = item.at("test");
       const auto verdict = verdict_from_words(item.at("verdict"));
