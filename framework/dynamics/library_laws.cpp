@@ -53,7 +53,7 @@ RootResult bracketed_root(const ScalarFunction& f, const ScalarFunction&, double
     const auto [a, b] = boost::math::tools::toms748_solve(counted, low, high, f_low, f_high, close, limit);
     result.status = close(a, b) || std::nextafter(a, b) == b ? RootStatus::kConverged : RootStatus::kNotConverged;
     result.time = a;  // the end of the bracket on the side of t_low: a gap there has not closed yet
-    result.residual = f(a);
+    result.residual = counted(a);
   }
   return result;
 }
