@@ -20,12 +20,12 @@ Value to_value(const Json& json, const std::string& place) {
     case Json::value_t::string: return {place, json.get<std::string>()};
     case Json::value_t::array: {
       Value::List items;
-      for (std::size_t i = 0; i < json.size(); ++i) items.push_back(to_value(json[i], place + "[" + std::to_string(i) + "]"));
+      for (std::size_t i = 0; i < json.size(); ++i) items.push_back(to_value(json[i], place + "/" + std::to_string(i)));
       return {place, std::move(items)};
     }
     case Json::value_t::object: {
       Value::Members members;
-      for (const auto& [name, member] : json.items()) members.emplace_back(name, to_value(member, place + "." + name));
+      for (const auto& [name, member] : json.items()) members.emplace_back(name, to_value(member, place + "/" + name));
       return {place, std::move(members)};
     }
     default: return {place, json.dump()};  // a bare number, as text
@@ -43,7 +43,7 @@ truths::Case read_truth(const std::filesystem::path& file) {
   } catch (const Json::parse_error& error) {
     throw UserError(file.string(), std::string("is not JSON: ") + error.what(), "Copy the truth file again.");
   }
-  const Value root = to_value(json, file.filename().string() + ":");
+  const Value root = to_value(json, file.string() + ": ");
   truths::Case truth;
   truth.id = root.at("id").text();
   truth.family = root.at("family").text();

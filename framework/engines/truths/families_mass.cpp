@@ -1,4 +1,5 @@
 // mass_properties: volume, centre of mass and inertia of closed meshes.
+#include "framework/core/error.h"
 #include "framework/engines/truths/families.h"
 #include "framework/geometry/mass_properties.h"
 
@@ -8,9 +9,13 @@ namespace {
 TriangleMesh mesh_of(const Case& truth) {
   TriangleMesh mesh;
   for (const Value& vertex : truth.input("vertices").list()) mesh.vertices.push_back(vertex.vector3());
+  const int count = static_cast<int>(mesh.vertices.size());
   for (const Value& face : truth.input("faces").list()) {
-    const auto& corners = face.list();
-    mesh.faces.push_back({corners.at(0).integer(), corners.at(1).integer(), corners.at(2).integer()});
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (const int corner = face.at(i).integer(); corner < 0 || corner >= count)
+        throw UserError(face.at(i).place(), "there is no vertex " + std::to_string(corner) + " among " + std::to_string(count), "Correct the face.");
+    }
+    mesh.faces.push_back({face.at(0).integer(), face.at(1).integer(), face.at(2).integer()});
   }
   return mesh;
 }

@@ -22,7 +22,7 @@ class Value {
   using Content = std::variant<std::monostate, bool, std::string, List, Members>;
 
   Value() = default;
-  /// @param place  for messages, e.g. "impulse_random__random20.json: outputs.rows.value[3]"
+  /// @param place  for messages, file and JSON pointer: "tests/truths/impulse_random__random20.json: /outputs/rows/value/3"
   Value(std::string place, Content content) : place_(std::move(place)), content_(std::move(content)) {}
 
   const std::string& place() const { return place_; }
@@ -32,7 +32,7 @@ class Value {
   // Each throws UserError with the place when the value is of another kind.
   bool truth() const;
   const std::string& text() const;
-  double number() const;                   // decimal string, correctly rounded
+  double number() const;                   // decimal string, correctly rounded; finite
   int integer() const;
   const List& list() const;
   const Members& members() const;
@@ -40,6 +40,8 @@ class Value {
   Vector3d vector3() const;
   Matrix3d matrix3() const;                // rows
 
+  /// Item of a list. @throws UserError when there is none
+  const Value& at(std::size_t index) const;
   /// Member of this name. @throws UserError when there is none
   const Value& at(const std::string& name) const;
   /// Member of this name, or null.
