@@ -1,7 +1,6 @@
 #include "framework/grading/grade_key.h"
 
 #include <algorithm>
-#include <fstream>
 
 #include <fmt/format.h>
 
@@ -10,22 +9,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
-}  // namespace
-
-std::string grader_digest(const Course& course, const std::string& id) {
-  const std::string folder = course.registry->find(id).folder;
-  std::vector<fs::path> files = {course.build / "bin" / ("judge_" + id), course.build / "bin" / ("worker_" + id), course.build / "bin" / "sandbox_init",
-                                 course.root / "assignments" / folder / "rubric.json", course.root / "solutions_private" / folder / "rubric_hidden.json",
-                                 "/proc/self/exe", "/usr/bin/g++"};
-  std::error_code ignored;
-  std::vector<fs::path> headers;
-  for (const auto& entry : fs::directory_iterator(course.root / "assignments" / folder, ignored))
-    if (entry.path().extension() == ".h") headers.push_back(entry.path());
-  std::sort(headers.begin(), headers.end());
-  files.insert(files.end(), headers.begin(), headers.end());
+std::string digest_of_files(const std::vector<fs::path>& files) {
   std::string digests;
   for (const fs::path& file : files) digests += digest_of_file(file) + ' ';
   return digest(digests);
+}
+
+}  // namespace
+
+std::string judging_digest(const Course& course, const std::string& id) {
+  const std::string folder = course.registry->find(id).folder;
+  std::vector<fs::path> headers;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(course.root / "assignments" / folder, ignored))
+    if (entry.path().extension() == ".h") headers.push_back(entry.path());
+  std::sort(headers.begin(), headers.end());
+  const fs::path bin = course.build / "bin";
+  std::vector<fs::path> files = {bin / ("judge_" + id), bin / ("worker_" + id), bin / "sandbox_init", "/usr/bin/g++"};
+  files.insert(files.end(), headers.begin(), headers.end());
+  return digest_of_files(files);
+}
+
+std::string grader_digest(const Course& course, const std::string& id) {
+  const std::string folder = course.registry->find(id).folder;
+  return digest(judging_digest(course, id) + digest_of_files({course.root / "assignments" / folder / "rubric.json",
+                                                              course.root / "solutions_private" / folder / "rubric_hidden.json", "/proc/self/exe"}));
 }
 
 std::string pictures_digest(const Course& course, const std::string& id, const GradeOptions& options) {

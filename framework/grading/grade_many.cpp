@@ -1,14 +1,8 @@
 // All submissions of a folder: a process for each, a few at a time, so that what happens in one stays in one.
-#include <signal.h>
-#include <sys/prctl.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
-#include <algorithm>
-#include <cerrno>
 #include <chrono>
-#include <cstdio>
-#include <map>
+#include <fstream>
 #include <set>
 
 #include <fmt/format.h>
@@ -19,6 +13,7 @@
 #include "framework/grading/grade_files.h"
 #include "framework/grading/grade_key.h"
 #include "framework/grading/grade_pages.h"
+#include "framework/grading/processes.h"
 #include "framework/grading/scoring.h"
 
 namespace tumble::grading {
@@ -83,55 +78,29 @@ class Batch {
   void grade_open_ones() {
     start_ = Clock::now();
     tell("");
-    std::map<pid_t, std::pair<Work*, Clock::time_point>> running;
-    std::size_t next = 0;
-    while (next < open_.size() || !running.empty()) {
-      if (next < open_.size() && running.size() < static_cast<std::size_t>(std::max(1, options_.jobs))) {
-        Work* work = open_[next++];
-        running[start(*work)] = {work, Clock::now()};
-        continue;
-      }
-      int status = 0;
-      const pid_t child = ::waitpid(-1, &status, 0);
-      if (child < 0 && errno == EINTR) continue;
-      if (child < 0) throw std::runtime_error("a grading process was lost");
-      const auto it = running.find(child);
-      if (it == running.end()) continue;
-      Work& work = *it->second.first;
-      work.seconds = std::chrono::duration<double>(Clock::now() - it->second.second).count();
-      running.erase(it);
-      settle(work, status);
+    const auto work = [&](std::size_t i) { grade_one(*open_[i]); };
+    run_in_processes(open_.size(), options_.jobs, work, [&](std::size_t i, int status, double seconds) {
+      open_[i]->seconds = seconds;
+      settle(*open_[i], status);
       ++done_;
       ++fresh_;
-      tell(work.submission->name);
-    }
+      tell(open_[i]->submission->name);
+    });
   }
 
   fs::path draft_of(const Work& work) const { return out_ / (".making-" + work.folder); }
 
-  pid_t start(const Work& work) {
-    std::fflush(nullptr);
-    const pid_t child = ::fork();
-    if (child < 0) throw std::runtime_error("no process can be made");
-    if (child > 0) return child;
-    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    int code = 0;
+  // In a process of its own. What goes wrong is left beside the draft, for the parent to read.
+  void grade_one(const Work& work) const {
     try {
-      // The draft's name must not show in what is written: it is named as it will be.
       GradeOptions own = options_;
       own.progress = {};
+      // The draft's name must not show in what is written: it is named as it will be.
       grade_submission(course_, id_, *work.submission, draft_of(work) / work.folder, own);
     } catch (const std::exception& error) {
-      std::error_code ignored;
-      fs::create_directories(draft_of(work), ignored);
-      if (std::FILE* file = std::fopen((draft_of(work) / "fault.txt").c_str(), "w")) {
-        std::fputs(error.what(), file);
-        std::fclose(file);
-      }
-      code = 1;
+      write_whole(draft_of(work) / "fault.txt", error.what());
+      throw;
     }
-    std::fflush(nullptr);
-    ::_exit(code);
   }
 
   // Puts a finished submission in place. A fault of ours leaves an old result standing.
@@ -167,11 +136,8 @@ class Batch {
   // The grading process itself failed: a page that says so, and no score.
   GradeRecord write_fault(const Work& work, int status) {
     std::string why;
-    if (std::FILE* file = std::fopen((draft_of(work) / "fault.txt").c_str(), "r")) {
-      char buffer[4096];
-      why.assign(buffer, std::fread(buffer, 1, sizeof buffer, file));
-      std::fclose(file);
-    }
+    std::ifstream said(draft_of(work) / "fault.txt");
+    why.assign(std::istreambuf_iterator<char>(said), {});
     if (why.empty()) why = WIFSIGNALED(status) ? fmt::format("the grading process ended with signal {}", WTERMSIG(status)) : "the grading process left no result";
     GradeRecord record;
     record.key = work.key;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <map>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -35,10 +37,20 @@ std::string anchor_of(const std::string& test) {
 
 bool has_story(const ScoredTest& test) { return test.result.verdict != Verdict::kRight && test.result.verdict != Verdict::kNotAttempted; }
 
+// Stories are set in from the left for a terminal's table; a page sets them in by itself.
+std::string flush_left(const std::string& story) {
+  std::string text;
+  std::istringstream in(story);
+  for (std::string line; std::getline(in, line);)
+    if (!text.empty() || !line.empty()) text += (line.starts_with("  ") ? line.substr(2) : line) + "\n";
+  return text;
+}
+
 void add_tiles(report::Page& page, const Grade& grade) {
   std::vector<std::pair<std::string, Cell>> tiles;
   const Look look = !grade.is_final() ? Look::kWarning : grade.score == grade.possible ? Look::kGood : Look::kPlain;
   tiles.push_back({"of " + points_text(grade.possible) + " points", {points_text(grade.score), "", look}});
+  if (grade.state != GradeState::kJudged) return page.tiles(tiles);
   constexpr std::array kShown = {Verdict::kRight, Verdict::kWrong, Verdict::kNotAttempted, Verdict::kCrashed, Verdict::kOutOfResources, Verdict::kGraderFault};
   for (const Verdict verdict : kShown)
     if (const std::size_t n = count(grade, verdict); n > 0) tiles.push_back({words(verdict), {std::to_string(n), "", look_of(verdict)}});
@@ -55,11 +67,13 @@ void add_level(report::Page& page, const Grade& grade, const std::string& level)
     possible += test.item.points;
     const Verdict verdict = test.result.verdict;
     const std::string link = has_story(test) && grade.state == GradeState::kJudged ? "#" + anchor_of(test.item.test) : "";
-    table.rows.push_back({{test.item.title, link}, {words(verdict), "", look_of(verdict)}, {points_text(test.score)}, {points_text(test.item.points), "", Look::kMuted},
+    table.rows.push_back({{test.item.title, link}, {grade.state == GradeState::kJudged ? words(verdict) : "not run", "", grade.state == GradeState::kJudged ? look_of(verdict) : Look::kMuted}, {points_text(test.score)}, {points_text(test.item.points), "", Look::kMuted},
                           {test.item.hidden ? "hidden" : "", "", Look::kMuted}});
   }
   if (table.rows.empty()) return;
-  page.heading(fmt::format("{}: {} of {}", level.empty() ? "Without points" : level, points_text(score), points_text(possible)), 3);
+  std::string name = level.empty() ? "Without points" : level;
+  name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
+  page.heading(fmt::format("{}: {} of {}", name, points_text(score), points_text(possible)), 3);
   page.table(table);
 }
 
@@ -86,9 +100,9 @@ void add_stories(report::Page& page, const Grade& grade) {
     if (!has_story(test)) continue;
     page.heading(fmt::format("{}: {}", words(test.result.verdict), test.item.title), 3, anchor_of(test.item.test));
     std::string facts = test.item.test + (test.item.hidden ? " (hidden)" : "");
-    if (test.result.calls > 0) facts += fmt::format(", {} calls, the last to {}", test.result.calls, test.result.last_call);
+    if (test.result.calls > 0) facts += fmt::format(", {} call{}, the last to {}", test.result.calls, test.result.calls == 1 ? "" : "s", test.result.last_call);
     page.paragraph(facts, Look::kMuted);
-    page.preformatted(test.result.story);
+    page.preformatted(flush_left(test.result.story));
   }
   if (missing.empty()) return;
   page.heading("not attempted", 3);
@@ -164,7 +178,7 @@ report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade
     std::string remarks = grade.state == GradeState::kJudged ? "" : summary_of(grade);
     for (const std::string& note : grade.notes) remarks += (remarks.empty() ? "" : "; ") + note;
     if (!grade.change.empty()) remarks += (remarks.empty() ? "" : "; ") + grade.change;
-    const auto number = [&](Verdict v) { const auto n = count(grade, v); return Cell{n == 0 ? "" : std::to_string(n), "", n == 0 ? Look::kMuted : look_of(v)}; };
+    const auto number = [&](Verdict v) { const auto n = grade.state == GradeState::kJudged ? count(grade, v) : 0; return Cell{n == 0 ? "" : std::to_string(n), "", n == 0 ? Look::kMuted : look_of(v)}; };
     table.rows.push_back({{grade.name, report::link_to(std::filesystem::path(grade.folder) / "index.html")}, {grade.is_final() ? points_text(grade.score) : "none", "", grade.is_final() ? Look::kPlain : Look::kWarning},
                           {points_text(grade.possible), "", Look::kMuted}, number(Verdict::kRight), number(Verdict::kWrong), number(Verdict::kNotAttempted), number(Verdict::kCrashed),
                           number(Verdict::kOutOfResources), {remarks, "", Look::kMuted}});

@@ -22,8 +22,17 @@ AnyModule reference_of(const Course& course, const ModuleKind& kind) {
   return fs::exists(file) ? modules::load_module(kind, file) : nullptr;
 }
 
+// Puts a module's functions into the laws, and says whose they are.
+void bind(const ModuleKind& kind, const AnyModule& module, const std::string& source, Laws& laws) {
+  kind.bind(module, laws);
+  Laws alone;  // shows which laws this module is about
+  kind.bind(module, alone);
+  if (alone.collision_impulse) laws.impulse_source = source;
+  if (alone.integrate_step) laws.integrator_source = source;
+}
+
 // The laws of a scene with one module's functions in their place: right neighbours around it, so that a slip is seen once.
-Laws laws_around(const Course& course, const ModuleKind& kind, const AnyModule& module, const scene::Scene& scene) {
+Laws laws_around(const Course& course, const ModuleKind& kind, const AnyModule& module, const std::string& source, const scene::Scene& scene) {
   Laws laws = library_laws();
   for (const bool needed : {false, true}) {
     if (needed) {  // over what nobody asked for stand the library's laws of motion
@@ -32,12 +41,13 @@ Laws laws_around(const Course& course, const ModuleKind& kind, const AnyModule& 
       laws.state_derivative = library.state_derivative;
       laws.renormalize = library.renormalize;
       laws.find_impact_time = library.find_impact_time;
+      laws.integrator_source = library.integrator_source;
     }
     for (const ModuleKind* other : course.registry->all())
       if (other->id != kind.id && needs(scene, other->id) == needed)
-        if (const AnyModule reference = reference_of(course, *other)) other->bind(reference, laws);
+        if (const AnyModule reference = reference_of(course, *other)) bind(*other, reference, "reference", laws);
   }
-  kind.bind(module, laws);
+  bind(kind, module, source, laws);
   return laws;
 }
 
@@ -73,8 +83,7 @@ Run run_submission(const Course& course, const ModuleKind& kind, const fs::path&
   worker.callback_budget = 100'000'000;  // a scene is thousands of steps; the wall limit comes first
   call_log() = CallLog{};
   WorkerConnection connection(worker);
-  Laws laws = laws_around(course, kind, kind.make_proxy(connection), scene);
-  laws.impulse_source = laws.integrator_source = "submission";
+  const Laws laws = laws_around(course, kind, kind.make_proxy(connection), "submission", scene);
   return run(scene, laws);
 }
 
@@ -112,7 +121,7 @@ std::vector<SceneMedia> make_media(const Course& course, const std::string& id, 
     media.story = theirs.story;
     media.attempted = theirs.attempted;
     if (theirs.story.empty()) media.checks = engines::judge_run(scene, theirs.trajectory);
-    const Run ours = reference ? run(scene, laws_around(course, kind, reference, scene)) : Run{};
+    const Run ours = reference ? run(scene, laws_around(course, kind, reference, "reference", scene)) : Run{};
     std::vector<render::LabelledRun> runs;
     if (!theirs.trajectory.frames.empty()) runs.push_back({theirs.trajectory, "submission"});
     if (!ours.trajectory.frames.empty()) runs.push_back({ours.trajectory, "reference"});

@@ -20,7 +20,7 @@ body { margin: 0 auto; padding: 2.2rem 1.4rem 3rem; max-width: 68rem; color: var
 header { border-bottom: 3px solid var(--ink); margin-bottom: 1.4rem; }
 h1 { font-size: 1.75rem; margin: 0 0 .2rem; } header p { margin: 0 0 .8rem; color: var(--soft); }
 h2 { font-size: 1.25rem; margin: 2.2rem 0 .6rem; border-bottom: 1px solid var(--line); } h3 { font-size: 1.02rem; margin: 1.5rem 0 .4rem; }
-p { max-width: 52rem; } a { color: var(--link); } nav a { margin-right: 1.2rem; }
+p { max-width: 52rem; } a { color: var(--link); } nav { margin: .8rem 0 1.1rem; } nav a { margin-right: 1.2rem; }
 table { border-collapse: collapse; margin: .8rem 0 1.2rem; font-size: .93rem; }
 caption { text-align: left; color: var(--soft); padding-bottom: .3rem; }
 th, td { padding: .32rem .8rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }

@@ -1,0 +1,106 @@
+// tumble audit a1 [--mutants FOLDER]: do the tests catch every known-wrong solution, and accuse no right one?
+#include <cstdio>
+#include <map>
+#include <memory>
+#include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "framework/cli/verb.h"
+#include "framework/grading/audit.h"
+
+namespace tumble::cli {
+namespace {
+
+using grading::AuditResult;
+
+struct Words {
+  std::string id, mutants;
+  int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  bool json = false;
+};
+
+std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
+
+void print_mutants(const std::vector<AuditResult>& results) {
+  std::size_t widest = 0;
+  for (const AuditResult& r : results) widest = std::max(widest, r.candidate.name.size());
+  fmt::print("{:<{}}  caught by  names the slip  for example by\n", "known-wrong solution", widest);
+  for (const AuditResult& r : results) {
+    if (r.candidate.is_right) continue;
+    if (!r.fault.empty()) fmt::print("{:<{}}  FAULT      {}\n", r.candidate.name, widest, first_line(r.fault));
+    else if (r.caught_by.empty()) fmt::print("{:<{}}  SURVIVES   {}\n", r.candidate.name, widest, r.candidate.slip);
+    else fmt::print("{:<{}}  {:>9}  {:<14}  {}\n", r.candidate.name, widest, r.caught_by.size(), r.is_named ? "yes" : "NO: '" + r.candidate.keyword + "'", r.best);
+  }
+  fmt::print("\n{:<{}}  score\n", "right solution", widest);
+  for (const AuditResult& r : results) {
+    if (!r.candidate.is_right) continue;
+    fmt::print("{:<{}}  {:g} of {:g}", r.candidate.name, widest, r.score, r.possible);
+    if (!r.fault.empty()) fmt::print("  FAULT: {}", first_line(r.fault));
+    for (const auto& test : r.caught_by) fmt::print("  ACCUSED by {}", test.test);
+    fmt::print("\n");
+  }
+}
+
+void print_tests(const grading::Rubric& rubric, const std::vector<AuditResult>& results) {
+  std::map<std::string, std::size_t> kills;
+  for (const AuditResult& r : results)
+    for (const auto& test : r.caught_by) ++kills[test.test];
+  std::size_t widest = 0;
+  for (const auto& item : rubric.items) widest = std::max(widest, item.test.size());
+  fmt::print("\n{:<{}}  catches\n", "test", widest);
+  for (const auto& item : rubric.items) fmt::print("{:<{}}  {:>7}{}\n", item.test, widest, kills[item.test], kills[item.test] == 0 ? "  none of these slips" : "");
+}
+
+void print_json(const std::vector<AuditResult>& results) {
+  auto page = nlohmann::ordered_json::array();
+  for (const AuditResult& r : results) {
+    std::vector<std::string> tests;
+    for (const auto& test : r.caught_by) tests.push_back(test.test);
+    page.push_back({{"name", r.candidate.name}, {"right", r.candidate.is_right}, {"slip", r.candidate.slip}, {"keyword", r.candidate.keyword}, {"fault", r.fault},
+                    {"score", r.score}, {"possible", r.possible}, {"caught_by", tests}, {"named", r.is_named}, {"as_it_should", r.is_as_it_should()}});
+  }
+  fmt::print("{}\n", page.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+}
+
+void audit(Context& context, const Words& words) {
+  const grading::Course course{context.root, context.build, &context.registry, context.command_line};
+  grading::judge_of(course, words.id);
+  const bool line = ::isatty(STDERR_FILENO) == 1;
+  const auto told = [&](std::size_t done, std::size_t total) {
+    if (line) fmt::print(stderr, "\r{} of {} judged{}", done, total, done == total ? "\n" : "");
+    else if (done == total || done % 10 == 0) fmt::print(stderr, "{} of {} judged\n", done, total);
+  };
+  const auto results = grading::audit(course, words.id, grading::find_candidates(course, words.id, words.mutants), words.jobs, told);
+  std::size_t wrong = 0, caught = 0, named = 0, right = 0, whole = 0;
+  for (const AuditResult& r : results) {
+    (r.candidate.is_right ? right : wrong) += 1;
+    if (r.is_as_it_should()) (r.candidate.is_right ? whole : caught) += 1;
+    if (r.is_named) ++named;
+  }
+  if (words.json) {
+    print_json(results);
+  } else {
+    print_mutants(results);
+    print_tests(grading::rubric_of(course, words.id), results);
+    fmt::print("\n{} of {} known-wrong solutions caught, {} of them by a story that names the slip; {} of {} right solutions have every point\n", caught, wrong, named, whole, right);
+  }
+  context.exit = caught == wrong && whole == right ? ExitCode::kFine : ExitCode::kCheckFailed;
+}
+
+}  // namespace
+
+void add_audit(CLI::App& app, Context& context) {
+  auto words = std::make_shared<Words>();
+  CLI::App* verb = app.add_subcommand("audit", "Judge every known-wrong solution: which test catches which, and does its story name the slip");
+  verb->add_option("assignment", words->id, "Which, e.g. a1")->required()->type_name("ID");
+  verb->add_option("--mutants", words->mutants, "Known-wrong solutions to judge instead of the assignment's own")->type_name("FOLDER");
+  verb->add_option("--jobs", words->jobs, "At a time")->check(CLI::Range(1, 256))->capture_default_str();
+  verb->add_flag("--json", words->json, "For machines");
+  verb->footer("Exit: 0 all caught and no right solution accused, 1 otherwise.");
+  verb->callback([&context, words] { audit(context, *words); });
+}
+
+}  // namespace tumble::cli
