@@ -20,6 +20,9 @@ std::vector<std::string> bubblewrap_command(const SandboxJob& job) {
   add({"--uid", "1000", "--gid", "1000", "--hostname", "sandbox", "--clearenv"});
   add({"--setenv", "PATH", "/usr/bin", "--setenv", "HOME", "/tmp", "--setenv", "LC_ALL", "C.UTF-8"});
   add({"--ro-bind", "/usr", "/usr"});
+  // What the packages of the system do not own is none of the sandbox's business.
+  for (const char* folder : {"/usr/local", "/usr/src"})
+    if (std::filesystem::is_directory(folder)) add({"--size", "4096", "--tmpfs", folder, "--remount-ro", folder});
   for (const char* folder : {"/lib", "/lib64", "/bin"}) {
     if (std::filesystem::is_symlink(folder)) add({"--symlink", std::filesystem::read_symlink(folder).string(), folder});
     else if (std::filesystem::exists(folder)) add({"--ro-bind", folder, folder});

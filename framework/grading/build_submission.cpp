@@ -2,6 +2,7 @@
 
 #include <sstream>
 
+#include "framework/grading/compile.h"
 #include "framework/grading/run_program.h"
 
 namespace tumble::grading {
@@ -23,8 +24,22 @@ BuiltSubmission build_own(const Course& course, const fs::path& source, const fs
   return {outcome.code == 0 ? BuiltSubmission::Outcome::kBuilt : BuiltSubmission::Outcome::kRefused, outcome.printed};
 }
 
-BuiltSubmission build_submission(const Course& course, const std::string&, const fs::path& source, const fs::path& object) {
-  return build_own(course, source, object);
+BuiltSubmission build_submission(const Course& course, const std::string& id, const fs::path& source, const fs::path& object) {
+  using Outcome = BuiltSubmission::Outcome;
+  const std::string folder = course.registry->find(id).folder;
+  CompileJob job;
+  job.root = course.root;
+  job.header = fs::path("assignments") / folder / (folder + ".h");
+  job.source = source;
+  job.object = object;
+  const Compiled compiled = compile_submission(job);
+  switch (compiled.outcome) {
+    case Compiled::Outcome::kBuilt: return {Outcome::kBuilt, compiled.said};
+    case Compiled::Outcome::kRefused:
+    case Compiled::Outcome::kOutOfResources: return {Outcome::kRefused, compiled.said};
+    case Compiled::Outcome::kGraderFault: break;
+  }
+  return {Outcome::kGraderFault, compiled.said};
 }
 
 std::string compiler_story(const std::string& said, const fs::path& source) {

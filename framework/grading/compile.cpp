@@ -1,0 +1,182 @@
+#include "framework/grading/compile.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cctype>
+#include <cerrno>
+#include <fstream>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <vector>
+
+#include "framework/core/error.h"
+#include "framework/grading/sandbox.h"
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+using Ending = SandboxOutcome::Ending;
+using Outcome = Compiled::Outcome;
+
+constexpr std::size_t kObjectBytes = 32u << 20;    // a module is 200 kB
+constexpr const char* kHeadersInside = "/headers";
+constexpr const char* kSourceInside = "/submission";
+constexpr const char* kPrecompiled = "precompiled.h";
+
+// The compiler may fork its passes, and link to /tmp. What it made leaves through descriptor 3, not through a folder of ours.
+constexpr const char* kScript = "cd /submission && /usr/bin/g++ " TUMBLE_SUBMISSION_FLAGS
+                                " -fdiagnostics-color=never -fmax-errors=20 -I /headers -isystem " TUMBLE_EIGEN_INCLUDE
+                                " -include /headers/precompiled.h -x c++ \"$1\" -x none -shared -Wl,-z,defs -o /tmp/module.so && exec cat /tmp/module.so >&3";
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+// The bytes of a plain file: no link (it would show the compiler what the one who follows it may see), no device, no pipe.
+std::optional<std::string> plain_file(const fs::path& file, std::uint64_t most_bytes, std::string& why) {
+  const int fd = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  struct stat about {};
+  const bool opened = fd >= 0;
+  if (!opened) why = errno == ELOOP ? "is a link; hand in the file itself" : "cannot be read";
+  else if (::fstat(fd, &about) != 0 || !S_ISREG(about.st_mode)) why = "is not a file";
+  else if (static_cast<std::uint64_t>(about.st_size) > most_bytes) why = "is larger than " + std::to_string(most_bytes >> 10) + " KiB";
+  std::string text(why.empty() ? static_cast<std::size_t>(about.st_size) : 0, '\0');
+  std::size_t got = 0;
+  while (got < text.size()) {
+    const ssize_t n = ::read(fd, text.data() + got, text.size() - got);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) break;
+    got += static_cast<std::size_t>(n);
+  }
+  if (opened) ::close(fd);
+  if (!why.empty()) return std::nullopt;
+  text.resize(got);
+  return text;
+}
+
+// Headers of the tree that a text includes, directly or not: those that students have, and of them only what is asked for.
+void collect_headers(const fs::path& root, const std::string& text, std::set<std::string>& found) {
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) {
+    const auto first = line.find_first_not_of(" \t");
+    if (first == std::string::npos || line[first] != '#') continue;
+    const auto open = line.find('"'), close = line.rfind('"');
+    if (line.find("include") == std::string::npos || open == std::string::npos || close <= open) continue;
+    const std::string name = line.substr(open + 1, close - open - 1);
+    const bool students = name.starts_with("framework/") || name.starts_with("assignments/");
+    if (!students || !name.ends_with(".h") || name.find("..") != std::string::npos) continue;
+    if (!fs::is_regular_file(root / name) || !found.insert(name).second) continue;
+    collect_headers(root, text_of(root / name), found);
+  }
+}
+
+// The precompiled header of this build; without it the compiler reads the same text, which takes longer.
+void stage_precompiled(Stage& headers) {
+  const fs::path folder = TUMBLE_SUBMISSION_SDK;
+  headers.add_text(text_of(folder / kPrecompiled), kPrecompiled);
+  const std::string binary = std::string(kPrecompiled) + ".gch";
+  if (fs::exists(folder / binary)) headers.add_file(folder / binary, binary);
+}
+
+fs::path init_program() {
+  const fs::path init = fs::canonical("/proc/self/exe").parent_path() / "sandbox_init";
+  if (!fs::exists(init)) throw UserError(init.string(), "is not built", "Build the target sandbox_init.");
+  return init;
+}
+
+// All that comes out of the pipe; one byte above the limit tells that there is more.
+std::string drain(int fd) {
+  std::string bytes;
+  char buffer[1 << 16];
+  while (bytes.size() <= kObjectBytes) {
+    const ssize_t n = ::read(fd, buffer, sizeof buffer);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) break;
+    bytes.append(buffer, static_cast<std::size_t>(n));
+  }
+  return bytes;
+}
+
+bool says(const std::string& text, std::initializer_list<const char*> words) {
+  for (const char* word : words)
+    if (text.find(word) != std::string::npos) return true;
+  return false;
+}
+
+Compiled judge(const SandboxOutcome& outcome, const std::string& object, const CompileLimits& limits) {
+  const std::string& said = outcome.printed;
+  switch (outcome.ending) {
+    case Ending::kNotStarted:
+    case Ending::kStopped: return {Outcome::kGraderFault, "the sandbox did not start: " + said};
+    case Ending::kWallLimit: return {Outcome::kOutOfResources, "the compiler was not done after " + std::to_string(static_cast<int>(limits.wall_s)) + " s"};
+    case Ending::kOutputLimit: return {Outcome::kOutOfResources, "the compiler's messages had no end; the first were:\n" + said.substr(0, 2000)};
+    case Ending::kSignal: return {Outcome::kOutOfResources, "the compiler was ended by a limit\n" + said};
+    case Ending::kExited: break;
+  }
+  if (outcome.code == 0 && object.size() > kObjectBytes) return {Outcome::kOutOfResources, "the compiled module is larger than 32 MiB"};
+  if (outcome.code == 0 && !object.empty()) return {Outcome::kBuilt, said};
+  if (says(said, {"out of memory", "virtual memory exhausted", "CPU time limit", "File size limit", "No space left", "file too large", "Killed"}))
+    return {Outcome::kOutOfResources, "the compiler ran out of time, memory or room for files\n" + said};
+  if (outcome.code == 127) return {Outcome::kGraderFault, "the compiler cannot be started: " + said};
+  return {Outcome::kRefused, said};
+}
+
+SandboxJob sandbox_job(const CompileLimits& limits, const fs::path& init) {
+  SandboxJob job;
+  job.limits.wall_s = limits.wall_s;
+  job.limits.cpu_s = limits.cpu_s;
+  job.limits.memory_bytes = limits.memory_bytes;
+  job.limits.tmp_bytes = 128ull << 20;
+  job.limits.processes = 16;
+  job.init = init;
+  return job;
+}
+
+}  // namespace
+
+Compiled compile_submission(const CompileJob& job) {
+  std::error_code ignored;
+  fs::remove(job.object, ignored);
+  if (!fs::exists(job.root / job.header)) throw UserError((job.root / job.header).string(), "there is no such header", "It tells what the module is.");
+  const std::string name = job.source.filename().string();
+  std::string why;
+  const auto source = plain_file(job.source, job.limits.source_bytes, why);
+  if (!source) return {Outcome::kRefused, name + ": " + why};
+
+  const SandboxUser user = SandboxUser::lease();
+  Stage headers(&user), submission(&user), tools(&user);
+  std::set<std::string> needed = {job.header.string()};
+  collect_headers(job.root, text_of(job.root / job.header), needed);
+  collect_headers(job.root, *source, needed);
+  for (const std::string& header : needed) headers.add_file(job.root / header, header);
+  stage_precompiled(headers);
+  submission.add_text(*source, name);
+
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0) return {Outcome::kGraderFault, "no descriptor left for a compiler"};
+  SandboxJob inside = sandbox_job(job.limits, tools.add_file(init_program(), "init", true));
+  inside.binds = {{headers.path(), kHeadersInside}, {submission.path(), kSourceInside}};
+  // A name such as "-o" or "@file" is no option.
+  const bool plain_name = std::isalnum(static_cast<unsigned char>(name[0])) != 0 || name[0] == '_';
+  inside.command = {"/usr/bin/sh", "-c", kScript, "compile", plain_name ? name : "./" + name};
+  inside.uid = user.uid();
+  inside.channel = ends[1];
+  Sandbox sandbox = Sandbox::start(inside);
+  ::close(ends[1]);
+  const std::string object = drain(ends[0]);
+  ::close(ends[0]);
+  Compiled compiled = judge(sandbox.wait(), object, job.limits);
+  if (compiled.outcome != Outcome::kBuilt) return compiled;
+  std::ofstream out(job.object, std::ios::binary);
+  out << object;
+  out.close();
+  if (!out) throw UserError(job.object.string(), "cannot be written");
+  return compiled;
+}
+
+}  // namespace tumble::grading
