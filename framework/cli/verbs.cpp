@@ -4,10 +4,12 @@
 namespace tumble::cli {
 
 void add_verbs(CLI::App& app, Context& context) {
+  add_demo(app, context);
   add_check(app, context);
   add_watch(app, context);
   add_run(app, context);
   add_grade(app, context);
+  add_audit(app, context);
   add_inspect(app, context);
   add_release(app, context);
   add_truths(app, context);

@@ -1,0 +1,145 @@
+// tumble demo: the whole path once, from submissions to pages, on submissions whose scores are known beforehand.
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "framework/cli/verb.h"
+#include "framework/core/files.h"
+#include "framework/grading/grade.h"
+#include "framework/grading/grade_pages.h"
+#include "framework/report/html.h"
+
+namespace tumble::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using grading::Grade;
+
+constexpr const char* kPrivate = "solutions_private";
+
+struct Options {
+  std::string out = "out/demo";
+  int jobs = 2;
+};
+
+/// One assignment as the demo grades it: the reference, the untouched starter, a flawed submission.
+struct Graded {
+  const modules::ModuleKind* kind;
+  std::vector<Grade> grades;   // in the order of submissions_of
+};
+enum { kReference, kStarter, kFlawed };
+
+std::vector<grading::Submission> submissions_of(const Context& context, const modules::ModuleKind& kind) {
+  const fs::path file = kind.folder + ".cpp", ours = context.root / kPrivate / kind.folder;
+  return {{"reference", ours / file, "", {}},
+          {"starter", context.root / "assignments" / kind.folder / file, "", {}},
+          {"flawed", ours / "flawed_submission" / file, "", {}}};
+}
+
+void tell_progress(const std::string& id, const grading::GradeProgress& progress) {
+  const std::string left = progress.left_s < 0 ? "" : fmt::format(", about {:.0f} s left", progress.left_s);
+  if (!progress.finished.empty()) fmt::print(stderr, "tumble: {} {}: {} of {} graded{}\n", id, progress.finished, progress.done, progress.total, left);
+}
+
+// What must hold of each, whatever the assignment; empty where it does.
+std::string surprise(int which, const Grade& grade) {
+  if (!grade.is_final()) return "the grader failed";
+  const bool fine = which == kReference ? grade.score == grade.possible : which == kStarter ? grade.score == 0.0 : grade.score > 0.0 && grade.score < grade.possible;
+  if (fine) return "";
+  return which == kReference ? "expected all points" : which == kStarter ? "expected none" : "expected some of the points";
+}
+
+std::size_t count_of(const Grade& grade, grading::Verdict verdict) {
+  return static_cast<std::size_t>(std::count_if(grade.tests.begin(), grade.tests.end(), [&](const auto& test) { return test.result.verdict == verdict; }));
+}
+
+void add_scores(report::Page& page, const std::vector<Graded>& all) {
+  report::Table table;
+  table.columns = {{"Assignment"}, {"Submission"}, {"Score", true}, {"of", true}, {"Right", true}, {"Wrong", true}, {"Not attempted", true}, {"Crashed", true}};
+  for (const Graded& graded : all)
+    for (const Grade& grade : graded.grades)
+      table.rows.push_back({{graded.kind->id + " " + graded.kind->title}, {grade.name, report::link_to(fs::path(graded.kind->id) / grade.folder / "index.html")},
+                            {fmt::format("{:g}", grade.score)}, {fmt::format("{:g}", grade.possible)}, {std::to_string(count_of(grade, grading::Verdict::kRight))},
+                            {std::to_string(count_of(grade, grading::Verdict::kWrong))}, {std::to_string(count_of(grade, grading::Verdict::kNotAttempted))},
+                            {std::to_string(count_of(grade, grading::Verdict::kCrashed))}});
+  page.table(table);
+}
+
+void write_index(const Context& context, const std::vector<Graded>& all, const fs::path& out) {
+  report::Page page("Tumble", "three submissions of each assignment, graded; every scene, submission beside reference");
+  std::vector<report::Cell> links{{"Scores", "#scores"}};
+  for (const Graded& graded : all) {
+    links.push_back({"Stories of " + graded.kind->id, "#stories-" + graded.kind->id});
+    links.push_back({"Scenes of " + graded.kind->id, "#scenes-" + graded.kind->id});
+  }
+  page.links(links);
+  page.heading("Scores", 2, "scores");
+  page.paragraph("The reference solution, the stub as students get it, and a submission with mistakes that students make. Each was compiled and run in a sandbox, "
+                 "and judged from outside it. The names lead to what a student is told.");
+  add_scores(page, all);
+  for (const Graded& graded : all) {
+    const fs::path folder = graded.kind->id;
+    page.links({{graded.kind->id + ": all submissions", report::link_to(folder / "index.html")}, {"gradebook", report::link_to(folder / "gradebook.csv")}});
+  }
+  for (const Graded& graded : all) {
+    const Grade& flawed = graded.grades[kFlawed];
+    page.heading(fmt::format("{} {}: what the flawed submission is told", graded.kind->id, graded.kind->title), 2, "stories-" + graded.kind->id);
+    grading::add_stories(page, flawed);
+    page.heading(fmt::format("{} {}: scenes, flawed submission beside reference", graded.kind->id, graded.kind->title), 2, "scenes-" + graded.kind->id);
+    grading::add_media(page, flawed.media, fs::path(graded.kind->id) / flawed.folder / "media");
+  }
+  page.record(context.command_line);
+  page.write(out / "index.html");
+}
+
+// @return how many scores are not what they must be
+int print_table(const std::vector<Graded>& all) {
+  int surprises = 0;
+  fmt::print("{:<22} {:<12} {:>6} {:>5} {:>7} {:>7} {:>15} {:>7}\n", "assignment", "submission", "score", "of", "right", "wrong", "not attempted", "scenes");
+  for (const Graded& graded : all) {
+    for (std::size_t i = 0; i < graded.grades.size(); ++i) {
+      const Grade& grade = graded.grades[i];
+      const std::string wrong = surprise(static_cast<int>(i), grade);
+      surprises += wrong.empty() ? 0 : 1;
+      fmt::print("{:<22} {:<12} {:>6g} {:>5g} {:>7} {:>7} {:>15} {:>7}{}\n", graded.kind->id + " " + graded.kind->title, grade.name, grade.score, grade.possible,
+                 count_of(grade, grading::Verdict::kRight), count_of(grade, grading::Verdict::kWrong), count_of(grade, grading::Verdict::kNotAttempted),
+                 grade.media.size(), wrong.empty() ? "" : "   <- " + wrong);
+    }
+  }
+  return surprises;
+}
+
+void demo(Context& context, const Options& options) {
+  if (!fs::exists(context.root / kPrivate))
+    throw UserError("tumble demo", "grades the reference solutions, and this tree has none", "It is the instructor's command; a student starts with: ./tumble check a1");
+  const fs::path out = fs::absolute(options.out);
+  grading::Course course{context.root, context.build, &context.registry, context.command_line};
+  std::vector<Graded> all;
+  for (const modules::ModuleKind* kind : context.registry.all()) {
+    grading::GradeOptions grade;
+    grade.jobs = options.jobs;
+    grade.progress = [kind](const grading::GradeProgress& progress) { tell_progress(kind->id, progress); };
+    all.push_back({kind, grading::grade_submissions(course, kind->id, submissions_of(context, *kind), out / kind->id, grade)});
+  }
+  write_index(context, all, out);
+  const int surprises = print_table(all);
+  fmt::print("{}\n", (out / "index.html").string());
+  if (surprises > 0) {
+    fmt::print(stderr, "tumble: {} of these scores are known beforehand and came out otherwise: this is our bug, please report it\n", surprises);
+    context.exit = ExitCode::kOurBug;
+  }
+}
+
+}  // namespace
+
+void add_demo(CLI::App& app, Context& context) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("demo", "Grade three submissions of each assignment and draw every scene: the whole path on one page");
+  verb->add_option("--out", options->out, "Folder of the report")->capture_default_str();
+  verb->add_option("--jobs", options->jobs, "Submissions graded at the same time")->check(CLI::Range(1, 64))->capture_default_str();
+  verb->callback([&context, options] { demo(context, *options); });
+}
+
+}  // namespace tumble::cli
