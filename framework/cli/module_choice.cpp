@@ -57,6 +57,8 @@ void compile(const Context& context, const fs::path& source, const fs::path& obj
     throw UserError(source.string(), "does not compile; the compiler says why above", "Correct it, or name another file after --modules.");
 }
 
+}  // namespace
+
 AnyModule load_word(const Context& context, const ModuleKind& kind, const std::string& word) {
   if (word == "student" || word == "reference") {
     const fs::path file = built(context, kind.id, word);
@@ -77,6 +79,8 @@ AnyModule load_word(const Context& context, const ModuleKind& kind, const std::s
   compile(context, file, object);
   return modules::load_module(kind, object);
 }
+
+namespace {
 
 void bind_module(const ModuleKind& kind, const AnyModule& module, const std::string& source, Laws& laws) {
   kind.bind(module, laws);

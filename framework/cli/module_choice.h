@@ -37,4 +37,9 @@ struct ChosenLaws {
 /// @throws UserError when a word names nothing that can be loaded, with what to do
 ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words);
 
+/// One module by its word.
+/// @param word  student, reference, PATH.so, or PATH.cpp, which is compiled first
+/// @throws UserError when the word names nothing that can be loaded, with what to do
+modules::AnyModule load_word(const Context& context, const modules::ModuleKind& kind, const std::string& word);
+
 }  // namespace tumble::cli
