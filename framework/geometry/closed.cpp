@@ -19,6 +19,10 @@ namespace {
 // adds a few of these.
 constexpr double kZeroArea = 1e-15;
 
+// Smallest over largest principal moment; below it the rounding of the large one (about 10 eps) is more than 1/500 of the small one.
+// A round rod reaches it at a length of a million radii.
+constexpr double kNeedle = 1e-12;
+
 std::string plural(std::size_t n, const char* one, const char* many) { return fmt::format("{} {}", n, n == 1 ? one : many); }
 
 // What must hold before anything can be measured: faces, indices, finite numbers.
@@ -146,6 +150,17 @@ void append(std::vector<Defect>& to, std::vector<Defect> more) {
   to.insert(to.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
+std::vector<Defect> find_needle(const TriangleMesh& closed_mesh) {
+  const MassProperties mass = compute_mass_properties(closed_mesh);
+  const double ratio = mass.principal_moments[0] / mass.principal_moments[2];
+  if (ratio >= kNeedle) return {};
+  const Bounds bounds = bounds_of(closed_mesh);
+  return {{DefectKind::kNeedle,
+           fmt::format("a needle from {} to {}: its moments of inertia are too far apart to be told in double precision", show_point(bounds.low),
+                       show_point(bounds.high)),
+           "Look for a vertex far from the others, or make it thicker."}};
+}
+
 // The whole check of a mesh whose numbers are usable.
 ClosedReport examine(const TriangleMesh& mesh) {
   ClosedReport report;
@@ -162,6 +177,7 @@ ClosedReport examine(const TriangleMesh& mesh) {
 
   report.mesh = double_pinched_vertices(mesh, uses, report.notices);
   append(report.defects, orient_parts(part_of_face, report.mesh, report.notices));
+  if (report.is_closed()) append(report.defects, find_needle(report.mesh));
   if (!report.is_closed()) report.mesh = mesh;
   return report;
 }
@@ -182,7 +198,8 @@ ClosedReport check_closed(const TriangleMesh& mesh) {
 
   // Faces of zero area may close a seam (then they stay) or be in the way (then they go).
   ClosedReport report = examine(triangles);
-  if (!report.is_closed()) {
+  const auto is_about_size = [](const Defect& d) { return d.kind == DefectKind::kZeroVolume || d.kind == DefectKind::kNeedle; };
+  if (!report.is_closed() && !is_about_size(report.defects.front())) {
     const TriangleMesh solid_faces = keep_faces(triangles, [&](const Face& f) { return has_area(triangles, f); });
     const std::size_t flat = triangles.faces.size() - solid_faces.faces.size();
     if (flat > 0 && !solid_faces.faces.empty()) {

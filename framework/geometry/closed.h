@@ -22,6 +22,7 @@ enum class DefectKind {
   kOneSided,          // like a Moebius strip: no choice of sides exists
   kNestedOutward,     // a part inside another that is not its cavity: its volume would count twice
   kZeroVolume,
+  kNeedle,            // so long and thin that double precision cannot tell how it turns about its length
 };
 
 /// One thing that is wrong with a surface.

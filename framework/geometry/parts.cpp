@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 
@@ -30,6 +31,19 @@ double area_of(const TriangleMesh& mesh) {
     doubled += (mesh.vertices[b] - mesh.vertices[a]).cross(mesh.vertices[c] - mesh.vertices[a]).norm();
   }
   return 0.5 * doubled;
+}
+
+// Largest error that rounding can leave in the volume: each of n terms d = a . ((b - a) x (c - a)) / 6 by a few eps of the product of its
+// lengths, and their sum by n eps more. A spike of length 1e31 on a stone of 1 m has nothing but this.
+double rounding_of_volume(const Part& part) {
+  const Vector3d middle = 0.5 * (part.bounds.low + part.bounds.high);
+  double lengths = 0.0;
+  for (const auto& [i, j, k] : part.mesh.faces) {
+    const Vector3d &a = part.mesh.vertices[i], &b = part.mesh.vertices[j], &c = part.mesh.vertices[k];
+    lengths += (a - middle).norm() * (b - a).norm() * (c - a).norm() / 6.0;
+  }
+  constexpr double kTerm = 16.0;  // eps: three differences, three products, five sums
+  return (kTerm + static_cast<double>(part.mesh.faces.size())) * std::numeric_limits<double>::epsilon() * lengths;
 }
 
 std::vector<Part> split(const TriangleMesh& mesh, const std::vector<int>& part_of_face) {
@@ -89,7 +103,8 @@ std::string place_of(const Part& part) {
 std::vector<Defect> find_flat(const std::vector<Part>& parts) {
   std::vector<Defect> defects;
   for (const Part& part : parts) {
-    if (std::abs(part.volume) > kFlat * std::pow(area_of(part.mesh), 1.5)) continue;
+    const double least = std::max(kFlat * std::pow(area_of(part.mesh), 1.5), rounding_of_volume(part));
+    if (std::abs(part.volume) > least) continue;
     defects.push_back({DefectKind::kZeroVolume,
                        parts.size() == 1 ? "the surface is closed but encloses no volume: it is flat"
                                          : place_of(part) + " encloses no volume: it is flat",

@@ -158,6 +158,21 @@ TEST(Closed, RelativeFlatnessIsRefusedAndAThinPlateIsNot) {
   EXPECT_FALSE(check_closed(models::box({0, 0, 0}, {1, 1, 0})).is_closed());
 }
 
+TEST(Closed, VertexFarFromTheOthersMakesANeedle) {
+  TriangleMesh mesh = unit_box();
+  mesh.vertices[0].x() = -1e8;
+  expect_refused(mesh, DefectKind::kNeedle, "a needle", "(-1e+08, 0, 0)");
+  EXPECT_TRUE(check_closed(models::box({0, 0, 0}, {1e5, 1, 1})).is_closed());
+}
+
+TEST(Closed, VolumeThatIsAllRoundingIsRefused) {
+  // A spike to 1e31 m on a stone of 1 m: the sum for its volume leaves nothing but the rounding of numbers of 1e62.
+  TriangleMesh mesh = models::rounded(subdivided_sphere(1));
+  mesh.vertices[0] = {2.7e31, 0, 0};
+  mesh.vertices[3] = {0, 0, -2.9e31};
+  EXPECT_FALSE(check_closed(mesh).is_closed());
+}
+
 TEST(Convex, BoxAndBallAreConvexAndAnLIsNot) {
   EXPECT_TRUE(is_convex(unit_box()));
   EXPECT_TRUE(is_convex(models::rounded(subdivided_sphere(3))));
