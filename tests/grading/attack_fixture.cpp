@@ -1,0 +1,106 @@
+#include "tests/grading/attack_fixture.h"
+
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <map>
+#include <sstream>
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Gone with the program.
+struct Scratch {
+  fs::path path;
+  Scratch() {
+    char name[] = "/tmp/tumble-attacks-XXXXXX";
+    path = ::mkdtemp(name);
+  }
+  ~Scratch() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+};
+
+const fs::path& scratch() {
+  static const Scratch folder;
+  return folder.path;
+}
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+WorkerOptions options_for(const fs::path& object) {
+  WorkerOptions options;
+  options.id = "waist";
+  options.module = object;
+  options.call_wall_s = 1.5;
+  options.session_wall_s = 6.0;
+  options.callback_budget = 1000;
+  options.memory_bytes = 512ull << 20;
+  return options;
+}
+
+}  // namespace
+
+Compiled compile_source(const std::string& text, const fs::path& object, const CompileLimits& limits) {
+  CompileJob job;
+  job.root = TUMBLE_SOURCE_DIR;
+  job.header = "tests/modules/waist.h";
+  job.source = scratch() / "waist.cpp";
+  job.object = object;
+  job.limits = limits;
+  std::ofstream(job.source) << text;
+  return compile_submission(job);
+}
+
+fs::path attack_object(const std::string& file, const std::string& defines) {
+  static std::map<std::string, fs::path> built;
+  fs::path& object = built[file + defines];
+  if (!object.empty()) return object;
+  object = scratch() / ("attack" + std::to_string(built.size()) + ".so");
+  const Compiled compiled = compile_source(defines + "\n#line 1\n" + text_of(fs::path(TUMBLE_SOURCE_DIR) / "tests/grading/attacks" / file), object);
+  EXPECT_EQ(compiled.outcome, Compiled::Outcome::kBuilt) << compiled.said;
+  return object;
+}
+
+int descendants_left() {
+  for (int waited_ms = 0;; waited_ms += 10) {
+    const pid_t gone = ::waitpid(-1, nullptr, WNOHANG);
+    if (gone < 0) return 0;
+    if (gone == 0 && waited_ms > 1000) break;
+    if (gone == 0) ::usleep(10000);
+  }
+  std::istringstream children(text_of("/proc/self/task/" + std::to_string(::getpid()) + "/children"));
+  int count = 0;
+  for (pid_t child; children >> child;) ++count;
+  return count;
+}
+
+Victim::Victim(const fs::path& object) : connection_(options_for(object)), module_(modules::make_proxy<waist::Module>(connection_)) {
+  call_log() = CallLog{};
+}
+
+std::string Victim::attack(const std::string& what) {
+  call_log() = CallLog{};
+  try {
+    return module_.attack(what);
+  } catch (const CallEnded&) {
+    return "";
+  } catch (const NotImplemented&) {
+    return "";
+  }
+}
+
+void Attack::SetUp() {
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);
+  if (const auto why = why_no_sandbox(worker_programs("waist").init)) GTEST_SKIP() << "no sandbox on this machine: " << *why;
+}
+
+}  // namespace tumble::grading

@@ -1,0 +1,128 @@
+// Attacks on the compiler: what a source may not read, and how much it may cost.
+#include <unistd.h>
+
+#include <fstream>
+
+#include "tests/grading/attack_fixture.h"
+
+namespace tumble::grading {
+namespace {
+
+using Outcome = Compiled::Outcome;
+namespace fs = std::filesystem;
+
+class CompileAttack : public Attack {
+ protected:
+  void SetUp() override {
+    Attack::SetUp();
+    object_ = fs::temp_directory_path() / ("tumble-compile-" + std::to_string(::getpid()) + ".so");
+  }
+  void TearDown() override {
+    fs::remove(object_);
+    EXPECT_EQ(descendants_left(), 0);
+  }
+  Compiled compile(const std::string& text, const CompileLimits& limits = {}) { return compile_source(text, object_, limits); }
+  fs::path object_;
+};
+
+// The rest of a module, so that only what a test adds can be at fault.
+const std::string kModule = R"(
+#include "tests/modules/waist.h"
+namespace tumble::waist {
+double twice(double x) { return 2.0 * x; }
+Everything echo(const Everything& value) { return value; }
+double call_back(const std::function<double(double)>&, int) { return 0.0; }
+std::string attack(const std::string& what) { return what; }
+double missing(double) { return 0.0; }
+}
+)";
+
+TEST_F(CompileAttack, ErrorsNameTheStudentsFileAndLine) {
+  const Compiled compiled = compile("int x = 1;\nint y = x +;\n" + kModule);
+  EXPECT_EQ(compiled.outcome, Outcome::kRefused);
+  EXPECT_EQ(compiled.said.substr(0, 20), "waist.cpp:2:12: erro") << compiled.said;
+}
+
+TEST_F(CompileAttack, FunctionsThatAreMissingAreNamed) {
+  const Compiled compiled = compile("#include \"tests/modules/waist.h\"\ndouble tumble::waist::twice(double x) { return x; }\n");
+  EXPECT_EQ(compiled.outcome, Outcome::kRefused);
+  EXPECT_NE(compiled.said.find("tumble::waist::echo"), std::string::npos) << compiled.said;
+}
+
+TEST_F(CompileAttack, PrivateFilesCannotBeIncluded) {
+  const std::string root = TUMBLE_SOURCE_DIR;
+  for (const std::string& path : {root + "/solutions_private/a1_impulse/a1_impulse.cpp", std::string("solutions_private/a1_impulse/a1_impulse.cpp"),
+                                  std::string("framework/../solutions_private/a1_impulse/a1_impulse.cpp"), root + "/README.md",
+                                  std::string("../../../../../../..") + root + "/README.md", std::string("/etc/passwd"),
+                                  std::string("assignments/a1_impulse/a1_impulse.cpp"), std::string("tests/modules/waist.cpp")}) {
+    const Compiled compiled = compile("#include \"" + path + "\"\n" + kModule);
+    EXPECT_EQ(compiled.outcome, Outcome::kRefused) << path;
+    EXPECT_NE(compiled.said.find("No such file or directory"), std::string::npos) << compiled.said;
+  }
+}
+
+TEST_F(CompileAttack, PrivateFilesCannotBeSeenOrEmbedded) {
+  const std::string root = TUMBLE_SOURCE_DIR;
+  const Compiled seen = compile("#if __has_include(\"" + root + "/README.md\") || __has_include(\"solutions_private/CMakeLists.txt\")\n#error seen\n#endif\n" + kModule);
+  EXPECT_EQ(seen.outcome, Outcome::kBuilt) << seen.said;
+  const Compiled embedded = compile(kModule + "asm(\".incbin \\\"" + root + "/README.md\\\"\");\n");
+  EXPECT_EQ(embedded.outcome, Outcome::kRefused) << embedded.said;
+  const Compiled environment = compile(kModule + "asm(\".incbin \\\"/proc/1/environ\\\"\");\n");
+  EXPECT_EQ(environment.outcome, Outcome::kRefused) << environment.said;
+}
+
+TEST_F(CompileAttack, LinkForASourceIsRefused) {
+  const fs::path link = fs::temp_directory_path() / ("tumble-link-" + std::to_string(::getpid()) + ".cpp");
+  fs::create_symlink(fs::path(TUMBLE_SOURCE_DIR) / "tests/modules/waist.cpp", link);
+  const Compiled compiled = compile_submission({TUMBLE_SOURCE_DIR, "tests/modules/waist.h", link, object_, {}});
+  fs::remove(link);
+  EXPECT_EQ(compiled.outcome, Outcome::kRefused);
+  EXPECT_NE(compiled.said.find("is a link"), std::string::npos) << compiled.said;
+}
+
+TEST_F(CompileAttack, SourcesThatAreNoFilesAreRefused) {
+  for (const char* path : {"/dev/zero", "/tmp", "/nowhere.cpp"})
+    EXPECT_EQ(compile_submission({TUMBLE_SOURCE_DIR, "tests/modules/waist.h", path, object_, {}}).outcome, Outcome::kRefused) << path;
+}
+
+TEST_F(CompileAttack, NamesThatLookLikeOptionsAreNames) {
+  for (const char* name : {"-o.cpp", "@x.cpp", "a b;c'$(id).cpp"}) {
+    const fs::path file = fs::temp_directory_path() / name;
+    std::ofstream(file) << kModule;
+    const Compiled compiled = compile_submission({TUMBLE_SOURCE_DIR, "tests/modules/waist.h", file, object_, {}});
+    fs::remove(file);
+    EXPECT_EQ(compiled.outcome, Outcome::kBuilt) << name << ": " << compiled.said;
+  }
+}
+
+TEST_F(CompileAttack, BombsCostTheirLimitsOnly) {
+  CompileLimits limits;
+  limits.cpu_s = 3;
+  limits.wall_s = 12.0;
+  limits.memory_bytes = 600ull << 20;
+  const char* const bombs[] = {
+      "#include \"/dev/zero\"\n",                                                            // memory
+      "asm(\".fill 4000000000\");\n",                                                        // file size
+      "template <int N> struct T { T<N * 2 + 1> a; T<N * 2 + 2> b; }; T<0> t;\n#pragma GCC diagnostic ignored \"-Wfatal-errors\"\n",  // depth
+      "constexpr int f(long n) { int s = 0; for (long i = 0; i < n; ++i) s ^= static_cast<int>(i); return s; }\n"
+      "static_assert(f(1000000000000) == 0);\n",                                             // evaluation
+  };
+  for (const char* bomb : bombs) {
+    const Compiled compiled = compile(std::string(bomb) + kModule, limits);
+    EXPECT_TRUE(compiled.outcome == Outcome::kRefused || compiled.outcome == Outcome::kOutOfResources) << bomb << compiled.said;
+    EXPECT_FALSE(fs::exists(object_));
+  }
+}
+
+TEST_F(CompileAttack, TimeSpentShowsAsTime) {
+  CompileLimits limits;
+  limits.wall_s = 1.0;
+  // Two to the thirtieth of lines: more than a second on any machine.
+  std::string text = "#define A0 int;\n";
+  for (int i = 1; i <= 30; ++i) text += "#define A" + std::to_string(i) + " A" + std::to_string(i - 1) + " A" + std::to_string(i - 1) + "\n";
+  const Compiled compiled = compile(text + "A30\n", limits);
+  EXPECT_EQ(compiled.outcome, Outcome::kOutOfResources) << compiled.said;
+}
+
+}  // namespace
+}  // namespace tumble::grading

@@ -1,0 +1,159 @@
+// Attacks while a submission is judged: none gains a point, none outlives its call, each gets its verdict and its story.
+#include "tests/grading/attack_fixture.h"
+
+namespace tumble::grading {
+namespace {
+
+class RunAttack : public Attack {};
+
+Victim in_call() { return Victim(attack_object("in_call.cpp")); }
+
+bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+// One attack, one fresh worker; afterwards the judge must be able to go on, and nothing may be left.
+void expect_end(const std::string& what, Verdict verdict, const std::string& story_part) {
+  SCOPED_TRACE(what);
+  Victim victim(attack_object("in_call.cpp"));
+  EXPECT_EQ(victim.attack(what), "");
+  EXPECT_STREQ(words(victim.verdict()), words(verdict)) << victim.story();
+  EXPECT_TRUE(holds(victim.story(), story_part)) << victim.story();
+  EXPECT_TRUE(holds(victim.story(), "attack")) << "the story names the call: " << victim.story();
+  call_log() = CallLog{};
+  EXPECT_EQ(victim.module().twice(21.0), 42.0) << "the next test gets a fresh worker";
+  victim.connection().reset();
+  EXPECT_EQ(descendants_left(), 0);
+}
+
+// One attack that returns: what it managed to do.
+std::string reached(const std::string& what) {
+  Victim victim(attack_object("in_call.cpp"));
+  const std::string said = victim.attack(what);
+  EXPECT_STREQ(words(victim.verdict()), "right") << what << ": " << victim.story();
+  victim.connection().reset();
+  EXPECT_EQ(descendants_left(), 0) << what;
+  return said;
+}
+
+TEST_F(RunAttack, LeavingEarlyIsACrash) {
+  for (const char* way : {"exit", "_exit", "quick_exit"}) expect_end(way, Verdict::kCrashed, "exit code 0");
+}
+
+TEST_F(RunAttack, SignalsAreNamed) {
+  expect_end("segmentation fault", Verdict::kCrashed, "SIGSEGV");
+  expect_end("stack", Verdict::kCrashed, "SIGSEGV");
+  expect_end("abort", Verdict::kCrashed, "SIGABRT");
+  expect_end("terminate", Verdict::kCrashed, "SIGABRT");
+}
+
+TEST_F(RunAttack, ExceptionsAreQuoted) {
+  expect_end("throw", Verdict::kCrashed, "I give up");
+  expect_end("throw int", Verdict::kCrashed, "not a std::exception");
+}
+
+TEST_F(RunAttack, CallsWithoutEndAreOutOfTime) {
+  for (const char* what : {"loop", "sleep"}) expect_end(what, Verdict::kOutOfResources, "no answer within 1.5 s");
+}
+
+TEST_F(RunAttack, ForkBombIsOutOfTimeAndLeavesNobody) { expect_end("fork bomb", Verdict::kOutOfResources, "no answer"); }
+
+TEST_F(RunAttack, MemoryBlowUpIsOutOfMemory) {
+  for (const char* what : {"100 GB by new", "memory in pieces"}) expect_end(what, Verdict::kOutOfResources, "more memory");
+}
+
+TEST_F(RunAttack, FloodOfOutputIsCutOff) { expect_end("flood", Verdict::kOutOfResources, "printed more than"); }
+
+TEST_F(RunAttack, AnswerTooLongToReadIsRefused) { expect_end("long answer", Verdict::kCrashed, "no answer"); }
+
+TEST_F(RunAttack, ForgedFramesAreAnswersOrRefused) {
+  for (const char* what : {"kind", "size", "callback", "count"}) expect_end(std::string("forge:") + what, Verdict::kCrashed, "answered");
+  expect_end("forge:stub", Verdict::kNotAttempted, "not implemented");
+  expect_end("forge:half", Verdict::kOutOfResources, "no answer within");
+}
+
+TEST_F(RunAttack, ForgedAnswerIsWorthNoMoreThanAnAnswer) {
+  // The frame says 42 and the process is gone: the caller gets 42, to be compared with the truth as any answer is.
+  Victim victim = in_call();
+  EXPECT_EQ(victim.module().missing(1.0), 42.0);
+  EXPECT_EQ(victim.attack("fake lines"), "");
+  EXPECT_EQ(victim.verdict(), Verdict::kCrashed) << victim.story();
+}
+
+TEST_F(RunAttack, PrintedResultsAreNoResults) { EXPECT_EQ(reached("fake lines"), "answer"); }
+
+TEST_F(RunAttack, WhatIsLeftBehindDiesWithTheWorker) {
+  EXPECT_EQ(reached("thread left"), "answer");
+  EXPECT_EQ(reached("child left"), "answer");
+}
+
+TEST_F(RunAttack, NothingOfTheProjectIsVisible) {
+  const std::string source = TUMBLE_SOURCE_DIR, build = TUMBLE_BINARY_DIR;
+  for (const std::string& path : {source, source + "/solutions_private", source + "/assignments/a1_impulse/a1_impulse.cpp", build,
+                                  build + "/modules/waist_right.so", std::string("/etc/passwd"), std::string("/root"), std::string("/home"),
+                                  std::string("/proc/1/root/etc"), std::string("/run"), std::string("/var/log"), std::string("/sys")})
+    EXPECT_EQ(reached("open:" + path).substr(0, 4), path.starts_with("/proc/1/") ? "Perm" : "No s") << path;
+}
+
+TEST_F(RunAttack, ProcessOneShowsAndTakesNothing) {
+  for (const char* file : {"environ", "maps", "mem", "fd/4"}) EXPECT_EQ(reached(std::string("open:/proc/1/") + file), "Permission denied") << file;
+}
+
+TEST_F(RunAttack, OtherProcessesCannotBeSeenOrTouched) {
+  EXPECT_EQ(reached("processes"), "1 2 ");
+  EXPECT_EQ(reached("trace parent"), "Operation not permitted");
+  // Process 1 of a namespace gets no signal from inside that it does not ask for; what counts is that the judge goes on.
+  for (const char* what : {"kill all", "kill parent", "stop parent"}) reached(what);
+}
+
+TEST_F(RunAttack, NothingIsInherited) {
+  ::setenv("TUMBLE_SECRET", "judge's own", 1);
+  EXPECT_FALSE(holds(reached("environment"), "SECRET"));
+  EXPECT_EQ(reached("descriptors"), "0 1 2 3 ");
+}
+
+TEST_F(RunAttack, KernelObjectsOutsideOfTheLimitsAreRefused) {
+  for (const char* what : {"connect", "memfd", "shared memory", "link", "pipe by name", "more processes"})
+    EXPECT_EQ(reached(what), "Operation not permitted") << what;
+}
+
+TEST_F(RunAttack, DiskIsSmallAndForgotten) {
+  for (const char* folder : {"/dev/x", "/x", "/usr/x", "/usr/local/x"}) EXPECT_EQ(reached(std::string("write:") + folder), "0") << folder;
+  const SandboxLimits limits;
+  EXPECT_LE(std::stod(reached("write:/tmp/x")), static_cast<double>(limits.tmp_bytes));
+  EXPECT_LE(std::stod(reached("write:/dev/shm/x")), static_cast<double>(limits.tmp_bytes) / 16);
+  EXPECT_EQ(reached("open:/tmp/x0"), "No such file or directory") << "a worker must find nothing of the one before it";
+}
+
+TEST_F(RunAttack, CallbacksWithoutEndAreStopped) {
+  Victim victim = in_call();
+  EXPECT_THROW(victim.module().call_back([](double x) { return x; }, -1), CallEnded);
+  EXPECT_EQ(victim.verdict(), Verdict::kOutOfResources);
+  EXPECT_TRUE(holds(victim.story(), "more than 1000 times")) << victim.story();
+}
+
+TEST_F(RunAttack, ExitFromAStaticInitialiserIsACrash) {
+  Victim victim(attack_object("at_start.cpp"));
+  EXPECT_EQ(victim.attack("hello"), "");
+  EXPECT_EQ(victim.verdict(), Verdict::kCrashed) << victim.story();
+  EXPECT_TRUE(holds(victim.story(), "exit code 0")) << victim.story();
+}
+
+TEST_F(RunAttack, WaitingInAStaticInitialiserIsOutOfTime) {
+  Victim victim(attack_object("at_start.cpp", "#define LOOP"));
+  EXPECT_EQ(victim.attack("hello"), "");
+  EXPECT_EQ(victim.verdict(), Verdict::kOutOfResources) << victim.story();
+}
+
+TEST_F(RunAttack, OwnMainAndMallocChangeNothingOutside) {
+  Victim victim(attack_object("at_start.cpp", "#define OWN_MAIN"));
+  const std::string said = victim.attack("hello");
+  EXPECT_TRUE(said == "hello" || victim.verdict() == Verdict::kCrashed) << victim.story();
+}
+
+TEST_F(RunAttack, OwnOperatorNewChangesNothingOutside) {
+  Victim victim(attack_object("at_start.cpp", "#define OWN_NEW"));
+  const std::string said = victim.attack("hello");
+  EXPECT_TRUE(said == "hello" || victim.verdict() == Verdict::kCrashed) << victim.story();
+}
+
+}  // namespace
+}  // namespace tumble::grading

@@ -1,0 +1,116 @@
+// The sandbox itself: limits, endings, and who cleans up.
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "framework/grading/sandbox.h"
+#include "tests/grading/attack_fixture.h"
+
+namespace tumble::grading {
+namespace {
+
+using Ending = SandboxOutcome::Ending;
+
+class SandboxEnds : public Attack {
+ protected:
+  void SetUp() override {
+    Attack::SetUp();
+    if (IsSkipped()) return;
+    user_.emplace(SandboxUser::lease());
+    stage_.emplace(&*user_);
+    init_ = stage_->add_file(worker_programs("waist").init, "init", true);
+  }
+  void TearDown() override { EXPECT_EQ(descendants_left(), 0); }
+
+  SandboxJob shell(const std::string& script) {
+    SandboxJob job;
+    job.command = {"/usr/bin/sh", "-c", script};
+    job.init = init_;
+    job.uid = user_->uid();
+    job.limits.wall_s = 5.0;
+    return job;
+  }
+  SandboxOutcome run(const std::string& script) { return Sandbox::start(shell(script)).wait(); }
+
+  std::optional<SandboxUser> user_;
+  std::optional<Stage> stage_;
+  std::filesystem::path init_;
+};
+
+TEST_F(SandboxEnds, ExitCodesSignalsAndOutputAreTold) {
+  const SandboxOutcome exited = run("echo out; echo err >&2; exit 7");
+  EXPECT_EQ(exited.ending, Ending::kExited);
+  EXPECT_EQ(exited.code, 7);
+  EXPECT_EQ(exited.printed, "out\nerr\n");
+  const SandboxOutcome killed = run("kill -BUS $$");
+  EXPECT_EQ(killed.ending, Ending::kSignal);
+  EXPECT_EQ(killed.code, SIGBUS);
+}
+
+TEST_F(SandboxEnds, ProgramThatIsMissingIsNoFaultOfTheSandbox) {
+  SandboxJob job = shell("");
+  job.command = {"/no/such/program"};
+  EXPECT_EQ(Sandbox::start(job).wait().code, 127);
+}
+
+TEST_F(SandboxEnds, SandboxThatCannotStartSaysSo) {
+  SandboxJob job = shell("true");
+  job.init = "/no/such/init";
+  const SandboxOutcome outcome = Sandbox::start(job).wait();
+  EXPECT_EQ(outcome.ending, Ending::kNotStarted);
+  EXPECT_FALSE(outcome.printed.empty());
+}
+
+TEST_F(SandboxEnds, InitThatNeverReportsCountsAsNotStarted) {
+  // Fail-closed: a process 1 that leaves with code 0 and without its report is a fault of ours, never a result.
+  SandboxJob job = shell("true");
+  job.init = stage_->add_file("/usr/bin/true", "not_init", true);
+  EXPECT_EQ(Sandbox::start(job).wait().ending, Ending::kNotStarted);
+}
+
+TEST_F(SandboxEnds, WallTimeCpuTimeAndOutputAreLimited) {
+  SandboxJob sleeping = shell("sleep 100");
+  sleeping.limits.wall_s = 0.3;
+  EXPECT_EQ(Sandbox::start(sleeping).wait().ending, Ending::kWallLimit);
+  SandboxJob spinning = shell("trap '' XCPU; while :; do :; done");
+  spinning.limits.cpu_s = 1;
+  const SandboxOutcome spun = Sandbox::start(spinning).wait();
+  EXPECT_EQ(spun.ending, Ending::kSignal);
+  EXPECT_TRUE(spun.code == SIGXCPU || spun.code == SIGKILL) << spun.code;
+  EXPECT_EQ(run("exec yes").ending, Ending::kOutputLimit);
+}
+
+TEST_F(SandboxEnds, ManySpinningProcessesEndAtTheWallLimit) {
+  SandboxJob job = shell("for i in 1 2 3 4 5 6; do sh -c 'while :; do :; done' & done; wait");
+  job.limits.wall_s = 0.5;
+  EXPECT_EQ(Sandbox::start(job).wait().ending, Ending::kWallLimit);
+}
+
+TEST_F(SandboxEnds, DaemonsDieWithTheirParent) { EXPECT_EQ(run("setsid sleep 100 & exit 0").code, 0); }
+
+TEST_F(SandboxEnds, NewNamespacesCannotBeMade) { EXPECT_NE(run("unshare -U true").code, 0); }
+
+TEST_F(SandboxEnds, SandboxDiesWithItsOwner) {
+  // The owner is killed without warning; its keeper, now ours, must notice and leave nothing.
+  const pid_t owner = ::fork();
+  if (owner == 0) {
+    Sandbox sandbox = Sandbox::start(shell("sleep 100"));
+    ::raise(SIGKILL);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(owner, &status, 0), owner);
+  EXPECT_EQ(descendants_left(), 0);
+}
+
+TEST_F(SandboxEnds, StagesAreReadableByTheSandboxAloneAndRemoved) {
+  std::filesystem::path path;
+  {
+    Stage stage(&*user_);
+    path = stage.add_text("secret", "deep");
+    EXPECT_EQ(std::filesystem::status(path.parent_path()).permissions(), std::filesystem::perms::owner_all);
+  }
+  EXPECT_FALSE(std::filesystem::exists(path));
+}
+
+}  // namespace
+}  // namespace tumble::grading

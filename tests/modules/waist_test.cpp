@@ -1,0 +1,154 @@
+// The waist without a sandbox: values that cross it, bytes that must not.
+#include <gtest/gtest.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <limits>
+#include <random>
+#include <thread>
+
+#include "framework/modules/proxy.h"
+#include "framework/modules/serve.h"
+#include "tests/modules/waist.h"
+
+namespace tumble {
+namespace {
+
+using modules::Bytes;
+using modules::Channel;
+using modules::MessageKind;
+using waist::Everything;
+
+Everything sample() {
+  Everything value;
+  value.number = std::numeric_limits<double>::denorm_min();
+  value.count = -3;
+  value.text = std::string("nul \0 inside", 12);
+  value.turn = Quaterniond(0.5, -0.5, 0.5, -0.5);
+  value.matrix = Eigen::MatrixXd::Random(3, 5);
+  value.inner.resize(2);
+  value.inner[1] = {true, waist::Colour::kBlue, 0.25, Vector3d(1.0, -0.0, std::numeric_limits<double>::infinity())};
+  return value;
+}
+
+Bytes bytes_of(const Everything& value) {
+  modules::Writer writer;
+  writer.value(value);
+  return writer.bytes;
+}
+
+TEST(Wire, EveryKindOfValueComesBackBitForBit) {
+  const Bytes bytes = bytes_of(sample());
+  modules::Reader reader(bytes);
+  Everything back;
+  reader.value(back);
+  EXPECT_NO_THROW(reader.expect_end());
+  EXPECT_EQ(bytes_of(back), bytes);
+  EXPECT_EQ(back.text.size(), 12u);
+  EXPECT_TRUE(std::signbit(back.inner[1].point.y()));
+}
+
+TEST(Wire, MessageCutAnywhereIsRefused) {
+  const Bytes bytes = bytes_of(sample());
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    const Bytes cut(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
+    modules::Reader reader(cut);
+    Everything back;
+    EXPECT_THROW(reader.value(back), modules::WireError) << size << " of " << bytes.size() << " bytes";
+  }
+}
+
+TEST(Wire, CountsThatTheMessageCannotHoldAllocateNothing) {
+  const Bytes huge(4, 0xff);  // a count of 2^32 - 1, then nothing
+  modules::Reader as_text(huge), as_list(huge);
+  std::string text;
+  std::vector<double> list;
+  EXPECT_THROW(as_text.value(text), modules::WireError);
+  EXPECT_THROW(as_list.value(list), modules::WireError);
+  EXPECT_LT(text.capacity() + list.capacity(), 100u);
+}
+
+TEST(Wire, MutatedMessagesAreReadOrRefusedNeverCrash) {
+  const Bytes right = bytes_of(sample());
+  std::mt19937 random(7);
+  for (int i = 0; i < 20000; ++i) {
+    Bytes bytes = right;
+    for (int k = 0; k < 3; ++k) bytes[random() % bytes.size()] = static_cast<std::uint8_t>(random());
+    modules::Reader reader(bytes);
+    Everything back;
+    try {
+      reader.value(back);
+    } catch (const modules::WireError&) {
+    }
+  }
+}
+
+// A proxy whose worker is a thread of this process.
+class Loop : public modules::Connection {
+ public:
+  Loop() {
+    EXPECT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends_), 0);
+    near_ = std::make_unique<Channel>(ends_[0], ends_[0]);
+    worker_ = std::thread([this] {
+      Channel far(ends_[1], ends_[1]);
+      modules::serve(module_, far);
+    });
+  }
+  ~Loop() override {
+    ::shutdown(ends_[0], SHUT_RDWR);
+    worker_.join();
+    ::close(ends_[0]);
+    ::close(ends_[1]);
+  }
+  Channel& begin_call(const char*) override { return *near_; }
+  void count_callback() override { ++callbacks; }
+  Channel::Clock::time_point deadline() const override { return Channel::Clock::now() + std::chrono::seconds(10); }
+  void fail(const char* function, std::exception_ptr) override { throw std::runtime_error(std::string("no answer from ") + function); }
+  void refuse(const char* function, const std::string& what) override { throw std::runtime_error(function + (' ' + what)); }
+  void not_implemented(const char* function, const std::string& handout) override { throw NotImplemented(function, handout); }
+
+  int callbacks = 0;
+
+ private:
+  waist::Module module_ = waist::linked_module();
+  int ends_[2];
+  std::unique_ptr<Channel> near_;
+  std::thread worker_;
+};
+
+TEST(Proxy, AnswersAsTheLinkedModuleDoes) {
+  Loop loop;
+  const auto module = modules::make_proxy<waist::Module>(loop);
+  EXPECT_EQ(module.twice(0.1), waist::twice(0.1));
+  const Everything value = sample();
+  EXPECT_EQ(bytes_of(module.echo(value)), bytes_of(value));
+}
+
+TEST(Proxy, FunctionsGivenAreCalledBackHereAndCounted) {
+  Loop loop;
+  const auto module = modules::make_proxy<waist::Module>(loop);
+  int seen = 0;
+  EXPECT_EQ(module.call_back([&](double x) { return ++seen, 10.0 * x; }, 5), 100.0);  // 10 (0 + 1 + 2 + 3 + 4)
+  EXPECT_EQ(seen, 5);
+  EXPECT_EQ(loop.callbacks, 5);
+}
+
+TEST(Proxy, StubStaysAStubAcrossTheBoundaryAndTheLineStaysOpen) {
+  Loop loop;
+  const auto module = modules::make_proxy<waist::Module>(loop);
+  EXPECT_THROW(module.missing(1.0), NotImplemented);
+  EXPECT_EQ(module.twice(4.0), 8.0);
+}
+
+TEST(Channel, SilenceEndsAtTheDeadline) {
+  int ends[2];
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
+  Channel channel(ends[0], ends[0]);
+  EXPECT_THROW(channel.receive(Channel::Clock::now() + std::chrono::milliseconds(20)), modules::ChannelTimeout);
+  ::close(ends[1]);
+  EXPECT_THROW(channel.receive(Channel::Clock::now() + std::chrono::milliseconds(20)), modules::ChannelClosed);
+  ::close(ends[0]);
+}
+
+}  // namespace
+}  // namespace tumble
