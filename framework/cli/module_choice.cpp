@@ -7,6 +7,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "framework/cli/sandboxed_module.h"
+#include "framework/core/not_implemented.h"
 #include "framework/modules/load.h"
 
 namespace tumble::cli {
@@ -90,6 +92,57 @@ void bind_module(const ModuleKind& kind, const AnyModule& module, const std::str
   if (alone.integrate_step) laws.integrator_source = kind.id + ' ' + source;
 }
 
+bool is_path(const std::string& word) { return !word.empty() && word != "student" && word != "reference" && word != "library"; }
+
+/// The file that a path means for a module; empty where the path, given for all modules, is about others.
+fs::path file_for(const Context& context, const ModuleKind& kind, const std::string& word, bool for_all) {
+  const std::string flag = "--modules " + (for_all ? word : kind.id + '=' + word);
+  const fs::path path = word;
+  if (fs::is_directory(path)) {
+    const fs::path file = path / (kind.folder + ".cpp");
+    if (fs::exists(file)) return file;
+    const auto kinds = context.registry.all();
+    const bool is_other = for_all && std::any_of(kinds.begin(), kinds.end(), [&](const ModuleKind* k) { return fs::exists(path / (k->folder + ".cpp")); });
+    if (!is_other) throw UserError(flag, "this folder holds no " + kind.folder + ".cpp", "Name a submission's folder, or its file.");
+    return {};
+  }
+  if (path.extension() != ".cpp" && path.extension() != ".so")
+    throw UserError(flag, "this is none of student, reference, library, PATH.so, PATH.cpp, or a submission's folder", "Give one of these.");
+  if (!fs::exists(path)) throw UserError(flag, "there is no such file", "Check the path.");
+  const auto kinds = context.registry.all();
+  const bool is_other = for_all && std::any_of(kinds.begin(), kinds.end(), [&](const ModuleKind* k) { return k->id != kind.id && path.stem() == k->folder; });
+  return is_other ? fs::path() : path;
+}
+
+template <class Law, class Call>
+std::string stand_in(Law& law, const Law& library, const Call& call) {
+  try {
+    call(law);
+  } catch (const NotImplemented& missing) {
+    law = library;
+    return missing.function();
+  } catch (const std::exception&) {   // it is written; whether it is right is not asked here
+  }
+  return "";
+}
+
+/// Puts the library's laws of motion where a stub still stands. @return the functions that are not written, or nothing
+std::vector<std::string> stand_in_for_stubs(Laws& laws) {
+  const Laws library = library_laws();
+  const VectorXd y = VectorXd::Constant(1, 1.0);
+  const OdeFunction decay = [](double, const VectorXd& at) -> VectorXd { return -at; };
+  const ScalarFunction line = [](double t) { return 0.5 - t; }, slope = [](double) { return -1.0; };
+  const RigidBodyState rest{Vector3d::Zero(), Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero()};
+  const Inertia unit{1.0, 1.0, Matrix3d::Identity(), Matrix3d::Identity()};
+  std::vector<std::string> missing = {
+      stand_in(laws.integrate_step, library.integrate_step, [&](auto& law) { law(decay, 0.0, y, 0.1); }),
+      stand_in(laws.state_derivative, library.state_derivative, [&](auto& law) { law(rest, unit, {Vector3d::Zero(), Vector3d::Zero()}); }),
+      stand_in(laws.renormalize, library.renormalize, [](auto& law) { law(Quaterniond::Identity()); }),
+      stand_in(laws.find_impact_time, library.find_impact_time, [&](auto& law) { law(line, slope, 0.0, 1.0, 1e-9); })};
+  std::erase(missing, "");
+  return missing;
+}
+
 /// Reference where this tree has one, else the student's.
 std::string best_available(const Context& context, const std::string& id) {
   return fs::exists(built(context, id, "reference")) ? "reference" : "student";
@@ -126,13 +179,51 @@ ModuleWords parse_module_words(const std::string& text, const modules::Registry&
   return words;
 }
 
+namespace {
+
+bool is_about(const scene::Scene& scene, const ModuleKind& kind) {
+  return is_own(scene, kind) || std::find(scene.needs.begin(), scene.needs.end(), kind.id) != scene.needs.end();
+}
+
+/// Adds one module, chosen by a word, to the laws.
+void add_module(const Context& context, const scene::Scene& scene, const ModuleKind& kind, const std::string& word, const fs::path& file, ChosenLaws& result) {
+  result.modules.push_back({kind.id, word});
+  if (word == "library") return;
+  AnyModule module;
+  if (file.empty()) {
+    module = load_word(context, kind, word);
+  } else {
+    SandboxedModule sandboxed = load_sandboxed(context, kind, file);
+    module = sandboxed.module;
+    result.connections.push_back(std::move(sandboxed.connection));
+  }
+  Laws before = result.laws;
+  bind_module(kind, module, word, result.laws);
+  const bool may_stand_in = word == "student" && !is_about(scene, kind) && before.integrator_source != result.laws.integrator_source;
+  if (!may_stand_in) return;
+  const auto missing = stand_in_for_stubs(result.laws);
+  if (missing.empty()) return;
+  std::string names;
+  for (const auto& name : missing) names += (names.empty() ? "" : ", ") + name;
+  result.notices.push_back(kind.id + " is not written yet (" + names + "): the library's laws of motion stand in");
+  if (missing.size() == 4) result.laws.integrator_source = before.integrator_source;
+}
+
+}  // namespace
+
 ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words) {
   const auto kinds = context.registry.all();
   const bool has_home = std::any_of(kinds.begin(), kinds.end(), [&](const ModuleKind* kind) { return is_own(scene, *kind); });
   std::map<std::string, std::string> chosen;   // by id
+  std::map<std::string, fs::path> files;
   for (const ModuleKind* kind : kinds) {
     const auto told = words.contains(kind->id) ? words.find(kind->id) : words.find("");
-    chosen[kind->id] = told != words.end() ? told->second : default_word(context, scene, *kind, has_home);
+    const std::string otherwise = default_word(context, scene, *kind, has_home);
+    chosen[kind->id] = told != words.end() ? told->second : otherwise;
+    if (told == words.end() || !is_path(told->second)) continue;
+    files[kind->id] = file_for(context, *kind, told->second, told->first.empty());
+    // A submission of another assignment beside it: this one must not be paid for, so it is right where it can be.
+    if (files[kind->id].empty()) chosen[kind->id] = otherwise.empty() ? "" : best_available(context, kind->id);
   }
 
   ChosenLaws result;
@@ -150,9 +241,7 @@ ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const 
   result.laws.integrator_source = library.integrator_source;
   for (const ModuleKind* kind : kinds) {
     const std::string& word = chosen[kind->id];
-    if (word.empty()) continue;
-    result.modules.push_back({kind->id, word});
-    if (word != "library") bind_module(*kind, load_word(context, *kind, word), word, result.laws);
+    if (!word.empty()) add_module(context, scene, *kind, word, files[kind->id], result);
   }
   return result;
 }

@@ -1,13 +1,16 @@
 /// Whose laws a scene runs by: turns the words after --modules into laws.
 ///
 /// A word is `student` (build/modules/aN_student.so), `reference`, `library` (Boost.Odeint: motion only), a shared object
-/// PATH.so, or a source file PATH.cpp, which is compiled first. `a1=WORD,a2=WORD` chooses for each module, a WORD alone for all.
+/// PATH.so, a source file PATH.cpp, or a submission's folder with such a file. What a path names is compiled and called in the
+/// sandbox, never loaded here. `a1=WORD,a2=WORD` chooses for each module, a WORD alone for all that it can be about.
 /// What is not named: the scene's own assignment runs on the student's file; other modules that the scene needs run on the
 /// reference where there is one; what it does not need comes from the library where that has it. So a later assignment
-/// never fails for an earlier bug, and scenes run before a student has written an integrator.
+/// never fails for an earlier bug, and scenes run before a student has written an integrator: a stub of a module that the
+/// scene is not about is stood in for by the library, and a notice says so.
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -32,12 +35,14 @@ struct ChosenModule {
 struct ChosenLaws {
   Laws laws;
   std::vector<ChosenModule> modules;  // those that the scene needs or that were named, by id
+  std::vector<std::string> notices;   // for people: who stands in for what is not written yet
+  std::vector<std::shared_ptr<void>> connections;   // to sandboxes: must outlive every call of the laws
 };
 
 /// @throws UserError when a word names nothing that can be loaded, with what to do
 ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words);
 
-/// One module by its word.
+/// One module by its word, loaded into this process: for code of one's own.
 /// @param word  student, reference, PATH.so, or PATH.cpp, which is compiled first
 /// @throws UserError when the word names nothing that can be loaded, with what to do
 modules::AnyModule load_word(const Context& context, const modules::ModuleKind& kind, const std::string& word);

@@ -16,7 +16,7 @@ bool meets_ball(const Ray& ray, const Vector3d& centre_world, double radius) {
 
 double drawn_extent(const scene::BodySpec& body) {
   const auto* plane = std::get_if<scene::PlaneSpec>(&body.shape);
-  return plane == nullptr ? 0.0 : plane->drawn_half_extent_m;
+  return plane == nullptr ? 1.0 : plane->drawn_half_extent_m;   // of a body with an end the extent is not asked
 }
 
 }  // namespace

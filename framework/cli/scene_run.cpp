@@ -10,9 +10,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "framework/cli/judgement_table.h"
 #include "framework/cli/scene_pictures.h"
 #include "framework/engines/judge.h"
 #include "framework/engines/run.h"
+#include "framework/grading/worker_connection.h"
 #include "framework/scene/load_scene.h"
 
 namespace tumble::cli {
@@ -41,15 +43,6 @@ std::map<std::string, int> count_events(const Trajectory& run) {
   return counts;
 }
 
-std::string number(double value) { return fmt::format("{:.3g}", value == 0.0 ? 0.0 : value); }
-
-void print_check(const CheckResult& check) {
-  fmt::print("    {}  {:<18} {:<14} {} ({} {} allowed){}{}\n", check.passed ? "right" : "WRONG", check.kind, check.subject, number(check.value),
-             check.at_least ? ">=" : "<=", number(check.threshold), check.unit.empty() ? "" : " ", check.unit);
-  if (!check.detail.empty() && (!check.passed || check.kind == "flips")) fmt::print("             found: {}\n", check.detail);
-  if (!check.passed && !check.why.empty()) fmt::print("             why this limit: {}\n", check.why);
-}
-
 void print_summary(const scene::Scene& scene, const ChosenLaws& chosen, const Trajectory& run, const std::vector<CheckResult>& checks, const std::string& extra) {
   fmt::print("{}\n", scene.title);
   if (!extra.empty()) fmt::print("  {}\n", extra);
@@ -64,11 +57,7 @@ void print_summary(const scene::Scene& scene, const ChosenLaws& chosen, const Tr
   for (const auto& [name, count] : run.counters.counts) counts += fmt::format("{}{} {}", counts.empty() ? "" : " · ", name, count);
   if (!counts.empty()) fmt::print("  counts   {}\n", counts);
   if (!run.stopped_by.empty()) fmt::print("  STOPPED  {}\n", run.stopped_by);
-  if (checks.empty()) return;
-  std::size_t passed = 0;
-  for (const auto& check : checks) passed += check.passed ? 1 : 0;
-  fmt::print("  checks   {} of {} right\n", passed, checks.size());
-  for (const auto& check : checks) print_check(check);
+  fmt::print("{}", judgement_table(checks));
 }
 
 void print_json(const scene::Scene& scene, const ChosenLaws& chosen, const Trajectory& run, const std::vector<CheckResult>& checks) {
@@ -103,6 +92,21 @@ std::vector<fs::path> scenes_of(const Context& context) {
   return {files.begin(), files.end()};
 }
 
+/// Name and title of every scene, a line each.
+std::string listing(const Context& context) {
+  std::string lines;
+  for (const auto& file : scenes_of(context)) {
+    std::string title;
+    try {
+      title = scene::load_scene(file).title;
+    } catch (const UserError&) {
+      title = "(cannot be read; run it to see why)";
+    }
+    lines += fmt::format("\n  {:<24} {}", file.stem().string(), title);
+  }
+  return lines;
+}
+
 /// A run that was asked to be shorter than the scene is not judged by what it cannot have reached.
 scene::Scene judged_part(scene::Scene scene, const RunWords& words) {
   const bool is_shorter = words.duration_s && *words.duration_s < scene.duration_s;
@@ -114,10 +118,9 @@ scene::Scene judged_part(scene::Scene scene, const RunWords& words) {
 
 void add_run_words(CLI::App& verb, RunWords& words) {
   verb.add_option("scene", words.scene, "A scene file, or the bare name of one under assignments/*/scenes")->required()->type_name("SCENE");
-  verb.add_option("--modules", words.modules, "Whose laws: student, reference, library, PATH.so or PATH.cpp, for all or each: a1=student,a2=library")->type_name("WORDS");
+  verb.add_option("--modules", words.modules, "Whose laws: student, reference, library, or a submission (PATH.cpp, PATH.so, a folder: in the sandbox); for all or each: a1=student,a2=library")->type_name("WORDS");
   verb.add_option("--engine", words.engine, "rd: retroactive detection with fixed step")->capture_default_str();
   verb.add_option("--step-s", words.step_s, "Step of the integrator [s] instead of the scene's")->check(CLI::PositiveNumber);
-  verb.add_option("--out", words.out, "Write the recorded run (.tumble)")->type_name("FILE");
   verb.add_option("--png", words.png, "Write one picture")->type_name("FILE");
   verb.add_option("--at-s", words.at_s, "Instant of the picture [s]; default the end")->check(CLI::NonNegativeNumber);
   verb.add_option("--sheet", words.sheet, "Write a contact sheet (.png)")->type_name("FILE");
@@ -146,12 +149,17 @@ Vector3d parse_vector(const std::string& flag, const std::string& text) {
 
 scene::Scene find_scene(const Context& context, const std::string& word) {
   if (fs::exists(word)) return scene::load_scene(word);
-  std::string known;
+  if (word.ends_with(".json") || word.find('/') != std::string::npos) throw UserError(word, "there is no such file", "Check the path, or give a scene's bare name: " + listing(context));
+  std::vector<fs::path> beginning;   // a name may be cut short where that is clear
   for (const auto& file : scenes_of(context)) {
     if (file.stem() == word) return scene::load_scene(file);
-    known += (known.empty() ? "" : ", ") + file.stem().string();
+    if (file.stem().string().starts_with(word)) beginning.push_back(file);
   }
-  throw UserError(word, "there is no such scene", "Give the path of a scene file, or one of: " + known + ".");
+  if (beginning.size() == 1) return scene::load_scene(beginning.front());
+  if (beginning.empty()) throw UserError(word, "there is no such scene", "Give the path of a scene file, or one of these: " + listing(context));
+  std::string names;
+  for (const auto& file : beginning) names += (names.empty() ? "" : ", ") + file.stem().string();
+  throw UserError(word, "more than one scene begins like this: " + names, "Give more of the name.");
 }
 
 void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const RunWords& words, const std::string& extra) {
@@ -163,9 +171,16 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   options.command = context.command_line;
   TrajectoryRecorder recorder;
   const auto start = std::chrono::steady_clock::now();
-  engines::run_scene(scene, chosen.laws, options, recorder);
+  for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
+  std::string ended;   // why a submission gave no answer
+  try {
+    engines::run_scene(scene, chosen.laws, options, recorder);
+  } catch (const grading::CallEnded& error) {
+    ended = error.what();
+  }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  const Trajectory& run = recorder.trajectory();
+  Trajectory run = recorder.trajectory();
+  if (!ended.empty()) run.stopped_by = ended;
 
   const auto checks = engines::judge_run(judged_part(scene, words), run);
   if (words.json) print_json(scene, chosen, run, checks);
@@ -175,11 +190,7 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   fmt::print(stderr, "ran in {:.2f} s", seconds);
   for (const auto& [stage, spent] : run.counters.stage_seconds) fmt::print(stderr, " · {} {:.2f} s", stage, spent);
   fmt::print(stderr, "\n");
-  if (!words.out.empty()) {
-    throw UserError("--out", "runs cannot be written yet");
-    fmt::print(stderr, "wrote {}\n", words.out);
-  }
-  write_pictures(context, scene, run, words, size);
+  if (!run.frames.empty()) write_pictures(context, scene, run, words, size);
 
   bool passed = run.stopped_by.empty();
   for (const auto& check : checks) passed = passed && check.passed;
