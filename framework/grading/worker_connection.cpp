@@ -81,6 +81,8 @@ WorkerConnection::WorkerConnection(WorkerOptions options) : options_(std::move(o
   job_.limits.wall_s = options_.session_wall_s + 5.0;  // the deadlines of calls come first; this one is for a judge that died
   job_.limits.cpu_s = static_cast<std::uint64_t>(options_.session_wall_s);
   job_.limits.memory_bytes = options_.memory_bytes;
+  // Process 1, the worker, and two that it may make: memory is limited for each of them, so that few bound the sum.
+  job_.limits.processes = 4;
 }
 
 WorkerConnection::~WorkerConnection() { reset(); }
@@ -109,7 +111,7 @@ SandboxOutcome WorkerConnection::stop(double grace_s) {
   channel_.reset();
   ::close(socket_);
   socket_ = -1;
-  in_call_ = false;
+  calls_.clear();
   SandboxOutcome outcome;
   if (sandbox_) {
     outcome = sandbox_->stop(grace_s);
@@ -124,22 +126,25 @@ SandboxOutcome WorkerConnection::stop(double grace_s) {
 Channel& WorkerConnection::begin_call(const char* function) {
   CallLog& log = call_log();
   if (log.noted) throw CallEnded("the test has its verdict already");
-  if (in_call_) reset();  // a callback threw: the worker still waits inside the last call
   log.begin(function);
   if (socket_ < 0) start();
-  in_call_ = true;
+  calls_.push_back(function);
   deadline_ = std::min(session_end_, Channel::Clock::now() + seconds(options_.call_wall_s));
   return *channel_;
 }
 
 void WorkerConnection::end_call() {
-  in_call_ = false;
-  call_log().end();
+  calls_.pop_back();
+  CallLog& log = call_log();
+  log.end();
+  if (calls_.empty()) return;
+  log.begin(calls_.back().c_str());  // the one around it goes on; it was counted when it began
+  --log.calls;
 }
 
 void WorkerConnection::count_callback() {
   if (++callbacks_ <= options_.callback_budget) return;
-  const std::string function = call_log().last_call;
+  const std::string function = calls_.back();
   stop(0.0);
   end(Verdict::kOutOfResources, function + " evaluated the functions it was given more than " + std::to_string(options_.callback_budget) + " times");
 }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "framework/grading/sandbox.h"
 #include "framework/grading/verdict.h"
@@ -47,6 +48,7 @@ class WorkerConnection : public modules::Connection {
 
   modules::Channel& begin_call(const char* function) override;
   void end_call() override;
+  void abandon_call() override { reset(); }
   void count_callback() override;
   modules::Channel::Clock::time_point deadline() const override { return deadline_; }
   [[noreturn]] void fail(const char* function, std::exception_ptr transport_error) override;
@@ -68,7 +70,7 @@ class WorkerConnection : public modules::Connection {
   int socket_ = -1;
   std::unique_ptr<modules::Channel> channel_;
   modules::Channel::Clock::time_point session_end_, deadline_;
-  bool in_call_ = false;
+  std::vector<std::string> calls_;   // that have begun and not ended, the outermost first
   long callbacks_ = 0;
 };
 

@@ -19,9 +19,12 @@ class Connection {
  public:
   virtual ~Connection() = default;
   /// The channel to a running worker; starts one where none runs. Called once a call, before anything is sent.
+  /// A callback may call again: such calls nest, and end in the reverse order.
   virtual Channel& begin_call(const char* function) = 0;
   /// The worker has answered: it waits for the next call.
   virtual void end_call() {}
+  /// The call ends without its answer because a callback threw: the worker still waits inside the call.
+  virtual void abandon_call() {}
   /// Each callback served, before it runs. May throw to end the call (a budget of evaluations is spent).
   virtual void count_callback() = 0;
   virtual Channel::Clock::time_point deadline() const = 0;
@@ -93,7 +96,14 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
           std::uint32_t which = 0;
           reader.value(which);
           if (which >= callbacks.size()) throw WireError("a callback that was never passed");
-          return callbacks[which](reader);
+          try {
+            return callbacks[which](reader);
+          } catch (const WireError&) {
+            throw;
+          } catch (...) {
+            connection.abandon_call();
+            throw;
+          }
         });
         transport([&] { channel.send(MessageKind::kCallbackReturn, answer, deadline); return 0; });
         break;

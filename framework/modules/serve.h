@@ -12,18 +12,50 @@
 namespace tumble::modules {
 namespace detail {
 
+/// The functions of a module as bytes to bytes, and the line that asks for them.
+struct Server {
+  Channel& channel;
+  std::vector<std::function<Bytes(Reader&)>> functions;
+
+  /// Runs one call and answers it. A C++ exception out of a function is an answer; a signal is not.
+  /// @throws ChannelClosed when nobody listens any more
+  void answer(const Message& call) {
+    const auto say = [&](MessageKind kind, const std::string& text) {
+      Writer writer;
+      writer.value(text);
+      channel.send(kind, writer.bytes);
+    };
+    try {
+      Reader reader(call.payload);
+      std::uint32_t index = 0;
+      reader.value(index);
+      channel.send(MessageKind::kReturn, functions.at(index)(reader));
+    } catch (const ChannelClosed&) {
+      throw;
+    } catch (const NotImplemented& missing) {
+      say(MessageKind::kNotImplemented, missing.handout());
+    } catch (const std::exception& error) {
+      say(MessageKind::kException, error.what());
+    } catch (...) {
+      say(MessageKind::kException, "something that is not a std::exception");
+    }
+  }
+};
+
 template <class T>
 struct CallbackStub;
 
 template <class R, class... A>
 struct CallbackStub<std::function<R(A...)>> {
-  static std::function<R(A...)> make(Channel& channel, std::uint32_t which) {
-    return [&channel, which](A... arguments) -> R {
+  static std::function<R(A...)> make(Server& server, std::uint32_t which) {
+    return [&server, which](A... arguments) -> R {
       Writer writer;
       writer.value(which);
       (writer.value(static_cast<const std::decay_t<A>&>(arguments)), ...);
-      channel.send(MessageKind::kCallback, writer.bytes);
-      const Message answer = channel.receive();
+      server.channel.send(MessageKind::kCallback, writer.bytes);
+      Message answer = server.channel.receive();
+      // The function called back may itself need this module: an integrator's derivative is a function of the same one.
+      for (; answer.kind == MessageKind::kCall; answer = server.channel.receive()) server.answer(answer);
       if (answer.kind != MessageKind::kCallbackReturn) throw ChannelClosed("the judge ended the call");
       Reader reader(answer.payload);
       R result;
@@ -34,21 +66,21 @@ struct CallbackStub<std::function<R(A...)>> {
 };
 
 template <class T>
-void read_argument(Channel& channel, Reader& reader, T& argument) {
+void read_argument(Server& server, Reader& reader, T& argument) {
   if constexpr (is_function<T>::value) {
     std::uint32_t which = 0;
     reader.value(which);
-    argument = CallbackStub<T>::make(channel, which);
+    argument = CallbackStub<T>::make(server, which);
   } else {
     reader.value(argument);
   }
 }
 
 template <class R, class... A>
-std::function<Bytes(Reader&)> served(Channel& channel, const std::function<R(A...)>& function) {
-  return [&channel, &function](Reader& reader) {
+std::function<Bytes(Reader&)> served(Server& server, const std::function<R(A...)>& function) {
+  return [&server, &function](Reader& reader) {
     std::tuple<std::decay_t<A>...> arguments;
-    std::apply([&](auto&... a) { (read_argument(channel, reader, a), ...); }, arguments);
+    std::apply([&](auto&... a) { (read_argument(server, reader, a), ...); }, arguments);
     Writer writer;
     writer.value(std::apply(function, arguments));
     return std::move(writer.bytes);
@@ -57,37 +89,15 @@ std::function<Bytes(Reader&)> served(Channel& channel, const std::function<R(A..
 
 }  // namespace detail
 
-/// Answers calls until the judge closes the channel. A C++ exception out of a function is an answer; a signal is not.
+/// Answers calls until the judge closes the channel.
 template <class Module>
 void serve(const Module& module, Channel& channel) {
-  std::vector<std::function<Bytes(Reader&)>> functions;
-  Module::visit(module, [&](const char*, const auto& field) { functions.push_back(detail::served(channel, field)); });
-  for (;;) {
-    Message message{};
-    try {
-      message = channel.receive();
-    } catch (const ChannelClosed&) {
-      return;
-    }
-    const auto say = [&](MessageKind kind, const std::string& text) {
-      Writer writer;
-      writer.value(text);
-      channel.send(kind, writer.bytes);
-    };
-    try {
-      Reader reader(message.payload);
-      std::uint32_t index = 0;
-      reader.value(index);
-      channel.send(MessageKind::kReturn, functions.at(index)(reader));
-    } catch (const ChannelClosed&) {
-      return;
-    } catch (const NotImplemented& missing) {
-      say(MessageKind::kNotImplemented, missing.handout());
-    } catch (const std::exception& error) {
-      say(MessageKind::kException, error.what());
-    } catch (...) {
-      say(MessageKind::kException, "something that is not a std::exception");
-    }
+  detail::Server server{channel, {}};
+  Module::visit(module, [&](const char*, const auto& field) { server.functions.push_back(detail::served(server, field)); });
+  try {
+    for (;;) server.answer(channel.receive());
+  } catch (const ChannelClosed&) {
+    return;
   }
 }
 

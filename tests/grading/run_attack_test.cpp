@@ -66,8 +66,31 @@ TEST_F(RunAttack, AnswerTooLongToReadIsRefused) { expect_end("long answer", Verd
 
 TEST_F(RunAttack, ForgedFramesAreAnswersOrRefused) {
   for (const char* what : {"kind", "size", "callback", "count"}) expect_end(std::string("forge:") + what, Verdict::kCrashed, "answered");
-  expect_end("forge:stub", Verdict::kNotAttempted, "not implemented");
   expect_end("forge:half", Verdict::kOutOfResources, "no answer within");
+}
+
+TEST_F(RunAttack, ForgedStubIsAStub) {
+  Victim victim = in_call();
+  EXPECT_EQ(victim.attack("forge:stub"), "");
+  EXPECT_EQ(victim.verdict(), Verdict::kNotAttempted) << victim.story();
+}
+
+TEST_F(RunAttack, CallbackThatThrowsLeavesTheNextCallAFreshWorker) {
+  Victim victim = in_call();
+  EXPECT_THROW(victim.module().call_back([](double) -> double { throw std::runtime_error("judge's own"); }, 1), std::runtime_error);
+  EXPECT_EQ(victim.module().twice(1.0), 2.0);
+}
+
+TEST_F(RunAttack, CallInsideACallbackDiesWithItsStory) {
+  // An integrator's derivative is a function of the same submission: when that one dies, both calls are over.
+  Victim victim = in_call();
+  EXPECT_THROW(victim.module().call_back([&](double) { return static_cast<double>(victim.module().attack("abort").size()); }, 2), CallEnded);
+  EXPECT_EQ(victim.verdict(), Verdict::kCrashed);
+  EXPECT_TRUE(holds(victim.story(), "SIGABRT") && holds(victim.story(), "attack")) << victim.story();
+  call_log() = CallLog{};
+  EXPECT_EQ(victim.module().call_back([&](double x) { return victim.module().twice(x); }, 3), 6.0);
+  EXPECT_STREQ(call_log().last_call, "call_back");
+  EXPECT_EQ(call_log().calls, 4);
 }
 
 TEST_F(RunAttack, ForgedAnswerIsWorthNoMoreThanAnAnswer) {

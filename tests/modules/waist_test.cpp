@@ -133,6 +133,14 @@ TEST(Proxy, FunctionsGivenAreCalledBackHereAndCounted) {
   EXPECT_EQ(loop.callbacks, 5);
 }
 
+TEST(Proxy, CallbackMayCallTheModuleAgain) {
+  Loop loop;
+  const auto module = modules::make_proxy<waist::Module>(loop);
+  const auto inner = [&](double x) { return module.call_back([&](double y) { return module.twice(x + y); }, 2); };
+  EXPECT_EQ(module.call_back(inner, 3), 18.0);  // sum over x = 0, 1, 2 and y = 0, 1 of 2 (x + y)
+  EXPECT_EQ(module.twice(1.0), 2.0);
+}
+
 TEST(Proxy, StubStaysAStubAcrossTheBoundaryAndTheLineStaysOpen) {
   Loop loop;
   const auto module = modules::make_proxy<waist::Module>(loop);
