@@ -100,15 +100,19 @@ std::string place_of(const Part& part) {
                      show_point(0.5 * (part.bounds.low + part.bounds.high)));
 }
 
-std::vector<Defect> find_flat(const std::vector<Part>& parts) {
+// Flat parts, and spikes whose volume is lost in rounding.
+std::vector<Defect> find_without_volume(const std::vector<Part>& parts) {
   std::vector<Defect> defects;
   for (const Part& part : parts) {
-    const double least = std::max(kFlat * std::pow(area_of(part.mesh), 1.5), rounding_of_volume(part));
-    if (std::abs(part.volume) > least) continue;
-    defects.push_back({DefectKind::kZeroVolume,
-                       parts.size() == 1 ? "the surface is closed but encloses no volume: it is flat"
-                                         : place_of(part) + " encloses no volume: it is flat",
-                       "Give it a thickness, or remove it."});
+    const std::string what = parts.size() == 1 ? "the surface is closed but" : place_of(part);
+    if (std::abs(part.volume) <= kFlat * std::pow(area_of(part.mesh), 1.5)) {
+      defects.push_back({DefectKind::kZeroVolume, what + " encloses no volume: it is flat", "Give it a thickness, or remove it."});
+    } else if (std::abs(part.volume) <= rounding_of_volume(part)) {
+      defects.push_back({DefectKind::kNeedle,
+                         fmt::format("{} is a needle from {} to {}: its volume is lost in rounding", what, show_point(part.bounds.low),
+                                     show_point(part.bounds.high)),
+                         "Look for a vertex far from the others, or make it thicker."});
+    }
   }
   return defects;
 }
@@ -164,7 +168,7 @@ TriangleMesh double_pinched_vertices(const TriangleMesh& mesh, const std::vector
 
 std::vector<Defect> orient_parts(const std::vector<int>& part_of_face, TriangleMesh& mesh, std::vector<std::string>& notices) {
   std::vector<Part> parts = split(mesh, part_of_face);
-  if (std::vector<Defect> flat = find_flat(parts); !flat.empty()) return flat;
+  if (std::vector<Defect> nothing = find_without_volume(parts); !nothing.empty()) return nothing;
   find_depths(parts, notices);
 
   // Solid and cavity alternate from the outside inward: volumes have the signs +, -, +, ...
