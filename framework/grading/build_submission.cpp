@@ -3,43 +3,27 @@
 #include <sstream>
 
 #include "framework/grading/compile.h"
-#include "framework/grading/run_program.h"
+#include "framework/grading/compile.h"
 
 namespace tumble::grading {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kCompileWall = 120.0;          // s: a module takes 3 on an idle core
-constexpr std::size_t kSaidLines = 40;          // of the compiler: the first errors are those that matter
+constexpr std::size_t kSaidLines = 40;  // of the compiler: the first errors are those that matter
 
 }  // namespace
 
-BuiltSubmission build_own(const Course& course, const fs::path& source, const fs::path& object) {
-  const std::vector<std::string> words = {"g++", "-std=c++20", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-fno-gnu-unique", "-Wl,-z,defs",
-                                          "-DTUMBLE_BUILDING_MODULE", "-I", course.root.string(), "-isystem", "/usr/include/eigen3",
-                                          source.string(), "-o", object.string()};
-  const ProgramOutcome outcome = run_program(words, Output::kCaptured, kCompileWall);
-  if (outcome.code == 127) return {BuiltSubmission::Outcome::kGraderFault, "g++ cannot be started"};
-  return {outcome.code == 0 ? BuiltSubmission::Outcome::kBuilt : BuiltSubmission::Outcome::kRefused, outcome.printed};
-}
-
 BuiltSubmission build_submission(const Course& course, const std::string& id, const fs::path& source, const fs::path& object) {
-  using Outcome = BuiltSubmission::Outcome;
   const std::string folder = course.registry->find(id).folder;
-  CompileJob job;
-  job.root = course.root;
-  job.header = fs::path("assignments") / folder / (folder + ".h");
-  job.source = source;
-  job.object = object;
-  const Compiled compiled = compile_submission(job);
+  const Compiled compiled = compile_submission({course.root, fs::path("assignments") / folder / (folder + ".h"), source, object, {}});
   switch (compiled.outcome) {
-    case Compiled::Outcome::kBuilt: return {Outcome::kBuilt, compiled.said};
-    case Compiled::Outcome::kRefused:
-    case Compiled::Outcome::kOutOfResources: return {Outcome::kRefused, compiled.said};
+    case Compiled::Outcome::kBuilt: return {BuiltSubmission::Outcome::kBuilt, compiled.said};
+    case Compiled::Outcome::kRefused: return {BuiltSubmission::Outcome::kRefused, compiled.said};
+    case Compiled::Outcome::kOutOfResources: return {BuiltSubmission::Outcome::kRefused, "out of time or memory while compiling: " + compiled.said};
     case Compiled::Outcome::kGraderFault: break;
   }
-  return {Outcome::kGraderFault, compiled.said};
+  return {BuiltSubmission::Outcome::kGraderFault, compiled.said};
 }
 
 std::string compiler_story(const std::string& said, const fs::path& source) {

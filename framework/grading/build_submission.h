@@ -18,9 +18,6 @@ struct BuiltSubmission {
 /// @param object  written where the outcome is kBuilt
 BuiltSubmission build_submission(const Course& course, const std::string& id, const std::filesystem::path& source, const std::filesystem::path& object);
 
-/// Compiles as the build does, in the open: for code of our own only.
-BuiltSubmission build_own(const Course& course, const std::filesystem::path& source, const std::filesystem::path& object);
-
 /// "file.cpp:12:5: error: ..." lines alone, paths shortened to the file's name; all of it where there is no such line.
 std::string compiler_story(const std::string& said, const std::filesystem::path& source);
 

@@ -125,7 +125,9 @@ std::vector<SceneMedia> make_media(const Course& course, const std::string& id, 
     std::vector<render::LabelledRun> runs;
     if (!theirs.trajectory.frames.empty()) runs.push_back({theirs.trajectory, "submission"});
     if (!ours.trajectory.frames.empty()) runs.push_back({ours.trajectory, "reference"});
-    if (!runs.empty()) draw(scene, runs, folder, options, course, media);
+    MediaOptions own = options;
+    own.video = options.video && theirs.attempted;  // nothing moves by what is not there: a picture says that as well
+    if (!runs.empty()) draw(scene, runs, folder, own, course, media);
     all.push_back(std::move(media));
   }
   return all;
