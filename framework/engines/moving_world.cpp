@@ -5,6 +5,7 @@
 
 #include "framework/core/error.h"
 #include "framework/dynamics/rotation_bounds.h"
+#include "framework/engines/guarded_laws.h"
 
 namespace tumble::engines {
 namespace {
@@ -18,8 +19,11 @@ double measure_path_bend(const Laws& laws) {
     dy << y[kSpeed], 1.0;
     return dy;
   };
-  const VectorXd end = laws.integrate_step(fall, 0.0, VectorXd::Zero(2), 1.0);
-  return end.size() == 2 && std::isfinite(end[kHeight]) ? 2.0 * end[kHeight] : 1.0;
+  try {
+    return 2.0 * laws.integrate_step(fall, 0.0, VectorXd::Zero(2), 1.0)[kHeight];
+  } catch (const StoppedRun&) {
+    return 1.0;   // the first step of a body fails in the same way, and says whose
+  }
 }
 
 }  // namespace
@@ -101,14 +105,19 @@ RigidBodyState MovingWorld::integrate(int body, double duration, double start_ti
   const Inertia& inertia = world_.bodies[body].inertia;
   const OdeFunction derivative = [&](double, const VectorXd& y) {
     ++counters_.derivative_evaluations;
+    if (y.size() != start.size())
+      throw StoppedRun("integration (integrate_step of " + laws_.integrator_source + ") asked for the derivative of a state of " +
+                       std::to_string(y.size()) + " numbers instead of " + std::to_string(start.size()));
     const RigidBodyState state = unpack(y);
     return laws_.state_derivative(state, inertia, wrench_on(body, state));
   };
   ++counters_.integrations;
   ++integrations_in_step_;
-  RigidBodyState state = unpack(laws_.integrate_step(derivative, start_time, start, duration));
-  state.world_from_body = laws_.renormalize(state.world_from_body);
-  return state;
+  return naming("body '" + world_.bodies[body].name + "'", [&] {
+    RigidBodyState state = unpack(laws_.integrate_step(derivative, start_time, start, duration));
+    state.world_from_body = laws_.renormalize(state.world_from_body);
+    return state;
+  });
 }
 
 void MovingWorld::begin_step(double target) {

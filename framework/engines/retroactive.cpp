@@ -9,6 +9,7 @@
 
 #include "framework/collision/contact_patch.h"
 #include "framework/core/error.h"
+#include "framework/engines/guarded_laws.h"
 #include "framework/engines/recorder.h"
 #include "framework/engines/sequential_impacts.h"
 
@@ -31,13 +32,14 @@ struct Earliest {
 class RetroactiveRun {
  public:
   RetroactiveRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink)
-      : scene_(scene), laws_(laws), sink_(sink), step_(options.step_s.value_or(scene.step_s)),
-        duration_(options.duration_s.value_or(scene.duration_s)), moving_(build_world(scene), laws, counters_),
-        impacts_(laws, {scene.rest_speed_m_s, step_ / 100}, counters_), recorder_(options.frame_rate_hz, duration_, sink) {}
+      : scene_(scene), laws_(guarded(laws)), sink_(sink), step_(options.step_s.value_or(scene.step_s)),
+        duration_(options.duration_s.value_or(scene.duration_s)), moving_(build_world(scene), laws_, counters_),
+        impacts_(laws_, {scene.rest_speed_m_s, step_ / 100}, counters_), recorder_(options.frame_rate_hz, duration_, sink) {}
 
   void run();
 
  private:
+  void run_to_the_end();
   void refuse_overlap();
   double next_target() const;
   void switch_forces();
@@ -58,7 +60,7 @@ class RetroactiveRun {
   std::string name(int body) const { return "'" + moving_.world().bodies[body].name + "'"; }
 
   const scene::Scene& scene_;
-  const Laws& laws_;
+  const Laws laws_;   // guarded
   TrajectorySink& sink_;
   double step_, duration_;
   RunCounters counters_;
@@ -167,8 +169,12 @@ std::vector<Vector3d> RetroactiveRun::touching_points(std::pair<int, int> pair, 
   const collision::CollisionShape &a = moving_.shape(pair.first), &b = moving_.shape(pair.second);
   const Vector3d point_world = 0.5 * (gap.point_a_world + gap.point_b_world);
   if (a.is_ball() || b.is_ball()) return {point_world};
+  double size = 0.0;
+  for (const collision::CollisionShape* shape : {&a, &b})
+    if (!shape->is_half_space()) size += shape->bounding_radius();
+  // Sizes say what lies flat; how far from the world's origin the two are only adds what their places are rounded by.
   const collision::FlatHull patch =
-      collision::contact_patch(a, pose_of(pair.first), b, pose_of(pair.second), gap, kSamePatch * (touching_distance(pair) / kTouching));
+      collision::contact_patch(a, pose_of(pair.first), b, pose_of(pair.second), gap, kSamePatch * size + touching_distance(pair));
   if (patch.corners.size() < 2) return {point_world};
   std::vector<Vector3d> points{patch.middle};
   points.insert(points.end(), patch.corners.begin(), patch.corners.end());
@@ -223,14 +229,17 @@ void RetroactiveRun::resolve_at(const std::vector<std::pair<int, int>>& pairs, s
     if (pair == trigger) trigger_index = touching.size();
     touching.push_back({pair.first, pair.second, gap, touching_points(pair, gap)});
   }
-  const Resolution resolution = impacts_.resolve(moving_, touching, trigger_index);
+  const std::string subject = fmt::format("bodies {} and {}", name(trigger.first), name(trigger.second));
+  const Resolution resolution = naming(subject, [&] { return impacts_.resolve(moving_, touching, trigger_index); });
   for (const Event& event : resolution.events) sink_.event(event);
   if (!resolution.settled)
-    stopped_by_ = fmt::format("at t = {:.6f} s the impacts between bodies that touch did not come to an end (bodies {} and {} among them)",
-                              moving_.time(), name(trigger.first), name(trigger.second));
+    stopped_by_ = fmt::format("at t = {:.6f} s, {}: collision (collision_impulse, apply_impulse of {}) left them approaching, however often it was "
+                              "applied: the impulse has no effect, the wrong sign, or too little size", moving_.time(), subject, laws_.impulse_source);
   settle(touching, resolution.events);
-  for (const TouchingPair& pair : resolution.micro_impacts)
-    if (!moving_.resting(pair.a) && !moving_.resting(pair.b)) impacts_.push_apart(moving_, pair);
+  std::vector<TouchingPair> awake;
+  for (const TouchingPair& pair : touching)
+    if (!moving_.resting(pair.a) && !moving_.resting(pair.b)) awake.push_back(pair);
+  naming(subject, [&] { impacts_.push_apart(moving_, awake, resolution.micro_impacts); });
 }
 
 // Rest: a ball that met an immovable support, which gravity presses it against, more slowly than the rest speed (or that does not
@@ -263,7 +272,7 @@ void RetroactiveRun::watch_for_trouble() {
     if (moving_.world().bodies[i].immovable()) continue;
     const VectorXd y = pack(moving_.state(i));
     if (y.allFinite()) continue;
-    stopped_by_ = fmt::format("body {} has a state that is not a number at t = {:.6f} s (integrator: {}; impulses: {})", name(i), moving_.time(),
+    stopped_by_ = fmt::format("at t = {:.6f} s, body {}: its state is not a number (integrator: {}; impulses: {})", moving_.time(), name(i),
                               laws_.integrator_source, laws_.impulse_source);
     return;
   }
@@ -294,7 +303,7 @@ void RetroactiveRun::advance_to(double target) {
     idle = reached > before ? 0 : idle + 1;
     if (idle > kMostIdleSteps || ++impacts > kMostImpactsAStep) {
       const auto [a, b] = pairs[earliest->pair];
-      stopped_by_ = fmt::format("time stands still at t = {:.6f} s: bodies {} and {} meet again and again; a lasting contact is needed "
+      stopped_by_ = fmt::format("at t = {:.6f} s, bodies {} and {}: time stands still, they meet again and again; a lasting contact is needed "
                                 "there, or a larger \"rest_speed_m_s\"", moving_.time(), name(a), name(b));
     }
   }
@@ -306,6 +315,15 @@ void RetroactiveRun::run() {
     switch_times_.insert(force.start);
     switch_times_.insert(force.end);
   }
+  try {
+    run_to_the_end();
+  } catch (const StoppedRun& stop) {
+    stopped_by_ = fmt::format("at t = {:.6f} s, {}", moving_.time(), stop.what());
+  }
+  sink_.end(counters_.named(), stopped_by_);
+}
+
+void RetroactiveRun::run_to_the_end() {
   switch_forces();
   recorder_.record_committed(moving_);
   while (stopped_by_.empty() && moving_.time() < duration_) {
@@ -316,7 +334,6 @@ void RetroactiveRun::run() {
     switch_forces();
     recorder_.record_committed(moving_);
   }
-  sink_.end(counters_.named(), stopped_by_);
 }
 
 }  // namespace

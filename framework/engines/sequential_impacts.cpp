@@ -11,6 +11,10 @@ namespace {
 constexpr double kRoundOffOfSpeed = 1e-13;
 constexpr int kMostRounds = 10000;  // restitution 0.99 in a row of 50 balls takes some hundred
 
+// Of the rest speed: pushes of touching pairs approach it together, each round by a part of what is missing.
+constexpr double kFastEnough = 0.5;
+constexpr int kMostPushes = 200;
+
 Contact contact_of(const TouchingPair& pair, const Vector3d& point_world) { return {point_world, pair.gap.normal_b_to_a_world}; }
 
 struct Approach {
@@ -94,15 +98,29 @@ bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double thr
   return true;
 }
 
-void SequentialImpacts::push_apart(MovingWorld& moving, const TouchingPair& pair) {
-  Work work{moving, {}, {}, {}};
+bool SequentialImpacts::push_pair_apart(Work& work, const TouchingPair& pair) {
   const auto [rate, point_world] = fastest_approach(laws_, pair, work.body(pair.a), work.body(pair.b), rules_.rest_speed);
+  if (rate >= kFastEnough * rules_.rest_speed) return false;
   const Contact contact = contact_of(pair, point_world);
-  if (rate >= rules_.rest_speed) return;
-  const double impulse = (rules_.rest_speed - rate) / (compliance(contact, work.body(pair.a)) + compliance(contact, work.body(pair.b)));
-  work.push(laws_, pair, contact, impulse);
-  work.write_back();
+  const double yielding = compliance(contact, work.body(pair.a)) + compliance(contact, work.body(pair.b));
+  work.push(laws_, pair, contact, (rules_.rest_speed - rate) / yielding);
   ++counters_.micro_impacts;
+  return true;
+}
+
+void SequentialImpacts::push_apart(MovingWorld& moving, const std::vector<TouchingPair>& touching, const std::vector<TouchingPair>& micro_impacts) {
+  if (micro_impacts.empty()) return;
+  Work work{moving, {}, {}, {}};
+  const auto had_micro_impact = [&](const TouchingPair& pair) {
+    return std::any_of(micro_impacts.begin(), micro_impacts.end(), [&](const TouchingPair& m) { return m.a == pair.a && m.b == pair.b; });
+  };
+  bool again = true;
+  for (int round = 0; again && round < kMostPushes; ++round) {
+    again = false;
+    for (const TouchingPair& pair : touching)
+      if (had_micro_impact(pair) || work.changed.contains(pair.a) || work.changed.contains(pair.b)) again = push_pair_apart(work, pair) || again;
+  }
+  work.write_back();
 }
 
 Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<TouchingPair>& pairs, std::size_t trigger) {

@@ -43,12 +43,16 @@ class SequentialImpacts {
   /// @param trigger  which of them stopped the step
   Resolution resolve(MovingWorld& moving, const std::vector<TouchingPair>& pairs, std::size_t trigger);
 
-  /// Sends a pair apart at the rest speed, if it separates more slowly. Without a lasting contact, a pair that gravity or turning
-  /// presses together would meet infinitely often in no time; what this adds in energy is below m * rest_speed^2.
-  void push_apart(MovingWorld& moving, const TouchingPair& pair);
+  /// Sends the pairs that had a micro-impact apart at the rest speed, where they separate more slowly, and with them the touching
+  /// pairs of bodies that this moves: else a stack would be pushed back and forth within one instant. Without a lasting contact, a
+  /// pair that gravity or turning presses together would meet infinitely often in no time. A body that lies on another therefore
+  /// hops: up to rest_speed^2 / 2g high; a hop adds an energy of the order of m * rest_speed^2, which the landing takes away where
+  /// restitution is below 1.
+  void push_apart(MovingWorld& moving, const std::vector<TouchingPair>& touching, const std::vector<TouchingPair>& micro_impacts);
 
  private:
   struct Work;
+  bool push_pair_apart(Work& work, const TouchingPair& pair);
   bool collide(Work& work, const TouchingPair& pair, double threshold);
 
   const Laws& laws_;

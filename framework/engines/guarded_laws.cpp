@@ -1,0 +1,127 @@
+#include "framework/engines/guarded_laws.h"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "framework/core/error.h"
+#include "framework/core/not_implemented.h"
+
+namespace tumble::engines {
+namespace {
+
+struct Guard {
+  std::string effect, law, source;
+
+  std::string subject() const { return fmt::format("{} ({} of {})", effect, law, source); }
+
+  template <class Call>
+  auto operator()(Call&& call) const {
+    try {
+      return call();
+    } catch (const StoppedRun&) {
+      throw;   // out of a derivative that the method asked for
+    } catch (const NotImplemented&) {
+      throw;
+    } catch (const UserError&) {
+      throw;
+    } catch (const std::exception& error) {
+      throw StoppedRun(fmt::format("{} failed: {}", subject(), error.what()));
+    }
+  }
+  void need(bool fine, const char* what) const {
+    if (!fine) throw StoppedRun(fmt::format("{} returned {}", subject(), what));
+  }
+  void need_size(Eigen::Index found, Eigen::Index expected) const {
+    if (found != expected) throw StoppedRun(fmt::format("{} returned {} numbers instead of {}", subject(), found, expected));
+  }
+};
+
+constexpr const char* kNotANumber = "a value that is not a number";
+
+bool is_finite(const RigidBodyState& state) { return pack(state).allFinite(); }
+
+void guard_impulses(const Laws& laws, Laws& safe) {
+  const std::string& source = laws.impulse_source;
+  if (laws.relative_normal_velocity) {
+    const Guard guard{"collision", "relative_normal_velocity", source};
+    safe.relative_normal_velocity = [guard, law = laws.relative_normal_velocity](const Contact& contact, const Body& a, const Body& b) {
+      const double velocity = guard([&] { return law(contact, a, b); });
+      guard.need(std::isfinite(velocity), kNotANumber);
+      return velocity;
+    };
+  }
+  if (laws.collision_impulse) {
+    const Guard guard{"collision", "collision_impulse", source};
+    safe.collision_impulse = [guard, law = laws.collision_impulse](const Contact& contact, const Body& a, const Body& b, double restitution) {
+      const double impulse = guard([&] { return law(contact, a, b, restitution); });
+      guard.need(std::isfinite(impulse), kNotANumber);
+      return impulse;
+    };
+  }
+  if (laws.apply_impulse) {
+    const Guard guard{"collision", "apply_impulse", source};
+    safe.apply_impulse = [guard, law = laws.apply_impulse](const Body& body, const Vector3d& impulse_world, const Vector3d& point_world) {
+      const Velocity after = guard([&] { return law(body, impulse_world, point_world); });
+      guard.need(after.linear_world.allFinite() && after.angular_world.allFinite(), kNotANumber);
+      return after;
+    };
+  }
+  if (laws.wrench_of_point_force) {
+    const Guard guard{"point force", "wrench_of_point_force", source};
+    safe.wrench_of_point_force = [guard, law = laws.wrench_of_point_force](const Vector3d& force, const Vector3d& point, const Vector3d& com) {
+      const Wrench wrench = guard([&] { return law(force, point, com); });
+      guard.need(wrench.force_world.allFinite() && wrench.torque_world.allFinite(), kNotANumber);
+      return wrench;
+    };
+  }
+}
+
+void guard_motion(const Laws& laws, Laws& safe) {
+  const std::string& source = laws.integrator_source;
+  if (laws.integrate_step) {
+    const Guard guard{"integration", "integrate_step", source};
+    safe.integrate_step = [guard, law = laws.integrate_step](const OdeFunction& f, double t, const VectorXd& y, double h) {
+      const VectorXd end = guard([&] { return law(f, t, y, h); });
+      guard.need_size(end.size(), y.size());
+      guard.need(end.allFinite(), kNotANumber);
+      return end;
+    };
+  }
+  if (laws.state_derivative) {
+    const Guard guard{"integration", "state_derivative", source};
+    safe.state_derivative = [guard, law = laws.state_derivative](const RigidBodyState& state, const Inertia& inertia, const Wrench& wrench) {
+      const VectorXd rate = guard([&] { return law(state, inertia, wrench); });
+      guard.need_size(rate.size(), kStateSize);
+      // Out of a state that is no number nothing better can come: that is the method's doing.
+      guard.need(rate.allFinite() || !is_finite(state), kNotANumber);
+      return rate;
+    };
+  }
+  if (laws.renormalize) {
+    const Guard guard{"integration", "renormalize", source};
+    safe.renormalize = [guard, law = laws.renormalize](const Quaterniond& q) {
+      const Quaterniond unit = guard([&] { return law(q); });
+      guard.need(unit.coeffs().allFinite(), kNotANumber);
+      return unit;
+    };
+  }
+  if (laws.find_impact_time) {
+    const Guard guard{"time of impact", "find_impact_time", source};
+    safe.find_impact_time = [guard, law = laws.find_impact_time](const ScalarFunction& gap, const ScalarFunction& rate, double low, double high,
+                                                                double tolerance) {
+      return guard([&] { return law(gap, rate, low, high, tolerance); });
+    };
+  }
+}
+
+}  // namespace
+
+Laws guarded(const Laws& laws) {
+  Laws safe = laws;
+  guard_impulses(laws, safe);
+  guard_motion(laws, safe);
+  return safe;
+}
+
+}  // namespace tumble::engines

@@ -1,0 +1,114 @@
+// A run is the same again, whatever the order of the bodies, the place, the speed of the frame, the scale.
+#include <algorithm>
+#include <cmath>
+
+#include "tests/engines/scenes.h"
+#include "tests/support/story.h"
+
+namespace tumble::testing {
+namespace {
+
+/// Two boxes and a ball that meet one after the other, off centre; nothing chaotic.
+scene::Scene meeting(double length = 1.0, const Vector3d& shift = Vector3d::Zero(), const Vector3d& drift = Vector3d::Zero()) {
+  std::vector<scene::BodySpec> bodies{box("long", {0.5, 0.1, 0.1}, 2.0, {0, 0, 0}, {0, 0, 0}), box("cube", {0.2, 0.2, 0.2}, 1.0, {0.3, 0.9, 0.05}, {0, -1.5, 0}),
+                                      ball("ball", 0.15, 0.5, {-1.2, 0.1, 0.02}, {1.0, 0, 0})};
+  bodies[1].omega_world_rad_s = {0.3, 0.2, 1.0};
+  for (scene::BodySpec& body : bodies) {
+    body.restitution = 0.7;
+    body.position_m = length * body.position_m + shift;
+    body.velocity_m_s = length * body.velocity_m_s + drift;
+    if (auto* sphere = std::get_if<scene::SphereSpec>(&body.shape)) sphere->radius_m *= length;
+    if (auto* solid = std::get_if<scene::BoxSpec>(&body.shape)) solid->half_extents_m *= length;
+  }
+  auto scene = scene_of(std::move(bodies), 2.0);
+  scene.rest_speed_m_s = 1e-3 * length;
+  return scene;
+}
+
+/// Largest difference of places at the end, after undoing shift, drift and scale. [m at scale 1]
+double farthest(const Trajectory& found, const Trajectory& expected, double length = 1.0, const Vector3d& shift = Vector3d::Zero(),
+                const Vector3d& drift = Vector3d::Zero()) {
+  double worst = 0.0;
+  for (std::size_t i = 0; i < expected.bodies.size(); ++i) {
+    const Vector3d there = (found.frames.back().poses[i].com_world - shift - 2.0 * drift) / length;
+    worst = std::max(worst, (there - expected.frames.back().poses[i].com_world).norm());
+  }
+  return worst;
+}
+
+std::string bytes(const Trajectory& run) {
+  std::string all;
+  const auto add = [&](const auto& value) { all.append(reinterpret_cast<const char*>(&value), sizeof value); };
+  for (const Frame& frame : run.frames) {
+    add(frame.time);
+    for (const BodyPose& pose : frame.poses)
+      for (const double x : {pose.com_world.x(), pose.com_world.y(), pose.com_world.z(), pose.world_from_body.w(), pose.world_from_body.x(), pose.omega_world.z()}) add(x);
+    add(frame.kinetic_energy);
+    add(frame.smallest_gap);
+  }
+  for (const Event& event : run.events) {
+    add(event.time);
+    add(event.impulse);
+  }
+  for (const auto& [name, count] : run.counters.counts) add(count);
+  return all;
+}
+
+TEST(Invariance, TheSameSceneGivesTheSameBytes) { EXPECT_EQ(bytes(run(meeting())), bytes(run(meeting()))); }
+
+TEST(Invariance, TheOrderOfBodiesIsOfNoConsequence) {
+  const Trajectory expected = run(meeting());
+  ASSERT_GE(collision_times(expected).size(), 2u);
+  auto turned = meeting();
+  std::reverse(turned.bodies.begin(), turned.bodies.end());
+  const Trajectory found = run(turned);
+  ASSERT_EQ(collision_times(found).size(), collision_times(expected).size());
+  for (int i = 0; i < 3; ++i)  // 1e-10 m: roundings of impact points, 1e-13, grown by some collisions' arms and 2 s of turning
+    EXPECT_LT((found.frames.back().poses[2 - i].com_world - expected.frames.back().poses[i].com_world).norm(), 1e-10);
+}
+
+TEST(Invariance, ASteadilyMovingFrameSeesTheSame) {
+  const Vector3d drift(3, -2, 1);
+  EXPECT_LT(farthest(run(meeting(1.0, Vector3d::Zero(), drift)), run(meeting()), 1.0, Vector3d::Zero(), drift), 1e-10);
+}
+
+TEST(Invariance, LengthsOfMicrometresAndMegametresMoveAlike) {
+  const Trajectory expected = run(meeting());
+  for (const double length : {1e-6, 1e6}) EXPECT_LT(farthest(run(meeting(length)), expected, length), 1e-10) << "scale " << length;
+}
+
+// One rounding of a coordinate of 1e6 m is 1.2e-10 m: the first collisions are placed and timed to some ten of them. Later ones are
+// not compared: each that turns an edge against an edge makes a difference some thirty times larger.
+TEST(Invariance, AThousandKilometresAwayTheSameHappensToTheRoundingOfThePlace) {
+  const Vector3d shift(1048576, -1048576, 524288);
+  const Trajectory far = run(meeting(1.0, shift)), near = run(meeting());
+  ASSERT_EQ(far.events.size(), near.events.size());
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_NEAR(far.events[k].time, near.events[k].time, 1e-8);
+    EXPECT_LT((far.events[k].point_world - shift - near.events[k].point_world).norm(), 1e-8);
+    EXPECT_NEAR(far.events[k].impulse, near.events[k].impulse, 1e-8);
+  }
+  for (const Frame& frame : far.frames) EXPECT_GE(frame.smallest_gap, 0.0);
+}
+
+TEST(Counters, SayThatNothingWasPaidForCollisionsWhereNoneCanHappen) {
+  auto scene = scene_of({ball("a", 0.1, 1.0, {0, 0, 0}, {1, 0, 0}), ball("b", 0.1, 1.0, {0, 50, 0}, {1, 0, 0})}, 1.0);
+  scene.step_s = 1.0 / 64;   // frames at the same instants, to the bit
+  const auto counts = run(scene, test_laws(), 64.0).counters.counts;
+  for (const char* name : {"candidate_pairs", "root_findings", "gap_evaluations", "rollbacks", "impulses", "undone_integrations", "gravity_calls", "point_force_calls"})
+    EXPECT_EQ(counts.at(name), 0u) << name;
+  EXPECT_EQ(counts.at("steps"), 64u);
+  EXPECT_EQ(counts.at("integrations"), 128u) << "two bodies, 64 steps, one integration each";
+}
+
+TEST(Counters, CountWhatACollisionCosts) {
+  auto scene = scene_of({ball("a", 0.1, 1.0, {0, 0, 0}, {1, 0, 0}), ball("b", 0.1, 1.0, {1, 0, 0}, {-1, 0, 0})}, 1.0);
+  const auto counts = run(scene).counters.counts;
+  EXPECT_EQ(counts.at("impulses"), 1u);
+  EXPECT_EQ(counts.at("rollbacks"), 1u);
+  EXPECT_GE(counts.at("undone_integrations"), 2u) << "one step of two bodies, and what finding the time of impact asked for";
+  EXPECT_GT(counts.at("gap_evaluations"), 0u);
+}
+
+}  // namespace
+}  // namespace tumble::testing

@@ -1,0 +1,106 @@
+// Laws that misbehave end the run with what happened, to which body and when; what was recorded before stays.
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "framework/core/not_implemented.h"
+#include "tests/engines/scenes.h"
+#include "tests/support/story.h"
+
+namespace tumble::testing {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+scene::Scene head_on() {
+  return scene_of({ball("left ball", 0.1, 1.0, {-1, 0, 0}, {1, 0, 0}), ball("right ball", 0.1, 1.0, {1, 0, 0}, {-1, 0, 0})}, 3.0);
+}
+
+void expect_stopped(const Trajectory& result, std::initializer_list<const char*> words, std::size_t frames_kept) {
+  for (const char* word : words) EXPECT_NE(result.stopped_by.find(word), std::string::npos) << "no \"" << word << "\" in: " << result.stopped_by;
+  EXPECT_GE(result.frames.size(), frames_kept);
+  for (const Frame& frame : result.frames)
+    for (const BodyPose& pose : frame.poses) EXPECT_TRUE(pose.com_world.allFinite() && pose.velocity_world.allFinite()) << frame.time;
+}
+
+// The balls meet at 0.9 s: 54 frames before it.
+TEST(Trouble, AnImpulseThatIsNotANumberIsNamed) {
+  Laws laws = test_laws();
+  laws.collision_impulse = [](const Contact&, const Body&, const Body&, double) { return kNaN; };
+  expect_stopped(run(head_on(), laws), {"left ball", "right ball", "0.9", "impulse"}, 54);
+}
+
+TEST(Trouble, ALawThatThrowsIsNamed) {
+  Laws laws = test_laws();
+  laws.collision_impulse = [](const Contact&, const Body&, const Body&, double) -> double { throw std::runtime_error("I divided by zero"); };
+  expect_stopped(run(head_on(), laws), {"left ball", "0.9", "impulse", "I divided by zero"}, 54);
+}
+
+TEST(Trouble, AnUnwrittenLawIsNotAttemptedRatherThanStopped) {
+  Laws laws = test_laws();
+  laws.collision_impulse = [](const Contact&, const Body&, const Body&, double) -> double { throw NotImplemented("collision_impulse", "handouts/a1_impulse.md"); };
+  EXPECT_THROW(run(head_on(), laws), NotImplemented);
+}
+
+TEST(Trouble, AVelocityAfterAnImpulseThatIsNotANumberIsNamed) {
+  Laws laws = test_laws();
+  laws.apply_impulse = [](const Body&, const Vector3d&, const Vector3d&) { return Velocity{Vector3d::Constant(kNaN), Vector3d::Zero()}; };
+  expect_stopped(run(head_on(), laws), {"left ball", "0.9", "impulse"}, 54);
+}
+
+TEST(Trouble, AnIntegrationThatIsNotANumberIsNamed) {
+  Laws laws = test_laws();
+  const auto good = laws.integrate_step;
+  laws.integrate_step = [good](const OdeFunction& f, double t, const VectorXd& y, double h) {
+    return t > 0.5 ? VectorXd(VectorXd::Constant(y.size(), kNaN)) : good(f, t, y, h);
+  };
+  expect_stopped(run(head_on(), laws), {"left ball", "0.5", "integra"}, 30);
+}
+
+TEST(Trouble, AnIntegrationThatThrowsIsNamed) {
+  Laws laws = test_laws();
+  const auto good = laws.integrate_step;
+  laws.integrate_step = [good](const OdeFunction& f, double t, const VectorXd& y, double h) -> VectorXd {
+    if (t > 0.5) throw std::out_of_range("y has no element 13");
+    return good(f, t, y, h);
+  };
+  expect_stopped(run(head_on(), laws), {"left ball", "0.5", "integra", "y has no element 13"}, 30);
+}
+
+TEST(Trouble, AStateOfAnotherSizeIsNamed) {
+  Laws laws = test_laws();
+  const auto good = laws.integrate_step;
+  laws.integrate_step = [good](const OdeFunction& f, double t, const VectorXd& y, double h) {
+    return t > 0.5 ? VectorXd(VectorXd::Zero(3)) : good(f, t, y, h);
+  };
+  expect_stopped(run(head_on(), laws), {"left ball", "0.5", "integra", "3"}, 30);
+}
+
+TEST(Trouble, AnImpulseThatPullsTogetherIsAStallWithNames) {
+  Laws laws = test_laws();
+  laws.collision_impulse = [](const Contact&, const Body&, const Body&, double) { return -1.0; };
+  expect_stopped(run(head_on(), laws), {"left ball", "right ball", "0.9"}, 54);
+}
+
+TEST(Trouble, AnImpulseOfNothingIsAStallWithNames) {
+  Laws laws = test_laws();
+  laws.collision_impulse = [](const Contact&, const Body&, const Body&, double) { return 0.0; };
+  expect_stopped(run(head_on(), laws), {"left ball", "right ball", "0.9"}, 54);
+}
+
+TEST(Trouble, ARootFinderOfNonsenseChangesNothing) {
+  for (const double nonsense : {kNaN, -1.0, 1e9}) {
+    Laws laws = test_laws();
+    laws.find_impact_time = [nonsense](const ScalarFunction&, const ScalarFunction&, double, double, double) {
+      RootResult root{};
+      root.time = nonsense;
+      return root;
+    };
+    const Trajectory result = run(head_on(), laws);
+    ASSERT_EQ(collision_times(result).size(), 1u);
+    EXPECT_NEAR(collision_times(result)[0], 0.9, 1e-14);
+  }
+}
+
+}  // namespace
+}  // namespace tumble::testing
