@@ -205,7 +205,9 @@ void RetroactiveRun::separate(const std::vector<std::pair<int, int>>& pairs) {
       clean = false;
       const double mass_a = moving_.can_move(pair.first) ? moving_.world().bodies[pair.first].inertia.inverse_mass : 0.0;
       const double mass_b = moving_.can_move(pair.second) ? moving_.world().bodies[pair.second].inertia.inverse_mass : 0.0;
-      const int mover = mass_a >= mass_b ? pair.first : pair.second;
+      // The other one in every second round: a body between two others is not moved to and fro.
+      const bool swap = round % 2 == 1 && mass_a > 0 && mass_b > 0;
+      const int mover = (mass_a >= mass_b) != swap ? pair.first : pair.second;
       RigidBodyState state = moving_.state(mover);
       const double spacing = kEpsilon * state.com_world.cwiseAbs().maxCoeff();
       const double way = -gap.distance + spacing * round;
