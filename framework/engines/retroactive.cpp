@@ -236,7 +236,7 @@ void RetroactiveRun::resolve_at(const std::vector<std::pair<int, int>>& pairs, s
   for (const Event& event : resolution.events) sink_.event(event);
   if (!resolution.settled)
     stopped_by_ = fmt::format("at t = {:.6f} s, {}: collision (collision_impulse, apply_impulse of {}) left them approaching, however often it was "
-                              "applied: the impulse has no effect, the wrong sign, or too little size", moving_.time(), subject, laws_.impulse_source);
+                              "applied: the impulse has no effect, the wrong sign or too little size, or a lasting contact is needed there", moving_.time(), subject, laws_.impulse_source);
   settle(touching, resolution.events);
   std::vector<TouchingPair> awake;
   for (const TouchingPair& pair : touching)
