@@ -1,0 +1,116 @@
+// A recorded run comes back bit for bit; a file that is not one is refused with the byte where it stops being one.
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "framework/core/error.h"
+#include "framework/core/files.h"
+#include "framework/trajectory/trajectory.h"
+
+namespace tumble {
+namespace {
+
+std::filesystem::path scratch(const std::string& name) {
+  return std::filesystem::temp_directory_path() / ("tumble_run_" + std::to_string(getpid()) + "_" + name);
+}
+
+std::string bytes_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+Trajectory small_run() {
+  Trajectory run;
+  run.info = {"tumble run x", "1", "x", "ab12", "rd", "reference", "library", 1.0 / 60.0, 60.0, 7};
+  run.bodies = {{"ball", false}, {"floor", true}};
+  const BodyPose pose{{0.1, -0.0, 1e-310}, Quaterniond(0.5, -0.5, 0.5, 0.5), {1, 2, 3}, {4, 5, 6}};
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const double time : {0.0, 1.0 / 3.0}) run.frames.push_back({time, {pose, pose}, 0.1, 0.2, {1, 2, 3}, {4, 5, 6}, infinity});
+  run.events.push_back({0.3, EventKind::kCollision, 0, 1, {1, 2, 3}, {0, 0, 1}, 2.5, -1.25, 0.625});
+  run.counters.counts = {{"integrations", 12}, {"rollbacks", 1}};
+  run.stopped_by = "ball flew off";
+  return run;
+}
+
+std::string problem_of(const std::string& bytes) {
+  const auto file = scratch("spoilt");
+  write_whole(file, bytes);
+  std::string said = "no error";
+  try {
+    read_trajectory(file);
+  } catch (const UserError& error) {
+    said = error.where() + ": " + error.problem();
+  }
+  std::filesystem::remove(file);
+  return said;
+}
+
+std::string good_bytes() {
+  const auto file = scratch("good");
+  write_trajectory(file, small_run());
+  const std::string bytes = bytes_of(file);
+  std::filesystem::remove(file);
+  return bytes;
+}
+
+TEST(TrajectoryFile, ComesBackBitForBit) {
+  const auto first = scratch("first"), second = scratch("second");
+  write_trajectory(first, small_run());
+  const Trajectory read = read_trajectory(first);
+  write_trajectory(second, read);
+  EXPECT_EQ(bytes_of(first), bytes_of(second));
+  ASSERT_EQ(read.frames.size(), 2u);
+  EXPECT_EQ(read.frames[1].time, 1.0 / 3.0);
+  EXPECT_TRUE(std::signbit(read.frames[1].poses[0].com_world.y()));
+  EXPECT_EQ(read.frames[1].poses[1].world_from_body.coeffs(), small_run().frames[1].poses[1].world_from_body.coeffs());
+  EXPECT_EQ(read.events[0].normal_velocity_after, 0.625);
+  EXPECT_EQ(read.info.seed, 7u);
+  EXPECT_EQ(read.counters.counts, small_run().counters.counts);
+  EXPECT_EQ(read.stopped_by, "ball flew off");
+  std::filesystem::remove(first);
+  std::filesystem::remove(second);
+}
+
+TEST(TrajectoryFile, SameRunOtherStageTimesSameBytes) {
+  const auto file = scratch("timed");
+  Trajectory run = small_run();
+  run.counters.stage_seconds["integration"] = 0.123;
+  write_trajectory(file, run);
+  EXPECT_EQ(bytes_of(file), good_bytes());
+  std::filesystem::remove(file);
+}
+
+TEST(TrajectoryFile, CutAnywhereIsRefusedWithThePlace) {
+  const std::string good = good_bytes();
+  for (std::size_t length = 0; length < good.size(); ++length)
+    EXPECT_NE(problem_of(good.substr(0, length)).find(", byte "), std::string::npos) << "cut to " << length << " bytes";
+}
+
+TEST(TrajectoryFile, ForeignFileIsNamedAsSuch) {
+  EXPECT_NE(problem_of("{\"name\": \"a scene, not a run\"}").find("byte 0: not a recorded run"), std::string::npos);
+}
+
+TEST(TrajectoryFile, OtherVersionIsNamed) {
+  std::string bytes = good_bytes();
+  bytes[8] = 9;
+  EXPECT_NE(problem_of(bytes).find("byte 8: format version 9, this program reads 1"), std::string::npos);
+}
+
+TEST(TrajectoryFile, CountBeyondTheFileIsRefusedBeforeMemoryIsTaken) {
+  std::string bytes = good_bytes();
+  for (int i = 12; i < 20; ++i) bytes[static_cast<std::size_t>(i)] = '\x7f';   // the length of the first string
+  EXPECT_NE(problem_of(bytes).find("bytes follow"), std::string::npos);
+}
+
+TEST(TrajectoryFile, BytesAfterTheEndAreRefused) {
+  EXPECT_NE(problem_of(good_bytes() + "x").find("bytes follow the end of the run"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tumble
