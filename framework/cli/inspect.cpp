@@ -118,12 +118,12 @@ Json to_json(const LoadedObject& object, double density) {
   return json;
 }
 
-/// A path, or the bare name of a file of models/.
+/// A path, or the name of a file of models/ with or without its ending.
 std::filesystem::path find_file(const Context& context, const std::string& word) {
-  if (std::filesystem::exists(word)) return word;
-  const bool is_bare = word.find('/') == std::string::npos;
+  if (std::filesystem::is_regular_file(word)) return word;
   for (const std::string& name : {word, word + ".3ds"}) {
-    if (is_bare && std::filesystem::exists(context.root / "models" / name)) return context.root / "models" / name;
+    const auto path = context.root / "models" / name;
+    if (std::filesystem::is_regular_file(path)) return path.lexically_proximate(std::filesystem::current_path());
   }
   return word;  // the loader says that it is not there
 }
@@ -142,8 +142,8 @@ ExitCode inspect(const Context& context, const InspectWords& words) {
   } else {
     const Paint paint;
     const std::size_t n = file.objects.size();
-    fmt::print("{}\n{} object{}, {} · 1 unit = {:g} m · density {:g} kg/m^3\n", file.where, n, n == 1 ? "" : "s",
-               closed == n ? paint.good(n == 1 ? "a solid" : "all solids") : paint.bad(fmt::format("{} of {} no solid", n - closed, n)),
+    fmt::print("{}\n{} object{}{} · 1 unit = {:g} m · density {:g} kg/m^3\n", file.where, n, n == 1 ? "" : "s",
+               closed == n ? "" : paint.bad(n == 1 ? ", not a solid" : fmt::format(", {} of them not solid", n - closed)),
                words.metres_per_unit, words.density);
     for (const LoadedObject& object : file.objects) print_object(object, words.density, paint);
   }
@@ -155,7 +155,7 @@ ExitCode inspect(const Context& context, const InspectWords& words) {
 void add_inspect(CLI::App& app, Context& context) {
   auto words = std::make_shared<InspectWords>();
   CLI::App* verb = app.add_subcommand("inspect", "What a .3ds file holds: is it solid, what does it weigh, what is wrong");
-  verb->add_option("file", words->file, "A .3ds file, or the bare name of one in models/")->required()->type_name("FILE");
+  verb->add_option("file", words->file, "A .3ds file, or the name of one in models/")->required()->type_name("FILE");
   verb->add_option("--scale", words->metres_per_unit, "Length of the file's unit [m]: 0.0254 for inches")->capture_default_str()->check(CLI::PositiveNumber);
   verb->add_option("--density", words->density, "Density [kg/m^3]")->capture_default_str()->check(CLI::PositiveNumber);
   verb->add_flag("--json", words->json, "The same for machines, all digits");
