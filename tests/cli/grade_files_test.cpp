@@ -1,0 +1,226 @@
+// What grading reads and writes: odd folders, hostile names, results for Gradescope and Canvas, records.
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "framework/core/files.h"
+#include "framework/grading/build_submission.h"
+#include "framework/grading/grade_files.h"
+#include "framework/grading/grade_key.h"
+#include "framework/grading/grade_pages.h"
+#include "framework/grading/scoring.h"
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Folder : public ::testing::Test {
+ protected:
+  Folder() {
+    std::string name = (fs::temp_directory_path() / "tumble-grade-XXXXXX").string();
+    root = ::mkdtemp(name.data());
+    kind.id = "a9";
+    kind.folder = "a9_thing";
+    kind.title = "Thing";
+  }
+  ~Folder() override {
+    std::error_code ignored;
+    fs::remove_all(root, ignored);
+  }
+  void put(const std::string& file, const std::string& text = "int x;\n") const { write_whole(root / file, text); }
+  Submission only() const {
+    const auto all = find_submissions(root, kind);
+    EXPECT_EQ(all.size(), 1u);
+    return all.at(0);
+  }
+  fs::path root;
+  modules::ModuleKind kind;
+};
+using FindSubmissions = Folder;
+
+TEST_F(FindSubmissions, AreSortedByNameAndFilesBesideThemAreNone) {
+  put("zoe/a9_thing.cpp");
+  put("adam/a9_thing.cpp");
+  put("roster.csv");
+  put(".git/a9_thing.cpp");
+  const auto all = find_submissions(root, kind);
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].name, "adam");
+  EXPECT_EQ(all[1].name, "zoe");
+  EXPECT_EQ(all[0].source, root / "adam/a9_thing.cpp");
+}
+
+TEST_F(FindSubmissions, SourceMayLieDeeper) {
+  put("adam/upload/src/a9_thing.cpp");
+  EXPECT_EQ(only().source, root / "adam/upload/src/a9_thing.cpp");
+}
+
+TEST_F(FindSubmissions, AnOnlySourceOfAnotherNameIsTakenWithANote) {
+  put("adam/solution.cpp");
+  EXPECT_EQ(only().source, root / "adam/solution.cpp");
+  EXPECT_NE(only().notes.at(0).find("solution.cpp"), std::string::npos);
+}
+
+TEST_F(FindSubmissions, TwoOfTheRightNameAreNotGuessedBetween) {
+  put("adam/a9_thing.cpp");
+  put("adam/old/a9_thing.cpp");
+  EXPECT_TRUE(only().source.empty());
+  EXPECT_NE(only().problem.find("2 times"), std::string::npos) << only().problem;
+}
+
+TEST_F(FindSubmissions, NoSourceSaysWhatIsMissing) {
+  put("adam/notes.txt");
+  EXPECT_NE(only().problem.find("Holds no a9_thing.cpp"), std::string::npos) << only().problem;
+}
+
+TEST_F(FindSubmissions, AnArchiveIsToBeUnpacked) {
+  put("adam/hw.zip");
+  EXPECT_NE(only().problem.find("Unpack"), std::string::npos) << only().problem;
+}
+
+TEST_F(FindSubmissions, LinksAreNotFollowed) {
+  fs::create_directory(root / "adam");
+  fs::create_symlink("/etc/passwd", root / "adam/a9_thing.cpp");
+  EXPECT_TRUE(only().source.empty());
+  EXPECT_NE(only().problem.find("symbolic link"), std::string::npos) << only().problem;
+}
+
+TEST_F(FindSubmissions, AFolderThatIsALinkToItsParentEnds) {
+  put("adam/a9_thing.cpp");
+  fs::create_directory_symlink(root, root / "adam/again");
+  EXPECT_EQ(only().source, root / "adam/a9_thing.cpp");
+}
+
+TEST_F(FindSubmissions, APipeIsNotWaitedFor) {
+  fs::create_directory(root / "adam");
+  ASSERT_EQ(::mkfifo((root / "adam/a9_thing.cpp").c_str(), 0600), 0);
+  EXPECT_NE(only().problem.find("no ordinary file"), std::string::npos) << only().problem;
+}
+
+TEST_F(FindSubmissions, HugeAndEmptySourcesAreRefused) {
+  put("big/a9_thing.cpp", std::string(2 << 20, 'x'));
+  put("none/a9_thing.cpp", "");
+  const auto all = find_submissions(root, kind);
+  EXPECT_NE(all.at(0).problem.find("2097152 bytes"), std::string::npos) << all[0].problem;
+  EXPECT_NE(all.at(1).problem.find("empty"), std::string::npos) << all[1].problem;
+}
+
+TEST_F(FindSubmissions, NoFolderIsAUserError) { EXPECT_THROW(find_submissions(root / "gone", kind), UserError); }
+
+TEST(FolderOf, PlainNamesStayAndOthersCannotLeaveTheFolder) {
+  EXPECT_EQ(folder_of("alice_b-2.x"), "alice_b-2.x");
+  for (const std::string name : {"..", ".", "-rf", "a b", "<i>", "index.html", "a\nb", "\xff", "gr\u00fcn", ""}) {
+    const std::string folder = folder_of(name);
+    EXPECT_NE(folder, name);
+    EXPECT_TRUE(folder.starts_with("_")) << folder;
+    EXPECT_EQ(folder.find_first_of("/ <>\n"), std::string::npos) << folder;
+  }
+  EXPECT_NE(folder_of("a b"), folder_of("a_b"));
+  EXPECT_NE(folder_of("a b"), folder_of("a\tb"));
+}
+
+Rubric two_items() { return {"a9", "Thing", {{"S.Open", 60.0, "basic", "Open one", false}, {"S.Shut", 40.0, "advanced", "Shut one", true}}}; }
+
+TestResult result(const std::string& test, Verdict verdict, const std::string& story = "") {
+  TestResult r;
+  r.test = test;
+  r.verdict = verdict;
+  r.story = story;
+  return r;
+}
+
+Grade graded(const std::string& name, const Judgement& judgement) {
+  Grade grade;
+  grade.name = name;
+  grade.folder = folder_of(name);
+  grade.state = GradeState::kJudged;
+  grade.tests = score_tests(two_items(), judgement);
+  add_up(grade);
+  return grade;
+}
+
+TEST(Scoring, ATestThatTheJudgeDidNotAnswerForIsAFaultAndEarnsNothing) {
+  const Grade grade = graded("a", {{result("S.Open", Verdict::kRight)}, ""});
+  EXPECT_EQ(grade.score, 60.0);
+  EXPECT_EQ(grade.tests[1].result.verdict, Verdict::kGraderFault);
+  EXPECT_FALSE(grade.is_final());
+}
+
+TEST(Scoring, OnlyRightEarns) {
+  for (const Verdict v : {Verdict::kWrong, Verdict::kNotAttempted, Verdict::kCrashed, Verdict::kOutOfResources, Verdict::kGraderFault})
+    EXPECT_EQ(graded("a", {{result("S.Open", v), result("S.Shut", v)}, ""}).score, 0.0) << words(v);
+}
+
+TEST(Scoring, ATestThatNoRubricNamesEarnsNothing) {
+  const Grade grade = graded("a", {{result("S.Open", Verdict::kRight), result("S.Shut", Verdict::kRight), result("S.Extra", Verdict::kRight)}, ""});
+  EXPECT_EQ(grade.score, 100.0);
+  EXPECT_EQ(grade.tests.size(), 3u);
+}
+
+TEST(Gradescope, TestsCarryScoreAndWhoSeesThem) {
+  const Grade grade = graded("a", {{result("S.Open", Verdict::kRight), result("S.Shut", Verdict::kWrong, "off by \xff <b>")}, ""});
+  const auto json = nlohmann::json::parse(gradescope_json(grade));
+  EXPECT_EQ(json.at("score"), 60.0);
+  ASSERT_EQ(json.at("tests").size(), 2u);
+  EXPECT_EQ(json["tests"][0].at("visibility"), "visible");
+  EXPECT_EQ(json["tests"][0].at("status"), "passed");
+  EXPECT_EQ(json["tests"][1].at("visibility"), "after_published");
+  EXPECT_EQ(json["tests"][1].at("score"), 0.0);
+  EXPECT_EQ(json["tests"][1].at("max_score"), 40.0);
+  EXPECT_EQ(json["tests"][1].at("output"), "wrong\noff by \xef\xbf\xbd <b>");
+  EXPECT_FALSE(json.contains("execution_time"));  // equal runs give equal bytes
+}
+
+TEST(Gradebook, IsCanvasFormatAndAFaultIsNoScore) {
+  const Judgement all = {{result("S.Open", Verdict::kRight), result("S.Shut", Verdict::kRight)}, ""};
+  const std::string csv = gradebook_csv("Thing", {graded("alice", all), graded("bob", {{}, "the judge died"})});
+  EXPECT_EQ(csv, "Student,ID,SIS Login ID,Section,Thing\n    Points Possible,,,,100\nalice,,alice,,100\nbob,,bob,,\n");
+}
+
+TEST(Gradebook, ANameIsNeverAFormulaNorASecondCell) {
+  const std::string csv = gradebook_csv("Thing", {graded("=HYPERLINK(\"x\")", {}), graded("a,b\nc", {}), graded("@x", {})});
+  EXPECT_NE(csv.find("\n\"'=HYPERLINK(\"\"x\"\")\",,"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("\n\"a,b c\",,"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("\n'@x,,"), std::string::npos) << csv;
+}
+
+TEST_F(Folder, ARecordIsReadAsItWasWritten) {
+  Grade grade = graded("x", {{result("S.Open", Verdict::kCrashed, "SIGSEGV"), result("S.Shut", Verdict::kRight)}, ""});
+  grade.notes = {"a note"};
+  grade.media = {{"pong", "Pong", "about", "pong.png", "pong.mp4", "", true, {{"gap", "all", INFINITY, 0.0, "m", false, "why", true, "at 1 s"}}}};
+  put("x/record.json", record_json(grade, {"s", "g", "p"}, "r"));
+  const auto record = read_record(root / "x/record.json");
+  ASSERT_TRUE(record);
+  EXPECT_EQ(record_json(record->grade, record->key, record->results_digest), record_json(grade, {"s", "g", "p"}, "r"));
+  EXPECT_EQ(record->grade.folder, "x");
+  EXPECT_TRUE(std::isinf(record->grade.media[0].checks[0].value));
+  put("x/record.json", "{\"half\": ");
+  EXPECT_FALSE(read_record(root / "x/record.json"));
+}
+
+TEST_F(Folder, PagesShowHostileNamesAndStoriesAsText) {
+  const std::string evil = "<script>alert(1)</script>";
+  Grade grade = graded(evil, {{result("S.Open", Verdict::kWrong, evil), result("S.Shut", Verdict::kNotAttempted, evil)}, ""});
+  grade.notes = {evil};
+  grade.media = {{"s", evil, evil, "s.png", "s.mp4", evil, true, {}}};
+  for (const std::string& html : {submission_page(kind, grade, evil).html(), index_page(kind, {grade}).html()}) {
+    EXPECT_EQ(html.find("<script"), std::string::npos);
+    EXPECT_NE(html.find("&lt;script&gt;"), std::string::npos);
+  }
+}
+
+TEST(CompilerStory, KeepsTheErrorsAndNoFolderOfThisMachine) {
+  const std::string said = "In file included from /build/x/a9_thing.cpp:1:\n/build/x/a9_thing.cpp:3:7: warning: unused\n"
+                           "/build/x/a9_thing.cpp:12:5: error: expected ';'\n   12 | int x\n      |     ^\n/build/x/a9_thing.cpp:13:1: note: here\n";
+  EXPECT_EQ(compiler_story(said, "/elsewhere/a9_thing.cpp"), "a9_thing.cpp:12:5: error: expected ';'\n   12 | int x\n      |     ^\n");
+}
+
+}  // namespace
+}  // namespace tumble::grading

@@ -1,0 +1,61 @@
+// Pages: whatever a submission is named or prints is text on them, never markup.
+#include "framework/report/html.h"
+
+#include <gtest/gtest.h>
+
+#include "framework/core/error.h"
+
+namespace tumble::report {
+namespace {
+
+TEST(HtmlEscape, MarkupBecomesText) {
+  EXPECT_EQ(html_escape("<script>alert('x')</script> & \"y\""), "&lt;script&gt;alert(&#39;x&#39;)&lt;/script&gt; &amp; &quot;y&quot;");
+}
+
+TEST(HtmlEscape, TerminalCodesAndControlsGo) {
+  EXPECT_EQ(html_escape("\x1b[31mred\x1b[0m\a\tand\nnew line"), "red\tand\nnew line");
+}
+
+TEST(HtmlEscape, CharactersThatReverseTheWritingGo) {
+  // U+202E turns the rest of a line around: "exe.txt" would read "txt.exe".
+  EXPECT_EQ(html_escape("a\u202eb\u2066c\u200bd"), "abcd");
+}
+
+TEST(HtmlEscape, BytesThatAreNoTextAreShownAsSuch) {
+  EXPECT_EQ(html_escape("a\xff" "b\xc0\xaf"), "a\xef\xbf\xbd" "b\xef\xbf\xbd\xef\xbf\xbd");
+  EXPECT_EQ(html_escape("gr\u00fc\u00df \u4f60\u597d"), "gr\u00fc\u00df \u4f60\u597d");
+}
+
+TEST(Link, OddBytesAreWrittenAsHex) { EXPECT_EQ(link_to("a b/#1?<x>.html"), "a%20b/%231%3F%3Cx%3E.html"); }
+
+TEST(Page, RefusesALinkWithAScheme) {
+  Page page("t");
+  EXPECT_THROW(page.table({"", {{"a"}}, {{{"x", "javascript:alert(1)"}}}}), PreconditionError);
+}
+
+TEST(Page, EveryPlaceForTextEscapesIt) {
+  const std::string evil = "<img src=x onerror=alert(1)>\"'";
+  Page page(evil, evil);
+  page.heading(evil);
+  page.paragraph(evil);
+  page.preformatted(evil);
+  page.fold(evil, evil);
+  page.table({evil, {{evil}}, {{{evil}}}});
+  page.tiles({{evil, {evil}}});
+  page.figures({{"a.png", "a.mp4", evil, evil}});
+  page.links({{evil, "#x"}});
+  page.record(evil);
+  EXPECT_EQ(page.html().find("<img src=x"), std::string::npos);
+  EXPECT_EQ(page.html().find("onerror=alert(1)>"), std::string::npos);
+}
+
+TEST(Page, ForbidsScriptsAndTheNetwork) {
+  const std::string html = Page("t").html();
+  EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
+  EXPECT_EQ(html.find("<script"), std::string::npos);
+  EXPECT_EQ(html.find("http:"), std::string::npos);
+  EXPECT_EQ(html.find("https:"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tumble::report
