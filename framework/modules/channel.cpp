@@ -53,23 +53,40 @@ void Channel::send(MessageKind kind, const Bytes& payload, Clock::time_point dea
   }
 }
 
+// One system call for a message that has arrived: what a call across the boundary costs is system calls.
+void Channel::fill(Clock::time_point deadline) {
+  for (;;) {
+    if (deadline != Clock::time_point::max()) wait(read_fd_, POLLIN, deadline);
+    const ssize_t n = ::read(read_fd_, ahead_.data(), ahead_.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0 && errno == EAGAIN) {
+      wait(read_fd_, POLLIN, deadline);
+      continue;
+    }
+    if (n <= 0) throw ChannelClosed("the other end closed the channel");
+    at_ = 0;
+    end_ = static_cast<std::size_t>(n);
+    return;
+  }
+}
+
 Message Channel::receive(Clock::time_point deadline) {
   const auto read_exactly = [&](void* data, std::size_t size) {
-    auto* at = static_cast<std::uint8_t*>(data);
+    auto* to = static_cast<std::uint8_t*>(data);
     while (size > 0) {
-      wait(read_fd_, POLLIN, deadline);
-      const ssize_t n = ::read(read_fd_, at, size);
-      if (n < 0 && (errno == EINTR || errno == EAGAIN)) continue;
-      if (n <= 0) throw ChannelClosed("the other end closed the channel");
-      at += n;
-      size -= static_cast<std::size_t>(n);
+      if (at_ == end_) fill(deadline);
+      const std::size_t n = std::min(size, end_ - at_);
+      std::memcpy(to, ahead_.data() + at_, n);
+      at_ += n;
+      to += n;
+      size -= n;
     }
   };
   Header header{};
   read_exactly(&header, sizeof header);
   if (header.size > kMaxPayload) throw WireError("a message larger than the limit");
   Message message{static_cast<MessageKind>(header.kind), Bytes(header.size)};
-  if (header.size > 0) read_exactly(message.payload.data(), header.size);
+  read_exactly(message.payload.data(), header.size);
   return message;
 }
 

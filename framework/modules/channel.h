@@ -1,6 +1,7 @@
 /// Messages over a pair of file descriptors, with a deadline and a size limit.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <stdexcept>
@@ -49,8 +50,11 @@ class Channel {
 
  private:
   void wait(int fd, short events, Clock::time_point deadline);
+  void fill(Clock::time_point deadline);
 
   int read_fd_, write_fd_;
+  std::array<std::uint8_t, 1 << 14> ahead_;   // read, not yet asked for: from at_ to end_
+  std::size_t at_ = 0, end_ = 0;
 };
 
 }  // namespace tumble::modules

@@ -1,0 +1,52 @@
+// What it costs to ask a function of a submission that lives in a sandbox: a call, a callback, a fresh worker.
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <vector>
+
+#include "framework/grading/worker_connection.h"
+#include "tests/modules/waist.h"
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+struct Figure {
+  double median_us, best_us;   // of batches: the best is what a neighbour's work did not touch
+};
+
+template <class Work>
+Figure measure(int batches, int repeats, Work&& work) {
+  std::vector<double> all;
+  for (int b = 0; b < batches; ++b) {
+    const auto start = Clock::now();
+    for (int i = 0; i < repeats; ++i) work();
+    all.push_back(1e6 * seconds_since(start) / repeats);
+  }
+  std::sort(all.begin(), all.end());
+  return {all[static_cast<std::size_t>(batches / 2)], all.front()};
+}
+
+}  // namespace
+
+int main() {
+  using namespace tumble;
+  grading::WorkerOptions options;
+  options.id = "waist";
+  options.module = TUMBLE_BINARY_DIR "/modules/waist_right.so";
+  options.session_wall_s = 60.0;
+  options.call_wall_s = 60.0;
+  for (const bool sandboxed : {false, true}) {
+    options.sandboxed = sandboxed;
+    grading::WorkerConnection connection(options);
+    const auto module = modules::make_proxy<waist::Module>(connection);
+    const Figure start = measure(11, 1, [&] { connection.reset(); module.twice(1.0); });
+    const Figure call = measure(101, 200, [&] { module.twice(1.0); });
+    const Figure callback = measure(101, 1, [&] { module.call_back([](double x) { return x; }, 200); });
+    std::printf("%-10s  a call %6.2f us (best %.2f)   a callback %6.2f us (best %.2f)   a fresh worker %7.2f ms (best %.2f)\n",
+                sandboxed ? "sandboxed" : "plain", call.median_us, call.best_us, callback.median_us / 200, callback.best_us / 200,
+                1e-3 * start.median_us, 1e-3 * start.best_us);
+  }
+}
