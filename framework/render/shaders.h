@@ -58,7 +58,8 @@ uniform mat4 shadow_from_world;
 uniform float shadow_texel;
 float light_share(vec3 p) {
   vec3 s = (shadow_from_world * vec4(p, 1.0)).xyz * 0.5 + 0.5;
-  if (any(lessThan(s, vec3(0.0))) || any(greaterThan(s, vec3(1.0)))) return 1.0;
+  if (any(lessThan(s.xy, vec2(0.0))) || any(greaterThan(s.xy, vec2(1.0)))) return 1.0;
+  s.z = clamp(s.z, 0.0, 1.0);  // what lies beyond the casters along the light, as the ground may, is shaded by them too
   float sum = 0.0;
   for (int i = -1; i <= 1; ++i)
     for (int j = -1; j <= 1; ++j) sum += texture(shadow_map, s + vec3(1.4 * shadow_texel * vec2(i, j), 0.0));

@@ -83,7 +83,8 @@ class Reader {
     text.assign(take(length), length);
   }
   void word(std::string_view word) {
-    if (std::string_view(take(word.size()), word.size()) != word)
+    take(word.size());
+    if (bytes_.compare(at_ - word.size(), word.size(), word) != 0)
       fail(word.size(), at_ == word.size() ? "not a recorded run: its first bytes are others" : "expected the end of the run");
   }
   /// How many things follow, each of at least `least_bytes`: a count that the file cannot hold is refused before memory is taken.

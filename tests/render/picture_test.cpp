@@ -1,0 +1,95 @@
+// Pictures: the same run gives the same bytes; a place in the picture and the ray through it belong together.
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <gtest/gtest.h>
+
+#include "framework/core/error.h"
+#include "framework/render/camera.h"
+#include "framework/render/picture.h"
+
+namespace tumble::render {
+namespace {
+
+scene::Scene falling_ball() {
+  scene::BodySpec ball, floor;
+  ball.name = "ball";
+  ball.shape = scene::SphereSpec{0.3};
+  ball.mass_kg = 1.0;
+  floor.name = "floor";
+  floor.shape = scene::PlaneSpec{};
+  floor.immovable = true;
+  scene::Scene scene;
+  scene.name = "test";
+  scene.bodies = {ball, floor};
+  scene.camera.eye_m = {0, -6, 2};
+  scene.camera.target_m = {0, 0, 1};
+  return scene;
+}
+
+Trajectory ball_at(double height) {
+  const auto at = [](double z) { return BodyPose{{0, 0, z}, Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero()}; };
+  Trajectory run;
+  run.bodies = {{"ball", false}, {"floor", true}};
+  for (const double t : {0.0, 0.5}) run.frames.push_back({t, {at(height - t), at(0)}, 0, 0, Vector3d::Zero(), Vector3d::Zero(), 1});
+  return run;
+}
+
+PictureOptions small(const std::string& gl = "osmesa") {
+  PictureOptions options;
+  options.width = 160;
+  options.height = 120;
+  options.gl = gl;
+  return options;
+}
+
+std::string png_bytes() {
+  const auto file = std::filesystem::temp_directory_path() / ("tumble_picture_" + std::to_string(getpid()) + ".png");
+  write_picture(file, falling_ball(), ball_at(2.0), 0.5, small());
+  std::ifstream in(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  in.close();
+  std::filesystem::remove(file);
+  return bytes;
+}
+
+TEST(Picture, SameRunSameBytes) {
+  const std::string once = png_bytes();
+  EXPECT_GT(once.size(), 1000u);
+  EXPECT_EQ(once, png_bytes());
+}
+
+TEST(Picture, RunOfAnotherSceneIsRefused) {
+  Trajectory run = ball_at(2.0);
+  run.bodies.pop_back();
+  EXPECT_THROW(make_picture(falling_ball(), run, 0.0, small()), UserError);
+}
+
+TEST(Picture, RunWithoutFramesIsRefused) {
+  Trajectory run = ball_at(2.0);
+  run.frames.clear();
+  EXPECT_THROW(make_picture(falling_ball(), run, 0.0, small()), UserError);
+}
+
+TEST(Camera, RayThroughTheProjectionOfAPointMeetsThePoint) {
+  const View view = view_of(falling_ball().camera);
+  for (const Vector3d& point : {Vector3d(0, 0, 1), Vector3d(1.3, 0.4, 0.2), Vector3d(-2, 5, 3)}) {
+    const auto pixel = project(view, 640, 480, point);
+    ASSERT_TRUE(pixel.has_value());
+    const Ray ray = pixel_ray(view, 640, 480, pixel->x(), pixel->y());
+    const Vector3d along = (point - view.eye_world).normalized();
+    // Some ten roundings of numbers near 1; a picture off by half a pixel is off by 1e-3.
+    EXPECT_LT((ray.direction_world - along).norm(), 1e-14);
+    EXPECT_EQ(ray.origin_world, view.eye_world);
+  }
+}
+
+TEST(Camera, PointBehindTheEyeIsNotSeen) {
+  EXPECT_FALSE(project(view_of(falling_ball().camera), 640, 480, {0, -10, 3}).has_value());
+}
+
+}  // namespace
+}  // namespace tumble::render
