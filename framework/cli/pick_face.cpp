@@ -1,17 +1,23 @@
 #include "framework/cli/pick_face.h"
 
+#include <fmt/format.h>
+
 #include "framework/core/error.h"
 #include "framework/scene/build_shape.h"
 
 namespace tumble::cli {
 namespace {
 
+/// Of a half-line [m].
+double distance_to(const Vector3d& point_world, const Ray& ray) {
+  const Vector3d to_point = point_world - ray.origin_world;
+  const double along = std::max(0.0, to_point.dot(ray.direction_world) / ray.direction_world.squaredNorm());
+  return (to_point - along * ray.direction_world).norm();
+}
+
 bool meets_ball(const Ray& ray, const Vector3d& centre_world, double radius) {
-  if (!std::isfinite(radius)) return true;
-  const Vector3d to_centre = centre_world - ray.origin_world;
-  const double along = std::max(0.0, to_centre.dot(ray.direction_world) / ray.direction_world.squaredNorm());
   // 1e-9: a ray that grazes the ball is asked about, not decided here.
-  return (to_centre - along * ray.direction_world).norm() <= radius * (1 + 1e-9);
+  return !std::isfinite(radius) || distance_to(centre_world, ray) <= radius * (1 + 1e-9);
 }
 
 double drawn_extent(const scene::BodySpec& body) {
@@ -43,6 +49,20 @@ std::optional<PickedFace> pick_face(const scene::Scene& scene, const Laws& laws,
     }
   }
   return nearest;
+}
+
+std::string nearest_miss(const scene::Scene& scene, const Ray& ray, const std::filesystem::path& root) {
+  const auto solids = scene::build_solids(scene, root);
+  std::string nearest;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    const double radius = bounding_radius(solids[i].shape);
+    const double distance = distance_to(scene.bodies[i].position_m, ray);
+    if (!std::isfinite(radius) || !(distance - radius < least)) continue;
+    least = distance - radius;
+    nearest = fmt::format("it comes nearest to body '{}', {:.3g} m from its centre, and the body's farthest point is {:.3g} m from there", scene.bodies[i].name, distance, radius);
+  }
+  return nearest.empty() ? "there is no body with an end to aim at" : nearest;
 }
 
 }  // namespace tumble::cli

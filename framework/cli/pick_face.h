@@ -23,4 +23,7 @@ struct PickedFace {
 /// Cost: O(faces of the bodies whose bounding ball the ray meets)
 std::optional<PickedFace> pick_face(const scene::Scene& scene, const Laws& laws, const Ray& ray, const std::filesystem::path& root);
 
+/// What a ray that hits nothing came nearest to, for people: "it passes body 'box' at 0.53 m from its centre, ...".
+std::string nearest_miss(const scene::Scene& scene, const Ray& ray, const std::filesystem::path& root);
+
 }  // namespace tumble::cli

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -60,7 +61,7 @@ Target find_target(const Context& context, const PokeWords& words, const scene::
   const Ray ray = ray_of_words(words, scene);
   const auto hit = pick_face(scene, laws, ray, context.root);
   if (!hit)
-    throw UserError(words.pixel.empty() ? "--ray " + words.ray : "--pixel " + words.pixel, "nothing is hit: the ray from " + show(ray.origin_world) + " along " + show(ray.direction_world) + " passes all bodies",
+    throw UserError(words.pixel.empty() ? "--ray " + words.ray : "--pixel " + words.pixel, "nothing is hit: the ray from " + show(ray.origin_world) + " along " + show(ray.direction_world) + " passes all bodies; " + nearest_miss(scene, ray, context.root),
                     "Look at the scene first: tumble run " + scene.name + " --png look.png --at-s 0");
   const std::string& body = scene.bodies[static_cast<std::size_t>(hit->body)].name;
   return {body, hit->point_world, fmt::format("hit body '{}', face {}, at {} m, {:.4g} m from the eye", body, hit->face, show(hit->point_world), hit->distance)};
@@ -76,29 +77,63 @@ const scene::BodySpec& pushed_body(const scene::Scene& scene, const Target& targ
   throw UserError("poke", "no body is named '" + target.body + "'", "Movable bodies: " + movable + ".");
 }
 
-/// The scene's checks speak of a run without the push: those that hold of any run stay, and a closed system's momentum is known.
+/// Momentum and angular momentum that a closed system has after the push, and how far the latter may be off.
+struct AfterPush {
+  Vector3d momentum = Vector3d::Zero(), angular_momentum = Vector3d::Zero();   // the latter about the world's origin
+  double momentum_scale = 0.0, angular_scale = 0.0;                            // what rounding is relative to
+  double point_travel = 0.0;                                                   // at most, while the push lasts [m]
+};
+
+/// @return nothing where gravity or an immovable body may exchange momentum
+std::optional<AfterPush> after_push(const Context& context, const scene::Scene& scene, const scene::PointForceSpec& push) {
+  if (scene.gravity_m_s2) return std::nullopt;
+  AfterPush after;
+  const double time = push.duration_s;
+  after.momentum = time * push.force_n;
+  after.angular_momentum = push.point_m.cross(time * push.force_n);
+  after.momentum_scale = after.momentum.norm();
+  after.angular_scale = push.point_m.norm() * after.momentum.norm();
+  const auto solids = scene::build_solids(scene, context.root);
+  for (std::size_t i = 0; i < solids.size(); ++i) {
+    if (solids[i].is_immovable()) return std::nullopt;
+    const scene::BodySpec& body = scene.bodies[i];
+    const Matrix3d rotation = body.world_from_body.toRotationMatrix();
+    const Matrix3d inertia_world = rotation * solids[i].inertia_body_kg_m2 * rotation.transpose();
+    const Vector3d momentum = solids[i].mass_kg * body.velocity_m_s, spin = inertia_world * body.omega_world_rad_s;
+    after.momentum += momentum;
+    after.angular_momentum += spin + body.position_m.cross(momentum);
+    after.momentum_scale += momentum.norm();
+    after.angular_scale += spin.norm() + body.position_m.norm() * momentum.norm();
+    if (body.name != push.body) continue;
+    const Vector3d arm = push.point_m - body.position_m, w = body.omega_world_rad_s;
+    const double turning = (inertia_world.inverse() * arm.cross(push.force_n)).norm();
+    const double acceleration = push.force_n.norm() / solids[i].mass_kg + arm.norm() * (turning + w.squaredNorm());
+    // v T + a T^2 / 2 at a constant acceleration; twice the last, for it changes as the body turns.
+    after.point_travel = (body.velocity_m_s + w.cross(arm)).norm() * time + acceleration * time * time;
+  }
+  return after;
+}
+
+scene::CheckSpec expectation(const char* kind, const Vector3d& expected, double tolerance, const std::string& why) {
+  scene::CheckSpec check;
+  check.kind = kind;
+  check.expected = {expected.x(), expected.y(), expected.z()};
+  check.tolerance = tolerance;
+  check.why = why;
+  return check;
+}
+
+/// The scene's checks speak of a run without this push: those that hold of any run stay, and what a closed system has after
+/// a push is known.
 void replace_checks(const Context& context, scene::Scene& scene, const scene::PointForceSpec& push) {
   std::erase_if(scene.checks, [](const scene::CheckSpec& check) { return check.kind != "gap" && check.kind != "restitution_law" && check.kind != "side_of_wall"; });
-  Vector3d momentum = push.duration_s * push.force_n;
-  double scale = momentum.norm();
-  const auto solids = scene::build_solids(scene, context.root);
-  bool is_closed = !scene.gravity_m_s2 && scene.point_forces.size() == 1;
-  for (std::size_t i = 0; i < solids.size(); ++i) {
-    if (solids[i].is_immovable()) {
-      is_closed = false;
-      continue;
-    }
-    const Vector3d own = solids[i].mass_kg * scene.bodies[i].velocity_m_s;
-    momentum += own;
-    scale += own.norm();
-  }
-  if (!is_closed) return;
-  scene::CheckSpec check;
-  check.kind = "momentum";
-  check.expected = {momentum.x(), momentum.y(), momentum.z()};
-  check.tolerance = 1e-9 * scale;
-  check.why = "exact: what was there, and force times time; 1e-9 of it for rounding";
-  scene.checks.insert(scene.checks.begin(), check);
+  const auto after = after_push(context, scene, push);
+  if (!after) return;
+  const double travel_moment = push.force_n.norm() * push.duration_s * after->point_travel;
+  scene.checks.insert(scene.checks.begin(),
+                      {expectation("momentum", after->momentum, 1e-9 * after->momentum_scale, "exact: what was there, and force times time; 1e-9 of it for rounding"),
+                       expectation("angular_momentum", after->angular_momentum, travel_moment + 1e-9 * after->angular_scale,
+                                   fmt::format("what was there, and torque times time; the point is fixed in the body and moves by at most {:.2g} m in the push, which changes the arm by that", after->point_travel))});
 }
 
 void poke(Context& context, const PokeWords& words) {
@@ -116,9 +151,9 @@ void poke(Context& context, const PokeWords& words) {
                                         words.push_s, show(target.point_world - body.position_m), show(wrench.force_world), show(wrench.torque_world));
 
   const scene::PointForceSpec push{target.body, force, target.point_world, 0.0, words.push_s};
-  scene.point_forces.push_back(push);
+  scene.point_forces = {push};   // instead of the scene's own: what is seen comes of this push
   scene.duration_s = std::max(scene.duration_s, words.push_s + 2.0);   // s: time to see what comes of it
-  scene.title += ", poked";
+  scene.title = "Poked by hand: scene " + scene.name;
   scene.about.clear();
   replace_checks(context, scene, push);
   run_and_tell(context, scene, chosen, words, extra);

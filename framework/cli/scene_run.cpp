@@ -125,6 +125,7 @@ void add_run_words(CLI::App& verb, RunWords& words) {
   verb.add_option("--at-s", words.at_s, "Instant of the picture [s]; default the end")->check(CLI::NonNegativeNumber);
   verb.add_option("--sheet", words.sheet, "Write a contact sheet (.png)")->type_name("FILE");
   verb.add_option("--video", words.video, "Write a video (.mp4)")->type_name("FILE");
+  verb.add_option("--trajectory", words.trajectory, "Write the recorded run, every frame and event")->type_name("FILE");
   verb.add_option("--speed", words.speed, "Seconds of the run in a second of video: 0.25 is slow motion")->check(CLI::Range(1e-6, 1e6))->capture_default_str();
   verb.add_option("--size", words.size, "Of pictures and video, in pixels")->type_name("WxH")->capture_default_str();
   verb.add_flag("--json", words.json, "For machines");
@@ -190,6 +191,10 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   fmt::print(stderr, "ran in {:.2f} s", seconds);
   for (const auto& [stage, spent] : run.counters.stage_seconds) fmt::print(stderr, " · {} {:.2f} s", stage, spent);
   fmt::print(stderr, "\n");
+  if (!words.trajectory.empty()) {
+    write_trajectory(words.trajectory, run);
+    fmt::print(stderr, "wrote {}\n", words.trajectory);
+  }
   if (!run.frames.empty()) write_pictures(context, scene, run, words, size);
 
   bool passed = run.stopped_by.empty();

@@ -1,0 +1,87 @@
+// What people mistype in a scene: each is refused with the file's line, the JSON pointer, what was found and what to do.
+#include <gtest/gtest.h>
+
+#include "framework/core/error.h"
+#include "framework/scene/build_shape.h"
+#include "framework/scene/load_scene.h"
+
+namespace tumble::scene {
+namespace {
+
+const std::string kBall = R"({ "name": "ball", "shape": { "sphere": { "radius_m": 0.1 } }, "mass_kg": 1 })";
+
+std::string scene_with(const std::string& body, const std::string& more = "") {
+  return "{\n  \"title\": \"t\",\n  \"duration_s\": 1,\n  \"bodies\": [\n" + body + "\n  ]" + more + "\n}\n";
+}
+
+/// The words with which a text is refused; "" where it is accepted.
+std::string refusal(const std::string& text) {
+  try {
+    const Scene scene = parse_scene(text, "s.json");
+    build_solids(scene, TUMBLE_SOURCE_DIR);
+  } catch (const UserError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void expect_words(const std::string& refused, const std::vector<std::string>& words) {
+  for (const auto& word : words) EXPECT_NE(refused.find(word), std::string::npos) << "expected '" << word << "' in: " << refused;
+}
+
+std::string body_with(const std::string& more) { return R"({ "name": "ball", "shape": { "sphere": { "radius_m": 0.1 } }, )" + more + " }"; }
+
+TEST(SceneRefusals, ARightSceneIsAccepted) { EXPECT_EQ(refusal(scene_with(kBall)), ""); }
+
+TEST(SceneRefusals, AMistypedKeyIsNamedWithItsNeighbour) {
+  expect_words(refusal(scene_with(body_with(R"("mass_kg": 1, "velocty_m_s": [1, 0, 0])"))), {"s.json:5", "/bodies/0/velocty_m_s", "Did you mean 'velocity_m_s'"});
+}
+
+TEST(SceneRefusals, AKeyWithoutItsUnitIsNamedWithIt) {
+  expect_words(refusal(scene_with(body_with(R"("mass": 1)"))), {"/bodies/0/mass", "Did you mean 'mass_kg'"});
+}
+
+TEST(SceneRefusals, AUnitInTheValueIsFoundAndTheNumberExpected) {
+  expect_words(refusal(scene_with(body_with(R"("mass_kg": "2 kg")"))), {"/bodies/0/mass_kg", "found the text \"2 kg\"", "expected a number above 0 [kg]"});
+}
+
+TEST(SceneRefusals, ANegativeMassSaysWhatAMassIs) {
+  expect_words(refusal(scene_with(body_with(R"("mass_kg": -2)"))), {"/bodies/0/mass_kg", "found -2", "above 0"});
+}
+
+TEST(SceneRefusals, NaNIsNotJson) { expect_words(refusal(scene_with(body_with(R"("mass_kg": NaN)"))), {"s.json:5", "not JSON", "no NaN"}); }
+
+TEST(SceneRefusals, NeitherMassNorDensitySaysBoth) {
+  expect_words(refusal(scene_with(R"({ "name": "ball", "shape": { "sphere": { "radius_m": 0.1 } } })")), {"/bodies/0", "neither density_kg_m3 nor mass_kg"});
+}
+
+TEST(SceneRefusals, AVectorOfTwoNumbersIsCounted) {
+  expect_words(refusal(scene_with(body_with(R"("mass_kg": 1, "position_m": [1, 2])"))), {"/bodies/0/position_m", "list of 2", "three numbers"});
+}
+
+TEST(SceneRefusals, AMissingModelNamesTheFile) {
+  expect_words(refusal(scene_with(R"({ "name": "pawn", "shape": { "model": { "file": "chess_prawn.3ds" } }, "mass_kg": 1 })")), {"pawn", "chess_prawn.3ds"});
+}
+
+TEST(SceneRefusals, AnUnknownBodyInACheckListsTheBodies) {
+  const std::string checks = R"(, "checks": [{ "kind": "event_count", "body": "bal", "expected": [1], "tolerance": 0, "why": "w" }])";
+  expect_words(refusal(scene_with(kBall, checks)), {"/checks/0/body", "no body is named 'bal'", "Did you mean 'ball'"});
+}
+
+TEST(SceneRefusals, AnUnknownKindOfCheckIsNamedWithItsNeighbour) {
+  const std::string checks = R"(, "checks": [{ "kind": "enrgy", "tolerance": 0, "why": "w" }])";
+  expect_words(refusal(scene_with(kBall, checks)), {"/checks/0/kind", "Did you mean 'energy'"});
+}
+
+TEST(SceneRefusals, ATakenNameSaysWhoHasIt) { expect_words(refusal(scene_with(kBall + ",\n" + kBall)), {"s.json:6", "/bodies/1/name", "taken by /bodies/0"}); }
+
+TEST(SceneRefusals, AQuaternionThatIsNotUnitSaysItsLength) {
+  expect_words(refusal(scene_with(body_with(R"("mass_kg": 1, "orientation": { "quaternion": [1, 1, 0, 0] })"))), {"/bodies/0/orientation/quaternion", "unit quaternion"});
+}
+
+TEST(SceneRefusals, AKeyThatStandsTwiceIsRefused) { expect_words(refusal(scene_with(body_with(R"("mass_kg": 1, "mass_kg": 2)"))), {"/bodies/0/mass_kg", "twice"}); }
+
+TEST(SceneRefusals, ATrailingCommaIsNotJson) { expect_words(refusal(scene_with(kBall + ",")), {"not JSON", "none after the last"}); }
+
+}  // namespace
+}  // namespace tumble::scene
