@@ -155,7 +155,7 @@ void WorkerConnection::end(Verdict verdict, const std::string& story) {
 }
 
 void WorkerConnection::explain_death(const char* function) {
-  constexpr double kGrace = 0.5;  // s: for a process that closed its line by dying, to be seen dead
+  constexpr double kGrace = 5.0;  // s: for a process that closed its line by dying, to be seen dead, on a loaded machine too
   const SandboxOutcome outcome = stop(kGrace);
   switch (outcome.ending) {
     case Ending::kSignal:

@@ -1,0 +1,126 @@
+// tumble grade and tumble check as people run them.
+#include <cstdlib>
+#include <fstream>
+#include <map>
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "framework/core/files.h"
+#include "framework/grading/run_program.h"
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kProgram = fs::path(TUMBLE_BINARY_DIR) / "bin/tumble";
+const fs::path kStub = fs::path(TUMBLE_SOURCE_DIR) / "assignments/a1_impulse/a1_impulse.cpp";
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+// A stub whose ray test does something else than throw.
+std::string stub_that(const std::string& does) {
+  std::string text = text_of(kStub);
+  const auto at = text.find("throw NotImplemented(");
+  return text.insert(at, does + "\n  ");
+}
+
+class Grading : public ::testing::Test {
+ protected:
+  Grading() {
+    std::string name = (fs::temp_directory_path() / "tumble-grade-run-XXXXXX").string();
+    root = ::mkdtemp(name.data());
+    ::setenv("TUMBLE_ROOT", TUMBLE_SOURCE_DIR, 1);
+  }
+  ~Grading() override {
+    std::error_code ignored;
+    fs::remove_all(root, ignored);
+  }
+  void put(const std::string& file, const std::string& text) const { write_whole(root / "in" / file, text); }
+  ProgramOutcome grade(const std::string& out, const std::vector<std::string>& more = {"--no-media"}) const {
+    std::vector<std::string> words = {kProgram.string(), "grade", "a1", (root / "in").string(), "--out", (root / out).string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words, Output::kCaptured, 100.0);
+  }
+  // Every file but the times, by its path.
+  std::map<std::string, std::string> files(const std::string& out) const {
+    std::map<std::string, std::string> all;
+    for (const auto& entry : fs::recursive_directory_iterator(root / out))
+      if (entry.is_regular_file() && entry.path().filename() != "times.json") all[entry.path().lexically_relative(root / out).string()] = text_of(entry.path());
+    return all;
+  }
+  fs::path root;
+};
+
+TEST_F(Grading, OddFoldersAreGradedOnceAndTakenOverAfterwards) {
+  put("al <b>/a1_impulse.cpp", text_of(kStub));
+  put("crash/a1_impulse.cpp", stub_that("__builtin_trap();"));
+  put("typo/a1_impulse.cpp", "int x = ;\n");
+  put("none/readme.txt", "I was ill");
+  const ProgramOutcome first = grade("out", {"--no-media", "--jobs", "1"});
+  EXPECT_EQ(first.code, 0) << first.printed;
+  EXPECT_NE(first.printed.find("does not compile"), std::string::npos) << first.printed;
+  EXPECT_NE(first.printed.find("Holds no a1_impulse.cpp"), std::string::npos) << first.printed;
+  EXPECT_EQ(text_of(root / "out/gradebook.csv"),
+            "Student,ID,SIS Login ID,Section,Impulse\n    Points Possible,,,,100\nal <b>,,al <b>,,0\ncrash,,crash,,0\nnone,,none,,0\ntypo,,typo,,0\n");
+  const auto crash = nlohmann::json::parse(text_of(root / "out/crash/results.json"));
+  EXPECT_EQ(crash["tests"][0]["extra_data"]["verdict"], "crashed") << crash["tests"][0];
+  EXPECT_NE(text_of(root / "out/typo/index.html").find("a1_impulse.cpp:1:"), std::string::npos);
+
+  // Again: nothing is run. Elsewhere with two jobs: the same bytes.
+  const auto before = files("out");
+  const ProgramOutcome second = grade("out");
+  EXPECT_NE(second.printed.find("unchanged since the last run"), std::string::npos) << second.printed;
+  EXPECT_EQ(files("out"), before);
+  grade("other", {"--no-media", "--jobs", "2"});
+  EXPECT_EQ(files("other"), before);
+
+  // A result that was tampered with, and a submission that was mended, are graded again; the rest is not.
+  write_whole(root / "out/crash/results.json", "{\"score\": 100}");
+  put("typo/a1_impulse.cpp", text_of(kStub));
+  const ProgramOutcome third = grade("out");
+  EXPECT_NE(third.printed.find("[2/4]"), std::string::npos) << third.printed;
+  EXPECT_EQ(nlohmann::json::parse(text_of(root / "out/crash/results.json"))["score"], 0.0);
+  EXPECT_EQ(nlohmann::json::parse(text_of(root / "out/typo/results.json"))["extra_data"]["state"], "judged");
+}
+
+TEST_F(Grading, ARunThatIsKilledLeavesNothingHalfWrittenAndGoesOn) {
+  for (const char* name : {"a", "b", "c"}) put(std::string(name) + "/a1_impulse.cpp", text_of(kStub));
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const int nothing = ::open("/dev/null", 2);
+    ::dup2(nothing, 1);
+    ::dup2(nothing, 2);
+    const std::string in = (root / "in").string(), out = (root / "out").string();
+    ::execl(kProgram.c_str(), "tumble", "grade", "a1", in.c_str(), "--out", out.c_str(), "--no-media", "--jobs", "1", nullptr);
+    ::_exit(127);
+  }
+  // Killed as soon as the first is in place, so in the middle of the second.
+  for (int i = 0; i < 6000 && !fs::exists(root / "out/a/record.json"); ++i) ::usleep(10'000);
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+  EXPECT_FALSE(fs::exists(root / "out/c"));
+  const ProgramOutcome again = grade("out");
+  EXPECT_EQ(again.code, 0) << again.printed;
+  EXPECT_NE(again.printed.find("unchanged since the last run"), std::string::npos) << again.printed;
+  for (const auto& [file, text] : files("out")) EXPECT_EQ(file.find(".making"), std::string::npos) << file;
+  EXPECT_TRUE(fs::exists(root / "out/c/record.json"));
+}
+
+TEST_F(Grading, NoFolderIsToldWithWhatToDo) {
+  const ProgramOutcome outcome = grade("out");
+  EXPECT_EQ(outcome.code, 2);
+  EXPECT_NE(outcome.printed.find("one sub-folder a submission"), std::string::npos) << outcome.printed;
+}
+
+}  // namespace
+}  // namespace tumble::grading
