@@ -20,6 +20,7 @@
 #include <iterator>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
@@ -59,7 +60,7 @@ class Writer {
 
 class Reader {
  public:
-  Reader(std::string where, std::string bytes) : where_(std::move(where)), bytes_(std::move(bytes)) {}
+  Reader(std::string where, std::vector<char> bytes) : where_(std::move(where)), bytes_(std::move(bytes)) {}
 
   template <class T>
     requires(std::is_arithmetic_v<T>)
@@ -83,8 +84,7 @@ class Reader {
     text.assign(take(length), length);
   }
   void word(std::string_view word) {
-    take(word.size());
-    if (bytes_.compare(at_ - word.size(), word.size(), word) != 0)
+    if (std::string_view(take(word.size()), word.size()) != word)
       fail(word.size(), at_ == word.size() ? "not a recorded run: its first bytes are others" : "expected the end of the run");
   }
   /// How many things follow, each of at least `least_bytes`: a count that the file cannot hold is refused before memory is taken.
@@ -111,7 +111,8 @@ class Reader {
     return from;
   }
 
-  std::string where_, bytes_;
+  std::string where_;
+  std::vector<char> bytes_;
   std::size_t at_ = 0;
 };
 
@@ -170,7 +171,7 @@ void write_trajectory(const std::filesystem::path& file, const Trajectory& traje
 Trajectory read_trajectory(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   if (!in || std::filesystem::is_directory(file)) throw UserError(file.string(), "cannot be read", "Name a recorded run.");
-  Reader reader(file.string(), {std::istreambuf_iterator<char>(in), {}});
+  Reader reader(file.string(), std::vector<char>(std::istreambuf_iterator<char>(in), {}));
   reader.word(kMagic);
   std::uint32_t version = 0;
   reader(version);
