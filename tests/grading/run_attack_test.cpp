@@ -56,6 +56,11 @@ TEST_F(RunAttack, CallsWithoutEndAreOutOfTime) {
 
 TEST_F(RunAttack, ForkBombIsOutOfTimeAndLeavesNobody) { expect_end("fork bomb", Verdict::kOutOfResources, "no answer"); }
 
+TEST_F(RunAttack, ProcessesAreFew) {
+  // Four with process 1 and the worker, whoever else runs as this user: memory is limited for each, so this bounds the sum.
+  EXPECT_EQ(reached("children"), "2");
+}
+
 TEST_F(RunAttack, MemoryBlowUpIsOutOfMemory) {
   for (const char* what : {"100 GB by new", "memory in pieces"}) expect_end(what, Verdict::kOutOfResources, "more memory");
 }

@@ -105,6 +105,17 @@ std::string forge(const std::string& what) {
     if (::fork() == 0) continue;
 }
 
+// How many processes can be made that stay; they die with the worker.
+std::string count_children() {
+  int made = 0;
+  for (; made < 1000; ++made) {
+    const pid_t child = ::fork();
+    if (child == 0) for (;;) ::pause();
+    if (child < 0) break;
+  }
+  return std::to_string(made);
+}
+
 long raised_processes() {
   const rlimit more{100000, 100000};
   return ::setrlimit(RLIMIT_NPROC, &more);
@@ -156,6 +167,7 @@ const std::map<std::string, Attack>& attacks() {
       {"environment", environment},
       {"descriptors", descriptors},
       {"processes", processes},
+      {"children", count_children},
   };
   return all;
 }
