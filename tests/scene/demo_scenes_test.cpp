@@ -1,0 +1,99 @@
+// Every demo scene, run by right laws, is judged right at every frame; run by wrong ones, it is judged wrong.
+#include <gtest/gtest.h>
+
+#include "framework/engines/judge.h"
+#include "framework/engines/run.h"
+#include "framework/scene/load_scene.h"
+#include "tests/support/test_laws.h"
+
+namespace tumble::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> demo_scenes() {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(TUMBLE_SOURCE_DIR "/assignments"))
+    if (entry.path().extension() == ".json" && entry.path().parent_path().filename() == "scenes") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+scene::Scene demo_scene(const std::string& name) {
+  for (const auto& file : demo_scenes())
+    if (file.stem() == name) return scene::load_scene(file);
+  throw std::runtime_error("no demo scene " + name);
+}
+
+Trajectory run(const scene::Scene& scene, const Laws& laws) {
+  TrajectoryRecorder recorder;
+  engines::run_scene(scene, laws, {}, recorder);
+  return recorder.trajectory();
+}
+
+/// Kinds of checks that a run fails.
+std::vector<std::string> failures(const scene::Scene& scene, const Trajectory& run) {
+  std::vector<std::string> kinds;
+  for (const auto& result : engines::judge_run(scene, run))
+    if (!result.passed) kinds.push_back(result.kind);
+  return kinds;
+}
+
+bool fails(const scene::Scene& scene, const Laws& laws) {
+  const Trajectory result = run(scene, laws);
+  return !result.stopped_by.empty() || !failures(scene, result).empty();
+}
+
+Laws with_euler() {
+  Laws laws = test_laws();
+  laws.integrate_step = [](const OdeFunction& f, double t, const VectorXd& y, double h) -> VectorXd { return y + h * f(t, y); };
+  return laws;
+}
+
+TEST(DemoScenes, AreJudgedRightAndNeverOverlap) {
+  for (const auto& file : demo_scenes()) {
+    SCOPED_TRACE(file.stem().string());
+    const scene::Scene scene = scene::load_scene(file);
+    const Trajectory result = run(scene, test_laws());
+    EXPECT_EQ(result.stopped_by, "");
+    EXPECT_EQ(failures(scene, result), std::vector<std::string>{});
+    EXPECT_NEAR(result.frames.back().time, scene.duration_s, 1e-9);
+    for (const Frame& frame : result.frames) ASSERT_GE(frame.smallest_gap, 0.0) << frame.time;
+  }
+}
+
+TEST(DemoScenes, EulersMethodIsJudgedWrongWhereBodiesTumble) {
+  for (const std::string name : {"t_handle", "poked_box", "poked_pawn"}) EXPECT_TRUE(fails(demo_scene(name), with_euler())) << name;
+}
+
+TEST(DemoScenes, AnImpulseOfTheWrongSignIsJudgedWrong) {
+  Laws laws = test_laws();
+  laws.collision_impulse = [right = laws.collision_impulse](const Contact& contact, const Body& a, const Body& b, double e) { return -right(contact, a, b, e); };
+  for (const std::string name : {"ball_against_wall", "collide_off_centre_e1", "pong_1"}) EXPECT_TRUE(fails(demo_scene(name), laws)) << name;
+}
+
+TEST(DemoScenes, AForgottenRestitutionIsJudgedWrong) {
+  Laws laws = test_laws();
+  laws.collision_impulse = [right = laws.collision_impulse](const Contact& contact, const Body& a, const Body& b, double) { return right(contact, a, b, 0.0); };
+  for (const std::string name : {"ball_against_wall", "collide_off_centre_e05", "collide_off_centre_e1", "bouncing_ball"}) EXPECT_TRUE(fails(demo_scene(name), laws)) << name;
+}
+
+TEST(DemoScenes, AForgottenArmIsJudgedWrong) {
+  Laws laws = test_laws();
+  laws.wrench_of_point_force = [](const Vector3d& force, const Vector3d& point, const Vector3d&) { return Wrench{force, point.cross(force)}; };
+  scene::Scene scene = demo_scene("poked_box");
+  scene.checks.clear();
+  scene::CheckSpec check;   // torque times time, to what a push of 1 ms leaves
+  check.kind = "angular_momentum";
+  auto& push = scene.point_forces.front();
+  push.duration_s = 1e-3;
+  const Vector3d exact = push.point_m.cross(push.force_n) * push.duration_s;
+  check.expected = {exact.x(), exact.y(), exact.z()};
+  check.tolerance = 1e-3 * exact.norm();   // the point moves by far less than 1e-3 of its arm in 1 ms
+  scene.checks.push_back(check);
+  EXPECT_FALSE(fails(scene, test_laws()));
+  EXPECT_TRUE(fails(scene, laws));
+}
+
+}  // namespace
+}  // namespace tumble::testing
