@@ -189,16 +189,20 @@ bool is_about(const scene::Scene& scene, const ModuleKind& kind) {
 void add_module(const Context& context, const scene::Scene& scene, const ModuleKind& kind, const std::string& word, const fs::path& file, ChosenLaws& result) {
   result.modules.push_back({kind.id, word});
   if (word == "library") return;
-  AnyModule module;
-  if (file.empty()) {
-    module = load_word(context, kind, word);
-  } else {
-    SandboxedModule sandboxed = load_sandboxed(context, kind, file);
-    module = sandboxed.module;
-    result.connections.push_back(std::move(sandboxed.connection));
+  if (!file.empty()) {
+    const SandboxedModule sandboxed = load_sandboxed(context, kind, file);
+    Laws step, derivative;   // from workers of their own, for calls inside calls
+    bind_module(kind, sandboxed.search.module, word, result.laws);
+    kind.bind(sandboxed.step.module, step);
+    kind.bind(sandboxed.derivative.module, derivative);
+    if (step.integrate_step) result.laws.integrate_step = step.integrate_step;
+    if (derivative.renormalize) result.laws.renormalize = derivative.renormalize;
+    if (derivative.state_derivative) result.laws.state_derivative = derivative.state_derivative;
+    for (const auto& depth : {sandboxed.search, sandboxed.step, sandboxed.derivative}) result.connections.push_back(depth.connection);
+    return;
   }
-  Laws before = result.laws;
-  bind_module(kind, module, word, result.laws);
+  const Laws before = result.laws;
+  bind_module(kind, load_word(context, kind, word), word, result.laws);
   const bool may_stand_in = word == "student" && !is_about(scene, kind) && before.integrator_source != result.laws.integrator_source;
   if (!may_stand_in) return;
   const auto missing = stand_in_for_stubs(result.laws);

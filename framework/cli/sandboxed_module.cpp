@@ -56,8 +56,11 @@ SandboxedModule load_sandboxed(const Context& context, const modules::ModuleKind
     compile(context, kind, file, options.module);
   }
   grading::call_log() = grading::CallLog{};
-  auto connection = std::make_shared<grading::WorkerConnection>(options);   // copies the object: the folder may go
-  return {kind.make_proxy(*connection), connection};
+  const auto depth = [&]() -> SandboxedModule::Depth {
+    auto connection = std::make_shared<grading::WorkerConnection>(options);   // copies the object: the folder may go
+    return {kind.make_proxy(*connection), connection};
+  };
+  return {depth(), depth(), depth()};
 }
 
 }  // namespace tumble::cli

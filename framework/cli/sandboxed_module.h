@@ -8,9 +8,14 @@
 
 namespace tumble::cli {
 
+/// One worker answers one call at a time, and laws of motion call each other: the search for an impact asks for a step, a
+/// step asks for a derivative. So each depth has a worker of its own, which starts when it is first called.
 struct SandboxedModule {
-  modules::AnyModule module;         // forwards every call
-  std::shared_ptr<void> connection;  // must outlive every call of the module
+  struct Depth {
+    modules::AnyModule module;         // forwards every call
+    std::shared_ptr<void> connection;  // must outlive every call of the module
+  };
+  Depth search, step, derivative;
 };
 
 /// @param file  a source file, or a shared object
