@@ -10,41 +10,10 @@
 #include "framework/core/error.h"
 #include "framework/render/camera.h"
 #include "framework/render/picture.h"
+#include "tests/render/render_fixtures.h"
 
 namespace tumble::render {
 namespace {
-
-scene::Scene falling_ball() {
-  scene::BodySpec ball, floor;
-  ball.name = "ball";
-  ball.shape = scene::SphereSpec{0.3};
-  ball.mass_kg = 1.0;
-  floor.name = "floor";
-  floor.shape = scene::PlaneSpec{};
-  floor.immovable = true;
-  scene::Scene scene;
-  scene.name = "test";
-  scene.bodies = {ball, floor};
-  scene.camera.eye_m = {0, -6, 2};
-  scene.camera.target_m = {0, 0, 1};
-  return scene;
-}
-
-Trajectory ball_at(double height) {
-  const auto at = [](double z) { return BodyPose{{0, 0, z}, Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero()}; };
-  Trajectory run;
-  run.bodies = {{"ball", false}, {"floor", true}};
-  for (const double t : {0.0, 0.5}) run.frames.push_back({t, {at(height - t), at(0)}, 0, 0, Vector3d::Zero(), Vector3d::Zero(), 1});
-  return run;
-}
-
-PictureOptions small(const std::string& gl = "osmesa") {
-  PictureOptions options;
-  options.width = 160;
-  options.height = 120;
-  options.gl = gl;
-  return options;
-}
 
 std::string png_bytes() {
   const auto file = std::filesystem::temp_directory_path() / ("tumble_picture_" + std::to_string(getpid()) + ".png");
