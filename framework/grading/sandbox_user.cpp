@@ -1,11 +1,14 @@
 // Uids and folders for sandboxes.
 #include <fcntl.h>
 #include <pwd.h>
+#include <signal.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 
 #include "framework/core/error.h"
@@ -18,6 +21,24 @@ namespace {
 constexpr uid_t kFirstUid = 58100;
 constexpr uid_t kUids = 64;
 constexpr const char* kLockFolder = "/run/tumble";
+
+// The maker's process id stands in a stage's name, so that what a killed process left behind is seen and swept.
+constexpr const char* kStageFolder = "/tmp";
+constexpr const char* kStageName = "tumble-stage-";
+
+void sweep_stages_of_the_dead() {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  for (fs::directory_iterator it(kStageFolder, ignored), end; !ignored && it != end; it.increment(ignored)) {
+    const std::string name = it->path().filename().string();
+    if (!name.starts_with(kStageName)) continue;
+    char* rest = nullptr;
+    const long maker = std::strtol(name.c_str() + std::strlen(kStageName), &rest, 10);
+    std::error_code failed;   // another user's stays
+    if (maker > 0 && *rest == '-' && ::kill(static_cast<pid_t>(maker), 0) != 0 && errno == ESRCH && fs::is_directory(it->symlink_status(failed)))
+      fs::remove_all(it->path(), failed);
+  }
+}
 
 }  // namespace
 
@@ -47,9 +68,11 @@ SandboxUser::~SandboxUser() {
 }
 
 Stage::Stage(const SandboxUser* user) {
+  static const bool swept = (sweep_stages_of_the_dead(), true);
+  (void)swept;
   // Not the user's TMPDIR: it may lie in a folder that another uid cannot enter.
-  char name[] = "/tmp/tumble-stage-XXXXXX";
-  if (::mkdtemp(name) == nullptr) throw UserError("/tmp", "no folder can be made in it");
+  std::string name = std::string(kStageFolder) + '/' + kStageName + std::to_string(::getpid()) + "-XXXXXX";
+  if (::mkdtemp(name.data()) == nullptr) throw UserError(kStageFolder, "no folder can be made in it");
   path_ = name;
   if (user != nullptr) owner_ = user->uid();
   hand_over(path_, user != nullptr ? 0700 : 0755);

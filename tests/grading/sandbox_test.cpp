@@ -112,5 +112,10 @@ TEST_F(SandboxEnds, StagesAreReadableByTheSandboxAloneAndRemoved) {
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
+TEST_F(SandboxEnds, StagesSayWhoseTheyAre) {
+  // What lets the next process sweep what a killed one left: the maker's id in the name.
+  EXPECT_TRUE(stage_->path().filename().string().starts_with("tumble-stage-" + std::to_string(::getpid()) + "-")) << stage_->path();
+}
+
 }  // namespace
 }  // namespace tumble::grading
