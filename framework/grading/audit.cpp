@@ -66,8 +66,10 @@ void run_one(const Course& course, const std::string& id, const Candidate& candi
     write_whole(kept.refused, "does not compile: " + compiler_story(built.said, candidate.file));
     return;
   }
-  const Judgement judgement = judge_module(course, id, object);
+  Judgement judgement = judge_module(course, id, object);
   fs::remove(object);
+  for (const TestResult& test : judgement.results)  // a fault of ours is not kept: the next audit tries again
+    if (test.verdict == Verdict::kGraderFault) judgement.fault = test.test + ": " + test.story;
   if (!judgement.fault.empty()) write_whole(kept.refused, judgement.fault);
   else make_whole(kept.results, [&](const fs::path& draft) { write_results(draft.string(), judgement.results); });
 }
