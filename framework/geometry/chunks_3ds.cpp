@@ -22,6 +22,7 @@ constexpr std::size_t kHeader = 6;              // id and length
 enum Chunk : std::uint16_t {
   kMain = 0x4D4D, kEditor = 0x3D3D, kMasterScale = 0x0100, kObject = 0x4000, kTriangles = 0x4100, kVertices = 0x4110,
   kFaces = 0x4120, kFaceMaterial = 0x4130, kSmoothing = 0x4150, kMatrix = 0x4160, kKeyframer = 0xB000, kObjectNode = 0xB002,
+  kFirstNode = 0xB001, kLastNode = 0xB007, kPositionTrack = 0xB020, kRotationTrack = 0xB021, kScaleTrack = 0xB022, kLastTrack = 0xB029,
   kHidden = 0x7FFF,  // no chunk of the format: readers skip it
 };
 
@@ -131,8 +132,20 @@ class Checker {
       case kVertices: return check_vertices(at, data, end);
       case kFaces: return check_faces(at, data, end, depth);
       case kMatrix: return check_matrix(at, data, end);
-      default: return;
+      default: break;
     }
+    if (id >= kFirstNode && id <= kLastNode) return walk(data, end, depth + 1);
+    if (id >= kPositionTrack && id <= kLastTrack) check_track(id, at, data, end);
+  }
+
+  // A track: 10 bytes of flags, a count u32, then keys of a frame u32, flags u16 and a value. Readers allocate by the count.
+  void check_track(std::uint16_t id, std::size_t at, std::size_t data, std::size_t end) const {
+    constexpr std::size_t kTrackHeader = 14, kKeyHeader = 6;
+    if (end - data < kTrackHeader) refuse_damaged(at, fmt::format("animation track {:04X} needs {} bytes, and its chunk holds {}", id, kTrackHeader, end - data));
+    const std::size_t value = id == kRotationTrack ? 16 : id == kPositionTrack || id == kScaleTrack ? 12 : 0;
+    const std::uint32_t count = read<std::uint32_t>(data + 10);
+    const std::size_t room = (end - data - kTrackHeader) / (kKeyHeader + value);
+    if (count > room) refuse_damaged(at, fmt::format("animation track {:04X} says it has {} keys, and its chunk holds at most {}", id, count, room));
   }
 
   std::size_t read_name(std::size_t data, std::size_t end) {

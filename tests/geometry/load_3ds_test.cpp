@@ -217,6 +217,12 @@ TEST(Refused3ds, MatrixThatFlattensSpace) {
   expect_refused(models::file_3ds(models::object_chunk("box", lists(unit_box()) + matrix_chunk(flat))), {"mesh 'box': its matrix is singular"});
 }
 
+TEST(Refused3ds, CountOfKeysThatATrackCannotHold) {
+  const std::string track_of_many = chunk(0xB020, u16(0) + u32(0) + u32(0) + u32(0x40000000) + u32(0) + u16(0) + numbers({1, 2, 3}));
+  const std::string bytes = models::file_3ds(models::object_chunk("box", lists(unit_box())), keyframer(chunk(0xB002, track_of_many)));
+  expect_refused(bytes, {"animation track B020 says it has 1073741824 keys, and its chunk holds at most 1"});
+}
+
 TEST(Refused3ds, FileWithoutAnyMesh) { expect_refused(models::file_3ds(""), {"holds no mesh"}); }
 
 TEST(Refused3ds, ChunksNestedWithoutEnd) {
