@@ -150,11 +150,17 @@ void append(std::vector<Defect>& to, std::vector<Defect> more) {
   to.insert(to.end(), std::make_move_iterator(more.begin()), std::make_move_iterator(more.end()));
 }
 
-std::vector<Defect> find_needle(const TriangleMesh& closed_mesh) {
+std::vector<Defect> find_impossible_mass(const TriangleMesh& closed_mesh) {
   const MassProperties mass = compute_mass_properties(closed_mesh);
   const double ratio = mass.principal_moments[0] / mass.principal_moments[2];
-  if (ratio >= kNeedle) return {};
   const Bounds bounds = bounds_of(closed_mesh);
+  const Vector3d& com = mass.com_mesh;
+  if ((com.array() < bounds.low.array()).any() || (com.array() > bounds.high.array()).any() || mass.principal_moments[2] <= 0.0) {
+    return {{DefectKind::kSelfCrossing,
+             fmt::format("faces pass through each other: parts of the inside cancel, and the centre of mass would be at {}, outside the surface", show_point(com)),
+             "Separate the crossing faces in the modelling program."}};
+  }
+  if (ratio >= kNeedle) return {};
   return {{DefectKind::kNeedle,
            fmt::format("a needle from {} to {}: its moments of inertia are too far apart to be told in double precision", show_point(bounds.low),
                        show_point(bounds.high)),
@@ -177,7 +183,7 @@ ClosedReport examine(const TriangleMesh& mesh) {
 
   report.mesh = double_pinched_vertices(mesh, uses, report.notices);
   append(report.defects, orient_parts(part_of_face, report.mesh, report.notices));
-  if (report.is_closed()) append(report.defects, find_needle(report.mesh));
+  if (report.is_closed()) append(report.defects, find_impossible_mass(report.mesh));
   if (!report.is_closed()) report.mesh = mesh;
   return report;
 }
@@ -198,7 +204,7 @@ ClosedReport check_closed(const TriangleMesh& mesh) {
 
   // Faces of zero area may close a seam (then they stay) or be in the way (then they go).
   ClosedReport report = examine(triangles);
-  const auto is_about_size = [](const Defect& d) { return d.kind == DefectKind::kZeroVolume || d.kind == DefectKind::kNeedle; };
+  const auto is_about_size = [](const Defect& d) { return d.kind == DefectKind::kZeroVolume || d.kind == DefectKind::kNeedle || d.kind == DefectKind::kSelfCrossing; };
   if (!report.is_closed() && !is_about_size(report.defects.front())) {
     const TriangleMesh solid_faces = keep_faces(triangles, [&](const Face& f) { return has_area(triangles, f); });
     const std::size_t flat = triangles.faces.size() - solid_faces.faces.size();

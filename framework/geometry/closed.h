@@ -23,6 +23,7 @@ enum class DefectKind {
   kNestedOutward,     // a part inside another that is not its cavity: its volume would count twice
   kZeroVolume,
   kNeedle,            // so long and thin that double precision cannot tell how it turns about its length
+  kSelfCrossing,      // faces pass through each other so much that the centre of mass or the inertia is impossible
 };
 
 /// One thing that is wrong with a surface.
