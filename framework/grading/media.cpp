@@ -23,7 +23,8 @@ AnyModule reference_of(const Course& course, const ModuleKind& kind) {
 }
 
 // Puts a module's functions into the laws, and says whose they are.
-void bind(const ModuleKind& kind, const AnyModule& module, const std::string& source, Laws& laws) {
+// (Not called bind: std::bind would be found through the arguments, and silently do nothing.)
+void put_into(const ModuleKind& kind, const AnyModule& module, const std::string& source, Laws& laws) {
   kind.bind(module, laws);
   Laws alone;  // shows which laws this module is about
   kind.bind(module, alone);
@@ -45,9 +46,9 @@ Laws laws_around(const Course& course, const ModuleKind& kind, const AnyModule& 
     }
     for (const ModuleKind* other : course.registry->all())
       if (other->id != kind.id && needs(scene, other->id) == needed)
-        if (const AnyModule reference = reference_of(course, *other)) bind(*other, reference, "reference", laws);
+        if (const AnyModule reference = reference_of(course, *other)) put_into(*other, reference, "reference", laws);
   }
-  bind(kind, module, source, laws);
+  put_into(kind, module, source, laws);
   return laws;
 }
 
