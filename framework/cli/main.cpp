@@ -19,6 +19,17 @@ void find_trees(tumble::cli::Context& context) {
   context.root = told != nullptr ? std::filesystem::path(told) : context.build.parent_path();
 }
 
+// The parser would only say that a verb is missing.
+void refuse_unknown_verb(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::string known;
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (verb->get_name() == argv[1]) return;
+    known += (known.empty() ? "" : ", ") + verb->get_name();
+  }
+  throw tumble::UserError(argv[1], "there is no such verb", "Known: " + known + ". tumble --help says what each does.");
+}
+
 int run(int argc, char** argv) {
   tumble::cli::Context context;
   find_trees(context);
@@ -29,6 +40,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   app.set_help_all_flag("--help-all", "Help of every verb");
   tumble::cli::add_verbs(app, context);
+  refuse_unknown_verb(app, argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,0 +1,170 @@
+// The program as a person types it: what it prints where, what it exits with, what it leaves behind.
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <regex>
+
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "framework/core/files.h"
+
+namespace tumble::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string contents_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+struct Said {
+  int code;
+  std::string out, err;
+};
+
+/// Types words in an empty folder, which ends with the test.
+class CommandLine : public ::testing::Test {
+ protected:
+  CommandLine() : folder_(fs::temp_directory_path() / ("tumble words " + std::to_string(::getpid()))) { fs::create_directories(folder_); }
+  ~CommandLine() override { fs::remove_all(folder_); }
+
+  Said type(const std::string& words) const {
+    const fs::path out = folder_.string() + ".out", err = folder_.string() + ".err";
+    const int status = std::system(("cd '" + folder_.string() + "' && TUMBLE_ROOT='" TUMBLE_SOURCE_DIR "' '" TUMBLE_BINARY_DIR "/bin/tumble' " + words + " >'" +
+                                    out.string() + "' 2>'" + err.string() + "'").c_str());
+    Said said{WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents_of(out), contents_of(err)};
+    fs::remove(out);
+    fs::remove(err);
+    return said;
+  }
+  bool left_nothing() const { return fs::is_empty(folder_); }
+
+  fs::path folder_;
+};
+
+bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST_F(CommandLine, WithoutAVerbOrWithAnUnknownOneItTellsAndExitsWith2) {
+  EXPECT_EQ(type("").code, 2);
+  const Said said = type("simulate");
+  EXPECT_EQ(said.code, 2);
+  EXPECT_EQ(said.out, "");
+  EXPECT_TRUE(holds(said.err, "simulate")) << said.err;
+}
+
+TEST_F(CommandLine, HelpListsEveryVerb) {
+  const Said said = type("--help");
+  EXPECT_EQ(said.code, 0);
+  for (const char* verb : {"check", "watch", "run", "poke", "inspect", "truths", "grade", "audit", "release", "demo"}) EXPECT_TRUE(holds(said.out, verb)) << verb;
+}
+
+TEST_F(CommandLine, AnUnknownSceneIsAnsweredWithThoseThereAre) {
+  const Said said = type("run nonsense");
+  EXPECT_EQ(said.code, 2);
+  EXPECT_EQ(said.out, "");
+  EXPECT_TRUE(holds(said.err, "nonsense") && holds(said.err, "pong_1")) << said.err;
+}
+
+TEST_F(CommandLine, AMistakeInASceneNamesFilePlaceFoundAndExpected) {
+  write_whole(folder_ / "mine.json", R"({"title": "t", "duration_s": "long", "bodies": []})");
+  const Said said = type("run mine.json");
+  EXPECT_EQ(said.code, 2);
+  EXPECT_TRUE(holds(said.err, "mine.json") && holds(said.err, "/duration_s")) << said.err;
+}
+
+TEST_F(CommandLine, AnUnknownEngineOrAStepOfZeroIsAMistakeToRepair) {
+  EXPECT_EQ(type("run t_handle --engine warp").code, 2);
+  EXPECT_EQ(type("run t_handle --step-s 0").code, 2);
+  EXPECT_EQ(type("run t_handle --size 12").code, 2);
+}
+
+TEST_F(CommandLine, AModelThatIsNoFileIsToldByName) {
+  const Said said = type("inspect nowhere.3ds");
+  EXPECT_EQ(said.code, 2);
+  EXPECT_TRUE(holds(said.err, "nowhere.3ds")) << said.err;
+}
+
+TEST_F(CommandLine, InspectWeighsABox) {
+  const Said said = type("inspect box --density 2 --json");
+  EXPECT_EQ(said.code, 0) << said.err;
+  const nlohmann::json page = nlohmann::json::parse(said.out);
+  const auto& object = page.at("objects").at(0);
+  EXPECT_TRUE(object.at("closed").get<bool>());
+}
+
+TEST_F(CommandLine, InspectOfAnOpenSurfaceSaysWhereAndExitsWith1) {
+  const Said said = type("inspect broken/lampshade");
+  EXPECT_EQ(said.code, 1) << said.err;
+  EXPECT_TRUE(holds(said.out, "thick") || holds(said.out, "open")) << said.out;
+}
+
+TEST_F(CommandLine, TruthsOfAnEmptyFolderAreAMistake) {
+  EXPECT_EQ(type("truths .").code, 2);
+  EXPECT_EQ(type("truths nowhere").code, 2);
+}
+
+#ifdef TUMBLE_HAS_REFERENCE
+TEST_F(CommandLine, ARunIsJudgedOnStdoutAndToldOnStderr) {
+  const Said said = type("run t_handle --modules reference --png t.png --trajectory t.run");
+  EXPECT_EQ(said.code, 0) << said.out << said.err;
+  EXPECT_TRUE(holds(said.out, "right") && !holds(said.out, "WRONG")) << said.out;
+  EXPECT_TRUE(holds(said.err, "wrote t.png")) << said.err;
+  EXPECT_GT(fs::file_size(folder_ / "t.png"), 10000u);
+  EXPECT_GT(fs::file_size(folder_ / "t.run"), 10000u);
+}
+
+// A run is a function of its scene: the same words give the same bytes.
+TEST_F(CommandLine, TheSameWordsGiveTheSameBytes) {
+  ASSERT_EQ(type("run pong_1 --modules reference --duration-s 1 --trajectory a.run").code == 3, false);
+  ASSERT_EQ(type("run pong_1 --modules reference --duration-s 1 --trajectory b.run").code == 3, false);
+  // The command line is kept in the file, hence equal lengths of name.
+  std::string a = contents_of(folder_ / "a.run"), b = contents_of(folder_ / "b.run");
+  ASSERT_GT(a.size(), 1000u);
+  for (std::size_t at; (at = b.find("b.run")) != std::string::npos;) b[at] = 'a';
+  EXPECT_TRUE(a == b);
+}
+
+TEST_F(CommandLine, AFileThatCannotBeWrittenIsToldAndNothingIsLeft) {
+  const Said said = type("run t_handle --modules reference --png /proc/t.png");
+  EXPECT_EQ(said.code, 2) << said.out;
+  EXPECT_TRUE(holds(said.err, "/proc/t.png")) << said.err;
+  EXPECT_TRUE(left_nothing());
+}
+
+// 40 N for 0.2 s along y on a free body: momentum 8 kg m/s, whatever was hit and wherever.
+TEST_F(CommandLine, APokeGivesMomentumForceTimesTime) {
+  const Said said = type("poke poked_box --modules reference --ray -0.6,-10,0.85,0,1,0 --force 0,40,0 --duration-s 0.2");
+  EXPECT_EQ(said.code, 0) << said.out << said.err;
+  EXPECT_TRUE(holds(said.out + said.err, "face")) << said.out;
+}
+
+TEST_F(CommandLine, APokeThatHitsNothingSaysWhatTheRayCameNearestTo) {
+  const Said said = type("poke poked_box --modules reference --ray -0.6,-10,90,0,1,0 --force 0,40,0 --duration-s 0.2");
+  EXPECT_EQ(said.code, 2) << said.out;
+  EXPECT_TRUE(holds(said.err, "box")) << said.err;
+}
+
+TEST_F(CommandLine, PokeWantsOneWayToPoint) {
+  EXPECT_EQ(type("poke poked_box --force 0,40,0 --duration-s 0.2").code, 2);
+  EXPECT_EQ(type("poke poked_box --pixel 320 --force 0,40,0 --duration-s 0.2").code, 2);
+  EXPECT_EQ(type("poke poked_box --pixel 320,240 --force up --duration-s 0.2").code, 2);
+}
+#endif
+
+// What students get: the stub, which is not attempted and no error of anybody.
+TEST_F(CommandLine, AStubIsNotAttempted) {
+  const Said said = type("run ball_against_wall --modules a1=" TUMBLE_BINARY_DIR "/modules/a1_student.so");
+  if (said.code == 0 || said.code == 1) GTEST_SKIP() << "this tree's a1 is written already";
+  EXPECT_EQ(said.code, 4) << said.out << said.err;
+  EXPECT_TRUE(holds(said.out + said.err, "not attempted") || holds(said.out + said.err, "not written")) << said.err;
+}
+
+}  // namespace
+}  // namespace tumble::testing
