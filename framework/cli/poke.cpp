@@ -138,7 +138,7 @@ void replace_checks(const Context& context, scene::Scene& scene, const scene::Po
 
 void poke(Context& context, const PokeWords& words) {
   if ((words.pixel.empty() ? 0 : 1) + (words.ray.empty() ? 0 : 1) + (words.point.empty() ? 0 : 1) != 1)
-    throw UserError("poke", "expected exactly one of --pixel, --ray, --point", "For example --pixel 320,240.");
+    throw UserError("poke", "expected exactly one of --pixel, --ray, --point", "For example --pixel 200,250.");
   scene::Scene scene = find_scene(context, words.scene);
   const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(words.modules, context.registry));
   if (!chosen.laws.wrench_of_point_force) throw UserError("--modules", "no module here turns a point force into force and torque", "Build a1, or name one: --modules a1=PATH.cpp");
@@ -170,7 +170,7 @@ void add_poke(CLI::App& app, Context& context) {
   verb->add_option("--point", words->point, "BODY,X,Y,Z: a point that moves with the body, where it is at the start [m], world")->type_name("POINT");
   verb->add_option("--force", words->force, "FX,FY,FZ [N], world, constant while it lasts")->required()->type_name("FORCE");
   verb->add_option("--duration-s", words->push_s, "How long the force lasts [s]")->required()->check(CLI::PositiveNumber);
-  verb->footer("Example: tumble poke poked_box --pixel 300,260 --force 0,60,0 --duration-s 0.2 --video poke.mp4");
+  verb->footer("Example: tumble poke poked_box --pixel 200,250 --force 0,60,0 --duration-s 0.2 --video poke.mp4");
   verb->callback([&context, words] { poke(context, *words); });
 }
 

@@ -145,6 +145,14 @@ TEST_F(CommandLine, APokeGivesMomentumForceTimesTime) {
   EXPECT_TRUE(holds(said.out + said.err, "face")) << said.out;
 }
 
+// The pixel that README and handout use for a first try.
+TEST_F(CommandLine, ThePixelOfTheReadmeHitsTheBox) {
+  EXPECT_TRUE(holds(contents_of(TUMBLE_SOURCE_DIR "/README.md"), "poke poked_box --pixel 200,250 --force 0,40,0"));
+  EXPECT_TRUE(holds(contents_of(TUMBLE_SOURCE_DIR "/handouts/a1_impulse.md"), "poke poked_box --pixel 200,250 --force 0,40,0"));
+  const Said said = type("poke poked_box --modules reference --pixel 200,250 --force 0,40,0 --duration-s 0.2");
+  EXPECT_EQ(said.code, 0) << said.out << said.err;
+}
+
 TEST_F(CommandLine, APokeThatHitsNothingSaysWhatTheRayCameNearestTo) {
   const Said said = type("poke poked_box --modules reference --ray -0.6,-10,90,0,1,0 --force 0,40,0 --duration-s 0.2");
   EXPECT_EQ(said.code, 2) << said.out;
