@@ -1,5 +1,6 @@
 #include "framework/core/files.h"
 
+#include <cstdlib>
 #include <fstream>
 
 #include <unistd.h>
@@ -42,6 +43,18 @@ void write_whole(const std::filesystem::path& file, std::string_view bytes) {
     out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     if (!out.flush()) throw cannot_write(file, "");
   });
+}
+
+PrivateFolder::PrivateFolder() {
+  std::string name = (std::filesystem::temp_directory_path() / "tumble-XXXXXX").string();
+  if (::mkdtemp(name.data()) == nullptr)
+    throw UserError(std::filesystem::temp_directory_path().string(), "no folder can be made there", "Free some space, or name another place in TMPDIR.");
+  path_ = name;
+}
+
+PrivateFolder::~PrivateFolder() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
 }
 
 }  // namespace tumble

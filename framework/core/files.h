@@ -17,4 +17,19 @@ void make_whole(const std::filesystem::path& file, const std::function<void(cons
 /// @throws UserError when the file cannot be written
 void write_whole(const std::filesystem::path& file, std::string_view bytes);
 
+/// A folder that only this user can enter (mode 0700, a name nobody can foresee), gone with this object. For whatever passes
+/// between two of our processes: in a shared /tmp, a file under a name that can be guessed is anybody's to write.
+class PrivateFolder {
+ public:
+  /// @throws UserError when it cannot be made
+  PrivateFolder();
+  PrivateFolder(const PrivateFolder&) = delete;
+  PrivateFolder& operator=(const PrivateFolder&) = delete;
+  ~PrivateFolder();
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
 }  // namespace tumble

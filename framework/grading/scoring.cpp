@@ -4,8 +4,8 @@
 #include <map>
 
 #include <fmt/format.h>
-#include <unistd.h>
 
+#include "framework/core/files.h"
 #include "framework/grading/run_program.h"
 
 namespace tumble::grading {
@@ -20,13 +20,12 @@ constexpr double kJudgeWall = 3600.0;
 
 Judgement judge_module(const Course& course, const std::string& id, const fs::path& module, bool plain) {
   Judgement judgement;
-  const fs::path record = fs::temp_directory_path() / fmt::format("tumble-judge-{}-{}.json", id, ::getpid());
-  std::error_code ignored;
-  fs::remove(record, ignored);
+  const PrivateFolder folder;
+  const fs::path record = folder.path() / "results.json";
   std::vector<std::string> words = {judge_of(course, id).string(), "--submission", module.string(), "--json", record.string()};
   if (plain) words.push_back("--plain");
   const ProgramOutcome outcome = run_program(words, Output::kCaptured, kJudgeWall);
-  if (!fs::exists(record)) {
+  if (!fs::exists(record) || outcome.code == static_cast<int>(ExitCode::kUserError)) {
     judgement.fault = outcome.in_time ? fmt::format("the judge ended with code {} and no results: {}", outcome.code, outcome.printed)
                                       : fmt::format("the judge did not end in {} s", kJudgeWall);
     return judgement;
@@ -36,7 +35,6 @@ Judgement judge_module(const Course& course, const std::string& id, const fs::pa
   } catch (const UserError& error) {
     judgement.fault = std::string("the judge's results cannot be read: ") + error.what();
   }
-  fs::remove(record, ignored);
   return judgement;
 }
 
