@@ -147,7 +147,7 @@ struct CollisionOutcome {
 ///   J_a = +j n,   J_b = -j n      (action = reaction)                                                        (A1.11)
 /// @return velocities after; the old ones when the bodies do not approach
 /// @post   momentum and angular momentum of the pair are unchanged to round-off when both are movable;
-///         kinetic energy is unchanged for e = 1 and never grows
+///         kinetic energy is unchanged for e = 1 and never grows, unless an immovable body moves (a wall at V throws a ball at 2 V)
 /// Source: Baraff II, section 8.   Tests: ResolveCollision.*   Hints: handouts/a1_impulse.md#hint-resolve
 CollisionOutcome resolve_collision(const Contact& contact, const Body& a, const Body& b, double restitution);
 

@@ -117,7 +117,7 @@ Matrix3d rotation_from_euler_angles(double yaw, double pitch, double roll);
 /// The convention roll = 0 picks one pair, and the rotation is kept.
 /// @param world_from_body  R, (3,3), a rotation; R_ij counts rows and columns from 0
 /// @return yaw and roll in [-pi, pi], pitch in [-pi/2, pi/2] [rad]; never NaN, also where rounding made |R_20| exceed 1
-/// @post  rotation_from_euler_angles gives R back to 1e-8 for every rotation, to 1e-12 where c > 1e-3
+/// @post  rotation_from_euler_angles gives R back to 1e-7 for every rotation, to 1e-12 where c > 1e-3
 /// Source: Diebel, section 5.6.   Tests: EulerAngles.*   Hints: handouts/a2_integration.md#hint-gimbal-lock
 EulerAngles euler_angles_from_rotation(const Matrix3d& world_from_body);
 

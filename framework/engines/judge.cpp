@@ -65,6 +65,7 @@ Finding energy(const CheckSpec& check, const Scene&, const Trajectory& run) {
 Finding energy_not_rising(const CheckSpec& check, const Scene&, const Trajectory& run) {
   Finding finding;
   double least = kInfinity;
+  if (run.frames.back().time < check.at_s) finding.worst(kInfinity, "the run ended before at_s");
   for (const Frame& frame : run.frames) {
     if (frame.time < check.at_s) continue;
     finding.worst((total_energy(frame) - std::min(least, total_energy(frame))) / energy_scale(run), at_time(frame.time));
@@ -150,14 +151,13 @@ Finding event_count(const CheckSpec& check, const Scene&, const Trajectory& run)
 }
 
 Finding restitution_law(const CheckSpec& check, const Scene& scene, const Trajectory& run) {
-  Finding finding{0.0, "no collision"};
   const auto events = collisions(check, run);
-  if (!events.empty()) finding.detail = fmt::format("all {} collisions", events.size());
+  if (events.empty()) return {kInfinity, "no collision: there is nothing to judge"};
+  Finding finding{0.0, fmt::format("all {} collisions", events.size())};
   for (const Event* event : events) {
     const double e = std::min(scene.bodies[static_cast<std::size_t>(event->body_a)].restitution, scene.bodies[static_cast<std::size_t>(event->body_b)].restitution);
     const double before = event->normal_velocity_before;
-    // The scene's rule: what would part more slowly than this ends in rest.
-    const double wanted = e * std::abs(before) < scene.rest_speed_m_s ? 0.0 : -e * before;
+    const double wanted = -e * before;   // whatever comes after it: a rest begins with the next event
     finding.worst(std::abs(event->normal_velocity_after - wanted) / std::abs(before),
                   fmt::format("{}: {:.6g} m/s before, {:.6g} m/s after, e = {:.6g}", at_time(event->time), before, event->normal_velocity_after, e));
   }
