@@ -50,6 +50,7 @@ class Channel {
 
  private:
   void wait(int fd, short events, Clock::time_point deadline);
+  ssize_t look();
   void fill(Clock::time_point deadline);
 
   int read_fd_, write_fd_;
