@@ -90,6 +90,21 @@ double shorten(const Search& search, double t_apart, double t_overlap) {
   return t_apart;
 }
 
+// A feature of a solid that is smaller than this part of the solid may be stepped over.
+constexpr double kSmallestFeature = 1e-9;
+
+// Whether between t and `behind` no other part of the solids than the nearest can touch and part again. Of two convex solids that
+// move almost straight against each other none can: a line meets their Minkowski sum in one interval. Of solids with several
+// pieces, only while they slide past each other by less than a feature.
+bool one_entry(const Search& search, const MotionState& sa, const MotionState& sb, double duration) {
+  const auto convex = [](const CollisionShape& shape) { return shape.pieces().size() <= 1; };
+  if (convex(search.a) && convex(search.b)) return true;
+  const auto turning = [](const CollisionShape& shape, const MotionBounds& m) { return shape.is_half_space() ? 0.0 : m.angular_speed * shape.bounding_radius(); };
+  const double speed = (sa.velocity_world - sb.velocity_world).norm() + turning(search.a, search.motion_a.bounds) + turning(search.b, search.motion_b.bounds);
+  const double size = std::min(search.a.bounding_radius(), search.b.bounding_radius());
+  return speed * duration <= kSmallestFeature * size;
+}
+
 // Where the gap closes almost linearly, a time just behind the root; nothing where it bends too much to tell.
 std::optional<double> behind_the_root(const Search& search, double t, double t1) {
   const MotionState sa = search.motion_a.at(t), sb = search.motion_b.at(t);
@@ -103,7 +118,7 @@ std::optional<double> behind_the_root(const Search& search, double t, double t1)
   const double wait = gap.distance / -rate;
   if ((bend(search.a, search.motion_a.bounds) + bend(search.b, search.motion_b.bounds)) * wait > 0.1 * -rate) return std::nullopt;
   const double behind = t + std::max(1.5 * wait, 8 * (next_after(t) - t));
-  if (behind > t1) return std::nullopt;
+  if (behind > t1 || !one_entry(search, sa, sb, behind - t)) return std::nullopt;
   return behind;
 }
 

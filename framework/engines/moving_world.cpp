@@ -72,7 +72,10 @@ RigidBodyState MovingWorld::still_state(int body, double t) const {
   const WorldBody& support = world_.bodies[rests_[body]->support];
   state.com_world = prescribed_position(support, t) + rests_[body]->offset_from_support_world;
   state.momentum_world = b.inertia.mass * prescribed_velocity(support, t);
-  state.angular_momentum_world.setZero();
+  // Nothing brakes its spin: there is no friction. (put_to_rest: its moments are equal, so it turns evenly.)
+  const Vector3d omega_world = omega_of(state, b.inertia);
+  const double speed = omega_world.norm();
+  if (speed > 0) state.world_from_body = (Quaterniond(Eigen::AngleAxisd(speed * (t - time_), omega_world / speed)) * state.world_from_body).normalized();
   return state;
 }
 
@@ -243,7 +246,7 @@ Body MovingWorld::body_at_impact(int index) const {
   body.com_world = state.com_world;
   body.world_from_body = state.world_from_body;
   body.velocity_world = velocity_of(index, time_);
-  body.omega_world = can_move(index) ? omega_of(state, b.inertia) : Vector3d::Zero();
+  body.omega_world = b.immovable() ? Vector3d(Vector3d::Zero()) : omega_of(state, b.inertia);
   return body;
 }
 

@@ -31,10 +31,8 @@ void FrameRecorder::push(MovingWorld& moving, double t) {
   for (int i = 0; i < moving.size(); ++i) {
     const WorldBody& body = moving.world().bodies[i];
     BodyPose pose{states[i].com_world, states[i].world_from_body, moving.velocity_of(i, t), Vector3d::Zero()};
-    if (moving.can_move(i)) {
-      pose.velocity_world = body.inertia.inverse_mass * states[i].momentum_world;
-      pose.omega_world = omega_of(states[i], body.inertia);
-    }
+    if (moving.can_move(i)) pose.velocity_world = body.inertia.inverse_mass * states[i].momentum_world;
+    if (!body.immovable()) pose.omega_world = omega_of(states[i], body.inertia);
     frame.poses.push_back(pose);
   }
   const Invariants sums = invariants_of(moving.world(), states);

@@ -21,6 +21,8 @@ constexpr double kEpsilon = 2.220446049250313e-16;
 constexpr double kTouching = 64 * kEpsilon;
 // Corners of two solids that touch belong to the touch within this part of the size: a face that leans by 1e-9 rad lies flat.
 constexpr double kSamePatch = 1e-9;
+// A support that leans by less [rad] counts as level: in 100 s a ball would slide 5e-8 m.
+constexpr double kLevel = 1e-12;
 constexpr int kMostIdleSteps = 1000;      // in a row without progress of time
 constexpr int kMostImpactsAStep = 20000;  // of one pair: a Zeno sequence that needs a lasting contact
 
@@ -55,6 +57,7 @@ class RetroactiveRun {
   collision::Pose pose_of(int body) const { return {moving_.state(body).com_world, moving_.state(body).world_from_body}; }
   void separate(const std::vector<std::pair<int, int>>& pairs);
   void resolve_at(const std::vector<std::pair<int, int>>& pairs, std::pair<int, int> trigger);
+  bool stays_on(const TouchingPair& pair, int body, const Vector3d& up) const;
   void settle(const std::vector<TouchingPair>& touching, const std::vector<Event>& events);
   void watch_for_trouble();
   std::string name(int body) const { return "'" + moving_.world().bodies[body].name + "'"; }
@@ -244,6 +247,19 @@ void RetroactiveRun::resolve_at(const std::vector<std::pair<int, int>>& pairs, s
   naming(subject, [&] { impacts_.push_apart(moving_, awake, resolution.micro_impacts); });
 }
 
+// Whether nothing but the support's push acts on a ball there: gravity presses straight against it (without friction a slope holds
+// nothing), no hand pushes, and the ball spins evenly if it spins.
+bool RetroactiveRun::stays_on(const TouchingPair& pair, int body, const Vector3d& up) const {
+  const Vector3d& gravity = *moving_.world().gravity_world;
+  const double radius = moving_.shape(body).bounding_radius(), rounding = touching_distance({pair.a, pair.b});
+  const double level = std::max(kLevel, radius > rounding ? rounding / radius : 0.0);   // the normal's own rounding
+  if (!(gravity.dot(up) < 0) || (gravity - gravity.dot(up) * up).norm() > level * gravity.norm()) return false;
+  for (const int index : moving_.active_forces())
+    if (moving_.world().point_forces[index].body == body) return false;
+  const Matrix3d& inertia = moving_.world().bodies[body].inertia.inertia_body;
+  return moving_.state(body).angular_momentum_world.isZero(0.0) || (inertia - inertia(0, 0) * Matrix3d::Identity()).norm() <= kEpsilon * 64 * inertia.norm();
+}
+
 // Rest: a ball that met an immovable support, which gravity presses it against, more slowly than the rest speed (or that does not
 // bounce at all) and moves no faster along it.
 void RetroactiveRun::settle(const std::vector<TouchingPair>& touching, const std::vector<Event>& events) {
@@ -256,7 +272,7 @@ void RetroactiveRun::settle(const std::vector<TouchingPair>& touching, const std
     const int support = a_is_support ? pair.a : pair.b, body = a_is_support ? pair.b : pair.a;
     const Vector3d up = a_is_support ? Vector3d(-pair.gap.normal_b_to_a_world) : pair.gap.normal_b_to_a_world;
     if (moving_.world().bodies[support].motion.angular_frequency_rad_s != 0.0) continue;
-    if (!moving_.shape(body).is_ball() || !(moving_.world().gravity_world->dot(up) < 0)) continue;
+    if (!moving_.shape(body).is_ball() || !stays_on(pair, body, up)) continue;
     const Vector3d relative = moving_.velocity_of(body, moving_.time()) - moving_.velocity_of(support, moving_.time());
     const double restitution = std::min(moving_.world().bodies[body].restitution, moving_.world().bodies[support].restitution);
     const bool slow = relative.norm() < scene_.rest_speed_m_s && relative.dot(up) <= restitution * scene_.rest_speed_m_s + kTouching * fastest;

@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 namespace tumble::engines {
 namespace {
 
-// Approach slower than this part of the fastest one is what rounding leaves of "not approaching".
+// Approach slower than this part of the fastest one is what rounding leaves of "not approaching"; so is what rounding leaves of
+// the speeds along the surface that cancel in it (a ball sliding in a groove).
 constexpr double kRoundOffOfSpeed = 1e-13;
+constexpr double kRoundOffOfSliding = 64 * std::numeric_limits<double>::epsilon();
 constexpr int kMostRounds = 10000;  // restitution 0.99 in a row of 50 balls takes some hundred
 
 // Of the rest speed: pushes of touching pairs approach it together, each round by a part of what is missing.
@@ -39,6 +42,10 @@ double normal_velocity(const Contact& contact, const Body& a, const Body& b) {
   return contact.normal_b_to_a_world.dot(of_point(a) - of_point(b));
 }
 
+double speed_at(const Body& body, const Vector3d& point_world) {
+  return body.velocity_world.norm() + body.omega_world.norm() * (point_world - body.com_world).norm();
+}
+
 // By how much a unit impulse at the contact changes the relative normal velocity. [1/kg]
 double compliance(const Contact& contact, const Body& body) {
   const Vector3d arm = contact.point_world - body.com_world;
@@ -64,7 +71,8 @@ struct SequentialImpacts::Work {
   void push(const Laws& laws, const TouchingPair& pair, const Contact& contact, double impulse) {
     for (const auto& [index, size] : {std::pair{pair.a, impulse}, std::pair{pair.b, -impulse}}) {
       Body& pushed = body(index);
-      if (pushed.inertia.inverse_mass == 0.0 || !moving.can_move(index)) continue;
+      if (pushed.inertia.inverse_mass == 0.0) continue;
+      if (moving.resting(index)) moving.wake(index);   // its mass was part of the impulse: it takes its share
       const Velocity after = laws.apply_impulse(pushed, size * contact.normal_b_to_a_world, contact.point_world);
       pushed.velocity_world = after.linear_world;
       pushed.omega_world = after.angular_world;
@@ -125,11 +133,13 @@ void SequentialImpacts::push_apart(MovingWorld& moving, const std::vector<Touchi
 
 Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<TouchingPair>& pairs, std::size_t trigger) {
   Work work{moving, {}, {}, {}};
-  double fastest = 0.0;
+  double fastest = 0.0, sliding = 0.0;
   for (const TouchingPair& pair : pairs)
-    for (const Vector3d& point : pair.points_world)
+    for (const Vector3d& point : pair.points_world) {
       fastest = std::max(fastest, std::abs(laws_.relative_normal_velocity(contact_of(pair, point), work.body(pair.a), work.body(pair.b))));
-  const double threshold = kRoundOffOfSpeed * fastest;
+      sliding = std::max({sliding, speed_at(work.body(pair.a), point), speed_at(work.body(pair.b), point)});
+    }
+  const double threshold = std::max(kRoundOffOfSpeed * fastest, kRoundOffOfSliding * sliding);
 
   bool again = true;
   int rounds = 0;

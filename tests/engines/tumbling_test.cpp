@@ -127,6 +127,39 @@ TEST(Resting, ABallInAWedgeStaysThere) {
   expect_no_overlap(result, "wedge");
 }
 
+// A frictionless slope holds nothing: a ball that met it slides down as x = g sin(a) t^2 / 2 along it.
+TEST(Resting, ABallOnASlopeSlidesDown) {
+  const double slope = 0.5;   // rad
+  scene::BodySpec floor = plane("slope", Vector3d::Zero(), Vector3d(std::sin(slope), 0, std::cos(slope)));
+  const Vector3d start = 0.1 * Vector3d(std::sin(slope), 0, std::cos(slope));
+  auto scene = resting({ball("ball", 0.1, 1.0, start, Vector3d::Zero()), floor}, 1.0);
+  const Trajectory result = run(scene);
+  expect_no_overlap(result, "slope");
+  const Vector3d way = result.frames.back().poses[0].com_world - start;
+  const Vector3d down(std::cos(slope), 0, -std::sin(slope));
+  // Hops of the rest speed, 1e-2 m/s, lengthen no way along the slope: their time is the same. 1e-3 is a hop's height with room.
+  EXPECT_NEAR(way.dot(down), 0.5 * 9.81 * std::sin(slope), 1e-3);
+}
+
+TEST(Resting, ABallThatSpinsWhereItLiesSpinsOn) {
+  auto spinning = ball("ball", 0.1, 1.0, {0, 0, 0.2}, Vector3d::Zero());
+  spinning.omega_world_rad_s = {0, 0, 100};
+  const Trajectory result = run(resting({spinning, plane("floor", Vector3d::Zero(), Vector3d::UnitZ())}, 1.0));
+  expect_no_overlap(result, "spin");
+  // No friction, no torque: the same bits would be right; 1e-12 are 1e4 roundings of 100 rad/s.
+  EXPECT_NEAR(result.frames.back().poses[0].omega_world.z(), 100.0, 1e-10);
+}
+
+// A ball in flight hits two that rest: both take their share, none of the momentum goes into the floor.
+TEST(Resting, ABreakShotKeepsTheMomentumAlongTheFloor) {
+  const Trajectory result = run(resting({ball("cue", 0.1, 1.0, {-1, 0, 0.1}, {2, 0, 0}), ball("one", 0.1, 1.0, {0, 0.11, 0.1}, Vector3d::Zero()),
+                                         ball("two", 0.1, 1.0, {0, -0.11, 0.1}, Vector3d::Zero()), plane("floor", Vector3d::Zero(), Vector3d::UnitZ())}, 1.5));
+  expect_no_overlap(result, "break");
+  EXPECT_NEAR(result.frames.back().momentum_world.x(), 2.0, 1e-12);
+  EXPECT_GT(result.frames.back().poses[1].velocity_world.x(), 0.1);
+  EXPECT_NEAR(result.frames.back().momentum_world.y(), 0.0, 0.05);   // the sequential law goes through pairs in order: no mirror symmetry
+}
+
 // Lasting contact of two bodies that both move is not this engine's yet: what it must not do is overlap them or go on silently.
 TEST(Resting, TwoBoxesInAStackNeverOverlapAndAStallIsNamed) {
   const Trajectory result = run(resting({box("lower", {0.2, 0.2, 0.1}, 1.0, {0, 0, 0.1}, Vector3d::Zero()), box("upper", {0.15, 0.15, 0.1}, 1.0, {0, 0, 0.35}, Vector3d::Zero()),
