@@ -113,7 +113,7 @@ std::optional<double> behind_the_root(const Search& search, double t, double t1)
   if (!(rate < 0) || gap.distance < 0) return std::nullopt;
   const auto bend = [](const CollisionShape& shape, const MotionBounds& m) {
     const double arm = shape.is_half_space() ? 0.0 : shape.bounding_radius() - shape.radius();
-    return m.acceleration_world.norm() + m.acceleration_deviation + arm * (m.angular_acceleration + m.angular_speed * m.angular_speed);
+    return m.acceleration_world.norm() + m.acceleration_deviation + arm * (m.angular_acceleration + m.angular_speed * (m.angular_speed + m.angular_velocity_error));
   };
   const double wait = gap.distance / -rate;
   if ((bend(search.a, search.motion_a.bounds) + bend(search.b, search.motion_b.bounds)) * wait > 0.1 * -rate) return std::nullopt;

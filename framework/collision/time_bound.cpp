@@ -21,7 +21,7 @@ struct VertexLine {
 void collect_lines(const PlacedPolytope& piece, const Vector3d& center, const MotionState& state, const MotionBounds& bounds,
                    const Vector3d& n, double side, std::vector<VertexLine>& lines) {
   lines.clear();
-  const double bend_of_arm = 0.5 * (bounds.angular_acceleration + bounds.angular_speed * bounds.angular_speed);
+  const double bend_of_arm = 0.5 * (bounds.angular_acceleration + bounds.angular_speed * (bounds.angular_speed + bounds.angular_velocity_error));
   const Vector3d turn = n.cross(state.omega_world);  // n . (w x r) = (n x w) . r
   double lowest = kInfinity;
   for (const Vector3d& v : piece.vertices) {

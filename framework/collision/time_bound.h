@@ -4,8 +4,10 @@
 /// vertex b of B along the fixed direction n while
 ///   gap + h_a + h_b + (n.u + n.(w_A x r_a) - n.(w_B x r_b)) tau + (n.a_rel - A_a - A_b) tau^2 / 2 > 0        (E.1)
 /// where h are the heights of the vertices over the supporting planes, u and a_rel the relative velocity and acceleration of the
-/// centres, r the arms from them, and A = (|alpha| + |w|^2) |r| the most that turning can bend a vertex's path. The piece pairs of
-/// solids that are not convex are all looked at that can come near within the bound.
+/// centres, r the arms from them, and A = (|alpha| + |w| (|w| + e)) |r| the most that turning can bend a vertex's path. A numerical
+/// path turns at w + e, w the angular velocity that its states say: the rate of an arm is w x r + e x r, of which the second part is
+/// taken at its largest, |e| |r|, and the first changes by alpha x r + w x ((w + e) x r). The piece pairs of solids that are not
+/// convex are all looked at that can come near within the bound.
 /// Source: B. Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems, PhD thesis, Berkeley 1996, ch. 2, extended to
 /// arms of single vertices.
 #pragma once

@@ -10,58 +10,81 @@
 namespace tumble {
 namespace {
 
-constexpr double kSlack = 1.0 + 1e-9;  // the solves below lose a few digits where two moments are almost equal
+struct Band {
+  double low, high;
+  bool holds(double value, double slack) const { return value >= low * (1.0 - slack) && value <= high * (1.0 + slack); }
+};
 
-// The end of the segment at which component k is zero; false where it lies outside x >= 0 or the two moments left are equal.
-bool segment_end(const Vector3d& I, double twice_energy, double momentum_squared, int k, Vector3d& x) {
-  const int i = (k + 1) % 3, j = (k + 2) % 3;
-  const double difference = I[j] - I[i];
-  if (std::abs(difference) <= 1e-6 * std::max(I[i], I[j])) return false;
-  x[k] = 0.0;
-  x[i] = (twice_energy * I[j] - momentum_squared) / (I[i] * difference);
-  x[j] = (momentum_squared - twice_energy * I[i]) / (I[j] * difference);
-  const double slack = 1e-9 * (std::abs(x[i]) + std::abs(x[j]));
-  if (x[i] < -slack || x[j] < -slack) return false;
-  x = x.cwiseMax(0.0);
-  return true;
+// Two moments closer than kSameMoment (relative) are one: a corner between them would lose all digits. Corners count when they
+// miss the bands by no more than that, and solving for one leaves at most 2^-52 / kSameMoment, about 2e-7, of a component.
+constexpr double kSameMoment = 1e-9;
+constexpr double kCornerSlack = 10 * kSameMoment;
+constexpr double kSolveSlack = 1.0 + 1e-6;
+
+struct Largest {
+  Vector3d squares;      // of each x_i
+  double sum;            // of x_1 + x_2 + x_3
+};
+
+// Over { x >= 0 : sum I_i x_i in `energy`, sum I_i^2 x_i in `momentum` }, a polytope: what is linear is largest at a corner.
+Largest largest_squares(const Vector3d& I, const Band& energy, const Band& momentum, const Vector3d& now) {
+  Largest largest{now, now.sum()};
+  const auto consider = [&](const Vector3d& corner) {
+    const Vector3d x = corner.cwiseMax(0.0);
+    if (!energy.holds(I.dot(x), kCornerSlack) || !momentum.holds(I.cwiseAbs2().dot(x), kCornerSlack)) return;
+    largest.squares = largest.squares.cwiseMax(kSolveSlack * x);
+    largest.sum = std::max(largest.sum, (1.0 + kCornerSlack) * x.sum());
+  };
+  for (int i = 0; i < 3; ++i) {
+    for (const double e : {energy.low, energy.high}) consider(Vector3d::Unit(i) * (e / I[i]));
+    for (const double m : {momentum.low, momentum.high}) consider(Vector3d::Unit(i) * (m / (I[i] * I[i])));
+    const int j = (i + 1) % 3;
+    const double difference = I[j] - I[i];
+    if (std::abs(difference) <= kSameMoment * std::max(I[i], I[j])) continue;
+    for (const double e : {energy.low, energy.high})
+      for (const double m : {momentum.low, momentum.high})
+        consider(Vector3d::Unit(i) * ((e * I[j] - m) / (I[i] * difference)) + Vector3d::Unit(j) * ((m - e * I[i]) / (I[j] * difference)));
+  }
+  return largest;
 }
+
+double squared(double x) { return x * x; }
 
 }  // namespace
 
-RotationBounds bound_rotation(const RigidBodyState& state, const Inertia& inertia, double torque_bound, double duration) {
+RotationBounds bound_rotation(const RigidBodyState& state, const Inertia& inertia, const Disturbance& disturbance) {
   const Vector3d omega_world = omega_of(state, inertia);
-  if (omega_world.isZero(0.0) && torque_bound == 0.0) return {0.0, 0.0};
+  if (omega_world.isZero(0.0) && disturbance.torque == 0.0) return {0.0, 0.0};
   const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(inertia.inertia_body);
   const Vector3d moments = solver.eigenvalues();
   const Vector3d omega_principal = solver.eigenvectors().transpose() * (state.world_from_body.conjugate() * omega_world);
-  const double twice_energy = moments.dot(omega_principal.cwiseAbs2());
-  const double momentum_squared = moments.cwiseProduct(omega_principal).squaredNorm();
+  const Vector3d now = omega_principal.cwiseAbs2();
+  const double error = disturbance.angular_velocity_error, h = disturbance.duration;
 
-  Vector3d largest = omega_principal.cwiseAbs2();   // of each x_i
-  double speed_squared = largest.sum();
-  int ends = 0;
-  for (int k = 0; k < 3; ++k) {
-    Vector3d x;
-    if (!segment_end(moments, twice_energy, momentum_squared, k, x)) continue;
-    ++ends;
-    largest = largest.cwiseMax(x);
-    speed_squared = std::max(speed_squared, x.sum());
+  // (D.1), the torque's part
+  const double root = std::sqrt(moments.dot(now)), root_kick = disturbance.torque * h / std::sqrt(moments[0]);
+  const double length = moments.cwiseProduct(omega_principal).norm(), kick = disturbance.torque * h;
+  const Band free_energy{squared(std::max(root - root_kick, 0.0)), squared(root + root_kick)};
+  const Band momentum{squared(std::max(length - kick, 0.0)), squared(length + kick)};
+  const double top_momentum = length + kick, top_speed = (1.0 + kCornerSlack) * top_momentum / moments[0];
+  Largest largest = largest_squares(moments, free_energy, momentum, now);
+  double speed = std::min(std::sqrt(largest.sum), top_speed);
+
+  // (D.1), the error's part: it holds as long as |omega| stays below `assumed`, and |omega| does so when the bound comes out below.
+  for (double assumed = 2.0 * speed; error > 0.0; assumed *= 2.0) {
+    assumed = std::min(assumed, top_speed);
+    const double drift = 2.0 * error * assumed * top_momentum * h;
+    largest = largest_squares(moments, {std::max(free_energy.low - drift, 0.0), free_energy.high + drift}, momentum, now);
+    speed = std::min(std::sqrt(largest.sum), top_speed);
+    if (speed <= assumed || assumed >= top_speed) break;
   }
-  if (ends < 2) {  // (nearly) symmetric moments: each component is bounded by its share of the energy
-    for (int i = 0; i < 3; ++i) largest[i] = std::max(largest[i], std::min(twice_energy / moments[i], momentum_squared / (moments[i] * moments[i])));
-    const bool all_equal = moments[2] - moments[0] <= 1e-6 * moments[2];
-    speed_squared = all_equal ? speed_squared * (1 + 1e-5) : std::max(speed_squared, std::min(largest.sum(), twice_energy / moments[0]));
-  }
-  const double kick = torque_bound / moments[0];
-  const double speed = std::sqrt(speed_squared) * kSlack + kick * duration;
+
   double acceleration_squared = 0.0;
   for (int i = 0; i < 3; ++i) {
     const int j = (i + 1) % 3, k = (i + 2) % 3;
-    const double ratio = (moments[j] - moments[k]) / moments[i];
-    const double wj = std::sqrt(largest[j]) + kick * duration, wk = std::sqrt(largest[k]) + kick * duration;
-    acceleration_squared += ratio * ratio * wj * wj * wk * wk;
+    acceleration_squared += squared((moments[j] - moments[k]) / moments[i]) * largest.squares[j] * largest.squares[k];
   }
-  return {speed, std::sqrt(acceleration_squared) * kSlack + kick};
+  return {speed, std::sqrt(acceleration_squared) + disturbance.torque / moments[0] + error * (speed + top_speed)};
 }
 
 }  // namespace tumble

@@ -1,4 +1,4 @@
-/// How fast a tumbling body can turn at most, from what its free motion conserves.
+/// How fast a tumbling body can turn at most, from what its motion conserves.
 #pragma once
 
 #include "framework/dynamics/body.h"
@@ -10,11 +10,21 @@ struct RotationBounds {
   double angular_acceleration;   // of |d omega/dt| [rad/s^2]
 };
 
-/// Holds for the whole free motion of a rigid body with these moments and this angular momentum, and under a torque that is
-/// at most `torque_bound` for `duration`. Energy 2T = sum I_i x_i and momentum L^2 = sum I_i^2 x_i, x_i = w_i^2 >= 0, leave a
-/// segment of x; |w|^2 = sum x_i is linear on it, so its ends bound it (the needle whose L / I_min is a million times its speed
-/// costs nothing). Source: H. Goldstein, Classical Mechanics, sec. 5.6 (polhode).
-/// @param torque_bound [N m], duration [s]
-RotationBounds bound_rotation(const RigidBodyState& state, const Inertia& inertia, double torque_bound, double duration);
+/// What keeps a motion from being free and exact, and for how long.
+struct Disturbance {
+  double duration;                       // [s]
+  double torque = 0.0;                   // largest length [N m]
+  double angular_velocity_error = 0.0;   // largest |rate at which the body is turned - omega of its state| (numerical paths) [rad/s]
+};
+
+/// Bounds on omega = I^-1 L, the angular velocity of the body's state, for the whole duration.
+/// Energy 2T = sum I_i x_i and momentum L^2 = sum I_i^2 x_i, x_i = w_i^2 >= 0, leave a segment of x; |w|^2 = sum x_i is linear on
+/// it, so its ends bound it (the needle whose L / I_min is a million times its speed costs nothing). A torque and a path that is
+/// turned at omega + e instead of omega widen both to bands:
+///   |d sqrt(2T)/dt| <= |torque| / sqrt(I_min),   |d(2T)/dt| = 2 |e . (omega x L)| <= 2 |e| |omega| |L|               (D.1)
+///   |d omega/dt| <= |I^-1 (L x omega)| + |torque| / I_min + |e| (|omega| + |L| / I_min)                             (D.2)
+/// @pre inertia is finite; nothing is assumed of the size of the disturbances. Always angular_speed <= largest |L| / I_min.
+/// Source: H. Goldstein, Classical Mechanics, sec. 5.6 (polhode).
+RotationBounds bound_rotation(const RigidBodyState& state, const Inertia& inertia, const Disturbance& disturbance);
 
 }  // namespace tumble

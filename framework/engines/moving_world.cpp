@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "framework/core/error.h"
-#include "framework/dynamics/rotation_bounds.h"
 #include "framework/engines/guarded_laws.h"
 
 namespace tumble::engines {
@@ -30,7 +29,7 @@ double measure_path_bend(const Laws& laws) {
 
 MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters)
     : world_(std::move(world)), laws_(laws), counters_(counters), rests_(world_.bodies.size()), force_points_body_(world_.point_forces.size()),
-      paths_(world_.bodies.size()) {
+      paths_(world_.bodies.size()), told_of_turning_(world_.bodies.size(), false) {
   for (const WorldBody& body : world_.bodies) {
     shapes_.emplace_back(body.shape);
     states_.push_back(body.state);
@@ -130,7 +129,7 @@ void MovingWorld::begin_step(double target) {
   for (int i = 0; i < size(); ++i) {
     Path& path = paths_[i];
     path.bounds.reset();
-    path.memo_time = kUnset;
+    path.memo_time = path.measured_duration = kUnset;
     if (!can_move(i)) continue;
     path.start = pack(states_[i]);
     Vector3d force = Vector3d::Zero();
@@ -170,13 +169,6 @@ collision::MotionState MovingWorld::motion_at(int body, double t) {
   return motion;
 }
 
-double MovingWorld::torque_bound(int body) const {
-  double bound = 0.0;
-  for (const int index : active_forces_)
-    if (world_.point_forces[index].body == body) bound += world_.point_forces[index].force_world.norm() * force_points_body_[index].norm();
-  return bound;
-}
-
 collision::MotionBounds MovingWorld::work_out_bounds(int body) {
   collision::MotionBounds bounds;
   const WorldBody& b = world_.bodies[body];
@@ -187,17 +179,7 @@ collision::MotionBounds MovingWorld::work_out_bounds(int body) {
   }
   bounds.acceleration_world = paths_[body].acceleration_world;
   if (shapes_[body].is_ball()) return bounds;  // however it turns, it looks the same
-  const double h = target_ - time_;
-  const RotationBounds rotation = bound_rotation(states_[body], b.inertia, torque_bound(body), h);
-  bounds.angular_speed = rotation.angular_speed;
-  bounds.angular_acceleration = rotation.angular_acceleration;
-  if (rotation.angular_speed > 0) {
-    // A step against two half steps tells how far the path's turning is from the state's angular velocity: an error C h^(p+1) in the
-    // angle is at most (p + 1) C h^p in its rate, and shows as at least C h^(p+1) / 2 in the difference, for p = 1 to 4.
-    const RigidBodyState half = integrate(body, 0.5 * h, time_, paths_[body].start);
-    const RigidBodyState twice_half = integrate(body, 0.5 * h, time_ + 0.5 * h, pack(half));
-    bounds.angular_velocity_error = 6.0 * twice_half.world_from_body.angularDistance(paths_[body].end.world_from_body) / h;
-  }
+  bound_turning(body, target_ - time_, bounds);
   return bounds;
 }
 

@@ -44,6 +44,11 @@ class MovingWorld {
   /// Begins a step from the committed time: works out the motion's bounds and where all come out.
   void begin_step(double target);
   double target() const { return target_; }
+  /// Begins the step again with an earlier target, if one of the bodies of these pairs turns too far in it for a bound on its turning to
+  /// hold: collisions of these pairs would be missed. Balls for collision never ask for that.
+  /// @return whether the target was moved
+  /// @throws StoppedRun where a step would have to be cut into more than 1e5 parts
+  bool shorten_step(const std::vector<std::pair<int, int>>& pairs);
   /// Where a body's path is at time t in [time(), target()]; any t for immovable and resting ones.
   RigidBodyState path(int body, double t);
   collision::MotionState motion_at(int body, double t);
@@ -64,11 +69,15 @@ class MovingWorld {
     std::optional<collision::MotionBounds> bounds;
     double memo_time;
     RigidBodyState memo;
+    double measured_duration, turning_error;   // see turning_error
   };
 
   RigidBodyState integrate(int body, double duration, double start_time, const VectorXd& start);
   Wrench wrench_on(int body, const RigidBodyState& state);
   double torque_bound(int body) const;
+  double turning_error(int body, double duration);
+  void bound_turning(int body, double duration, collision::MotionBounds& bounds);
+  double resolved_duration(int body, double duration);
   collision::MotionBounds work_out_bounds(int body);
   RigidBodyState still_state(int body, double t) const;
 
@@ -81,6 +90,7 @@ class MovingWorld {
   std::vector<int> active_forces_;               // indices into world_.point_forces
   std::vector<Vector3d> force_points_body_;      // by force, from when it is switched on
   std::vector<Path> paths_;
+  std::vector<bool> told_of_turning_;            // by body
   double time_ = 0.0, target_ = 0.0;
   double path_bend_ = 1.0;   // how much of a constant acceleration the laws' integration puts into a path: 1 for order >= 2, 0 for Euler
   std::uint64_t integrations_in_step_ = 0;

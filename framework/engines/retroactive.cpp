@@ -127,6 +127,7 @@ bool RetroactiveRun::may_meet(int a, int b) {
 }
 
 std::vector<std::pair<int, int>> RetroactiveRun::candidates() {
+  const StageTimer timer(counters_.collision_seconds);
   std::vector<collision::SweptBox> boxes;
   for (int i = 0; i < moving_.size(); ++i) boxes.push_back(moving_.swept_box(i));
   auto pairs = collision::overlapping_pairs(boxes);
@@ -301,15 +302,15 @@ void RetroactiveRun::advance_to(double target) {
   while (stopped_by_.empty() && moving_.time() < target) {
     moving_.begin_step(target);
     ++counters_.steps;
-    std::vector<std::pair<int, int>> pairs;
+    std::vector<std::pair<int, int>> pairs = candidates();
+    if (moving_.shorten_step(pairs)) pairs = candidates();
     std::optional<Earliest> earliest;
     {
       const StageTimer timer(counters_.collision_seconds);
-      pairs = candidates();
       earliest = find_earliest(pairs);
-      if (!earliest) earliest = find_missed(pairs, target);
+      if (!earliest) earliest = find_missed(pairs, moving_.target());
     }
-    const double before = moving_.time(), reached = earliest ? earliest->time : target;
+    const double before = moving_.time(), reached = earliest ? earliest->time : moving_.target();
     recorder_.record_before(moving_, reached);
     moving_.commit(reached);
     watch_for_trouble();

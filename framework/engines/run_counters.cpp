@@ -5,6 +5,7 @@ namespace tumble::engines {
 Counters RunCounters::named() const {
   Counters named;
   named.counts = {{"steps", steps},
+                  {"shortened_steps", shortened_steps},
                   {"integrations", integrations},
                   {"undone_integrations", undone_integrations},
                   {"derivative_evaluations", derivative_evaluations},

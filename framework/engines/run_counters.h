@@ -3,6 +3,8 @@
 
 #include <chrono>
 #include <cstdint>
+#include <string>
+#include <vector>
 
 #include "framework/collision/first_impact.h"
 #include "framework/trajectory/trajectory.h"
@@ -10,10 +12,11 @@
 namespace tumble::engines {
 
 struct RunCounters {
-  std::uint64_t steps = 0, integrations = 0, undone_integrations = 0, derivative_evaluations = 0;
+  std::uint64_t steps = 0, shortened_steps = 0, integrations = 0, undone_integrations = 0, derivative_evaluations = 0;
   std::uint64_t candidate_pairs = 0, rollbacks = 0, impacts = 0, impulses = 0, nudges = 0, micro_impacts = 0;
   std::uint64_t bodies_put_to_rest = 0, bodies_woken = 0, gravity_calls = 0, point_force_calls = 0;
   collision::ImpactCost collision;
+  std::vector<std::string> notices;   // once each
   double integration_seconds = 0.0, collision_seconds = 0.0, impact_seconds = 0.0, record_seconds = 0.0;
 
   /// Effects that no entry called for are reported as 0 calls, so that a reader sees that they did not run.

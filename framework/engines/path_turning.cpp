@@ -1,0 +1,123 @@
+// How paths turn: bounds for the collision finding, and steps in which these hold. Part of MovingWorld.
+//
+// The path of a body within a step is one step of the laws' method, of any length. A method turns the body at a rate that is not
+// quite the angular velocity of the states it gives; by how much is measured on the path itself.
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "framework/dynamics/rotation_bounds.h"
+#include "framework/engines/guarded_laws.h"
+#include "framework/engines/moving_world.h"
+
+namespace tumble::engines {
+namespace {
+
+// A step in which a body turns by less, at most, is looked at as it is [rad]. Up to here the error of a method of order 1 to 5 grows
+// steadily within the step: its next term is at most (1/2)^2 of its first, half the angle being what quaternion and Taylor series go
+// by. From 1.5 rad on the error comes and goes within the step, and three looks at it miss up to 30 times its size.
+constexpr double kMostTurning = 1.0;
+
+// The turning error of a step, too, has to be small for that [rad]: where moments differ a thousand times, a method can break down long
+// before the body has turned by one radian.
+constexpr double kMostDrift = 0.1;
+
+// Measured at the middle and at the end, over this part of the step; the rate is off by its square, and by 1e-13 from rounding.
+constexpr double kLook = 1e-3;
+// What is seen there, against the largest in the step: at most 1.8 times in 2e4 tops with moments as far apart as 1 : 1e8, by Euler,
+// midpoint, Heun, Kutta and Runge-Kutta of orders 4 and 5, within the two limits above.
+constexpr double kUnseen = 2.0;
+
+constexpr int kMostHalvings = 12;      // a method whose error does not shrink with the step is not helped by shorter ones
+constexpr double kMostParts = 1e5;     // of a step: beyond, a run would take hours and look like a hang
+
+// The rotation from a to b as axis times angle. [rad]
+Vector3d turn_between(const Quaterniond& a, const Quaterniond& b) {
+  Quaterniond turn = b * a.conjugate();
+  if (turn.w() < 0) turn.coeffs() *= -1.0;
+  const double sine = turn.vec().norm();
+  return sine > 0 ? Vector3d(turn.vec() * (2.0 * std::atan2(sine, turn.w()) / sine)) : Vector3d(2.0 * turn.vec());
+}
+
+}  // namespace
+
+double MovingWorld::torque_bound(int body) const {
+  double bound = 0.0;
+  for (const int index : active_forces_)
+    if (world_.point_forces[index].body == body) bound += world_.point_forces[index].force_world.norm() * force_points_body_[index].norm();
+  return bound;
+}
+
+// Bounds |rate of the path - omega of its states| on a path of this duration. [rad/s]
+double MovingWorld::turning_error(int body, double duration) {
+  Path& path = paths_[body];
+  if (duration == path.measured_duration) return path.turning_error;
+  const Inertia& inertia = world_.bodies[body].inertia;
+  const auto after = [&](double t) { return time_ + t == target_ ? path.end : integrate(body, t, time_, path.start); };
+  const auto error_before = [&](double t, const RigidBodyState& state) -> double {
+    const double look = kLook * duration;
+    const RigidBodyState earlier = after(t - look);
+    const Vector3d rate_world = turn_between(earlier.world_from_body, state.world_from_body) / look;
+    return (rate_world - 0.5 * (omega_of(earlier, inertia) + omega_of(state, inertia))).norm();
+  };
+  const RigidBodyState half = after(0.5 * duration), end = after(duration);
+  // An error that is zero at both looks shows in the angle, which two half steps give with another error.
+  const RigidBodyState twice_half = integrate(body, 0.5 * duration, time_ + 0.5 * duration, pack(half));
+  const double drift = twice_half.world_from_body.angularDistance(end.world_from_body);
+  path.turning_error = kUnseen * std::max({error_before(0.5 * duration, half), error_before(duration, end), 3.0 * drift / duration});
+  path.measured_duration = duration;
+  return path.turning_error;
+}
+
+void MovingWorld::bound_turning(int body, double duration, collision::MotionBounds& bounds) {
+  const Inertia& inertia = world_.bodies[body].inertia;
+  Disturbance disturbance{.duration = duration, .torque = torque_bound(body)};
+  if (bound_rotation(states_[body], inertia, disturbance).angular_speed == 0.0) return;
+  disturbance.angular_velocity_error = turning_error(body, duration);
+  const RotationBounds rotation = bound_rotation(states_[body], inertia, disturbance);
+  bounds.angular_speed = rotation.angular_speed;
+  bounds.angular_acceleration = rotation.angular_acceleration;
+  bounds.angular_velocity_error = disturbance.angular_velocity_error;
+}
+
+// The longest part of `duration`, within a factor of two, in which bounds on the body's turning hold.
+double MovingWorld::resolved_duration(int body, double duration) {
+  const Disturbance disturbance{.duration = duration, .torque = torque_bound(body)};
+  const double speed = bound_rotation(states_[body], world_.bodies[body].inertia, disturbance).angular_speed;
+  if (speed == 0.0) return duration;
+  const double turning_little = std::min(duration, kMostTurning / speed);
+  double resolved = turning_little;
+  for (int halvings = 0; turning_error(body, resolved) * resolved > kMostDrift; ++halvings, resolved *= 0.5)
+    if (halvings == kMostHalvings) return turning_little;
+  return resolved;
+}
+
+bool MovingWorld::shorten_step(const std::vector<std::pair<int, int>>& pairs) {
+  std::set<int> bodies;
+  for (const auto& [a, b] : pairs) bodies.insert({a, b});
+  const double asked = target_ - time_;
+  double duration = asked;
+  int fastest = -1;
+  for (const int body : bodies) {
+    if (!can_move(body) || shapes_[body].is_ball()) continue;   // however a ball turns, it looks the same
+    const double resolved = resolved_duration(body, duration);
+    if (resolved < duration) fastest = body;
+    duration = resolved;
+  }
+  if (fastest < 0) return false;
+  const std::string turns = fmt::format("body '{}' turns {:.3g} rad a step of {:.3g} s", world_.bodies[fastest].name,
+                                        omega_of(states_[fastest], world_.bodies[fastest].inertia).norm() * asked, asked);
+  if (asked > kMostParts * duration) throw StoppedRun(turns + ", too far to find its collisions: make the step (\"step_s\") shorter or the body slower");
+  if (!told_of_turning_[fastest]) {
+    told_of_turning_[fastest] = true;
+    counters_.notices.push_back(fmt::format("step shortened: {}; where it may meet another body it gets steps of {:.2g} s, so that no collision is missed", turns, duration));
+  }
+  ++counters_.shortened_steps;
+  counters_.undone_integrations += integrations_in_step_;
+  begin_step(time_ + duration);
+  return true;
+}
+
+}  // namespace tumble::engines
