@@ -33,6 +33,13 @@ const char* name_of(EventKind kind) {
     case EventKind::kRest: return "coming to rest";
     case EventKind::kForceOn: return "force on";
     case EventKind::kForceOff: return "force off";
+    case EventKind::kContact: return "contact";
+    case EventKind::kBreak: return "contact ends";
+    case EventKind::kStick: return "sticks";
+    case EventKind::kSlide: return "slides";
+    case EventKind::kSleep: return "sleeps";
+    case EventKind::kWake: return "wakes";
+    case EventKind::kControl: return "control";
   }
   return "other";
 }

@@ -9,6 +9,7 @@
 namespace tumble {
 
 using Eigen::Matrix3d;
+using Eigen::MatrixXd;
 using Eigen::Quaterniond;
 using Eigen::Vector2d;
 using Eigen::Vector3d;

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "framework/dynamics/body.h"
+#include "framework/dynamics/constraint.h"
 #include "framework/dynamics/ode.h"
 
 namespace tumble {
@@ -33,8 +34,26 @@ struct Laws {
   std::function<RootResult(const ScalarFunction& gap, const ScalarFunction& gap_rate, double t_low, double t_high, double tolerance)>
       find_impact_time;
 
+  // Springs, rods, resting contact (assignment a3).
+  /// Force of a spring on the body at its end A; on B acts the opposite. World frame. [N]
+  std::function<Vector3d(const Spring&, const AnchorState& a, const AnchorState& b)> spring_force;
+  /// The distance constraint between a point of A and a point of B (body frames).
+  std::function<ConstraintRow(const Body& a, const Vector3d& point_a_body, const Body& b, const Vector3d& point_b_body, double length)> rod_row;
+  /// The C'' that brings a constraint back (Baumgarte). [m/s^2]
+  std::function<double(double value, double rate, double time_constant_s)> baumgarte_acceleration;
+  /// lambda (m) at which every C'' is what is wanted, (m).
+  std::function<VectorXd(const std::vector<Constraint>&, const std::vector<ConstrainedBody>&, const VectorXd& wanted_acceleration)>
+      constraint_multipliers;
+  /// The change (6n) of places or velocities, smallest in the measure of the masses, with J change = -error.
+  std::function<VectorXd(const std::vector<Constraint>&, const std::vector<ConstrainedBody>&, const VectorXd& error)> constraint_correction;
+  /// f (m) >= 0 with a = A f + b >= 0 and f . a = 0.
+  std::function<VectorXd(const MatrixXd& A, const VectorXd& b)> contact_forces;
+  /// Whether a collision that came in this slowly is the beginning of a lasting contact.
+  std::function<bool(double approach_speed, double restitution, double rest_speed)> ends_in_contact;
+
   std::string impulse_source = "none";      // who provides the impulse laws, for pictures and records
   std::string integrator_source = "none";   // who provides integration
+  std::string constraint_source = "none";   // who provides springs, rods and contact forces
 };
 
 /// Laws of motion from Boost.Odeint (classical Runge-Kutta) and Boost.Math (TOMS 748 bracketing); no impulse laws.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "framework/dynamics/body.h"
+#include "framework/dynamics/constraint.h"
 #include "framework/geometry/shape.h"
 #include "framework/scene/scene.h"
 
@@ -19,6 +20,8 @@ struct WorldBody {
   Inertia inertia;
   Shape shape;
   double restitution = 1.0;
+  double friction = 0.0;
+  bool collides = true;
   RigidBodyState state;                           // of a movable body
   scene::PrescribedMotion motion;                 // of an immovable one, about com_at_0
   Vector3d com_at_0_world = Vector3d::Zero();     // [m]
@@ -34,10 +37,56 @@ struct PointForce {
   double start, end;         // [s]
 };
 
+/// A point fixed in a body, or in the world.
+struct Anchor {
+  int body;                  // -1: the world
+  Vector3d point_body;       // body frame; world frame for the world [m]
+};
+
+struct SpringLink {
+  std::string name;
+  Anchor a, b;
+  Spring spring;
+};
+
+struct RodLink {
+  std::string name;
+  Anchor a, b;
+  double length;             // [m]
+};
+
+/// Two bodies that share a point (ball), an axis besides (hinge), or are one (weld).
+struct JointLink {
+  std::string name;
+  scene::JointKind kind;
+  Anchor a, b;               // the shared point
+  Quaterniond a_from_joint, b_from_joint;   // frame fixed in each body (b: in the world for body -1); a hinge turns about its z
+};
+
+struct Drag {
+  int body;
+  double linear;             // [N s/m]
+  double angular;            // [N m s]
+};
+
+/// A control law in a hinge (scene::MotorSpec).
+struct Motor {
+  int joint;                 // index into World::joints
+  scene::MotorSpec law;
+};
+
 struct World {
   std::vector<WorldBody> bodies;
   std::optional<Vector3d> gravity_world;          // [m/s^2]
   std::vector<PointForce> point_forces;           // in the scene's order
+  std::vector<SpringLink> springs;
+  std::vector<RodLink> rods;
+  std::vector<JointLink> joints;
+  std::vector<Drag> drags;
+  std::vector<Motor> motors;
+  std::optional<scene::ContactSpec> contact;      // lasting contact; absent where the scene does not ask for it
+  std::optional<scene::StabilisationSpec> stabilisation;
+  std::vector<std::pair<int, int>> apart;         // (i, j), i < j, sorted: pairs that do not collide; joined bodies are among them
 };
 
 /// Builds what the scene's entries ask for, and nothing else.
@@ -60,7 +109,7 @@ double kinetic_energy(const RigidBodyState& state, const Inertia& inertia);
 /// Sums over the movable bodies of a world.
 struct Invariants {
   double kinetic_energy = 0.0;                            // [J]
-  double potential_energy = 0.0;                          // -m g.x [J]
+  double potential_energy = 0.0;                          // -m g.x, and of springs [J]
   Vector3d momentum_world = Vector3d::Zero();             // [kg m/s]
   Vector3d angular_momentum_world = Vector3d::Zero();     // about the world's origin [kg m^2/s]
 };

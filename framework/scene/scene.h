@@ -5,8 +5,10 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -45,6 +47,8 @@ struct BodySpec {
   Vector3d velocity_m_s = Vector3d::Zero();        // world
   Vector3d omega_world_rad_s = Vector3d::Zero();   // world
   double restitution = 1.0;                        // of a pair: the smaller of the two
+  double friction = 0.0;                           // Coulomb's coefficient; of a pair: the smaller of the two
+  bool collides = true;                            // false: nothing touches it and no collision code looks at it
   std::optional<Vector3d> color;                   // linear RGB in [0, 1]
 };
 
@@ -55,6 +59,73 @@ struct PointForceSpec {
   Vector3d point_m;                 // world position of the point at start_s
   double start_s = 0.0;
   double duration_s = 0.0;
+};
+
+/// A point fixed in a body or, with an empty name, in the world. Of a body it may be given as a vertex of its model.
+struct AnchorSpec {
+  std::string body;                 // "": the world
+  Vector3d point_m = Vector3d::Zero();   // body frame (origin at the centre of mass); world frame for the world
+};
+
+/// A damped spring between two anchors.
+struct SpringSpec {
+  std::string name;
+  AnchorSpec a, b;
+  double stiffness_n_m = kUnset;
+  double damping_n_s_m = 0.0;
+  double rest_length_m = kUnset;    // load_scene fills the distance at the start where the file leaves it out
+};
+
+/// A rod without mass: keeps two anchors at a distance.
+struct RodSpec {
+  std::string name;
+  AnchorSpec a, b;
+  double length_m = kUnset;         // load_scene fills the distance at the start where the file leaves it out
+};
+
+enum class JointKind { kBall, kHinge, kWeld };
+
+/// Two bodies (or a body and the world) that share a point, an axis, or are one.
+struct JointSpec {
+  std::string name;
+  JointKind kind = JointKind::kBall;
+  std::string body_a, body_b;       // body_b "": the world
+  Vector3d point_m = Vector3d::Zero();   // world, at the start
+  Vector3d axis = Vector3d::UnitZ();     // unit, world, at the start; of a hinge
+};
+
+/// Resistance of a medium at low speed: force -linear v, torque -angular omega.
+struct DragSpec {
+  std::string body;
+  double linear_n_s_m = 0.0;
+  double angular_n_m_s = 0.0;
+};
+
+/// A control law (callback): every period a motor in a hinge looks at its angle and sets its torque, which it holds until the next look.
+///   torque = stiffness (target(t) - angle) - damping rate,   target(t) = offset + amplitude sin(2 pi frequency t + phase)
+struct MotorSpec {
+  std::string joint;                // a hinge's name
+  double offset_rad = 0.0, amplitude_rad = 0.0, frequency_hz = 0.0, phase_rad = 0.0;
+  double stiffness_n_m_rad = 0.0, damping_n_m_s_rad = 0.0;
+  double largest_torque_n_m = std::numeric_limits<double>::infinity();
+  double period_s = 0.01;
+};
+
+enum class ImpactLaw { kSequential, kSimultaneous };      // several impacts at one instant: one after the other, or together
+enum class PlasticImpacts { kLocated, kInStep };          // impacts that do not bounce: at their instant, or with the step they fall into
+
+/// Lasting contact: bodies that lie, slide, roll and are stacked.
+struct ContactSpec {
+  ImpactLaw impact_law = ImpactLaw::kSequential;
+  PlasticImpacts plastic_impacts = PlasticImpacts::kLocated;
+  bool sleep = false;               // bodies at rest are left alone until something touches them
+};
+
+enum class StabilisationKind { kNone, kBaumgarte, kProjection };
+/// What keeps rods and joints from drifting apart.
+struct StabilisationSpec {
+  StabilisationKind kind = StabilisationKind::kProjection;
+  double time_constant_s = 0.1;     // of Baumgarte's
 };
 
 struct CameraSpec {
@@ -89,6 +160,14 @@ struct Scene {
   std::optional<Vector3d> gravity_m_s2;
   std::vector<BodySpec> bodies;
   std::vector<PointForceSpec> point_forces;
+  std::vector<SpringSpec> springs;
+  std::vector<RodSpec> rods;
+  std::vector<JointSpec> joints;
+  std::vector<DragSpec> drags;
+  std::vector<MotorSpec> motors;
+  std::optional<ContactSpec> contact;     // absent: bodies bounce until they rest, nothing lies, slides or rolls
+  std::optional<StabilisationSpec> stabilisation;   // present exactly where there are rods or joints
+  std::vector<std::pair<std::string, std::string>> apart;   // pairs that do not collide (links of a chain); joined bodies never do
   CameraSpec camera;
   std::optional<double> grid_spacing_m;   // drawn on the ground plane z = grid_height_m
   double grid_height_m = 0.0;

@@ -19,6 +19,14 @@ struct BodyPose {
   Vector3d omega_world;            // [rad/s]
 };
 
+/// A point at which two bodies push each other for a while, and how hard.
+struct ContactPoint {
+  int body_a, body_b;
+  Vector3d point_world;            // [m]
+  Vector3d normal_b_to_a_world;    // unit
+  Vector3d force_on_a_world;       // [N], friction included
+};
+
 /// All bodies at a redraw time.
 struct Frame {
   double time;                     // [s]
@@ -28,9 +36,13 @@ struct Frame {
   Vector3d momentum_world;         // [kg m/s], movable bodies
   Vector3d angular_momentum_world; // [kg m^2/s], movable bodies, about the world's origin
   double smallest_gap;             // [m], over all pairs that may collide; +infinity where there is none
+  std::vector<double> spring_forces;      // by spring of the scene; > 0 pulls its ends together [N]
+  std::vector<double> rod_tensions;       // by rod of the scene; > 0 pulls its ends together [N]
+  std::vector<double> joint_forces;       // by joint of the scene: size of the force in it [N]
+  std::vector<ContactPoint> contacts;     // lasting ones
 };
 
-enum class EventKind : std::uint8_t { kCollision = 1, kRest, kForceOn, kForceOff };
+enum class EventKind : std::uint8_t { kCollision = 1, kRest, kForceOn, kForceOff, kContact, kBreak, kStick, kSlide, kSleep, kWake, kControl };
 
 /// A discontinuity that was committed.
 struct Event {
@@ -48,6 +60,7 @@ struct Event {
 struct Counters {
   std::map<std::string, std::uint64_t> counts;   // "integrations", "undone_integrations", "gap_evaluations", "rollbacks", ...
   std::map<std::string, double> stage_seconds;   // "integration", "collision", "forces", ...; kept out of anything compared byte by byte
+  std::vector<std::string> notices;              // for people, e.g. that steps were shortened and why; not kept in files
 };
 
 struct TrajectoryBody {

@@ -1,0 +1,70 @@
+/// Contacts with Coulomb friction: which impulses keep bodies from entering each other during a step.
+///
+/// The bodies have velocities u (6 a body: linear, angular, world) that they would reach without contact forces. Contact i acts at
+/// one point, with a unit normal n_i from B to A and two tangents; its impulse p_i = (p_n, p_t1, p_t2) changes the velocities by
+/// M^-1 J^T p. With v_i the relative velocity of A against B at the point after all impulses:
+///   p_n >= 0,   v_n >= target,   p_n (v_n - target) = 0                             (signorini)                        (C.1)
+///   |p_t| <= mu p_n;   where |p_t| < mu p_n: v_t = 0;   else v_t = -s p_t, s >= 0   (Coulomb, a cone, no pyramid)      (C.2)
+/// Equality rows (rods, joints inside the group) hold J u = target with an impulse of any sign.                           (C.3)
+/// Such an impulse always exists for target <= 0 and no equality rows; it need not be unique (a table on four legs), nor are the
+/// velocities always unique where friction is large. The same problem gives the same bits.
+/// Sources: D. Stewart, J. Trinkle, Int. J. Numer. Meth. Eng. 39, 1996; V. Acary, B. Brogliato, "Numerical methods for nonsmooth
+/// dynamical systems", 2008, ch. 13; G. De Saxce, Z.-Q. Feng, Math. Comput. Modelling 28, 1998.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "framework/dynamics/constraint.h"
+
+namespace tumble {
+
+/// A body of the group. Inverse mass 0 and zero inverse inertia: it cannot be pushed.
+struct PushedBody {
+  double inverse_mass = 0.0;                                  // [1/kg]
+  Matrix3d inverse_inertia_world = Matrix3d::Zero();          // [1/(kg m^2)]
+  Vector3d com_world = unset_vector();                        // [m]
+  Vector3d velocity_world = unset_vector();                   // without contact impulses [m/s]
+  Vector3d omega_world = unset_vector();                      // [rad/s]
+};
+
+struct PushingContact {
+  int body_a = 0, body_b = 0;                                 // indices into the group's bodies
+  Vector3d point_world = unset_vector();                      // [m]
+  Vector3d normal_b_to_a_world = unset_vector();              // unit
+  double friction = 0.0;                                      // mu >= 0
+  double target = 0.0;                                        // least normal velocity afterwards [m/s]; < 0 where there is room left
+  Vector3d guess_world = Vector3d::Zero();                    // impulse on A to begin from (the last step's) [N s]
+};
+
+struct ContactProblem {
+  std::vector<PushedBody> bodies;
+  std::vector<PushingContact> contacts;
+  std::vector<Constraint> rows;                               // equality rows; value, rate and velocity_product are not looked at
+  VectorXd row_targets;                                       // (rows): J u afterwards [m/s]
+};
+
+enum class ContactMode : std::uint8_t { kOpen, kStick, kSlide };
+
+struct ContactSolution {
+  std::vector<Vector3d> impulses_world;                       // by contact, on A [N s]
+  std::vector<ContactMode> modes;                             // by contact
+  VectorXd row_impulses;                                      // by row
+  std::vector<Velocity> velocities;                           // by body, afterwards
+  double residual = 0.0;                                      // largest violation of (C.1) to (C.3), as a velocity, over the problem's speed
+  bool converged = false;                                     // residual <= tolerance
+  int sweeps = 0, factorisations = 0;                         // what it cost
+};
+
+struct ContactOptions {
+  double tolerance = 1e-12;                                   // relative
+  int most_sweeps = 50;                                       // of block Gauss-Seidel before the direct method is called
+  int largest_direct = 600;                                   // contacts: beyond, sweeps only
+  int most_sweeps_alone = 2000;                               // where the direct method is not called
+};
+
+/// Solves (C.1) to (C.3). Deterministic. Does not throw for a problem without solution: see `converged`.
+/// Cost: a sweep O(contacts); the direct method factorises a sparse matrix of 6 rows a body or 3 a contact.
+ContactSolution solve_contacts(const ContactProblem& problem, const ContactOptions& options = {});
+
+}  // namespace tumble
