@@ -63,6 +63,7 @@ void print_summary(const scene::Scene& scene, const ChosenLaws& chosen, const Tr
   std::string counts;
   for (const auto& [name, count] : run.counters.counts) counts += fmt::format("{}{} {}", counts.empty() ? "" : " · ", name, count);
   if (!counts.empty()) fmt::print("  counts   {}\n", counts);
+  for (const auto& notice : run.counters.notices) fmt::print("  note     {}\n", notice);
   if (!run.stopped_by.empty()) fmt::print("  STOPPED  {}\n", run.stopped_by);
   fmt::print("{}", judgement_table(checks));
 }
@@ -82,6 +83,7 @@ void print_json(const scene::Scene& scene, const ChosenLaws& chosen, const Traje
   page["bodies"] = run.bodies.size();
   page["events"] = count_events(run);
   page["counts"] = run.counters.counts;
+  page["notices"] = run.counters.notices;
   page["stopped_by"] = run.stopped_by;
   page["checks"] = nlohmann::json::array();
   for (const auto& check : checks)   // a value that is not finite becomes null

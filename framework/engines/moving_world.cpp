@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "framework/core/error.h"
 #include "framework/engines/guarded_laws.h"
@@ -29,12 +30,32 @@ double measure_path_bend(const Laws& laws) {
 
 MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters)
     : world_(std::move(world)), laws_(laws), counters_(counters), rests_(world_.bodies.size()), force_points_body_(world_.point_forces.size()),
-      paths_(world_.bodies.size()), told_of_turning_(world_.bodies.size(), false) {
+      paths_(world_.bodies.size()), told_of_shortening_(world_.bodies.size(), false),
+      told_of_aliasing_(world_.bodies.size(), false) {
   for (const WorldBody& body : world_.bodies) {
     shapes_.emplace_back(body.shape);
     states_.push_back(body.state);
   }
   path_bend_ = measure_path_bend(laws);
+  group_of_.assign(world_.bodies.size(), -1);
+  for (std::vector<int>& bodies : groups_of_linked_bodies(world_)) {
+    for (const int body : bodies) group_of_[body] = static_cast<int>(linked_.size());
+    linked_.emplace_back(world_, laws_, counters_, [this](int body, const RigidBodyState& state) { return wrench_on(body, state); }, std::move(bodies));
+    linked_.back().project(states_, 0.0);
+  }
+}
+
+double MovingWorld::look() {
+  double next = std::numeric_limits<double>::infinity();
+  for (LinkedBodies& group : linked_) next = std::min(next, group.look(time_, states_));
+  return next;
+}
+
+void MovingWorld::set_path(int body, const RigidBodyState& start, const RigidBodyState& end) {
+  Path& path = paths_[body];
+  path.bounds.reset();
+  path.end = end;
+  path.smooth.emplace(start, end, world_.bodies[body].inertia, time_, target_);
 }
 
 void MovingWorld::put_to_rest(int body, int support) {
@@ -130,7 +151,8 @@ void MovingWorld::begin_step(double target) {
     Path& path = paths_[i];
     path.bounds.reset();
     path.memo_time = path.measured_duration = kUnset;
-    if (!can_move(i)) continue;
+    path.smooth.reset();
+    if (!can_move(i) || group_of_[i] >= 0) continue;
     path.start = pack(states_[i]);
     Vector3d force = Vector3d::Zero();
     for (const int index : active_forces_)
@@ -140,6 +162,11 @@ void MovingWorld::begin_step(double target) {
     path.acceleration_world *= path_bend_;
     path.end = integrate(i, target - time_, time_, path.start);
   }
+  for (LinkedBodies& group : linked_) {
+    const std::vector<RigidBodyState> ends = group.advance(states_, time_, target - time_);
+    for (std::size_t i = 0; i < ends.size(); ++i) set_path(group.bodies()[i], states_[group.bodies()[i]], ends[i]);
+    integrations_in_step_ += ends.size();
+  }
 }
 
 RigidBodyState MovingWorld::path(int body, double t) {
@@ -147,6 +174,7 @@ RigidBodyState MovingWorld::path(int body, double t) {
   if (t == time_) return states_[body];
   Path& path = paths_[body];
   if (t == target_) return path.end;
+  if (path.smooth) return path.smooth->at(t);
   if (t != path.memo_time) {
     path.memo = integrate(body, t - time_, time_, path.start);
     path.memo_time = t;
@@ -155,6 +183,12 @@ RigidBodyState MovingWorld::path(int body, double t) {
 }
 
 collision::MotionState MovingWorld::motion_at(int body, double t) {
+  if (can_move(body) && paths_[body].smooth && t <= target_) {
+    collision::MotionState motion = paths_[body].smooth->motion_at(t);
+    if (t == target_) motion.pose = {paths_[body].end.com_world, paths_[body].end.world_from_body};
+    if (t == time_) motion.pose = {states_[body].com_world, states_[body].world_from_body};
+    return motion;
+  }
   const RigidBodyState state = path(body, t);
   collision::MotionState motion;
   motion.pose = {state.com_world, state.world_from_body};
@@ -177,6 +211,7 @@ collision::MotionBounds MovingWorld::work_out_bounds(int body) {
     bounds.acceleration_deviation = m.amplitude_m.norm() * m.angular_frequency_rad_s * m.angular_frequency_rad_s;
     return bounds;
   }
+  if (paths_[body].smooth) return paths_[body].smooth->bounds();
   bounds.acceleration_world = paths_[body].acceleration_world;
   if (shapes_[body].is_ball()) return bounds;  // however it turns, it looks the same
   bound_turning(body, target_ - time_, bounds);
@@ -194,7 +229,10 @@ collision::SweptBox MovingWorld::swept_box(int body) {
   const Vector3d start = path(body, time_).com_world, end = path(body, target_).com_world;
   // Between its ends a parabola leaves their box by at most a h^2 / 8; a shaken body by at most its amplitude.
   Vector3d bulge = Vector3d::Zero();
-  if (can_move(body)) {
+  if (can_move(body) && paths_[body].smooth) {
+    const collision::MotionBounds& bounds = paths_[body].smooth->bounds();
+    bulge = (bounds.acceleration_world.cwiseAbs() + Vector3d::Constant(bounds.acceleration_deviation)) * (h * h / 8);
+  } else if (can_move(body)) {
     bulge = paths_[body].acceleration_world.cwiseAbs() * (h * h / 8);
   } else {
     const int mover = resting(body) ? rests_[body]->support : body;
@@ -213,7 +251,10 @@ void MovingWorld::commit(double t) {
   {
     const StageTimer timer(counters_.integration_seconds);
     arrived.reserve(states_.size());
-    for (int i = 0; i < size(); ++i) arrived.push_back(path(i, t));
+    for (int i = 0; i < size(); ++i) {
+      tell_of_aliasing(i, t - time_);
+      arrived.push_back(path(i, t));
+    }
   }
   if (t < target_) counters_.undone_integrations += before;
   states_ = std::move(arrived);

@@ -1,7 +1,8 @@
 /// A world on the move: where every body is at the last committed time, and where the laws take it from there.
 ///
 /// Within a step each body follows a path: the laws' integration from the committed state by any part of the step, always from
-/// the step's start. Collision finding, rollback and pictures all look at this one path.
+/// the step's start. Bodies that depend on others (links, lasting contacts) follow the smooth path between the step's ends instead.
+/// Collision finding, rollback and pictures all look at this one path.
 #pragma once
 
 #include <optional>
@@ -11,7 +12,9 @@
 #include "framework/collision/sweep.h"
 #include "framework/dynamics/laws.h"
 #include "framework/dynamics/world.h"
+#include "framework/engines/linked_bodies.h"
 #include "framework/engines/run_counters.h"
+#include "framework/engines/smooth_path.h"
 
 namespace tumble::engines {
 
@@ -24,6 +27,8 @@ struct Rest {
 class MovingWorld {
  public:
   MovingWorld(World world, const Laws& laws, RunCounters& counters);
+  MovingWorld(const MovingWorld&) = delete;
+  MovingWorld& operator=(const MovingWorld&) = delete;
 
   const World& world() const { return world_; }
   int size() const { return static_cast<int>(world_.bodies.size()); }
@@ -40,6 +45,17 @@ class MovingWorld {
   void wake(int body);
   const std::vector<int>& active_forces() const { return active_forces_; }
   void switch_force(int index, bool on);
+
+  /// Bodies tied by springs, rods, joints, drag: groups that are integrated as one.
+  std::vector<LinkedBodies>& linked_groups() { return linked_; }
+  /// Place of a body's group in linked_groups(); -1 for a body without links.
+  int linked_group(int body) const { return group_of_[body]; }
+  /// Control laws whose time has come look. @return when the next one does; infinite without
+  double look();
+  /// From here on to the step's target the body goes from `start` (at time(); its velocities may jump there) to `end`.
+  void set_path(int body, const RigidBodyState& start, const RigidBodyState& end);
+  /// Where the step leads without what set_path has added.
+  const RigidBodyState& path_end(int body) const { return paths_[body].end; }
 
   /// Begins a step from the committed time: works out the motion's bounds and where all come out.
   void begin_step(double target);
@@ -70,14 +86,16 @@ class MovingWorld {
     double memo_time;
     RigidBodyState memo;
     double measured_duration, turning_error;   // see turning_error
+    std::optional<SmoothPath> smooth;
   };
 
   RigidBodyState integrate(int body, double duration, double start_time, const VectorXd& start);
   Wrench wrench_on(int body, const RigidBodyState& state);
   double torque_bound(int body) const;
   double turning_error(int body, double duration);
-  void bound_turning(int body, double duration, collision::MotionBounds& bounds);
+  bool bound_turning(int body, double duration, collision::MotionBounds& bounds);
   double resolved_duration(int body, double duration);
+  void tell_of_aliasing(int body, double duration);
   collision::MotionBounds work_out_bounds(int body);
   RigidBodyState still_state(int body, double t) const;
 
@@ -90,7 +108,7 @@ class MovingWorld {
   std::vector<int> active_forces_;               // indices into world_.point_forces
   std::vector<Vector3d> force_points_body_;      // by force, from when it is switched on
   std::vector<Path> paths_;
-  std::vector<bool> told_of_turning_;            // by body
+  std::vector<bool> told_of_shortening_, told_of_aliasing_;   // by body
   double time_ = 0.0, target_ = 0.0;
   double path_bend_ = 1.0;   // how much of a constant acceleration the laws' integration puts into a path: 1 for order >= 2, 0 for Euler
   std::uint64_t integrations_in_step_ = 0;

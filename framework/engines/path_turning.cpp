@@ -19,6 +19,7 @@ namespace {
 // steadily within the step: its next term is at most (1/2)^2 of its first, half the angle being what quaternion and Taylor series go
 // by. From 1.5 rad on the error comes and goes within the step, and three looks at it miss up to 30 times its size.
 constexpr double kMostTurning = 1.0;
+constexpr double kUnder = 0.01;        // a cut step stays so much below, for what the path's error adds to the bound
 
 // The turning error of a step, too, has to be small for that [rad]: where moments differ a thousand times, a method can break down long
 // before the body has turned by one radian.
@@ -71,27 +72,41 @@ double MovingWorld::turning_error(int body, double duration) {
   return path.turning_error;
 }
 
-void MovingWorld::bound_turning(int body, double duration, collision::MotionBounds& bounds) {
+// @return whether they are of use: the step turns the body little, and the path goes wrong by little
+bool MovingWorld::bound_turning(int body, double duration, collision::MotionBounds& bounds) {
   const Inertia& inertia = world_.bodies[body].inertia;
   Disturbance disturbance{.duration = duration, .torque = torque_bound(body)};
-  if (bound_rotation(states_[body], inertia, disturbance).angular_speed == 0.0) return;
+  if (bound_rotation(states_[body], inertia, disturbance).angular_speed == 0.0) return true;
   disturbance.angular_velocity_error = turning_error(body, duration);
   const RotationBounds rotation = bound_rotation(states_[body], inertia, disturbance);
   bounds.angular_speed = rotation.angular_speed;
   bounds.angular_acceleration = rotation.angular_acceleration;
   bounds.angular_velocity_error = disturbance.angular_velocity_error;
+  return bounds.angular_speed * duration <= kMostTurning && bounds.angular_velocity_error * duration <= kMostDrift;
 }
 
-// The longest part of `duration`, within a factor of two, in which bounds on the body's turning hold.
+// The longest part of `duration`, within a factor of about two, in which bounds on the body's turning hold.
 double MovingWorld::resolved_duration(int body, double duration) {
+  collision::MotionBounds bounds;
+  if (bound_turning(body, duration, bounds)) return duration;
   const Disturbance disturbance{.duration = duration, .torque = torque_bound(body)};
   const double speed = bound_rotation(states_[body], world_.bodies[body].inertia, disturbance).angular_speed;
-  if (speed == 0.0) return duration;
-  const double turning_little = std::min(duration, kMostTurning / speed);
+  const double turning_little = std::min(duration, (1.0 - kUnder) * kMostTurning / speed);
   double resolved = turning_little;
-  for (int halvings = 0; turning_error(body, resolved) * resolved > kMostDrift; ++halvings, resolved *= 0.5)
+  for (int halvings = 0; !bound_turning(body, resolved, bounds); ++halvings, resolved *= 0.5)
     if (halvings == kMostHalvings) return turning_little;
   return resolved;
+}
+
+// Beyond half a turn a step cannot be told from a turn the other way round: a method of integration that samples it only there gives
+// some orientation.
+void MovingWorld::tell_of_aliasing(int body, double duration) {
+  if (told_of_aliasing_[body] || !can_move(body)) return;
+  const double turning = omega_of(states_[body], world_.bodies[body].inertia).norm() * duration;
+  if (!(turning > M_PI)) return;
+  told_of_aliasing_[body] = true;
+  counters_.notices.push_back(fmt::format("body '{}' turns {:.3g} rad a step of {:.3g} s, more than half a turn: its orientation is not to be trusted; a step of {:.2g} s turns it 1 rad",
+                                          world_.bodies[body].name, turning, duration, duration / turning));
 }
 
 bool MovingWorld::shorten_step(const std::vector<std::pair<int, int>>& pairs) {
@@ -101,7 +116,7 @@ bool MovingWorld::shorten_step(const std::vector<std::pair<int, int>>& pairs) {
   double duration = asked;
   int fastest = -1;
   for (const int body : bodies) {
-    if (!can_move(body) || shapes_[body].is_ball()) continue;   // however a ball turns, it looks the same
+    if (!can_move(body) || shapes_[body].is_ball() || paths_[body].smooth) continue;   // however a ball turns, it looks the same; a smooth path's bounds are exact
     const double resolved = resolved_duration(body, duration);
     if (resolved < duration) fastest = body;
     duration = resolved;
@@ -110,8 +125,8 @@ bool MovingWorld::shorten_step(const std::vector<std::pair<int, int>>& pairs) {
   const std::string turns = fmt::format("body '{}' turns {:.3g} rad a step of {:.3g} s", world_.bodies[fastest].name,
                                         omega_of(states_[fastest], world_.bodies[fastest].inertia).norm() * asked, asked);
   if (asked > kMostParts * duration) throw StoppedRun(turns + ", too far to find its collisions: make the step (\"step_s\") shorter or the body slower");
-  if (!told_of_turning_[fastest]) {
-    told_of_turning_[fastest] = true;
+  if (!told_of_shortening_[fastest]) {
+    told_of_shortening_[fastest] = true;
     counters_.notices.push_back(fmt::format("step shortened: {}; where it may meet another body it gets steps of {:.2g} s, so that no collision is missed", turns, duration));
   }
   ++counters_.shortened_steps;

@@ -20,11 +20,30 @@ Counters RunCounters::named() const {
                   {"bodies_put_to_rest", bodies_put_to_rest},
                   {"bodies_woken", bodies_woken},
                   {"gravity_calls", gravity_calls},
-                  {"point_force_calls", point_force_calls}};
+                  {"point_force_calls", point_force_calls},
+                  {"spring_calls", spring_calls},
+                  {"rod_calls", rod_calls},
+                  {"joint_calls", joint_calls},
+                  {"drag_calls", drag_calls},
+                  {"motor_calls", motor_calls},
+                  {"constraint_solves", constraint_solves},
+                  {"constraint_corrections", constraint_corrections},
+                  {"contact_solves", contact_solves},
+                  {"contact_points", contact_points},
+                  {"contact_sweeps", contact_sweeps},
+                  {"contact_factorisations", contact_factorisations},
+                  {"contacts_begun", contacts_begun},
+                  {"contacts_ended", contacts_ended},
+                  {"friction_points", friction_points},
+                  {"bodies_put_to_sleep", bodies_put_to_sleep}};
   named.stage_seconds = {{"integration", integration_seconds},
                          {"collision", collision_seconds},
                          {"impacts", impact_seconds},
+                         {"constraints", constraint_seconds},
+                         {"contacts", contact_seconds},
+                         {"control", control_seconds},
                          {"recording", record_seconds}};
+  named.notices = notices;
   return named;
 }
 
