@@ -115,12 +115,45 @@ void guard_motion(const Laws& laws, Laws& safe) {
   }
 }
 
+void guard_constraints(const Laws& laws, Laws& safe) {
+  const std::string& source = laws.constraint_source;
+  if (laws.spring_force) {
+    const Guard guard{"springs", "spring_force", source};
+    safe.spring_force = [guard, law = laws.spring_force](const Spring& spring, const AnchorState& a, const AnchorState& b) {
+      const Vector3d force = guard([&] { return law(spring, a, b); });
+      guard.need(force.allFinite(), kNotANumber);
+      return force;
+    };
+  }
+  if (laws.rod_row) {
+    const Guard guard{"rods", "rod_row", source};
+    safe.rod_row = [guard, law = laws.rod_row](const Body& a, const Vector3d& point_a, const Body& b, const Vector3d& point_b, double length) {
+      const ConstraintRow row = guard([&] { return law(a, point_a, b, point_b, length); });
+      guard.need(row.jacobian_a.allFinite() && row.jacobian_b.allFinite() && std::isfinite(row.value) && std::isfinite(row.rate) && std::isfinite(row.velocity_product), kNotANumber);
+      return row;
+    };
+  }
+  const auto vector_law = [&](auto& law, const char* effect, const char* name) {
+    if (!law) return;
+    const Guard guard{effect, name, source};
+    law = [guard, inner = law](const auto&... arguments) {
+      const VectorXd answer = guard([&] { return inner(arguments...); });
+      guard.need(answer.allFinite(), kNotANumber);
+      return answer;
+    };
+  };
+  vector_law(safe.constraint_multipliers, "rods and joints", "constraint_multipliers");
+  vector_law(safe.constraint_correction, "rods and joints", "constraint_correction");
+  vector_law(safe.contact_forces, "lasting contact", "contact_forces");
+}
+
 }  // namespace
 
 Laws guarded(const Laws& laws) {
   Laws safe = laws;
   guard_impulses(laws, safe);
   guard_motion(laws, safe);
+  guard_constraints(laws, safe);
   return safe;
 }
 

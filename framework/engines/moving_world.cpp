@@ -45,10 +45,33 @@ MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters)
   }
 }
 
+bool MovingWorld::may_collide(int a, int b) const {
+  const WorldBody &first = world_.bodies[a], &second = world_.bodies[b];
+  if ((first.immovable() && second.immovable()) || !first.collides || !second.collides) return false;
+  return world_.apart.empty() || !std::binary_search(world_.apart.begin(), world_.apart.end(), std::pair(std::min(a, b), std::max(a, b)));
+}
+
 double MovingWorld::look() {
   double next = std::numeric_limits<double>::infinity();
   for (LinkedBodies& group : linked_) next = std::min(next, group.look(time_, states_));
   return next;
+}
+
+bool MovingWorld::keep_constraints(const std::vector<Event>& impacts) {
+  bool any = false;
+  for (LinkedBodies& group : linked_) {
+    const auto ours = [&](int body) { return body >= 0 && group_of_[body] == static_cast<int>(&group - linked_.data()); };
+    if (!group.has_constraints() || std::none_of(impacts.begin(), impacts.end(), [&](const Event& e) { return ours(e.body_a) || ours(e.body_b); })) continue;
+    group.project_velocities(states_, time_);
+    any = true;
+  }
+  return any;
+}
+
+LinkForces MovingWorld::measure_links(const std::vector<RigidBodyState>& states, double t) {
+  LinkForces forces{std::vector<double>(world_.springs.size()), std::vector<double>(world_.rods.size()), std::vector<double>(world_.joints.size())};
+  for (LinkedBodies& group : linked_) group.measure(states, t, forces);
+  return forces;
 }
 
 void MovingWorld::set_path(int body, const RigidBodyState& start, const RigidBodyState& end) {

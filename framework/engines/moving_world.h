@@ -39,6 +39,8 @@ class MovingWorld {
   const RigidBodyState& state(int body) const { return states_[body]; }
   const std::vector<RigidBodyState>& states() const { return states_; }
   void set_state(int body, const RigidBodyState& state) { states_[body] = state; }
+  /// Whether the two may collide at all: one can move, both collide, and the scene does not keep them apart.
+  bool may_collide(int a, int b) const;
   bool can_move(int body) const { return !world_.bodies[body].immovable() && !rests_[body]; }
   bool resting(int body) const { return rests_[body].has_value(); }
   void put_to_rest(int body, int support);
@@ -52,6 +54,10 @@ class MovingWorld {
   int linked_group(int body) const { return group_of_[body]; }
   /// Control laws whose time has come look. @return when the next one does; infinite without
   double look();
+  /// What springs, rods and joints pull with in these states.
+  LinkForces measure_links(const std::vector<RigidBodyState>& states, double t);
+  /// After impacts: velocities of the bodies joined to those that were hit back onto the constraints. @return whether there are any
+  bool keep_constraints(const std::vector<Event>& impacts);
   /// From here on to the step's target the body goes from `start` (at time(); its velocities may jump there) to `end`.
   void set_path(int body, const RigidBodyState& start, const RigidBodyState& end);
   /// Where the step leads without what set_path has added.
@@ -108,6 +114,8 @@ class MovingWorld {
   std::vector<int> active_forces_;               // indices into world_.point_forces
   std::vector<Vector3d> force_points_body_;      // by force, from when it is switched on
   std::vector<Path> paths_;
+  std::vector<LinkedBodies> linked_;
+  std::vector<int> group_of_;                    // by body: place in linked_, -1
   std::vector<bool> told_of_shortening_, told_of_aliasing_;   // by body
   double time_ = 0.0, target_ = 0.0;
   double path_bend_ = 1.0;   // how much of a constant acceleration the laws' integration puts into a path: 1 for order >= 2, 0 for Euler

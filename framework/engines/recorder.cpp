@@ -8,7 +8,7 @@ double smallest_gap(const MovingWorld& moving, const std::vector<RigidBodyState>
   double smallest = std::numeric_limits<double>::infinity();
   for (int i = 0; i < moving.size(); ++i) {
     for (int j = i + 1; j < moving.size(); ++j) {
-      if (moving.world().bodies[i].immovable() && moving.world().bodies[j].immovable()) continue;
+      if (!moving.may_collide(i, j)) continue;
       const collision::CollisionShape& a = moving.shape(i);
       const collision::CollisionShape& b = moving.shape(j);
       if (!a.is_half_space() && !b.is_half_space()) {
@@ -41,6 +41,10 @@ void FrameRecorder::push(MovingWorld& moving, double t) {
   frame.momentum_world = sums.momentum_world;
   frame.angular_momentum_world = sums.angular_momentum_world;
   frame.smallest_gap = smallest_gap(moving, states);
+  LinkForces forces = moving.measure_links(states, t);
+  frame.spring_forces = std::move(forces.springs);
+  frame.rod_tensions = std::move(forces.rods);
+  frame.joint_forces = std::move(forces.joints);
   sink_.frame(frame);
 }
 

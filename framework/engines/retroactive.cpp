@@ -23,6 +23,7 @@ constexpr double kTouching = 64 * kEpsilon;
 constexpr double kSamePatch = 1e-9;
 // A support that leans by less [rad] counts as level: in 100 s a ball would slide 5e-8 m.
 constexpr double kLevel = 1e-12;
+constexpr int kMostPassings = 100;        // of a blow to and fro between bodies that touch and bodies that are joined
 constexpr int kMostIdleSteps = 1000;      // in a row without progress of time
 constexpr int kMostImpactsAStep = 20000;  // of one pair: a Zeno sequence that needs a lasting contact
 
@@ -72,11 +73,13 @@ class RetroactiveRun {
   FrameRecorder recorder_;
   long grid_index_ = 0;
   std::set<double> switch_times_;
+  double next_look_ = std::numeric_limits<double>::infinity();   // of a control law
   std::string stopped_by_;
 };
 
 double RetroactiveRun::next_target() const {
   double target = std::min(static_cast<double>(grid_index_ + 1) * step_, duration_);
+  target = std::min(target, next_look_);
   const auto next = switch_times_.upper_bound(moving_.time());
   if (next != switch_times_.end()) target = std::min(target, *next);
   return target;
@@ -85,7 +88,7 @@ double RetroactiveRun::next_target() const {
 void RetroactiveRun::refuse_overlap() {
   for (int i = 0; i < moving_.size(); ++i) {
     for (int j = i + 1; j < moving_.size(); ++j) {
-      if (moving_.world().bodies[i].immovable() && moving_.world().bodies[j].immovable()) continue;
+      if (!moving_.may_collide(i, j)) continue;
       const auto pose = [&](int k) { return moving_.motion_at(k, 0.0).pose; };
       const double allowance = kTouching * collision::gap_scale(moving_.shape(i), pose(i), moving_.shape(j), pose(j));
       if (!collision::overlapping(moving_.shape(i), pose(i), moving_.shape(j), pose(j), allowance)) continue;
@@ -131,7 +134,7 @@ std::vector<std::pair<int, int>> RetroactiveRun::candidates() {
   std::vector<collision::SweptBox> boxes;
   for (int i = 0; i < moving_.size(); ++i) boxes.push_back(moving_.swept_box(i));
   auto pairs = collision::overlapping_pairs(boxes);
-  std::erase_if(pairs, [&](const std::pair<int, int>& pair) { return !may_meet(pair.first, pair.second); });
+  std::erase_if(pairs, [&](const std::pair<int, int>& pair) { return !moving_.may_collide(pair.first, pair.second) || !may_meet(pair.first, pair.second); });
   counters_.candidate_pairs += pairs.size();
   return pairs;
 }
@@ -236,8 +239,15 @@ void RetroactiveRun::resolve_at(const std::vector<std::pair<int, int>>& pairs, s
     touching.push_back({pair.first, pair.second, gap, touching_points(pair, gap)});
   }
   const std::string subject = fmt::format("bodies {} and {}", name(trigger.first), name(trigger.second));
-  const Resolution resolution = naming(subject, [&] { return impacts_.resolve(moving_, touching, trigger_index); });
+  Resolution resolution = naming(subject, [&] { return impacts_.resolve(moving_, touching, trigger_index); });
   for (const Event& event : resolution.events) sink_.event(event);
+  // Rods and joints pass the blow on; where that makes bodies approach again they meet again, until neither changes anything.
+  for (int round = 0; round < kMostPassings && moving_.keep_constraints(resolution.events); ++round) {
+    const Resolution echo = naming(subject, [&] { return impacts_.resolve(moving_, touching, trigger_index); });
+    if (echo.events.empty()) break;
+    for (const Event& event : echo.events) sink_.event(event);
+    resolution.events.insert(resolution.events.end(), echo.events.begin(), echo.events.end());
+  }
   if (!resolution.settled)
     stopped_by_ = fmt::format("at t = {:.6f} s, {}: collision (collision_impulse, apply_impulse of {}) left them approaching, however often it was "
                               "applied: the impulse has no effect, the wrong sign or too little size, or a lasting contact is needed there", moving_.time(), subject, laws_.impulse_source);
@@ -346,6 +356,7 @@ void RetroactiveRun::run_to_the_end() {
   switch_forces();
   recorder_.record_committed(moving_);
   while (stopped_by_.empty() && moving_.time() < duration_) {
+    next_look_ = moving_.look();
     const double target = next_target();
     advance_to(target);
     if (!stopped_by_.empty()) break;

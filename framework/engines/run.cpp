@@ -1,5 +1,6 @@
 #include "framework/engines/run.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "framework/core/error.h"
@@ -15,12 +16,27 @@ void need(const Law& law, const scene::Scene& scene, const char* what, const cha
                   std::string("assignment ") + assignment + " provides it: run with --modules reference, or fill in that assignment first");
 }
 
+bool may_meet(const scene::Scene& scene) {
+  return std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const scene::BodySpec& body) { return body.collides; }) > 1;
+}
+
 void check_laws(const scene::Scene& scene, const Laws& laws) {
   need(laws.integrate_step, scene, "a step of integration", "a2 (or the framework's library laws)");
   need(laws.state_derivative, scene, "the derivative of a rigid body's state", "a2 (or the framework's library laws)");
   need(laws.renormalize, scene, "the renormalisation of quaternions", "a2 (or the framework's library laws)");
   if (!scene.point_forces.empty()) need(laws.wrench_of_point_force, scene, "the force and torque of a point force", "a1");
-  if (scene.bodies.size() > 1) {
+  if (!scene.springs.empty()) need(laws.spring_force, scene, "the force of a spring", "a3");
+  if (!scene.rods.empty()) need(laws.rod_row, scene, "the constraint of a rod", "a3");
+  if (!scene.rods.empty() || !scene.joints.empty()) {
+    need(laws.constraint_multipliers, scene, "the multipliers of rods and joints", "a3");
+    need(laws.constraint_correction, scene, "the correction onto rods and joints", "a3");
+    if (scene.stabilisation && scene.stabilisation->kind == scene::StabilisationKind::kBaumgarte) need(laws.baumgarte_acceleration, scene, "Baumgarte's acceleration", "a3");
+  }
+  if (scene.contact) {
+    need(laws.ends_in_contact, scene, "the beginning of a lasting contact", "a3");
+    need(laws.contact_forces, scene, "the forces of lasting contacts", "a3");
+  }
+  if (may_meet(scene)) {
     need(laws.relative_normal_velocity, scene, "the relative normal velocity of two bodies", "a1");
     need(laws.collision_impulse, scene, "the impulse of a collision", "a1");
     need(laws.apply_impulse, scene, "the effect of an impulse", "a1");

@@ -1,0 +1,71 @@
+#include "framework/dynamics/joint_rows.h"
+
+#include <cmath>
+
+namespace tumble {
+namespace {
+
+Vector6d six(const Vector3d& linear, const Vector3d& angular) {
+  Vector6d both;
+  both << linear, angular;
+  return both;
+}
+
+double rate_of(const ConstraintRow& row, const Body& a, const Body& b) {
+  return row.jacobian_a.dot(six(a.velocity_world, a.omega_world)) + row.jacobian_b.dot(six(b.velocity_world, b.omega_world));
+}
+
+ConstraintRow point_row(const Vector3d& e, const Body& a, const Vector3d& r_a, const Body& b, const Vector3d& r_b) {
+  ConstraintRow row;
+  row.jacobian_a = six(e, r_a.cross(e));
+  row.jacobian_b = -six(e, r_b.cross(e));
+  // The difference of the centres first: far from the origin the small arms keep their digits.
+  row.value = e.dot((a.com_world - b.com_world) + r_a - r_b);
+  row.rate = rate_of(row, a, b);
+  row.velocity_product = e.dot(a.omega_world.cross(a.omega_world.cross(r_a)) - b.omega_world.cross(b.omega_world.cross(r_b)));
+  return row;
+}
+
+ConstraintRow axes_row(const Vector3d& x_a, const Body& a, const Vector3d& z_b, const Body& b) {
+  ConstraintRow row;
+  const Vector3d across = x_a.cross(z_b);
+  row.jacobian_a = six(Vector3d::Zero(), across);
+  row.jacobian_b = -row.jacobian_a;
+  row.value = x_a.dot(z_b);
+  row.rate = rate_of(row, a, b);
+  row.velocity_product = (a.omega_world.cross(x_a).cross(z_b) + x_a.cross(b.omega_world.cross(z_b))).dot(a.omega_world - b.omega_world);
+  return row;
+}
+
+}  // namespace
+
+int row_count(scene::JointKind kind) {
+  switch (kind) {
+    case scene::JointKind::kBall: return 3;
+    case scene::JointKind::kHinge: return 5;
+    case scene::JointKind::kWeld: return 6;
+  }
+  return 0;
+}
+
+void append_joint_rows(const JointLink& joint, const Body& a, int index_a, const Body& b, int index_b, std::vector<Constraint>& rows) {
+  const Vector3d r_a = a.world_from_body * joint.a.point_body, r_b = b.world_from_body * joint.b.point_body;
+  for (int axis = 0; axis < 3; ++axis) rows.push_back({index_a, index_b, point_row(Vector3d::Unit(axis), a, r_a, b, r_b)});
+  if (joint.kind == scene::JointKind::kBall) return;
+  const Matrix3d axes_a = (a.world_from_body * joint.a_from_joint).toRotationMatrix(), axes_b = (b.world_from_body * joint.b_from_joint).toRotationMatrix();
+  rows.push_back({index_a, index_b, axes_row(axes_a.col(0), a, axes_b.col(2), b)});
+  rows.push_back({index_a, index_b, axes_row(axes_a.col(1), a, axes_b.col(2), b)});
+  if (joint.kind == scene::JointKind::kWeld) rows.push_back({index_a, index_b, axes_row(axes_a.col(0), a, axes_b.col(1), b)});
+}
+
+HingeMotion hinge_motion(const JointLink& joint, const Body& a, const Body& b) {
+  const Quaterniond world_from_joint_a = a.world_from_body * joint.a_from_joint;
+  const Quaterniond turned = world_from_joint_a.conjugate() * (b.world_from_body * joint.b_from_joint);
+  const Vector3d axis_world = world_from_joint_a * Vector3d::UnitZ();
+  double angle = 2.0 * std::atan2(turned.z(), turned.w());
+  if (angle > M_PI) angle -= 2.0 * M_PI;
+  if (angle <= -M_PI) angle += 2.0 * M_PI;
+  return {angle, axis_world.dot(b.omega_world - a.omega_world), axis_world};
+}
+
+}  // namespace tumble

@@ -1,0 +1,88 @@
+/// Bodies that move together because springs, rods, joints or motors tie them to each other or to the world, or a medium slows
+/// them: one system of differential equations, integrated by the laws' method as a whole.
+///
+/// Forces of springs and drag are evaluated at every stage of the method; rods and joints add what holds them (Lagrange
+/// multipliers at every stage), and are brought back by the stabilisation the scene chose: Baumgarte's term in the multipliers, or
+/// a projection of places and velocities at the end of each step.
+#pragma once
+
+#include <functional>
+#include <utility>
+#include <vector>
+
+#include "framework/dynamics/laws.h"
+#include "framework/dynamics/world.h"
+#include "framework/engines/run_counters.h"
+
+namespace tumble::engines {
+
+/// What the links of a world pull with, by their places in World's lists; zero for links of other groups. [N]
+struct LinkForces {
+  std::vector<double> springs, rods, joints;
+};
+
+class LinkedBodies {
+ public:
+  /// Gravity and point forces on a body (index in the world) in a state.
+  using OuterWrench = std::function<Wrench(int body, const RigidBodyState& state)>;
+
+  /// @param bodies  movable ones, ascending: all that a link of the group touches
+  LinkedBodies(const World& world, const Laws& laws, RunCounters& counters, OuterWrench outer_wrench, std::vector<int> bodies);
+
+  const std::vector<int>& bodies() const { return bodies_; }
+  bool has_constraints() const { return !rods_.empty() || !joints_.empty(); }
+
+  /// Control laws whose time has come look and set their torques. @return the next time at which one looks; infinite without
+  double look(double time, const std::vector<RigidBodyState>& states);
+
+  /// States of bodies() after a step of the laws' method. @param states  by body of the world, at t
+  std::vector<RigidBodyState> advance(const std::vector<RigidBodyState>& states, double t, double h);
+
+  /// Velocities onto the constraints (after an impact): the change that is smallest in the measure of the masses.
+  void project_velocities(std::vector<RigidBodyState>& states, double t);
+  /// Places, then velocities, onto the constraints.
+  void project(std::vector<RigidBodyState>& states, double t);
+
+  /// The rows of rods and joints, between places in bodies(); fixed ends have the index fixed_end().
+  std::vector<Constraint> constraint_rows(const std::vector<RigidBodyState>& states, double t);
+  int fixed_end() const { return static_cast<int>(bodies_.size()); }
+
+  /// Adds the forces of this group's links in these states.
+  void measure(const std::vector<RigidBodyState>& states, double t, LinkForces& forces);
+
+ private:
+  struct End {                 // of a link: a place in the list of bodies
+    int place;                 // bodies_, then fixed_
+    Vector3d point_body;
+  };
+  struct Link {
+    int index;                 // in the world's list
+    End a, b;
+  };
+
+  End end_of(const Anchor& anchor);
+  std::vector<Body> place_bodies(const std::vector<RigidBodyState>& local, double t) const;
+  std::vector<Wrench> forces(const std::vector<RigidBodyState>& local, const std::vector<Body>& bodies);
+  std::vector<Constraint> rows(const std::vector<Body>& bodies);
+  VectorXd add_constraint_forces(const std::vector<Body>& bodies, const std::vector<RigidBodyState>& local, std::vector<Wrench>& wrenches);
+  VectorXd derivative(double t, const VectorXd& y);
+  void project_local(std::vector<RigidBodyState>& local, double t, bool places);
+  std::vector<RigidBodyState> take(const std::vector<RigidBodyState>& states) const;
+  void put(const std::vector<RigidBodyState>& local, std::vector<RigidBodyState>& states) const;
+
+  const World& world_;
+  const Laws& laws_;
+  RunCounters& counters_;
+  OuterWrench outer_wrench_;
+  std::vector<int> bodies_;
+  std::vector<int> fixed_;            // immovable ends: bodies of the world, -1 for the world itself
+  std::vector<Link> springs_, rods_, joints_;
+  std::vector<int> drags_, motors_;   // in the world's lists
+  std::vector<double> torques_, next_looks_;   // by motors_
+  double time_of_stage_ = 0.0;
+};
+
+/// The groups of a world: movable bodies that links tie together, each with what its links need. Bodies without links are in none.
+std::vector<std::vector<int>> groups_of_linked_bodies(const World& world);
+
+}  // namespace tumble::engines

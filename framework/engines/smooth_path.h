@@ -1,0 +1,36 @@
+/// The path of a body within a step as polynomials of time, for bodies whose motion depends on others: springs, rods, joints and
+/// contacts. Asking it costs no integration, and what bounds it is exact.
+///
+/// The centre goes along the cubic through both ends with their velocities (Hermite). The body turns as q(t) = q0 exp(phi(t)), phi a
+/// cubic rotation vector in the frame of the body at the start, with the angular velocities of both ends. Between the ends the path is
+/// off the solution by O(h^4); at the ends it is the states themselves.
+#pragma once
+
+#include "framework/collision/motion.h"
+#include "framework/dynamics/body.h"
+
+namespace tumble::engines {
+
+class SmoothPath {
+ public:
+  SmoothPath() = default;
+  /// @pre t0 < t1. Velocities are those of the states' momenta.
+  SmoothPath(const RigidBodyState& start, const RigidBodyState& end, const Inertia& inertia, double t0, double t1);
+
+  /// Momenta are those of the path's velocities.
+  RigidBodyState at(double t) const;
+  collision::MotionState motion_at(double t) const;
+  const collision::MotionBounds& bounds() const { return bounds_; }
+
+ private:
+  Vector3d omega_world(double s, Quaterniond& world_from_body) const;
+
+  double t0_ = 0.0, h_ = 1.0;
+  Inertia inertia_;
+  Vector3d x_[4];           // coefficients of s^k, s = (t - t0) / h
+  Vector3d phi_[4];         // likewise; phi_[0] = 0
+  Quaterniond start_;
+  collision::MotionBounds bounds_;
+};
+
+}  // namespace tumble::engines
