@@ -9,6 +9,7 @@
 #include "framework/cli/verb.h"
 #include "framework/grading/grade.h"
 #include "framework/grading/grade_pages.h"
+#include "framework/grading/plain_text.h"
 
 namespace tumble::cli {
 namespace {
@@ -18,6 +19,7 @@ namespace fs = std::filesystem;
 struct Words {
   std::string id, folder, out;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+  double budget_s = grading::GradeOptions{}.budget_s;
   bool no_media = false;
 };
 
@@ -27,16 +29,9 @@ std::string span_of(double seconds) {
   return fmt::format("{:.1f} h", seconds / 3600.0);
 }
 
-// What a terminal must not act on: control characters of a name.
-std::string printable(std::string text) {
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  return text;
-}
-
 void tell(const grading::GradeProgress& progress) {
   std::string line = fmt::format("[{}/{}]", progress.done, progress.total);
-  if (!progress.finished.empty()) line += ' ' + printable(progress.finished);
+  if (!progress.finished.empty()) line += ' ' + grading::plain_name(progress.finished);
   if (progress.done < progress.total) line += progress.left_s >= 0.0 ? " · about " + span_of(progress.left_s) + " left" : " ...";
   fmt::print(stderr, "{}\n", line);
   std::fflush(stderr);
@@ -44,13 +39,13 @@ void tell(const grading::GradeProgress& progress) {
 
 void print_table(const std::vector<grading::Grade>& grades) {
   std::size_t widest = 10;
-  for (const auto& grade : grades) widest = std::max(widest, printable(grade.name).size());
+  for (const auto& grade : grades) widest = std::max(widest, grading::plain_name(grade.name).size());
   for (const auto& grade : grades) {
-    fmt::print("{:<{}}  {}", printable(grade.name), widest, grading::summary_of(grade));
+    fmt::print("{:<{}}  {}", grading::plain_name(grade.name), widest, grading::summary_of(grade));
     if (grade.taken_over) fmt::print("  (unchanged since the last run)");
     if (!grade.change.empty() && !grade.taken_over) fmt::print("  ({})", grade.change);
-    for (const auto& note : grade.notes) fmt::print("  note: {}", printable(note));
-    if (grade.state == grading::GradeState::kNothingToCompile) fmt::print(": {}", printable(grade.story));
+    for (const auto& note : grade.notes) fmt::print("  note: {}", grading::plain_text(note));
+    if (grade.state == grading::GradeState::kNothingToCompile) fmt::print(": {}", grading::plain_text(grade.story));
     fmt::print("\n");
   }
 }
@@ -62,6 +57,7 @@ void grade(Context& context, const Words& words) {
   const auto submissions = grading::find_submissions(words.folder, kind);
   grading::GradeOptions options;
   options.jobs = words.jobs;
+  options.budget_s = words.budget_s;
   options.media = !words.no_media;
   options.progress = tell;
   const fs::path out = words.out.empty() ? fs::path("out") / ("grade_" + words.id) : fs::path(words.out);
@@ -82,6 +78,7 @@ void add_grade(CLI::App& app, Context& context) {
   verb->add_option("folder", words->folder, "One submission a sub-folder")->required()->type_name("FOLDER");
   verb->add_option("--out", words->out, "Where results go; default out/grade_ID. A run that was ended goes on from there")->type_name("FOLDER");
   verb->add_option("--jobs", words->jobs, "Submissions at a time")->check(CLI::Range(1, 256))->capture_default_str();
+  verb->add_option("--budget-s", words->budget_s, "Time for all tests of one submission together; tests after it are out of time, not run")->check(CLI::PositiveNumber)->capture_default_str();
   verb->add_flag("--no-media", words->no_media, "Without pictures and videos: seconds instead of minutes a submission");
   verb->footer("Exit: 0 all graded, 2 something to repair, 3 the grader failed somewhere (those scores are blank; run it again).");
   verb->callback([&context, words] { grade(context, *words); });

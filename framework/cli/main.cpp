@@ -5,6 +5,7 @@
 
 #include "framework/cli/verb.h"
 #include "framework/core/not_implemented.h"
+#include "framework/grading/test_words.h"
 
 namespace {
 
@@ -30,6 +31,27 @@ void refuse_unknown_verb(const CLI::App& app, int argc, char** argv) {
   throw tumble::UserError(argv[1], "there is no such verb", "Known: " + known + ". tumble --help says what each does.");
 }
 
+// The parser would only say that a flag was not expected.
+void refuse_unknown_flag(const CLI::App& app) {
+  for (const CLI::App* verb : app.get_subcommands()) {
+    for (const std::string& word : verb->remaining()) {
+      const std::string flag = word.substr(0, word.find('='));
+      if (!flag.starts_with("-") || flag == "-") continue;
+      std::string known, nearest;
+      std::size_t least = flag.size();
+      for (const CLI::Option* option : verb->get_options()) {
+        for (const std::string& name : option->get_lnames()) {
+          known += (known.empty() ? "--" : ", --") + name;
+          const std::size_t distance = tumble::grading::edit_distance("--" + name, flag);
+          if (distance < least) least = distance, nearest = "--" + name;
+        }
+      }
+      const bool is_near = least <= 2 + flag.size() / 4;
+      throw tumble::UserError(flag, verb->get_name() + " has no such flag", (is_near ? "Did you mean " + nearest + "? " : "") + "Known: " + known + ".");
+    }
+  }
+}
+
 int run(int argc, char** argv) {
   tumble::cli::Context context;
   find_trees(context);
@@ -43,6 +65,9 @@ int run(int argc, char** argv) {
   refuse_unknown_verb(app, argc, argv);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::ExtrasError& error) {
+    refuse_unknown_flag(app);
+    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUserError);
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUserError);
   }

@@ -44,7 +44,7 @@ class TemporaryFolder {
 
 /// Compiles as the build does (assignments/CMakeLists.txt: tumble_module_object). The compiler's words go to stderr.
 void compile(const Context& context, const fs::path& source, const fs::path& object) {
-  std::vector<std::string> words = {"g++", "-std=c++20", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-fno-gnu-unique", "-Wl,-z,defs",
+  std::vector<std::string> words = {"g++", "-std=c++20", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-fno-finite-loops", "-fno-gnu-unique", "-Wl,-z,defs",
                                     "-DTUMBLE_BUILDING_MODULE", "-I", context.root.string(), "-isystem", TUMBLE_EIGEN_INCLUDE,
                                     source.string(), "-o", object.string()};
   std::vector<char*> argv;

@@ -20,6 +20,7 @@ struct CallLog {
   long calls = 0;
   bool in_call = false;
   bool noted = false;
+  double timed_out_s = 0.0;   // the limit that a call ran into
   Verdict verdict = Verdict::kGraderFault;
 
   void begin(const char* function);

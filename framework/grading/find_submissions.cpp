@@ -18,6 +18,7 @@ constexpr std::size_t kMostFiles = 5000;             // looked at: a whole build
 struct Found {
   std::vector<fs::path> named, sources, archives;   // by the right name; other .cpp files; .zip and the like
   std::set<std::string> others;
+  std::vector<std::pair<fs::path, std::string>> locked;   // folders that cannot be read, and why
   bool cut = false;
 };
 
@@ -33,6 +34,7 @@ void look(const fs::path& folder, const std::string& wanted, int depth, std::siz
     if (++seen > kMostFiles) return void(found.cut = true);
     entries.push_back(*it);
   }
+  if (failed) found.locked.push_back({folder, failed.message()});
   std::sort(entries.begin(), entries.end());
   for (const auto& entry : entries) {
     const fs::path& path = entry.path();
@@ -76,7 +78,11 @@ std::string why_not(const fs::path& file) {
 
 void choose_source(const Found& found, const std::string& wanted, const fs::path& folder, Submission& submission) {
   if (found.cut) submission.notes.push_back("more than " + std::to_string(kMostFiles) + " files: only the first were looked at");
-  if (found.named.size() > 1) {
+  if (!found.locked.empty()) {
+    const auto& [locked, why] = found.locked.front();
+    submission.problem = "The folder " + (locked == folder ? folder.filename() : locked.lexically_relative(folder.parent_path())).string() + " cannot be read (" + why +
+                         "), so it is not known what was handed in. Let the grader's user in, for example: chmod -R u+rX '" + folder.string() + "'.";
+  } else if (found.named.size() > 1) {
     submission.problem = "Holds " + wanted + " " + std::to_string(found.named.size()) + " times: " + listed(found.named, folder) + ". Leave one, so that it is clear which counts.";
   } else if (found.named.empty() && found.sources.size() > 1) {
     submission.problem = "Holds no " + wanted + " but several other sources: " + listed(found.sources, folder) + ". Name the one that counts " + wanted + ".";

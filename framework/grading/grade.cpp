@@ -26,7 +26,11 @@ struct ObjectFile {
   }
 };
 
-void judge(const Course& course, const std::string& id, const Submission& submission, const Rubric& rubric, const ObjectFile& object, Grade& grade) {
+std::ptrdiff_t not_run(const Grade& grade) {
+  return std::count_if(grade.tests.begin(), grade.tests.end(), [](const ScoredTest& t) { return t.result.not_run; });
+}
+
+void judge(const Course& course, const std::string& id, const Submission& submission, const Rubric& rubric, const ObjectFile& object, double budget_s, Grade& grade) {
   if (!submission.problem.empty()) {
     grade.state = GradeState::kNothingToCompile;
     grade.story = submission.problem;
@@ -42,7 +46,9 @@ void judge(const Course& course, const std::string& id, const Submission& submis
     grade.story = compiler_story(built.said, submission.source);
     grade.tests = score_nothing(rubric, Verdict::kWrong, "the file does not compile, so no test ran");
   } else {
-    grade.tests = score_tests(rubric, judge_module(course, id, object.path));
+    grade.tests = score_tests(rubric, judge_module(course, id, object.path, false, budget_s));
+    if (const auto n = not_run(grade); n > 0)
+      grade.notes.push_back(fmt::format("the time budget of {:g} s was used up by tests that ran out of time; {} of {} tests were not run", budget_s, n, grade.tests.size()));
     grade.state = GradeState::kJudged;
   }
 }
@@ -69,12 +75,12 @@ Grade grade_submission(const Course& course, const std::string& id, const Submis
   grade.folder = folder.filename().string();
   grade.notes = submission.notes;
   const ObjectFile object{folder / ("." + kind.id + ".so")};
-  judge(course, id, submission, rubric, object, grade);
+  judge(course, id, submission, rubric, object, options.budget_s, grade);
   add_up(grade);
   if (options.media && grade.state == GradeState::kJudged)
     grade.media = make_media(course, id, options.scenes.empty() ? scenes_of(course, id) : options.scenes, object.path, folder / "media", options.media_options);
 
-  const GradeKey key{submission_digest(submission), grader_digest(course, id), pictures_digest(course, id, options)};
+  const GradeKey key{submission_digest(submission), grader_digest(course, id, options.budget_s), pictures_digest(course, id, options)};
   const std::string results = gradescope_json(grade);
   write_whole(folder / "results.json", results);
   submission_page(kind, grade, record_of(key)).write(folder / "index.html");

@@ -71,6 +71,7 @@ struct GradeProgress {
 };
 
 struct GradeOptions {
+  double budget_s = 60.0;            // for all tests of a submission together: TimeBudget
   int jobs = 1;                      // submissions at the same time, each in a process of its own
   bool media = true;
   MediaOptions media_options;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "framework/grading/plain_text.h"
 #include "framework/grading/scoring.h"
 
 namespace tumble::grading {
@@ -16,21 +17,28 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array kStates = {"judged", "nothing to compile", "does not compile", "fault of the grader"};
 
-// Names and stories hold any bytes: what is not UTF-8 is replaced, not refused.
+// Names and stories that are kept for ourselves hold any bytes: what is not UTF-8 is replaced, not refused.
 std::string dumped(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n'; }
 
 std::string output_of(const ScoredTest& test) {
   std::string text = words(test.result.verdict);
-  if (!test.result.story.empty()) text += "\n" + test.result.story;
+  if (!test.result.story.empty()) text += "\n" + plain_text(test.result.story);
   return text;
 }
 
-// A cell of a table for spreadsheets: quoted where it must be, and never a formula.
-std::string csv_cell(std::string text) {
-  text = Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
-  for (char& c : text)
-    if (static_cast<unsigned char>(c) < 0x20) c = ' ';
-  if (!text.empty() && std::string_view("=+-@").find(text[0]) != std::string_view::npos) text.insert(0, "'");
+// What spreadsheets take for the start of a formula: the signs, and the full-width forms that some of them read alike.
+bool starts_a_formula(const std::string& text) {
+  const auto first = text.find_first_not_of(' ');
+  if (first == std::string::npos) return false;
+  for (const std::string_view sign : {"=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20", "\u2212"})
+    if (std::string_view(text).substr(first).starts_with(sign)) return true;
+  return false;
+}
+
+// A cell of a table for spreadsheets: one line, quoted where it must be, and never a formula.
+std::string csv_cell(const std::string& raw) {
+  std::string text = plain_name(raw);
+  if (starts_a_formula(text)) text.insert(0, "'");
   const bool is_plain = text.find_first_of(",;\"") == std::string::npos && !text.starts_with(' ') && !text.ends_with(' ');
   if (is_plain) return text;
   std::string quoted = "\"";
@@ -68,7 +76,7 @@ SceneMedia media_of(const Json& json) {
 Json test_json(const ScoredTest& test) {
   return {{"test", test.item.test}, {"title", test.item.title}, {"level", test.item.level}, {"hidden", test.item.hidden}, {"points", test.item.points},
           {"score", test.score}, {"verdict", words(test.result.verdict)}, {"story", test.result.story}, {"last_call", test.result.last_call},
-          {"calls", test.result.calls}};
+          {"calls", test.result.calls}, {"not_run", test.result.not_run}};
 }
 
 ScoredTest test_of(const Json& json) {
@@ -80,6 +88,7 @@ ScoredTest test_of(const Json& json) {
   test.result.story = json.at("story");
   test.result.last_call = json.at("last_call");
   test.result.calls = json.at("calls");
+  test.result.not_run = json.at("not_run");
   return test;
 }
 
@@ -90,7 +99,7 @@ std::string gradescope_json(const Grade& grade) {
   page["score"] = grade.score;
   std::string said = grade.story;
   for (const std::string& note : grade.notes) said += (said.empty() ? "" : "\n") + ("note: " + note);
-  page["output"] = said;
+  page["output"] = plain_text(said);
   page["output_format"] = "text";
   page["test_output_format"] = "text";
   page["test_name_format"] = "text";
@@ -177,7 +186,7 @@ std::string ledger_json(const std::string& id, const std::vector<GradeRecord>& r
   ledger["assignment"] = id;
   ledger["submissions"] = Json::array();
   for (const GradeRecord& record : records)
-    ledger["submissions"].push_back({{"name", record.grade.name}, {"folder", record.grade.folder}, {"submission", record.key.submission}, {"grader", record.key.grader},
+    ledger["submissions"].push_back({{"name", plain_name(record.grade.name)}, {"folder", record.grade.folder}, {"submission", record.key.submission}, {"grader", record.key.grader},
                                      {"results", record.results_digest}, {"score", record.grade.score}, {"final", record.grade.is_final()},
                                      {"change", record.grade.change}});
   return dumped(ledger);

@@ -30,9 +30,9 @@ std::string judging_digest(const Course& course, const std::string& id) {
   return digest_of_files(files);
 }
 
-std::string grader_digest(const Course& course, const std::string& id) {
+std::string grader_digest(const Course& course, const std::string& id, double budget_s) {
   const std::string folder = course.registry->find(id).folder;
-  return digest(judging_digest(course, id) + digest_of_files({course.root / "assignments" / folder / "rubric.json",
+  return digest(judging_digest(course, id) + fmt::format(" {} ", budget_s) + digest_of_files({course.root / "assignments" / folder / "rubric.json",
                                                               course.root / "solutions_private" / folder / "rubric_hidden.json", "/proc/self/exe"}));
 }
 

@@ -2,6 +2,7 @@
 #include <sys/wait.h>
 
 #include <chrono>
+#include <cstdio>
 #include <fstream>
 #include <set>
 
@@ -46,7 +47,7 @@ class Batch {
  private:
   // Takes over what is whole and unchanged.
   void plan(const std::vector<Submission>& submissions) {
-    const std::string grader = grader_digest(course_, id_), pictures = pictures_digest(course_, id_, options_);
+    const std::string grader = grader_digest(course_, id_, options_.budget_s), pictures = pictures_digest(course_, id_, options_);
     std::set<std::string> folders;
     for (const Submission& submission : submissions) {
       Work work{&submission, folder_of(submission.name), {submission_digest(submission), grader, pictures}, {}, {}, 0.0};
@@ -85,7 +86,14 @@ class Batch {
       ++done_;
       ++fresh_;
       tell(open_[i]->submission->name);
-    });
+    }, [this] { clear_drafts(); });
+  }
+
+  // What is half done goes; what is done stands, and is taken over by the next run.
+  void clear_drafts() const {
+    std::error_code ignored;
+    for (const Work& work : work_) fs::remove_all(draft_of(work), ignored);
+    fmt::print(stderr, "stopped: {} of {} submissions are graded; the same command goes on from here\n", done_, work_.size());
   }
 
   fs::path draft_of(const Work& work) const { return out_ / (".making-" + work.folder); }

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/grading/plain_text.h"
 #include "framework/grading/scoring.h"
 
 namespace tumble::grading {
@@ -102,7 +103,7 @@ void add_stories(report::Page& page, const Grade& grade) {
     std::string facts = test.item.test + (test.item.hidden ? " (hidden)" : "");
     if (test.result.calls > 0) facts += fmt::format(", {} call{}, the last to {}", test.result.calls, test.result.calls == 1 ? "" : "s", test.result.last_call);
     page.paragraph(facts, Look::kMuted);
-    page.preformatted(flush_left(test.result.story));
+    page.preformatted(plain_text(flush_left(test.result.story)));
   }
   if (missing.empty()) return;
   page.heading("not attempted", 3);
@@ -115,7 +116,7 @@ void add_media(report::Page& page, const std::vector<SceneMedia>& media, const s
   for (const SceneMedia& scene : media) {
     page.heading(scene.title, 3, "s-" + anchor_of(scene.scene));
     const auto wrong = std::count_if(scene.checks.begin(), scene.checks.end(), [](const auto& c) { return !c.passed; });
-    if (!scene.story.empty()) page.paragraph((scene.attempted ? "The submission's run ended early: " : "Not attempted: ") + scene.story, scene.attempted ? Look::kBad : Look::kMuted);
+    if (!scene.story.empty()) page.paragraph((scene.attempted ? "The submission's run ended early: " : "Not attempted: ") + plain_text(scene.story), scene.attempted ? Look::kBad : Look::kMuted);
     else if (wrong > 0) page.paragraph(fmt::format("{} of its {} numbers are wrong.", wrong, scene.checks.size()), Look::kBad);
     else if (!scene.checks.empty()) page.paragraph(scene.checks.size() == 1 ? "Its number is right." : fmt::format("All of its {} numbers are right.", scene.checks.size()), Look::kGood);
     if (!scene.picture.empty() || !scene.video.empty()) {
@@ -136,13 +137,13 @@ void add_media(report::Page& page, const std::vector<SceneMedia>& media, const s
 }
 
 report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade, const std::string& record) {
-  report::Page page(grade.name, fmt::format("{} ({}): {}", kind.title, kind.id, summary_of(grade)));
+  report::Page page(plain_name(grade.name), fmt::format("{} ({}): {}", kind.title, kind.id, summary_of(grade)));
   page.links({{"All submissions", "../index.html"}, {"Tests", "#tests"}, {"Stories", "#stories"}, {"Scenes", "#scenes"}});
   add_tiles(page, grade);
-  for (const std::string& note : grade.notes) page.paragraph("Note: " + note, Look::kWarning);
+  for (const std::string& note : grade.notes) page.paragraph("Note: " + plain_text(note), Look::kWarning);
   if (!grade.story.empty()) {
     page.heading(summary_of(grade));
-    page.preformatted(grade.story);
+    page.preformatted(plain_text(grade.story));
   }
   page.heading("Tests", 2, "tests");
   for (const char* level : {"basic", "intermediate", "advanced", ""}) add_level(page, grade, level);
@@ -176,10 +177,10 @@ report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade
   table.columns = {{"Submission"}, {"Score", true}, {"of", true}, {"Right", true}, {"Wrong", true}, {"Not attempted", true}, {"Crashed", true}, {"Out of time or memory", true}, {"Remarks"}};
   for (const Grade& grade : grades) {
     std::string remarks = grade.state == GradeState::kJudged ? "" : summary_of(grade);
-    for (const std::string& note : grade.notes) remarks += (remarks.empty() ? "" : "; ") + note;
+    for (const std::string& note : grade.notes) remarks += (remarks.empty() ? "" : "; ") + plain_text(note);
     if (!grade.change.empty()) remarks += (remarks.empty() ? "" : "; ") + grade.change;
     const auto number = [&](Verdict v) { const auto n = grade.state == GradeState::kJudged ? count(grade, v) : 0; return Cell{n == 0 ? "" : std::to_string(n), "", n == 0 ? Look::kMuted : look_of(v)}; };
-    table.rows.push_back({{grade.name, report::link_to(std::filesystem::path(grade.folder) / "index.html")}, {grade.is_final() ? points_text(grade.score) : "none", "", grade.is_final() ? Look::kPlain : Look::kWarning},
+    table.rows.push_back({{plain_name(grade.name), report::link_to(std::filesystem::path(grade.folder) / "index.html")}, {grade.is_final() ? points_text(grade.score) : "none", "", grade.is_final() ? Look::kPlain : Look::kWarning},
                           {points_text(grade.possible), "", Look::kMuted}, number(Verdict::kRight), number(Verdict::kWrong), number(Verdict::kNotAttempted), number(Verdict::kCrashed),
                           number(Verdict::kOutOfResources), {remarks, "", Look::kMuted}});
   }

@@ -12,6 +12,7 @@
 
 #include "framework/grading/test_runner.h"
 #include "framework/grading/test_words.h"
+#include "framework/grading/time_budget.h"
 #include "framework/grading/verdict_table.h"
 
 namespace tumble::grading {
@@ -21,6 +22,7 @@ struct Words {
   WorkerOptions worker;
   std::string json, filter;
   Rubric rubric;
+  TimeRules time;
 };
 
 Words read_words(const char* id, int argc, char** argv) {
@@ -34,12 +36,13 @@ Words read_words(const char* id, int argc, char** argv) {
     };
     if (word == "--submission") words.worker.module = value();
     else if (word == "--json") words.json = value();
+    else if (word == "--budget-s") words.time.budget_s = number_word(word, value());
     else if (word == "--plain") words.worker.sandboxed = false;
     else if (word == "--rubric") {
       const Rubric more = read_rubric(value());
       words.rubric.items.insert(words.rubric.items.end(), more.items.begin(), more.items.end());
     } else if (word.starts_with("-")) {
-      throw UserError(word, "is not known here", "Known: --submission FILE.so, --json FILE, --rubric FILE, --plain, and patterns of test names.");
+      throw UserError(word, "is not known here", "Known: --submission FILE.so, --json FILE, --rubric FILE, --budget-s S, --plain, and patterns of test names.");
     } else {
       words.filter += (words.filter.empty() ? "" : ":") + word;
     }
@@ -58,9 +61,13 @@ int run(const char* id, const std::function<void(modules::Connection&)>& attach,
   TestLimits limits;
   limits.wall_s = words.worker.session_wall_s + 10.0;  // the connection's own deadlines come first: past this the judge itself hangs
   limits.memory_bytes = 4ull << 30;
+  TimeBudget budget(words.time);
   std::vector<TestResult> results;
-  for (const std::string& test : linked_tests())
-    if (chosen(test, words.filter)) results.push_back(run_isolated(test, limits, Process::kGraders));
+  for (const std::string& test : chosen_tests(linked_tests(), words.filter)) {
+    connection.suspect(budget.suspects());
+    results.push_back(budget.is_used_up() ? budget.not_run(test) : run_isolated(test, limits, Process::kGraders));
+    if (!results.back().not_run) budget.charge(results.back());
+  }
   while (::waitpid(-1, nullptr, 0) > 0 || errno == EINTR) {}
   if (!words.json.empty()) write_results(words.json, results);
   print_verdicts(std::cout, results, words.rubric, ::isatty(STDOUT_FILENO) == 1);

@@ -54,6 +54,9 @@ class Stage {
   std::optional<uid_t> owner_;
 };
 
+/// Removes the stages of processes that are gone without having removed them: killed ones.
+void sweep_stages_of_the_dead();
+
 struct SandboxLimits {
   double wall_s = 10.0;
   std::uint64_t cpu_s = 10;                      // per process; the wall limit bounds the sum

@@ -26,6 +26,8 @@ constexpr const char* kLockFolder = "/run/tumble";
 constexpr const char* kStageFolder = "/tmp";
 constexpr const char* kStageName = "tumble-stage-";
 
+}  // namespace
+
 void sweep_stages_of_the_dead() {
   namespace fs = std::filesystem;
   std::error_code ignored;
@@ -39,8 +41,6 @@ void sweep_stages_of_the_dead() {
       fs::remove_all(it->path(), failed);
   }
 }
-
-}  // namespace
 
 SandboxUser SandboxUser::lease() {
   SandboxUser user;

@@ -18,11 +18,11 @@ constexpr double kJudgeWall = 3600.0;
 
 }  // namespace
 
-Judgement judge_module(const Course& course, const std::string& id, const fs::path& module, bool plain) {
+Judgement judge_module(const Course& course, const std::string& id, const fs::path& module, bool plain, double budget_s) {
   Judgement judgement;
   const PrivateFolder folder;
   const fs::path record = folder.path() / "results.json";
-  std::vector<std::string> words = {judge_of(course, id).string(), "--submission", module.string(), "--json", record.string()};
+  std::vector<std::string> words = {judge_of(course, id).string(), "--submission", module.string(), "--json", record.string(), "--budget-s", fmt::format("{:g}", budget_s)};
   if (plain) words.push_back("--plain");
   const ProgramOutcome outcome = run_program(words, Output::kCaptured, kJudgeWall);
   if (!fs::exists(record) || outcome.code == static_cast<int>(ExitCode::kUserError)) {

@@ -15,8 +15,10 @@ struct Judgement {
 };
 
 /// Runs the judge of the assignment against a shared object, in a process of its own.
+/// @param budget_s  time for all tests together (TimeBudget)
 /// @param plain  without a sandbox: for code of our own only
-Judgement judge_module(const Course& course, const std::string& id, const std::filesystem::path& module, bool plain = false);
+Judgement judge_module(const Course& course, const std::string& id, const std::filesystem::path& module, bool plain = false,
+                       double budget_s = 60.0);
 
 /// Every item of the rubric with its result, in the rubric's order; then tests that the rubric does not name, for no points.
 /// Fail-closed: an item that the judge did not answer for is a fault of the grader and earns nothing.

@@ -94,19 +94,46 @@ void write_all(int fd, const std::string& text) {
 
 struct Answer {
   std::string text;
-  bool in_time = true;
+  double timed_out_s = 0.0;   // the limit that was passed
 };
 
-Answer read_answer(int fd, double wall_s) {
+// Sees from outside how long the call lasts that a test is in, for functions whose calls have a limit of their own.
+class CallWatch {
+ public:
+  CallWatch(const CallLog& log, const TestLimits& limits) : log_(log), limits_(limits) {}
+
+  /// The limit that the present call has passed; 0: none.
+  double passed(Clock::time_point now) {
+    const long call = log_.in_call ? log_.calls : 0;
+    if (call != call_) call_ = call, since_ = now;
+    if (call == 0) return 0.0;
+    const auto limit = limits_.call_wall_s.find(log_.last_call);
+    return limit != limits_.call_wall_s.end() && now - since_ > std::chrono::duration<double>(limit->second) ? limit->second : 0.0;
+  }
+
+ private:
+  const CallLog& log_;
+  const TestLimits& limits_;
+  long call_ = 0;
+  Clock::time_point since_;
+};
+
+Answer read_answer(int fd, const CallLog& log, const TestLimits& limits) {
   constexpr std::size_t kCap = 1u << 20;  // bytes of failures: more helps nobody
-  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wall_s));
+  constexpr int kLook = 20;               // ms between two looks at a watched call
+  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits.wall_s));
+  CallWatch watch(log, limits);
   Answer answer;
   char buffer[4096];
   while (answer.text.size() < kCap) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-    if (left <= 0) return answer.in_time = false, answer;
+    const auto now = Clock::now();
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - now).count();
+    if (left <= 0) answer.timed_out_s = limits.wall_s;
+    else if (!limits.call_wall_s.empty()) answer.timed_out_s = watch.passed(now);
+    if (answer.timed_out_s > 0.0) return answer;
     pollfd waiting{fd, POLLIN, 0};
-    if (::poll(&waiting, 1, static_cast<int>(left) + 1) <= 0) continue;
+    const int wait = static_cast<int>(left) + 1;
+    if (::poll(&waiting, 1, limits.call_wall_s.empty() ? wait : std::min(wait, kLook)) <= 0) continue;
     const ssize_t n = ::read(fd, buffer, sizeof buffer);
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return answer;
@@ -137,13 +164,13 @@ std::string read_printed(int fd) {
 }
 
 // What happened to a test's process that gave no orderly answer.
-void judge_death(TestResult& result, const CallLog& log, int status, bool in_time, const TestLimits& limits) {
+void judge_death(TestResult& result, const CallLog& log, int status, double timed_out_s) {
   if (log.noted) {
     result.verdict = log.verdict;
     result.story = log.story;
-  } else if (!in_time) {
+  } else if (timed_out_s > 0.0) {
     result.verdict = Verdict::kOutOfResources;
-    result.story = timeout_story(limits.wall_s, log.last_call, log.in_call);
+    result.story = timeout_story(timed_out_s, log.last_call, log.in_call);
   } else {
     result.verdict = Verdict::kCrashed;
     result.story = WIFSIGNALED(status) ? signal_story(WTERMSIG(status), log.last_call, log.in_call)
@@ -220,11 +247,13 @@ TestResult run_isolated(const std::string& test, const TestLimits& limits, Proce
   if (child < 0) {
     result.story = "no process could be started";
   } else {
-    const Answer answer = read_answer(answer_pipe[0], limits.wall_s);
-    if (!answer.in_time) ::kill(child, SIGKILL);
+    const Answer answer = read_answer(answer_pipe[0], log, limits);
+    const bool in_time = answer.timed_out_s == 0.0;
+    if (!in_time) ::kill(child, SIGKILL);
     const int status = reap(child);
-    if (answer.in_time && !answer.text.empty() && WIFEXITED(status) && WEXITSTATUS(status) == 0) judge_answer(result, log, answer.text);
-    else judge_death(result, log, status, answer.in_time, limits);
+    if (in_time && !answer.text.empty() && WIFEXITED(status) && WEXITSTATUS(status) == 0) judge_answer(result, log, answer.text);
+    else judge_death(result, log, status, answer.timed_out_s);
+    result.timed_out_s = log.noted ? log.timed_out_s : answer.timed_out_s;
     if (owner == Process::kGraders && !log.noted && result.verdict != Verdict::kRight && result.verdict != Verdict::kWrong) {
       result.verdict = Verdict::kGraderFault;
       result.story = "the judge's own test process ended without a verdict: " + result.story;

@@ -1,6 +1,10 @@
 #include "framework/grading/test_words.h"
 
 #include <algorithm>
+#include <cctype>
+#include <cstdlib>
+
+#include "framework/core/error.h"
 
 namespace tumble::grading {
 namespace {
@@ -11,7 +15,58 @@ bool matches(const char* pattern, const char* text) {
   return *text != '\0' && (*pattern == '?' || *pattern == *text) && matches(pattern + 1, text + 1);
 }
 
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+// What a person meant who wrote this pattern: suite or name, whichever is nearer, without the stars.
+std::size_t distance_of(const std::string& test, std::string pattern) {
+  std::erase_if(pattern, [](char c) { return c == '*' || c == '?'; });
+  while (pattern.ends_with('.')) pattern.pop_back();
+  const std::size_t dot = test.find('.');
+  const std::string wanted = lower(pattern);
+  if (!wanted.empty() && lower(test).find(wanted) != std::string::npos) return 0;
+  return std::min({edit_distance(lower(test), wanted), edit_distance(lower(test.substr(0, dot)), wanted), edit_distance(lower(test.substr(dot + 1)), wanted)});
+}
+
 }  // namespace
+
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t corner = row[0];   // of the row above, one to the left
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({above + 1, row[j - 1] + 1, corner + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      corner = above;
+    }
+  }
+  return row[b.size()];
+}
+
+std::vector<std::string> chosen_tests(const std::vector<std::string>& tests, const std::string& filter) {
+  std::vector<std::string> found;
+  for (const std::string& test : tests)
+    if (chosen(test, filter)) found.push_back(test);
+  if (!found.empty()) return found;
+  constexpr std::size_t kShown = 5;
+  std::vector<std::string> nearest = tests;
+  const std::string first = filter.substr(0, filter.find(':'));
+  std::stable_sort(nearest.begin(), nearest.end(), [&](const auto& a, const auto& b) { return distance_of(a, first) < distance_of(b, first); });
+  std::string shown;
+  for (std::size_t i = 0; i < std::min(kShown, nearest.size()); ++i) shown += (i > 0 ? ", " : "") + nearest[i];
+  throw UserError(filter, "no test has such a name", "Nearest: " + shown + ". A pattern may hold '*' and '?', such as '" + tests.front().substr(0, tests.front().find('.')) + ".*'.");
+}
+
+double number_word(const std::string& flag, const std::string& word) {
+  char* rest = nullptr;
+  const double number = std::strtod(word.c_str(), &rest);
+  if (word.empty() || *rest != '\0' || !(number > 0.0)) throw UserError(flag + " " + word, "is no number of seconds above 0");
+  return number;
+}
 
 bool chosen(const std::string& test, const std::string& filter) {
   if (filter.empty()) return true;

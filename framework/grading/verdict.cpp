@@ -34,7 +34,7 @@ void write_results(const std::string& file, const std::vector<TestResult>& resul
   nlohmann::ordered_json tests = nlohmann::ordered_json::array();
   for (const TestResult& r : results)
     tests.push_back({{"test", r.test}, {"verdict", words(r.verdict)}, {"story", r.story}, {"last_call", r.last_call},
-                     {"calls", r.calls}, {"printed", r.printed}, {"wall_s", r.wall_s}});
+                     {"calls", r.calls}, {"printed", r.printed}, {"timed_out_s", r.timed_out_s}, {"not_run", r.not_run}, {"wall_s", r.wall_s}});
   std::ofstream out(file);
   // Students' code may print any bytes: what is not UTF-8 is replaced, not refused.
   out << nlohmann::ordered_json{{"tests", tests}}.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
@@ -57,6 +57,8 @@ std::vector<TestResult> read_results(const std::string& file) {
       r.last_call = item.at("last_call");
       r.calls = item.at("calls");
       r.printed = item.at("printed");
+      r.timed_out_s = item.at("timed_out_s");
+      r.not_run = item.at("not_run");
       r.wall_s = item.at("wall_s");
       results.push_back(std::move(r));
     }

@@ -30,6 +30,8 @@ struct TestResult {
   std::string last_call;                           // the last function of the module that was called
   long calls = 0;                                  // of the module's functions
   std::string printed;                             // what the student's code wrote to stdout and stderr, cut short
+  double timed_out_s = 0.0;                        // the limit that it ran into; 0: none
+  bool not_run = false;                            // the budget of all tests together was used up before
   double wall_s = 0.0;                             // kept out of everything that is compared
 };
 

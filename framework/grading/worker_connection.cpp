@@ -129,7 +129,7 @@ Channel& WorkerConnection::begin_call(const char* function) {
   log.begin(function);
   if (socket_ < 0) start();
   calls_.push_back(function);
-  deadline_ = std::min(session_end_, Channel::Clock::now() + seconds(options_.call_wall_s));
+  deadline_ = std::min(session_end_, Channel::Clock::now() + seconds(call_limit(function)));
   return *channel_;
 }
 
@@ -149,6 +149,16 @@ void WorkerConnection::count_callback() {
   end(Verdict::kOutOfResources, function + " evaluated the functions it was given more than " + std::to_string(options_.callback_budget) + " times");
 }
 
+double WorkerConnection::call_limit(const std::string& function) const {
+  const auto own = options_.suspects.find(function);
+  return own == options_.suspects.end() ? options_.call_wall_s : std::min(own->second, options_.call_wall_s);
+}
+
+void WorkerConnection::end_out_of_time(const char* function, double limit_s) {
+  call_log().timed_out_s = limit_s;
+  end(Verdict::kOutOfResources, timeout_story(limit_s, function, true));
+}
+
 void WorkerConnection::end(Verdict verdict, const std::string& story) {
   call_log().note(verdict, story);
   throw CallEnded(story);
@@ -160,14 +170,14 @@ void WorkerConnection::explain_death(const char* function) {
   switch (outcome.ending) {
     case Ending::kSignal:
       if (outcome.code == SIGXCPU || (outcome.code == SIGKILL && outcome.cpu_s >= options_.session_wall_s - 1.0))
-        end(Verdict::kOutOfResources, timeout_story(options_.session_wall_s, function, true));
+        end_out_of_time(function, options_.session_wall_s);
       end(Verdict::kCrashed, signal_story(outcome.code, function, true));
     case Ending::kExited: {
       const std::string said = outcome.printed.empty() ? "" : "; it printed: " + outcome.printed.substr(0, 400);
       end(Verdict::kCrashed, exit_story(outcome.code, function, true) + said);
     }
     case Ending::kWallLimit:
-      end(Verdict::kOutOfResources, timeout_story(options_.session_wall_s, function, true));
+      end_out_of_time(function, options_.session_wall_s);
     case Ending::kOutputLimit:
       end(Verdict::kOutOfResources, "printed more than " + std::to_string(job_.limits.output_bytes / 1024) + " KiB, in " + function);
     case Ending::kStopped:
@@ -182,7 +192,7 @@ void WorkerConnection::fail(const char* function, std::exception_ptr transport_e
     std::rethrow_exception(transport_error);
   } catch (const modules::ChannelTimeout&) {
     stop(0.0);
-    end(Verdict::kOutOfResources, timeout_story(options_.call_wall_s, function, true));
+    end_out_of_time(function, deadline_ == session_end_ ? options_.session_wall_s : call_limit(function));
   } catch (const std::exception&) {
     explain_death(function);
   }

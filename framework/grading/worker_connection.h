@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,6 +27,7 @@ struct WorkerOptions {
   std::filesystem::path module;         // the shared object
   bool sandboxed = true;                // false: a plain process, for code that is our own (known-wrong solutions)
   double call_wall_s = 5.0;             // a call that takes longer is a loop without end; correct ones take microseconds
+  std::map<std::string, double> suspects;   // functions whose calls may take less [s]: see TimeBudget
   double session_wall_s = 10.0;         // of all calls until reset()
   long callback_budget = 2'000'000;     // in a session: beyond what any module needs by a factor of hundreds
   std::uint64_t memory_bytes = 1ull << 30;
@@ -43,6 +45,8 @@ class WorkerConnection : public modules::Connection {
   explicit WorkerConnection(WorkerOptions options);
   ~WorkerConnection() override;
 
+  /// Calls to these functions may take less, from the next one on.
+  void suspect(std::map<std::string, double> limits) { options_.suspects = std::move(limits); }
   /// Ends the worker, so that the next call meets a fresh one.
   void reset();
 
@@ -60,6 +64,8 @@ class WorkerConnection : public modules::Connection {
   SandboxOutcome stop(double grace_s);
   [[noreturn]] void explain_death(const char* function);
   [[noreturn]] void end(Verdict verdict, const std::string& story);
+  [[noreturn]] void end_out_of_time(const char* function, double limit_s);
+  double call_limit(const std::string& function) const;
 
   WorkerOptions options_;
   SandboxUser user_;

@@ -46,6 +46,85 @@ double gap_rate(const Contact& contact, const Body& a, const Velocity& velocity_
                                          velocity_at(b, velocity_b, contact.point_world));
 }
 
+namespace {
+
+// A number that is not nothing; a vector of them.
+bool is_something(double x) { return std::isfinite(x) && x != 0.0; }
+bool is_something(const Vector3d& v) { return v.allFinite() && v != Vector3d::Zero(); }
+
+bool asked_first(bool came, const std::string& scene, const std::string& expected, const std::string& n) {
+  expect_true(came, expected, "nothing of the kind",
+              {.scene = "asked first, because this test's own answer is \"nothing\": " + scene,
+               .slip = "the function gives nothing (0, NaN, a miss, its own argument) whatever it is asked",
+               .handout = equation(n)});
+  return came;
+}
+
+Body falling_ball() {
+  Body body = ball(2.0, 0.5, {0, 0, 0.5});
+  body.velocity_world = {0, 0, -3};
+  return body;
+}
+const Contact kUnderIt{{0, 0, 0}, Vector3d::UnitZ()};
+
+}  // namespace
+
+bool gives_hits() {
+  const Triangle triangle{{0, 0, 0}, {4, 0, 0}, {0, 2, 0}};
+  bool came = false;
+  for (const double side : {1.0, -1.0}) {   // either face will do
+    const auto hit = student().intersect_ray_triangle({{0.5, 0.75, 2 * side}, {0, 0, -side}}, triangle);
+    came = came || (hit && std::isfinite(hit->t) && is_something(hit->barycentric));
+  }
+  return asked_first(came, "a ray through the middle of a triangle", "a hit", "1");
+}
+
+bool gives_linear_acceleration() {
+  return asked_first(is_something(student().linear_acceleration(block({5, 3, 1}), {2, 0, -8})), "(2, 0, -8) N on a movable block", "an acceleration other than 0", "3");
+}
+
+bool gives_angular_acceleration() {
+  return asked_first(is_something(student().angular_acceleration(block({5, 3, 1}), {1, 4, 2})), "(1, 4, 2) N m on a movable block", "an acceleration other than 0", "4");
+}
+
+bool gives_relative_velocities() {
+  const Body slower = falling_ball();
+  Body faster = slower;
+  faster.velocity_world = {0, 0, -6};
+  const double slow = student().relative_normal_velocity(kUnderIt, slower, wall({0, 0, -1}));
+  const double fast = student().relative_normal_velocity(kUnderIt, faster, wall({0, 0, -1}));
+  return asked_first(is_something(slow) && is_something(fast - slow), "a ball falls on a resting wall at 3 and at 6 m/s", "two velocities other than 0", "5");
+}
+
+bool tells_motions_apart() {
+  return asked_first(student().classify_relative_motion(-2.0, 0.001) != student().classify_relative_motion(2.0, 0.001),
+                     "u_n = -2 and 2 m/s, tolerance 0.001 m/s", "two different cases", "6");
+}
+
+bool gives_impulses() {
+  return asked_first(is_something(student().collision_impulse(kUnderIt, falling_ball(), wall({0, 0, -1}), 0.5)),
+                     "a 2 kg ball hits a wall at 3 m/s, e = 0.5", "an impulse other than 0", "9");
+}
+
+bool gives_impulses_without_rotation() {
+  return asked_first(is_something(student().collision_impulse_without_rotation(kUnderIt, falling_ball(), wall({0, 0, -1}), 0.5)),
+                     "a 2 kg ball hits a wall at 3 m/s, e = 0.5", "an impulse other than 0", "8");
+}
+
+bool moves_a_struck_body() {
+  Body body = block({5, 3, 1});
+  body.velocity_world = {1, 0, 0};
+  const Vector3d change = student().apply_impulse(body, {0, 0, 6}, {5, 3, 1}).linear_world - body.velocity_world;
+  return asked_first(is_something(change), "6 N s through the centre of a movable block", "another velocity than before", "10");
+}
+
+bool moves_colliding_bodies() {
+  const Body a = falling_ball(), b = ball(2.0, 0.5, {0, 0, -0.5});
+  const a1::CollisionOutcome after = student().resolve_collision(kUnderIt, a, b, 0.5);
+  const bool came = is_something(Vector3d(after.a.linear_world - a.velocity_world)) || is_something(Vector3d(after.b.linear_world - b.velocity_world));
+  return asked_first(came, "a 2 kg ball falls at 3 m/s on another that rests, e = 0.5", "other velocities than before", "11");
+}
+
 Vector3d random_vector(Random& random, double size) {
   const double x = random.between(-size, size), y = random.between(-size, size), z = random.between(-size, size);
   return {x, y, z};

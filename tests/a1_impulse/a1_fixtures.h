@@ -66,6 +66,22 @@ std::string likely(const Eigen::Matrix<double, n, 1>& found, const Slips<Eigen::
   return found.allFinite() ? otherwise : kNotANumber;
 }
 
+// ---- First something, then nothing -------------------------------------------------------------------------------------
+// A miss is an answer only from a function that can hit: a test whose right answer is "nothing" asks first for a case in which
+// something must come. What comes is judged elsewhere; here it must only be there, so that a slip is paid for once.
+// @return false when nothing came: the test has failed with that story, and should end
+
+bool gives_hits();
+bool gives_linear_acceleration();
+bool gives_angular_acceleration();
+bool gives_relative_velocities();
+bool tells_motions_apart();
+bool gives_impulses();
+bool gives_impulses_without_rotation();
+/// apply_impulse moves a movable body; resolve_collision moves bodies that approach.
+bool moves_a_struck_body();
+bool moves_colliding_bodies();
+
 // ---- Seeded random scenes --------------------------------------------------------------------------------------------
 
 Vector3d random_vector(Random& random, double size);

@@ -50,6 +50,7 @@ TEST(RayTriangle, CountsInLengthsOfTheDirection) {
 }
 
 TEST(RayTriangle, MissesBesideTheTriangle) {
+  if (!gives_hits()) return;
   const Story story{.scene = "rays straight down beside the triangle a (0,0,0), b (4,0,0), c (0,2,0), through its plane",
                     .slip = "all three weights must be >= 0: that of a (1 - u - v, beyond the long side) is often forgotten",
                     .handout = kHandout};
@@ -65,6 +66,7 @@ TEST(RayTriangle, SeesTheBackAsWellAsTheFront) {
 }
 
 TEST(RayTriangle, IgnoresWhatIsBehindTheOrigin) {
+  if (!gives_hits()) return;
   expect_miss({{0.5, 0.75, 2}, {0, 0, 1}}, kRightAngled,
               {.scene = "a ray that starts 2 m above the triangle and goes up",
                .slip = "hits behind the origin accepted: t must be >= 0",
@@ -91,6 +93,7 @@ TEST(RayTriangle, EdgesAndCornersBelongToTheTriangle) {
 }
 
 TEST(RayTriangle, MissesWhenParallel) {
+  if (!gives_hits()) return;
   const Story story{.scene = "rays along x: 1 m above the plane of the triangle, and inside the plane",
                     .slip = "division by zero: a ray parallel to the plane has determinant 0 and is a miss",
                     .handout = kHandout};

@@ -1,5 +1,7 @@
 // tumble check as a student runs it, on files of our own beside the stub.
+#include <chrono>
 #include <cstdlib>
+#include <fstream>
 
 #include <unistd.h>
 
@@ -41,6 +43,26 @@ TEST(Check, AFunctionThatIsMissingIsToldToo) {
   EXPECT_EQ(outcome.code, 1) << outcome.printed;
   EXPECT_NE(outcome.printed.find("undefined"), std::string::npos) << outcome.printed;
   EXPECT_NE(outcome.printed.find("intersect_ray_triangle"), std::string::npos) << outcome.printed;
+}
+
+TEST(Check, AnEndlessLoopIsKnownWithinSeconds) {
+  std::ifstream in(TUMBLE_SOURCE_DIR "/assignments/a1_impulse/a1_impulse.cpp");
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  text.insert(text.find("throw NotImplemented("), "for (;;) {}\n  ");   // without side effects: the compiler may not drop it
+  const File file(text);
+  check({file.path.string(), "PointForce.*"});   // builds what there is to build
+  const auto start = std::chrono::steady_clock::now();
+  const ProgramOutcome outcome = check({file.path.string()});
+  const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  EXPECT_NE(outcome.printed.find("no answer within 2 s, in intersect_ray_triangle"), std::string::npos) << outcome.printed;
+  EXPECT_NE(outcome.printed.find("no answer within 0.2 s, in intersect_ray_triangle"), std::string::npos) << outcome.printed;
+  EXPECT_LT(took_s, 20.0);   // s: 6 on an idle machine, compiling included; twelve tests of 5 s were 60
+}
+
+TEST(Check, APatternThatChoosesNothingIsAnsweredWithTheNearestNames) {
+  const ProgramOutcome outcome = check({"ColisionImpuls.*"});
+  EXPECT_EQ(outcome.code, 2) << outcome.printed;
+  EXPECT_NE(outcome.printed.find("ColisionImpuls.*: no test has such a name. Nearest: CollisionImpulse."), std::string::npos) << outcome.printed;
 }
 
 TEST(Check, AFileThatIsNotThereAndAnUnknownAssignmentAreToldWithWhatToDo) {

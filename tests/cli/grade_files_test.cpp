@@ -14,6 +14,7 @@
 #include "framework/grading/grade_files.h"
 #include "framework/grading/grade_key.h"
 #include "framework/grading/grade_pages.h"
+#include "framework/grading/plain_text.h"
 #include "framework/grading/scoring.h"
 
 namespace tumble::grading {
@@ -112,6 +113,24 @@ TEST_F(FindSubmissions, HugeAndEmptySourcesAreRefused) {
   EXPECT_NE(all.at(1).problem.find("empty"), std::string::npos) << all[1].problem;
 }
 
+TEST_F(FindSubmissions, AFolderThatCannotBeReadIsNamedWithWhatToDo) {
+  put("adam/upload/a9_thing.cpp");
+  fs::permissions(root / "adam/upload", fs::perms::none);
+  fs::permissions(root, fs::perms::owner_all | fs::perms::group_all | fs::perms::others_all);
+  const bool is_root = ::geteuid() == 0;   // who may read everything: for a moment somebody who may not
+  if (is_root) {
+    ASSERT_EQ(::seteuid(65534), 0);
+  }
+  const Submission found = only();
+  if (is_root) {
+    ASSERT_EQ(::seteuid(0), 0);
+  }
+  fs::permissions(root / "adam/upload", fs::perms::owner_all);
+  EXPECT_TRUE(found.source.empty());
+  EXPECT_NE(found.problem.find("adam/upload cannot be read (Permission denied)"), std::string::npos) << found.problem;
+  EXPECT_NE(found.problem.find("chmod -R u+rX '" + (root / "adam").string() + "'"), std::string::npos) << found.problem;
+}
+
 TEST_F(FindSubmissions, NoFolderIsAUserError) { EXPECT_THROW(find_submissions(root / "gone", kind), UserError); }
 
 TEST(FolderOf, PlainNamesStayAndOthersCannotLeaveTheFolder) {
@@ -187,8 +206,52 @@ TEST(Gradebook, IsCanvasFormatAndAFaultIsNoScore) {
 TEST(Gradebook, ANameIsNeverAFormulaNorASecondCell) {
   const std::string csv = gradebook_csv("Thing", {graded("=HYPERLINK(\"x\")", {}), graded("a,b\nc", {}), graded("@x", {})});
   EXPECT_NE(csv.find("\n\"'=HYPERLINK(\"\"x\"\")\",,"), std::string::npos) << csv;
-  EXPECT_NE(csv.find("\n\"a,b c\",,"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("\n\"a,b\\x0Ac\",,"), std::string::npos) << csv;
   EXPECT_NE(csv.find("\n'@x,,"), std::string::npos) << csv;
+}
+
+TEST(Gradebook, NeitherSpaceNorTabNorAWideSignHidesAFormula) {
+  for (const std::string name : {" =cmd", "\t=1+1", "\r=1", "\uff1d1+1", "\uff0b1", "\uff0d1", "\uff20x", "\u3000=1", "\u200b=1", "+1", "-1", "\n@x"}) {
+    const std::string csv = gradebook_csv("Thing", {graded(name, {})});
+    std::string cell = csv.substr(csv.find("100\n") + 4);
+    if (cell.starts_with('"')) cell.erase(0, 1);
+    // Either marked as text, or begun by what was written out.
+    EXPECT_TRUE(cell.starts_with("'") || cell.starts_with("\\")) << csv;
+    EXPECT_EQ(csv.find('\t'), std::string::npos);
+  }
+}
+
+TEST(Gradebook, NamesThatAreNotUtf8StayApart) {
+  const std::string csv = gradebook_csv("Thing", {graded("ann\xff", {}), graded("ann\xfe", {}), graded("ann\\xFF", {})});
+  EXPECT_NE(csv.find("\nann\\xFF,,"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("\nann\\xFE,,"), std::string::npos) << csv;
+  EXPECT_NE(csv.find("\nann\\\\xFF,,"), std::string::npos) << csv;
+}
+
+TEST(PlainText, WhatHidesOrReordersIsWrittenOut) {
+  EXPECT_EQ(plain_name("a\u202eb"), "a\\u{202E}b");
+  EXPECT_EQ(plain_name("a\x1b[31mb\x07\x7f"), "a\\x1B[31mb\\x07\\x7F");
+  EXPECT_EQ(plain_name("\u2066x\u2069\u200f\ufeff"), "\\u{2066}x\\u{2069}\\u{200F}\\u{FEFF}");
+  EXPECT_EQ(plain_name(std::string("a\0b", 3)), "a\\x00b");
+  EXPECT_EQ(plain_text("line\n\ttab \x1b[31mred\x1b[0m \u202e C:\\x"), "line\n\ttab red \\u{202E} C:\\x");
+  for (const std::string name : {"Zo\u00eb \u0141ukasz", "\u5f20\u4f1f", "O'Brien-Smith", "\u0645\u062d\u0645\u062f"}) EXPECT_EQ(plain_name(name), name);
+}
+
+TEST(Gradescope, WhatASubmissionSaysIsShownPlain) {
+  Grade grade = graded("x", {{result("S.Open", Verdict::kCrashed, "it said \x1b[2J\u202egnp\x01"), result("S.Shut", Verdict::kRight)}, ""});
+  grade.story = "a\u202eb";
+  grade.notes = {"c\x07"};
+  const auto json = nlohmann::json::parse(gradescope_json(grade));
+  EXPECT_EQ(json["tests"][0].at("output"), "crashed\nit said \\u{202E}gnp\\x01");
+  EXPECT_EQ(json.at("output"), "a\\u{202E}b\nnote: c\\x07");
+}
+
+TEST_F(Folder, PagesWriteOutWhatHidesInANameOrAStory) {
+  Grade grade = graded("an\u202en", {{result("S.Open", Verdict::kWrong, "s\u202et"), result("S.Shut", Verdict::kRight)}, ""});
+  const std::string html = submission_page(kind, grade, "").html();
+  EXPECT_NE(html.find("an\\u{202E}n"), std::string::npos);
+  EXPECT_NE(html.find("s\\u{202E}t"), std::string::npos);
+  EXPECT_NE(index_page(kind, {grade}).html().find("an\\u{202E}n"), std::string::npos);
 }
 
 TEST_F(Folder, ARecordIsReadAsItWasWritten) {

@@ -1,7 +1,9 @@
 // tumble grade and tumble check as people run them.
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <map>
+#include <set>
 
 #include <fcntl.h>
 #include <signal.h>
@@ -114,6 +116,60 @@ TEST_F(Grading, ARunThatIsKilledLeavesNothingHalfWrittenAndGoesOn) {
   EXPECT_NE(again.printed.find("unchanged since the last run"), std::string::npos) << again.printed;
   for (const auto& [file, text] : files("out")) EXPECT_EQ(file.find(".making"), std::string::npos) << file;
   EXPECT_TRUE(fs::exists(root / "out/c/record.json"));
+}
+
+TEST_F(Grading, ARunThatIsAskedToEndLeavesNothingBehind) {
+  for (const char* name : {"a", "b", "c"}) put(std::string(name) + "/a1_impulse.cpp", stub_that("for (volatile int never = 0; !never;) {}"));
+  for (const int signal : {SIGTERM, SIGINT}) {
+    const fs::path said = root / "said";
+    const pid_t child = ::fork();
+    if (child == 0) {
+      const int file = ::open(said.c_str(), O_CREAT | O_TRUNC | O_WRONLY, 0600);
+      ::dup2(file, 1);
+      ::dup2(file, 2);
+      const std::string in = (root / "in").string(), out = (root / "out").string();
+      ::execl(kProgram.c_str(), "tumble", "grade", "a1", in.c_str(), "--out", out.c_str(), "--no-media", "--jobs", "2", nullptr);
+      ::_exit(127);
+    }
+    const auto stages = [] {   // of processes that are alive or not: whoever made them
+      std::set<std::string> names;
+      for (const auto& entry : fs::directory_iterator("/tmp"))
+        if (entry.path().filename().string().starts_with("tumble-stage-")) names.insert(entry.path().filename());
+      return names;
+    };
+    const auto before = stages();
+    // In the middle of judging: the loop's worker is in its sandbox then.
+    for (int i = 0; i < 3000 && !fs::exists(root / "out/.making-a/a/.a1.so"); ++i) ::usleep(10'000);
+    ::usleep(1'500'000);
+    ::kill(child, signal);
+    int status = 0;
+    ::waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == signal) << status;
+    EXPECT_NE(text_of(said).find("stopped: 0 of 3"), std::string::npos) << text_of(said);
+    for (const auto& entry : fs::directory_iterator(root / "out")) ADD_FAILURE() << "left behind: " << entry.path();
+    for (const std::string& stage : stages()) {
+      const pid_t maker = static_cast<pid_t>(std::atol(stage.c_str() + std::strlen("tumble-stage-")));
+      EXPECT_TRUE(before.contains(stage) || ::kill(maker, 0) == 0) << "left behind: " << stage;
+    }
+    // Nobody works on: no process has our folder among its words.
+    for (const auto& entry : fs::directory_iterator("/proc"))
+      if (entry.path().filename().string().find_first_not_of("0123456789") == std::string::npos)
+        EXPECT_EQ(text_of(entry.path() / "cmdline").find(root.string()), std::string::npos) << entry.path();
+  }
+}
+
+TEST_F(Grading, EndlessLoopsUseUpABudgetAndNoMore) {
+  put("loops/a1_impulse.cpp", stub_that("for (;;) {}"));   // without side effects: the compiler may not drop it
+  const ProgramOutcome outcome = grade("out", {"--no-media", "--budget-s", "6"});
+  EXPECT_NE(outcome.printed.find("the time budget of 6 s was used up"), std::string::npos) << outcome.printed;
+  const auto results = nlohmann::json::parse(text_of(root / "out/loops/results.json"));
+  EXPECT_EQ(results["tests"][0]["extra_data"]["verdict"], "out of time or memory");
+  EXPECT_NE(results["tests"][0]["output"].get<std::string>().find("no answer within 5 s, in intersect_ray_triangle"), std::string::npos) << results["tests"][0];
+  const auto& last = results["tests"].back();
+  EXPECT_EQ(last["extra_data"]["verdict"], "out of time or memory");
+  EXPECT_NE(last["output"].get<std::string>().find("not run: the time budget of all tests together, 6 s, was used up"), std::string::npos) << last;
+  EXPECT_NE(results["output"].get<std::string>().find("tests were not run"), std::string::npos) << results["output"];
+  EXPECT_NE(text_of(root / "out/loops/index.html").find("tests were not run"), std::string::npos);
 }
 
 TEST_F(Grading, NoFolderIsToldWithWhatToDo) {

@@ -59,6 +59,12 @@ TEST_F(CommandLine, WithoutAVerbOrWithAnUnknownOneItTellsAndExitsWith2) {
   EXPECT_TRUE(holds(said.err, "simulate")) << said.err;
 }
 
+TEST_F(CommandLine, AnUnknownFlagIsAnsweredWithTheNearest) {
+  const Said said = type("grade a1 somewhere --no-meda");
+  EXPECT_EQ(said.code, 2);
+  EXPECT_NE(said.err.find("--no-meda: grade has no such flag. Did you mean --no-media?"), std::string::npos) << said.err;
+}
+
 TEST_F(CommandLine, HelpListsEveryVerb) {
   const Said said = type("--help");
   EXPECT_EQ(said.code, 0);

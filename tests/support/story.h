@@ -29,7 +29,8 @@ inline std::string tell(const Story& story, const std::string& expected, const s
   std::ostringstream text;
   text << "\n  scene:    " << story.scene;
   if (!story.steps.empty()) text << "\n  steps:    " << story.steps;
-  text << "\n  expected: " << expected << ' ' << unit << "\n  found:    " << found << ' ' << unit;
+  const std::string with_unit = unit.empty() ? "" : ' ' + unit;
+  text << "\n  expected: " << expected << with_unit << "\n  found:    " << found << with_unit;
   if (!difference.empty()) text << "\n  off by:   " << difference;
   if (!story.slip.empty()) text << "\n  likely:   " << story.slip;
   if (!story.handout.empty()) text << "\n  read:     " << story.handout;
