@@ -43,20 +43,28 @@ int index_of(const std::string& name, const Trajectory& run) {
 
 double total_energy(const Frame& frame) { return frame.kinetic_energy + frame.potential_energy; }
 
-/// What energies are compared with: potential energy has no zero of its own, kinetic energy has.
-double energy_scale(const Trajectory& run) {
-  double scale = 0.0;
-  for (const Frame& frame : run.frames) scale = std::max(scale, std::abs(frame.kinetic_energy));
-  return scale > 0 ? scale : 1.0;
+/// What energies are compared with: the kinetic energy at the beginning, and what the forces had to give from there, which is
+/// the deepest fall of the potential energy. (That of the highest moment would not do: a run that makes energy from nothing
+/// would widen its own pass mark by it. It rises, or moves faster; neither counts here.)
+double energy_scale(const Frame& first, const Trajectory& run) {
+  double fall = 0.0;
+  for (const Frame& frame : run.frames)
+    if (frame.time >= first.time) fall = std::max(fall, first.potential_energy - frame.potential_energy);
+  const double scale = first.kinetic_energy + fall;
+  return scale == 0.0 ? 1.0 : scale;   // a NaN stays one, and fails the check
 }
 
 Finding energy(const CheckSpec& check, const Scene&, const Trajectory& run) {
   Finding finding;
   const Frame* first = nullptr;
+  double scale = kUnset;
   for (const Frame& frame : run.frames) {
     if (frame.time < check.at_s) continue;
-    if (first == nullptr) first = &frame;
-    finding.worst(std::abs(total_energy(frame) - total_energy(*first)) / energy_scale(run), at_time(frame.time));
+    if (first == nullptr) {
+      first = &frame;
+      scale = energy_scale(*first, run);
+    }
+    finding.worst(std::abs(total_energy(frame) - total_energy(*first)) / scale, at_time(frame.time));
   }
   if (first == nullptr) finding.worst(kInfinity, "the run ended before at_s");
   return finding;
@@ -64,11 +72,12 @@ Finding energy(const CheckSpec& check, const Scene&, const Trajectory& run) {
 
 Finding energy_not_rising(const CheckSpec& check, const Scene&, const Trajectory& run) {
   Finding finding;
-  double least = kInfinity;
+  double least = kInfinity, scale = kUnset;
   if (run.frames.back().time < check.at_s) finding.worst(kInfinity, "the run ended before at_s");
   for (const Frame& frame : run.frames) {
     if (frame.time < check.at_s) continue;
-    finding.worst((total_energy(frame) - std::min(least, total_energy(frame))) / energy_scale(run), at_time(frame.time));
+    if (least == kInfinity) scale = energy_scale(frame, run);
+    finding.worst((total_energy(frame) - std::min(least, total_energy(frame))) / scale, at_time(frame.time));
     least = std::min(least, total_energy(frame));
   }
   return finding;

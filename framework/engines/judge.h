@@ -1,7 +1,7 @@
 /// Judges a recorded run by numbers: what the scene's `checks` ask. Reads scene and trajectory, never an engine.
 ///
 /// | kind             | value                                                                 | right when                 |
-/// | energy           | largest |E - E0| over the largest kinetic energy [-]                  | <= tolerance               |
+/// | energy           | largest |E - E0| over what there was to begin with (below) [-]        | <= tolerance               |
 /// | energy_not_rising| largest rise of E above an earlier value, over the same [-]           | <= tolerance               |
 /// | momentum         | largest |P - P0| [kg m/s]; with `expected`: |P - expected| at the end  | <= tolerance               |
 /// | angular_momentum | the same for L about the world's origin [kg m^2/s]                    | <= tolerance               |
@@ -14,6 +14,8 @@
 /// | side_of_wall     | smallest distance of body from other's centre along `axis` (world), on the side where it began [m] | >= -tolerance |
 /// | flips            | |flips - expected|: how often the body's own `axis` turned over against where it pointed first [-]  | <= tolerance |
 ///
+/// Energies are compared with the kinetic energy at `at_s` plus the deepest fall of the potential energy below its value there:
+/// what a run makes from nothing is not in it, so that it cannot widen its own pass mark.
 /// For energy, momentum and angular momentum `at_s` is the instant from which on the quantity must stay (a push has ended by
 /// then); elsewhere the instant that is looked at; 0 is the beginning or the end.
 #pragma once

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "framework/engines/lasting_contacts.h"
+
 namespace tumble::engines {
 
 double smallest_gap(const MovingWorld& moving, const std::vector<RigidBodyState>& states) {
@@ -45,6 +47,7 @@ void FrameRecorder::push(MovingWorld& moving, double t) {
   frame.spring_forces = std::move(forces.springs);
   frame.rod_tensions = std::move(forces.rods);
   frame.joint_forces = std::move(forces.joints);
+  if (contacts_) frame.contacts = contacts_->forces();
   sink_.frame(frame);
 }
 

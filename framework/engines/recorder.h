@@ -5,9 +5,14 @@
 
 namespace tumble::engines {
 
+class LastingContacts;
+
 class FrameRecorder {
  public:
   FrameRecorder(double rate_hz, double duration, TrajectorySink& sink) : rate_(rate_hz), duration_(duration), sink_(sink) {}
+
+  /// Frames hold the forces of these contacts.
+  void record_contacts_of(const LastingContacts& contacts) { contacts_ = &contacts; }
 
   /// Pushes the frames that lie before `t`, from the paths of the step under way.
   void record_before(MovingWorld& moving, double t);
@@ -20,6 +25,7 @@ class FrameRecorder {
 
   double rate_, duration_;
   TrajectorySink& sink_;
+  const LastingContacts* contacts_ = nullptr;
   long next_ = 0;
 };
 

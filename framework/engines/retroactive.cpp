@@ -10,6 +10,7 @@
 #include "framework/collision/contact_patch.h"
 #include "framework/core/error.h"
 #include "framework/engines/guarded_laws.h"
+#include "framework/engines/lasting_contacts.h"
 #include "framework/engines/recorder.h"
 #include "framework/engines/sequential_impacts.h"
 
@@ -37,7 +38,12 @@ class RetroactiveRun {
   RetroactiveRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink)
       : scene_(scene), laws_(guarded(laws)), sink_(sink), step_(options.step_s.value_or(scene.step_s)),
         duration_(options.duration_s.value_or(scene.duration_s)), moving_(build_world(scene), laws_, counters_),
-        impacts_(laws_, {scene.rest_speed_m_s, step_ / 100}, counters_), recorder_(options.frame_rate_hz, duration_, sink) {}
+        impacts_(laws_, {scene.rest_speed_m_s, step_ / 100}, counters_), recorder_(options.frame_rate_hz, duration_, sink) {
+    if (!moving_.world().contact) return;
+    contacts_.emplace(moving_, laws_, *moving_.world().contact, counters_, sink);
+    impacts_.use_contact_rules(scene.rest_speed_m_s);
+    recorder_.record_contacts_of(*contacts_);
+  }
 
   void run();
 
@@ -59,6 +65,8 @@ class RetroactiveRun {
   void separate(const std::vector<std::pair<int, int>>& pairs);
   void resolve_at(const std::vector<std::pair<int, int>>& pairs, std::pair<int, int> trigger);
   bool stays_on(const TouchingPair& pair, int body, const Vector3d& up) const;
+  std::vector<std::pair<int, int>> keep_contacts(std::vector<std::pair<int, int>> pairs);
+  void begin_contacts(const std::vector<TouchingPair>& touching, const std::vector<Event>& events);
   void settle(const std::vector<TouchingPair>& touching, const std::vector<Event>& events);
   void watch_for_trouble();
   std::string name(int body) const { return "'" + moving_.world().bodies[body].name + "'"; }
@@ -71,6 +79,7 @@ class RetroactiveRun {
   MovingWorld moving_;
   SequentialImpacts impacts_;
   FrameRecorder recorder_;
+  std::optional<LastingContacts> contacts_;   // where the scene asks for them
   long grid_index_ = 0;
   std::set<double> switch_times_;
   double next_look_ = std::numeric_limits<double>::infinity();   // of a control law
@@ -251,11 +260,22 @@ void RetroactiveRun::resolve_at(const std::vector<std::pair<int, int>>& pairs, s
   if (!resolution.settled)
     stopped_by_ = fmt::format("at t = {:.6f} s, {}: collision (collision_impulse, apply_impulse of {}) left them approaching, however often it was "
                               "applied: the impulse has no effect, the wrong sign or too little size, or a lasting contact is needed there", moving_.time(), subject, laws_.impulse_source);
+  if (contacts_) return begin_contacts(touching, resolution.events);
   settle(touching, resolution.events);
   std::vector<TouchingPair> awake;
   for (const TouchingPair& pair : touching)
     if (!moving_.resting(pair.a) && !moving_.resting(pair.b)) awake.push_back(pair);
   naming(subject, [&] { impacts_.push_apart(moving_, awake, resolution.micro_impacts); });
+}
+
+// A pair that touches and whose impacts, if any, were slow enough not to bounce stays together.
+void RetroactiveRun::begin_contacts(const std::vector<TouchingPair>& touching, const std::vector<Event>& events) {
+  for (const TouchingPair& pair : touching) {
+    bool slow = true;
+    for (const Event& event : events)
+      if (event.body_a == pair.a && event.body_b == pair.b) slow = slow && impacts_.stays(moving_.world(), pair, -event.normal_velocity_before);
+    if (slow) contacts_->begin({pair.a, pair.b}, pair.gap);
+  }
 }
 
 // Whether nothing but the support's push acts on a ball there: gravity presses straight against it (without friction a slope holds
@@ -307,6 +327,18 @@ void RetroactiveRun::watch_for_trouble() {
   }
 }
 
+// Bodies in lasting contact get their paths. @return the pairs among which impacts are to be looked for
+std::vector<std::pair<int, int>> RetroactiveRun::keep_contacts(std::vector<std::pair<int, int>> pairs) {
+  while (const auto earlier = contacts_->advance(pairs)) {
+    moving_.begin_step(*earlier);
+    pairs = candidates();
+  }
+  if (contacts_->empty()) return pairs;
+  pairs = candidates();   // the paths are others now
+  std::erase_if(pairs, [&](const auto& pair) { return contacts_->keeps(pair); });
+  return pairs;
+}
+
 void RetroactiveRun::advance_to(double target) {
   int idle = 0, impacts = 0;
   while (stopped_by_.empty() && moving_.time() < target) {
@@ -314,6 +346,7 @@ void RetroactiveRun::advance_to(double target) {
     ++counters_.steps;
     std::vector<std::pair<int, int>> pairs = candidates();
     if (moving_.shorten_step(pairs)) pairs = candidates();
+    if (contacts_) pairs = keep_contacts(std::move(pairs));
     std::optional<Earliest> earliest;
     {
       const StageTimer timer(counters_.collision_seconds);
@@ -326,6 +359,7 @@ void RetroactiveRun::advance_to(double target) {
     watch_for_trouble();
     if (!stopped_by_.empty()) return;
     separate(pairs);
+    if (contacts_) contacts_->commit();
     if (!earliest) continue;
     ++counters_.rollbacks;
     resolve_at(pairs, pairs[earliest->pair]);

@@ -91,13 +91,19 @@ struct SequentialImpacts::Work {
   }
 };
 
+bool SequentialImpacts::stays(const World& world, const TouchingPair& pair, double approach_speed) const {
+  const double restitution = std::min(world.bodies[pair.a].restitution, world.bodies[pair.b].restitution);
+  return contact_rest_speed_ && laws_.ends_in_contact(approach_speed, restitution, *contact_rest_speed_);
+}
+
 bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double threshold) {
   Body& a = work.body(pair.a);
   Body& b = work.body(pair.b);
   const auto [approach, point_world] = fastest_approach(laws_, pair, a, b, threshold);
   if (!(approach < -threshold)) return false;
   const Contact contact = contact_of(pair, point_world);
-  const double restitution = std::min(work.moving.world().bodies[pair.a].restitution, work.moving.world().bodies[pair.b].restitution);
+  double restitution = std::min(work.moving.world().bodies[pair.a].restitution, work.moving.world().bodies[pair.b].restitution);
+  if (stays(work.moving.world(), pair, -approach)) restitution = 0.0;
   const double impulse = laws_.collision_impulse(contact, a, b, restitution);
   work.push(laws_, pair, contact, impulse);
   ++counters_.impulses;

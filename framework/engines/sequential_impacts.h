@@ -9,6 +9,7 @@
 
 #include <functional>
 #include <map>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,11 @@ class SequentialImpacts {
  public:
   SequentialImpacts(const Laws& laws, ImpactRules rules, RunCounters& counters) : laws_(laws), rules_(rules), counters_(counters) {}
 
+  /// Impacts that would rebound more slowly than the rest speed (laws' ends_in_contact) do not rebound: they begin a lasting contact.
+  void use_contact_rules(double rest_speed) { contact_rest_speed_ = rest_speed; }
+  /// Whether an impact of the pair at this speed begins a lasting contact.
+  bool stays(const World& world, const TouchingPair& pair, double approach_speed) const;
+
   /// @param pairs    sorted by (a, b)
   /// @param trigger  which of them stopped the step
   Resolution resolve(MovingWorld& moving, const std::vector<TouchingPair>& pairs, std::size_t trigger);
@@ -59,6 +65,7 @@ class SequentialImpacts {
   ImpactRules rules_;
   RunCounters& counters_;
   std::map<std::pair<int, int>, double> last_meeting_;
+  std::optional<double> contact_rest_speed_;   // [m/s]
 };
 
 }  // namespace tumble::engines

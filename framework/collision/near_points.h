@@ -1,0 +1,23 @@
+/// The points at which two solids touch or soon will: what forces of lasting contact act at.
+#pragma once
+
+#include <vector>
+
+#include "framework/collision/gap.h"
+
+namespace tumble::collision {
+
+struct NearPoint {
+  Vector3d point_a_world;         // on A's surface [m]
+  Vector3d point_b_world;         // on B's surface, straight across [m]
+  Vector3d normal_b_to_a_world;   // unit
+  double gap;                     // along the normal [m]
+};
+
+/// Corners of the regions of A and B that face each other less than `reach` apart, each with its own gap; sorted in a way that does not
+/// depend on where they stand in the world. A ball has one point; a solid on a half-space the vertices of its hull that are near.
+/// Where faces lie flat on each other the normal is that of a face, exact however small the gap.
+/// @return empty where the two are farther apart than `reach`
+std::vector<NearPoint> near_points(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double reach);
+
+}  // namespace tumble::collision

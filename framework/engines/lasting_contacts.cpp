@@ -1,0 +1,416 @@
+#include "framework/engines/lasting_contacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "framework/collision/gap.h"
+#include "framework/engines/guarded_laws.h"
+
+namespace tumble::engines {
+namespace {
+
+constexpr double kEpsilon = 2.220446049250313e-16;
+constexpr double kShell = 1e-10;          // of the smaller body's radius: far above rounding, far below what is seen or measured
+constexpr double kRounding = 64;          // of coordinates far from the origin, in the shell
+constexpr double kBand = 2.0;             // shells: nearer than this two touch
+constexpr double kApart = 8.0;            // shells: farther than this a contact has ended
+constexpr double kReach = 0.25;           // of the smaller body: points farther away are not looked at
+constexpr int kMostShifts = 8;            // rounds of taking back overlaps
+constexpr int kMostOfStudents = 64;       // contacts of a group that the laws' contact_forces is asked for: it is given a dense matrix
+constexpr int kMostLocated = 12;          // contacts of a group whose end of sliding is located in time
+constexpr double kSlides = 1e-9;          // of the group's speed: slower than this nothing slides
+
+Vector3d velocity_at(const PushedBody& body, const Vector3d& velocity, const Vector3d& omega, const Vector3d& point) {
+  return velocity + omega.cross(point - body.com_world);
+}
+
+Matrix3d inverse_inertia_world(const WorldBody& body, const Quaterniond& q) {
+  const Matrix3d R = q.normalized().toRotationMatrix();
+  return R * body.inertia.inverse_inertia_body * R.transpose();
+}
+
+Quaterniond turned(const Quaterniond& q, const Vector3d& turn) {
+  const double angle = turn.norm();
+  return angle > 0 ? (Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * q).normalized() : q;
+}
+
+Vector3d middle(const collision::NearPoint& p) { return 0.5 * (p.point_a_world + p.point_b_world); }
+
+}  // namespace
+
+void LastingContacts::begin(Pair pair, const collision::Gap& gap) {
+  if (!lasting_.try_emplace(pair, false).second) return;
+  ++counters_.contacts_begun;
+  sink_.event({moving_.time(), EventKind::kContact, pair.first, pair.second, gap.point_b_world, gap.normal_b_to_a_world, 0.0, 0.0});
+}
+
+double LastingContacts::friction(Pair pair) const {
+  return std::min(moving_.world().bodies[pair.first].friction, moving_.world().bodies[pair.second].friction);
+}
+
+bool LastingContacts::plastic(Pair pair) const {
+  return rules_.plastic_impacts == scene::PlasticImpacts::kInStep &&
+         std::min(moving_.world().bodies[pair.first].restitution, moving_.world().bodies[pair.second].restitution) == 0.0;
+}
+
+double LastingContacts::shell(Pair pair) const {
+  const double size = std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius());
+  const auto far = [&](int body) { return moving_.world().bodies[body].immovable() ? 0.0 : moving_.state(body).com_world.cwiseAbs().maxCoeff(); };
+  return kShell * size + kRounding * kEpsilon * (size + std::max(far(pair.first), far(pair.second)));
+}
+
+// How much nearer the two can come in the step.
+double LastingContacts::reach(Pair pair) {
+  const double h = moving_.target() - moving_.time();
+  const auto motion = [&](int body) {
+    const collision::MotionState start = moving_.motion_at(body, moving_.time()), end = moving_.motion_at(body, moving_.target());
+    const double radius = moving_.shape(body).is_half_space() ? 0.0 : moving_.shape(body).bounding_radius();
+    return std::max(start.velocity_world.norm(), end.velocity_world.norm()) + std::max(start.omega_world.norm(), end.omega_world.norm()) * radius;
+  };
+  const double size = std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius());
+  return std::min(kReach * size, (motion(pair.first) + motion(pair.second)) * h) + kApart * shell(pair);
+}
+
+collision::Pose LastingContacts::pose(int body, const std::vector<RigidBodyState>& states) const {
+  return {states[body].com_world, states[body].world_from_body};
+}
+
+LastingContacts::Points LastingContacts::points_at(Pair pair, const std::vector<RigidBodyState>& states, double reach) const {
+  return collision::near_points(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states), reach);
+}
+
+std::vector<LastingContacts::Group> LastingContacts::groups(const std::vector<Pair>& touching) {
+  const int n = moving_.size();
+  std::vector<int> leader(n);
+  std::iota(leader.begin(), leader.end(), 0);
+  const auto find = [&](int i) {
+    while (leader[i] != i) i = leader[i] = leader[leader[i]];
+    return i;
+  };
+  const auto join = [&](int a, int b) {
+    const int i = find(a), j = find(b);
+    leader[std::max(i, j)] = std::min(i, j);
+  };
+  for (const LinkedBodies& group : moving_.linked_groups())
+    for (const int body : group.bodies()) join(group.bodies().front(), body);
+  for (const auto& [a, b] : touching)
+    if (moving_.can_move(a) && moving_.can_move(b)) join(a, b);
+  std::map<int, Group> by_leader;
+  for (const auto& pair : touching) by_leader[find(moving_.can_move(pair.first) ? pair.first : pair.second)].pairs.push_back(pair);
+  for (int i = 0; i < n; ++i) {
+    if (!moving_.can_move(i)) continue;
+    const auto group = by_leader.find(find(i));
+    if (group == by_leader.end()) continue;
+    group->second.bodies.push_back(i);
+    const int linked = moving_.linked_group(i);
+    if (linked >= 0 && moving_.linked_groups()[linked].bodies().front() == i) group->second.linked.push_back(linked);
+  }
+  std::vector<Group> result;
+  for (auto& [first, group] : by_leader) result.push_back(std::move(group));
+  return result;
+}
+
+std::vector<LastingContacts::Touch> LastingContacts::touches_of(const Group& group) const {
+  std::vector<Touch> touches;
+  for (const Pair& pair : group.pairs)
+    for (const collision::NearPoint& point : points_.at(pair)) touches.push_back({pair, point, shell(pair)});
+  return touches;
+}
+
+// Puts a body into the problem. With `velocities`: those of a state; without: none, as for shifts.
+int LastingContacts::place(int body, double t, std::map<int, int>& places, const std::vector<RigidBodyState>& states, const RigidBodyState* velocities,
+                           ContactProblem& problem) const {
+  const auto [found, is_new] = places.try_emplace(body, static_cast<int>(problem.bodies.size()));
+  if (!is_new) return found->second;
+  const WorldBody& b = moving_.world().bodies[body];
+  PushedBody pushed;
+  pushed.com_world = states[body].com_world;
+  pushed.velocity_world = pushed.omega_world = Vector3d::Zero();
+  if (b.immovable()) {
+    if (velocities) pushed.velocity_world = prescribed_velocity(b, t);
+  } else {
+    pushed.inverse_mass = b.inertia.inverse_mass;
+    pushed.inverse_inertia_world = inverse_inertia_world(b, states[body].world_from_body);
+    if (velocities) {
+      pushed.velocity_world = b.inertia.inverse_mass * velocities->momentum_world;
+      pushed.omega_world = omega_of(*velocities, b.inertia);
+    }
+  }
+  problem.bodies.push_back(pushed);
+  return found->second;
+}
+
+// Rods and joints of the group. Velocities: what the free step has made of them stays. Places: their errors go.
+void LastingContacts::add_rows(const Group& group, const std::vector<RigidBodyState>& states, double t, const std::map<int, int>& places, bool of_places,
+                               ContactProblem& problem) {
+  std::vector<double> targets;
+  int fixed = -1;
+  for (const int index : group.linked) {
+    LinkedBodies& linked = moving_.linked_groups()[index];
+    for (Constraint row : linked.constraint_rows(states, t)) {
+      const auto place_of = [&](int local) {
+        if (local < linked.fixed_end()) return places.at(linked.bodies()[local]);
+        if (fixed < 0) {
+          fixed = static_cast<int>(problem.bodies.size());
+          problem.bodies.push_back({0.0, Matrix3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()});
+        }
+        return fixed;
+      };
+      row.body_a = place_of(row.body_a);
+      row.body_b = place_of(row.body_b);
+      const auto rate = [&](int body, const Vector6d& jacobian) {
+        return jacobian.head<3>().dot(problem.bodies[body].velocity_world) + jacobian.tail<3>().dot(problem.bodies[body].omega_world);
+      };
+      targets.push_back(of_places ? -row.row.value : rate(row.body_a, row.row.jacobian_a) + rate(row.body_b, row.row.jacobian_b));
+      problem.rows.push_back(row);
+    }
+  }
+  problem.row_targets = Eigen::Map<const VectorXd>(targets.data(), static_cast<Eigen::Index>(targets.size()));
+}
+
+ContactProblem LastingContacts::problem_of(const Group& group, const std::vector<Touch>& touches, double h) {
+  ContactProblem problem;
+  std::map<int, int> places;
+  for (const int body : group.bodies) place(body, moving_.target(), places, moving_.states(), &moving_.path_end(body), problem);
+  for (const Touch& touch : touches) {
+    PushingContact contact;
+    contact.body_a = place(touch.pair.first, moving_.target(), places, moving_.states(), &moving_.state(touch.pair.first), problem);
+    contact.body_b = place(touch.pair.second, moving_.target(), places, moving_.states(), &moving_.state(touch.pair.second), problem);
+    contact.point_world = middle(touch.point);
+    contact.normal_b_to_a_world = touch.point.normal_b_to_a_world;
+    contact.friction = friction(touch.pair);
+    const double room = touch.point.gap - touch.shell;
+    contact.target = room <= kBand * touch.shell ? 0.0 : -room / h;
+    if (const auto warm = warm_.find(touch.pair); warm != warm_.end()) {
+      const Vector3d point_body_a = moving_.state(touch.pair.first).world_from_body.conjugate() * (contact.point_world - moving_.state(touch.pair.first).com_world);
+      double nearest = 1e-2 * std::min(moving_.shape(touch.pair.first).bounding_radius(), moving_.shape(touch.pair.second).bounding_radius());
+      for (const Warm& known : warm->second) {
+        const double distance = (known.point_body_a - point_body_a).norm();
+        if (distance >= nearest) continue;
+        nearest = distance;
+        contact.guess_world = h * known.force_world;
+      }
+    }
+    problem.contacts.push_back(contact);
+  }
+  add_rows(group, moving_.states(), moving_.time(), places, false, problem);
+  return problem;
+}
+
+ContactSolution LastingContacts::solve(const Group& group, const ContactProblem& problem, double h) {
+  ++counters_.contact_solves;
+  counters_.contact_points += problem.contacts.size();
+  const auto smooth = [](const PushingContact& c) { return c.friction == 0.0; };
+  const bool frictionless = std::all_of(problem.contacts.begin(), problem.contacts.end(), smooth);
+  if (!frictionless) counters_.friction_points += static_cast<std::uint64_t>(std::count_if(problem.contacts.begin(), problem.contacts.end(), [&](const auto& c) { return !smooth(c); }));
+  if (!frictionless || !problem.rows.empty() || static_cast<int>(problem.contacts.size()) > kMostOfStudents) {
+    const ContactSolution solution = solve_contacts(problem);
+    counters_.contact_sweeps += static_cast<std::uint64_t>(solution.sweeps);
+    counters_.contact_factorisations += static_cast<std::uint64_t>(solution.factorisations);
+    return solution;
+  }
+  // The laws' part: A f + b are accelerations, f forces.
+  const Eigen::Index m = static_cast<Eigen::Index>(problem.contacts.size()), n = 6 * static_cast<Eigen::Index>(problem.bodies.size());
+  MatrixXd J = MatrixXd::Zero(m, n), MJ = MatrixXd::Zero(n, m);
+  VectorXd b(m);
+  for (Eigen::Index i = 0; i < m; ++i) {
+    const PushingContact& c = problem.contacts[i];
+    double rate = 0.0;
+    for (const auto& [index, sign] : {std::pair{c.body_a, 1.0}, std::pair{c.body_b, -1.0}}) {
+      const PushedBody& body = problem.bodies[index];
+      const Vector3d push = sign * c.normal_b_to_a_world, turn = (c.point_world - body.com_world).cross(push);
+      J.block<1, 3>(i, 6 * index) = push.transpose();
+      J.block<1, 3>(i, 6 * index + 3) = turn.transpose();
+      MJ.block<3, 1>(6 * index, i) = body.inverse_mass * push;
+      MJ.block<3, 1>(6 * index + 3, i) = body.inverse_inertia_world * turn;
+      rate += push.dot(velocity_at(body, body.velocity_world, body.omega_world, c.point_world));
+    }
+    b[i] = (rate - c.target) / h;
+  }
+  const VectorXd f = naming("body '" + moving_.world().bodies[group.bodies.front()].name + "' and what it touches", [&] { return laws_.contact_forces(J * MJ, b); });
+  if (f.size() != m) throw StoppedRun("lasting contact (contact_forces of " + laws_.constraint_source + ") returned " + std::to_string(f.size()) + " forces for " + std::to_string(m) + " points");
+  const VectorXd change = MJ * (h * f);
+  ContactSolution solution;
+  for (Eigen::Index i = 0; i < m; ++i) {
+    solution.impulses_world.push_back(h * f[i] * problem.contacts[i].normal_b_to_a_world);
+    solution.modes.push_back(f[i] > 0 ? ContactMode::kSlide : ContactMode::kOpen);
+  }
+  for (std::size_t k = 0; k < problem.bodies.size(); ++k)
+    solution.velocities.push_back({problem.bodies[k].velocity_world + change.segment<3>(6 * static_cast<Eigen::Index>(k)),
+                                   problem.bodies[k].omega_world + change.segment<3>(6 * static_cast<Eigen::Index>(k) + 3)});
+  solution.converged = true;
+  return solution;
+}
+
+// Where a pair that slid and would stick at the end of the step stops sliding: when the friction that stops it is all there can be. What
+// stops the slip is A + F s, with F the steady forces along it, the friction at hand M s; two steps of different lengths tell A and F.
+std::optional<double> LastingContacts::stop_of_sliding(const ContactProblem& problem, const std::vector<Touch>& touches, const ContactSolution& solution, double h) {
+  if (static_cast<int>(touches.size()) > kMostLocated) return std::nullopt;
+  const Pair* stopping = nullptr;
+  double least = 1.0, stopping_impulse = 0.0, at_hand = 0.0;
+  for (std::size_t i = 0; i < touches.size();) {
+    const Pair& pair = touches[i].pair;
+    Vector3d along = Vector3d::Zero();
+    double limit = 0.0, slip = 0.0, speed = 0.0;
+    bool sticks = true;
+    for (; i < touches.size() && touches[i].pair == pair; ++i) {
+      const PushingContact& c = problem.contacts[i];
+      const Vector3d& n = c.normal_b_to_a_world;
+      const auto velocity = [&](int body) -> Vector3d {
+        const Body b = moving_.body_at_impact(body);
+        return b.velocity_world + b.omega_world.cross(c.point_world - b.com_world);
+      };
+      const Vector3d va = velocity(pair.first), vb = velocity(pair.second), relative = va - vb;
+      slip = std::max(slip, (relative - relative.dot(n) * n).norm());
+      speed = std::max({speed, va.norm(), vb.norm()});
+      const double normal = solution.impulses_world[i].dot(n);
+      along += solution.impulses_world[i] - normal * n;
+      limit += c.friction * normal;
+      sticks = sticks && (solution.modes[i] == ContactMode::kStick || (solution.modes[i] == ContactMode::kOpen && normal == 0.0));
+    }
+    if (!sticks || !(limit > 0) || slip <= kSlides * speed) continue;
+    if (along.norm() >= least * limit) continue;
+    least = along.norm() / limit;
+    stopping = &pair;
+    stopping_impulse = along.norm();
+    at_hand = limit;
+  }
+  if (!stopping) return std::nullopt;
+  if (locating_ && locating_->pair == *stopping && locating_->start == moving_.time()) {
+    if (locating_->found) return std::nullopt;
+    const double F = (locating_->impulse - stopping_impulse) / (locating_->duration - h), A = stopping_impulse - F * h, M = at_hand / h;
+    const double stop = A / (M - F);
+    if (!(stop > 0) || !(stop < locating_->duration)) return std::nullopt;
+    locating_->found = true;
+    return moving_.time() + stop;
+  }
+  if (least >= 1 - 1e-12) return std::nullopt;
+  locating_ = Locating{*stopping, moving_.time(), h, stopping_impulse, false};
+  return moving_.time() + h * std::max(least, 1e-3);
+}
+
+void LastingContacts::give_paths(const Group& group, const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h) {
+  // Does anything come down in this step that did not touch before?
+  bool lands = false;
+  for (std::size_t i = 0; i < touches.size(); ++i) lands = lands || (problem.contacts[i].target < 0.0 && solution.impulses_world[i].squaredNorm() > 0.0);
+  std::vector<RigidBodyState> ends = moving_.states();
+  std::vector<RigidBodyState> starts = moving_.states();
+  for (std::size_t k = 0; k < group.bodies.size(); ++k) {   // the problem's first bodies are the group's
+    const int body = group.bodies[k];
+    const Inertia& inertia = moving_.world().bodies[body].inertia;
+    const Velocity& after = solution.velocities[k];
+    RigidBodyState& end = ends[body];
+    if (lands) {
+      end.com_world += h * after.linear_world;
+      end.world_from_body = turned(end.world_from_body, h * after.angular_world);
+      starts[body].momentum_world = inertia.mass * after.linear_world;
+      starts[body].angular_momentum_world = angular_momentum_of(after.angular_world, starts[body].world_from_body, inertia);
+    } else {
+      end = moving_.path_end(body);
+      end.com_world += 0.5 * h * (after.linear_world - problem.bodies[k].velocity_world);
+      end.world_from_body = turned(end.world_from_body, 0.5 * h * (after.angular_world - problem.bodies[k].omega_world));
+    }
+    end.momentum_world = inertia.mass * after.linear_world;
+    end.angular_momentum_world = angular_momentum_of(after.angular_world, end.world_from_body, inertia);
+  }
+  keep_apart(group, ends, moving_.target());
+  for (const int body : group.bodies) moving_.set_path(body, starts[body], ends[body]);
+}
+
+// The smallest shift (in the measure of the masses) that leaves no gap of the group below its shell, and no rod or joint open.
+void LastingContacts::keep_apart(const Group& group, std::vector<RigidBodyState>& states, double t) {
+  for (int i = 0; i < moving_.size(); ++i)
+    if (moving_.world().bodies[i].immovable()) states[i].com_world = prescribed_position(moving_.world().bodies[i], t);
+  for (int round = 0; round < kMostShifts; ++round) {
+    ContactProblem problem;
+    std::map<int, int> places;
+    for (const int body : group.bodies) place(body, t, places, states, nullptr, problem);
+    bool overlap = false;
+    for (const Pair& pair : group.pairs) {
+      const double room = shell(pair), near = 1e3 * room;
+      for (const collision::NearPoint& point : points_at(pair, states, near)) {
+        overlap = overlap || point.gap < 0.5 * room;
+        PushingContact contact;
+        contact.body_a = place(pair.first, t, places, states, nullptr, problem);
+        contact.body_b = place(pair.second, t, places, states, nullptr, problem);
+        contact.point_world = middle(point);
+        contact.normal_b_to_a_world = point.normal_b_to_a_world;
+        contact.target = room - point.gap;
+        problem.contacts.push_back(contact);
+      }
+    }
+    add_rows(group, states, t, places, true, problem);
+    double size = 0.0;
+    for (const int body : group.bodies) size = std::max(size, states[body].com_world.cwiseAbs().maxCoeff());
+    const bool open = problem.row_targets.size() > 0 && problem.row_targets.cwiseAbs().maxCoeff() > 1e-13 * size;
+    if (!overlap && !open) return;
+    ++counters_.nudges;
+    ContactOptions options;
+    options.tolerance = 1e-6;   // of what is missing: the next round takes the rest
+    const ContactSolution shift = solve_contacts(problem, options);
+    for (std::size_t k = 0; k < group.bodies.size(); ++k) {
+      RigidBodyState& state = states[group.bodies[k]];
+      const Inertia& inertia = moving_.world().bodies[group.bodies[k]].inertia;
+      const Vector3d omega = omega_of(state, inertia);
+      state.com_world += shift.velocities[k].linear_world;
+      state.world_from_body = turned(state.world_from_body, shift.velocities[k].angular_world);
+      state.angular_momentum_world = angular_momentum_of(omega, state.world_from_body, inertia);
+    }
+  }
+}
+
+std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidates) {
+  const StageTimer timer(counters_.contact_seconds);
+  const double h = moving_.target() - moving_.time();
+  points_.clear();
+  forces_.clear();
+  groups_.clear();
+  std::vector<Pair> touching;
+  for (const Pair& pair : candidates) {
+    if (!lasting_.contains(pair) && !plastic(pair)) continue;
+    Points points = points_at(pair, moving_.states(), reach(pair));
+    if (points.empty()) continue;
+    touching.push_back(pair);
+    points_.emplace(pair, std::move(points));
+  }
+  if (touching.empty()) return std::nullopt;
+  groups_ = groups(touching);
+  std::map<Pair, std::vector<Warm>> warm;
+  for (const Group& group : groups_) {
+    const std::vector<Touch> touches = touches_of(group);
+    const ContactProblem problem = problem_of(group, touches, h);
+    const ContactSolution solution = solve(group, problem, h);
+    if (const auto stop = stop_of_sliding(problem, touches, solution, h)) return stop;
+    give_paths(group, touches, problem, solution, h);
+    for (std::size_t i = 0; i < touches.size(); ++i) {
+      const RigidBodyState& a = moving_.state(touches[i].pair.first);
+      const Vector3d force = solution.impulses_world[i] / h, point = problem.contacts[i].point_world;
+      warm[touches[i].pair].push_back({a.world_from_body.conjugate() * (point - a.com_world), force});
+      if (!force.isZero(0.0)) forces_.push_back({touches[i].pair.first, touches[i].pair.second, point, touches[i].point.normal_b_to_a_world, force});
+    }
+  }
+  warm_ = std::move(warm);
+  return std::nullopt;
+}
+
+void LastingContacts::commit() {
+  const StageTimer timer(counters_.contact_seconds);
+  if (groups_.empty()) return;
+  std::vector<RigidBodyState> states = moving_.states();
+  for (const Group& group : groups_) {
+    keep_apart(group, states, moving_.time());
+    for (const int body : group.bodies) moving_.set_state(body, states[body]);
+    for (const Pair& pair : group.pairs) {
+      const collision::Gap gap = collision::compute_gap(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states));
+      if (gap.distance <= kApart * shell(pair)) {
+        begin(pair, gap);
+      } else if (lasting_.erase(pair) > 0) {
+        ++counters_.contacts_ended;
+        sink_.event({moving_.time(), EventKind::kBreak, pair.first, pair.second, gap.point_b_world, gap.normal_b_to_a_world, 0.0, 0.0});
+      }
+    }
+  }
+}
+
+}  // namespace tumble::engines

@@ -1,0 +1,101 @@
+/// Bodies that lie, slide, roll and are stacked: contacts that last.
+///
+/// A pair becomes a lasting contact where a collision would rebound more slowly than the rest speed (laws' ends_in_contact), or, with
+/// `"plastic_impacts": "in_step"`, as soon as two bodies without restitution come together. Every step the bodies first go where they
+/// would without each other (the laws' method, links included); then contact impulses, spread evenly over the step, keep what touches from
+/// approaching: v' = v_free + M^-1 J^T p, x' = x_free + h/2 M^-1 J^T p, which is exact for constant forces. Where a body only comes down
+/// within the step the impulse acts from its beginning (x' = x + h v'). Frictionless groups ask the laws' contact_forces; friction, links
+/// inside a group, and large groups the framework's solve_contacts. What turning leaves of an overlap is taken back by the smallest shift
+/// of the group. A lasting contact does not bounce; it ends when the bodies come apart.
+///
+/// Contacts are kept a shell apart, 1e-10 of the smaller body: gaps are never negative.
+/// Sources: J. J. Moreau, CISM 302, 1988; D. Stewart, J. Trinkle 1996; D. Baraff, SIGGRAPH 1994.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "framework/collision/near_points.h"
+#include "framework/dynamics/contact_problem.h"
+#include "framework/engines/moving_world.h"
+
+namespace tumble::engines {
+
+class LastingContacts {
+ public:
+  using Pair = std::pair<int, int>;   // bodies, first < second
+
+  LastingContacts(MovingWorld& moving, const Laws& laws, const scene::ContactSpec& rules, RunCounters& counters, TrajectorySink& sink)
+      : moving_(moving), laws_(laws), rules_(rules), counters_(counters), sink_(sink) {}
+
+  /// A collision has become a lasting contact.
+  void begin(Pair pair, const collision::Gap& gap);
+  bool lasts(Pair pair) const { return lasting_.contains(pair); }
+
+  /// Gives the bodies in contact their paths for the step that has begun. @param candidates  pairs whose boxes meet, sorted
+  /// @return an earlier target to begin the step again with: where a contact stops sliding
+  std::optional<double> advance(const std::vector<Pair>& candidates);
+  /// Whether nothing is in contact in this step.
+  bool empty() const { return points_.empty(); }
+  /// Whether the last advance() has kept the two apart, so that no impact is looked for.
+  bool keeps(Pair pair) const { return points_.contains(pair); }
+
+  /// After the step was committed: takes back overlaps, ends contacts that have come apart.
+  void commit();
+  const std::vector<ContactPoint>& forces() const { return forces_; }
+  /// Friction of a pair: the smaller of the two.
+  double friction(Pair pair) const;
+
+ private:
+  using Points = std::vector<collision::NearPoint>;
+  struct Warm {
+    Vector3d point_body_a, force_world;
+  };
+  struct Group {
+    std::vector<int> bodies;     // that can move, ascending
+    std::vector<Pair> pairs;
+    std::vector<int> linked;     // places in linked_groups()
+  };
+  struct Touch {
+    Pair pair;
+    collision::NearPoint point;
+    double shell;
+  };
+
+  struct Locating {
+    Pair pair;
+    double start, duration, impulse;
+    bool found;
+  };
+
+  bool plastic(Pair pair) const;
+  double shell(Pair pair) const;
+  double reach(Pair pair);
+  collision::Pose pose(int body, const std::vector<RigidBodyState>& states) const;
+  Points points_at(Pair pair, const std::vector<RigidBodyState>& states, double reach) const;
+  std::vector<Group> groups(const std::vector<Pair>& touching);
+  std::vector<Touch> touches_of(const Group& group) const;
+  ContactProblem problem_of(const Group& group, const std::vector<Touch>& touches, double h);
+  ContactSolution solve(const Group& group, const ContactProblem& problem, double h);
+  std::optional<double> stop_of_sliding(const ContactProblem& problem, const std::vector<Touch>& touches, const ContactSolution& solution, double h);
+  void give_paths(const Group& group, const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h);
+  void keep_apart(const Group& group, std::vector<RigidBodyState>& states, double t);
+  void add_rows(const Group& group, const std::vector<RigidBodyState>& states, double t, const std::map<int, int>& places, bool of_places, ContactProblem& problem);
+  int place(int body, double t, std::map<int, int>& places, const std::vector<RigidBodyState>& states, const RigidBodyState* velocities, ContactProblem& problem) const;
+
+  MovingWorld& moving_;
+  const Laws& laws_;
+  scene::ContactSpec rules_;
+  RunCounters& counters_;
+  TrajectorySink& sink_;
+  std::map<Pair, bool> lasting_;                 // value: whether it slid in the last step
+  std::map<Pair, Points> points_;                // of the step that has begun
+  std::map<Pair, std::vector<Warm>> warm_;
+  std::vector<Group> groups_;                    // of the step
+  std::vector<ContactPoint> forces_;
+  std::optional<Locating> locating_;             // the end of sliding that is being looked for
+};
+
+}  // namespace tumble::engines
