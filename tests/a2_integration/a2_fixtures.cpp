@@ -140,4 +140,46 @@ void expect_no_impact(const RootResult& found, const Looks& looks, const std::st
               {.scene = scene, .slip = "the search goes on although the ends show no sign change", .handout = equation(10)});
 }
 
+namespace {
+
+bool asked_first(bool came, const std::string& scene, const std::string& expected, int equation_number) {
+  expect_true(came, expected, "nothing of the kind",
+              {.scene = "asked first, because this test's own answer is \"nothing\": " + scene,
+               .slip = "the function gives nothing (0, NaN, no impact, its own argument) whatever it is asked",
+               .handout = equation(equation_number)});
+  return came;
+}
+
+bool found_something(const RootResult& found, const Looks& looks) { return found.status == RootStatus::kConverged && found.time > 0.0 && looks.calls > 2; }
+
+}  // namespace
+
+bool bisection_finds_something() {
+  Looks looks;
+  const Approach ball = dropped_ball();
+  const RootResult found = a2_module().impact_time_bisection(noting(looks, ball.gap), ball.t_low, ball.t_high, 1e-3);
+  return asked_first(found_something(found, looks), ball.scene, "status kConverged with a time, and calls of the gap", 11);
+}
+
+bool newton_finds_something() {
+  Looks looks;
+  const Approach ball = thrown_ball();
+  const RootResult found = a2_module().impact_time_newton(noting(looks, ball.gap), ball.gap_rate, ball.t_low, ball.t_high, 1e-3);
+  return asked_first(found_something(found, looks), ball.scene, "status kConverged with a time, and calls of the gap", 12);
+}
+
+bool a_body_moves() {
+  RigidBodyState state = resting();
+  state.momentum_world = {2, 4, 6};
+  const VectorXd rate = a2_module().rigid_body_derivative(state, block(), no_wrench());
+  const bool came = rate.size() == kStateSize && rate.allFinite() && rate != VectorXd::Zero(rate.size()) && rate != pack(state);
+  return asked_first(came, "a 2 kg block with momentum (2, 4, 6) kg m/s", "a derivative other than 0 and other than the state", 4);
+}
+
+bool rk4_moves() {
+  const VectorXd y = vector({1, 2});
+  const VectorXd found = a2_module().rk4_step([](double, const VectorXd& at) { return VectorXd(-at); }, 0.0, y, 0.5);
+  return asked_first(found.size() == 2 && found.allFinite() && found != y, "y' = -y, y = (1, 2), one step of 0.5 s", "another y than before", 2);
+}
+
 }  // namespace tumble::a2_testing

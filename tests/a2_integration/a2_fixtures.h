@@ -123,6 +123,14 @@ void expect_impact(const RootResult& found, const Approach& approach, const Look
 /// Status kNoSignChange, no time, no search.
 void expect_no_impact(const RootResult& found, const Looks& looks, const std::string& scene, const std::string& slip);
 
+/// "No impact", "stays as it is" and "few calls" are answers only from a function that can find, change and call something: a
+/// test whose right answer is such a nothing asks first for a case in which something must come. What comes is judged elsewhere.
+/// @return false when nothing came: the test has failed with that story, and should end
+bool bisection_finds_something();
+bool newton_finds_something();
+bool a_body_moves();
+bool rk4_moves();
+
 std::string show(RootStatus status);
 using tumble::testing::show;
 

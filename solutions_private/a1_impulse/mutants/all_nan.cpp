@@ -1,5 +1,5 @@
 // mutant: all_nan - every function returns NaN
-// caught-by: no number came out
+// caught-by: gives nothing
 #include "assignments/a1_impulse/a1_impulse.h"
 
 #include <cmath>

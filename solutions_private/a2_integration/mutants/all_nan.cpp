@@ -1,5 +1,5 @@
 // mutant: all_nan - every function returns NaN, root finders say that there is no impact
-// caught-by: 
+// caught-by: gives nothing
 #include "assignments/a2_integration/a2_integration.h"
 
 #include <cmath>

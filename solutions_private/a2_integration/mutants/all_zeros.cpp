@@ -1,5 +1,5 @@
 // mutant: all_zeros - every function returns 0
-// caught-by: 
+// caught-by: gives nothing
 #include "assignments/a2_integration/a2_integration.h"
 
 #include <cmath>

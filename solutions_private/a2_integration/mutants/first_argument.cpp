@@ -1,5 +1,5 @@
 // mutant: first_argument - every function returns what it was given
-// caught-by: 
+// caught-by: gives nothing
 #include "assignments/a2_integration/a2_integration.h"
 
 #include <cmath>
