@@ -12,7 +12,19 @@ class FramePainter {
   /// @throws UserError as make_picture
   FramePainter(const scene::Scene& scene, const Trajectory& run, const PictureOptions& options, std::string label = "", Words words = Words::kAll);
 
-  Image paint(std::size_t frame);
+  /// A picture whose words are still to be written: drawing and writing can then go on in two threads.
+  struct Wordless {
+    std::size_t frame;
+    Moment moment;
+    Image image;
+  };
+
+  Image paint(std::size_t frame) { return with_words(paint_wordless(frame)); }
+  /// OpenGL draws here; calls must come one after the other.
+  Wordless paint_wordless(std::size_t frame);
+  /// May run while the next is painted; calls must come one after the other.
+  Image with_words(Wordless painted) const;
+  std::size_t frame_at(double time_s) const { return stage_.frame_at(time_s); }
   Image paint_at(double time_s) { return paint(stage_.frame_at(time_s)); }
   double end_s() const { return run_.frames.back().time; }
 

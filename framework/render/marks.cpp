@@ -5,12 +5,11 @@
 #include <fmt/format.h>
 
 #include "framework/render/stage.h"
+#include "framework/render/stage_geometries.h"
 #include "framework/render/surfaces.h"
 
 namespace tumble::render {
 namespace {
-
-enum { kBall = 1, kArrow = 4, kTube = 5 };   // as in stage.cpp
 
 constexpr double kFlashSeconds = 0.22;       // of video: about seven pictures, long enough to be noticed
 constexpr double kForceLinger = 0.12;        // s of video after a push has ended, for pushes shorter than a picture
@@ -60,7 +59,7 @@ void Stage::add_path(std::size_t last, Drawing& drawing) const {
 
 void Stage::add_impacts(const Frame& frame, Drawing& drawing) const {
   const double life = kFlashSeconds * options_.speed;
-  Batch flashes{kBall, Pass::kMark, {}}, arrows{kArrow, Pass::kMark, {}};
+  Batch flashes{kBall + 1, Pass::kMark, {}}, arrows{kArrow, Pass::kMark, {}};
   const auto add_arrow = [&](const Event& event, int body, double sign, double opacity) {
     const Actor& actor = actors_[static_cast<std::size_t>(body)];
     if (actor.immovable) return;

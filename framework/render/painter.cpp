@@ -75,16 +75,19 @@ class Painter::Body {
     gl_.Clear(gl::kColorBufferBit | gl::kDepthBufferBit);
     const Matrix4f clip = clip_from_world(drawing.view, static_cast<double>(width_) / height_, drawing.near_m, drawing.far_m);
     draw_backdrop();
+    gl_.Enable(gl::kDepthTest);
+    // Surfaces are closed, so their far sides are never seen. Blending costs more than lighting here: only what needs it pays.
+    gl_.Enable(gl::kCullFace);
+    gl_.CullFace(gl::kBack);
+    draw_bodies(drawing, clip, shadow, Pass::kSolid);
+    gl_.Disable(gl::kCullFace);
     gl_.Enable(gl::kBlend);
     gl_.BlendFuncSeparate(gl::kSrcAlpha, gl::kOneMinusSrcAlpha, gl::kOne, gl::kOneMinusSrcAlpha);
-    gl_.Enable(gl::kDepthTest);
-    draw_ground(drawing, clip, shadow);
-    draw_bodies(drawing, clip, shadow, Pass::kSolid);
+    draw_ground(drawing, clip, shadow);   // after the bodies: what they hide is not shaded
     draw_unlit(drawing, clip, Pass::kLine);
     // Glass is seen through, so it hides nothing: no depth is written, and its far side is not drawn.
     gl_.DepthMask(0);
     gl_.Enable(gl::kCullFace);
-    gl_.CullFace(gl::kBack);
     draw_bodies(drawing, clip, shadow, Pass::kGlass);
     gl_.Disable(gl::kCullFace);
     gl_.Disable(gl::kDepthTest);

@@ -30,11 +30,15 @@ FramePainter::FramePainter(const scene::Scene& scene, const Trajectory& run, con
     : scene_(scene), run_(run), options_(checked(options)), label_(std::move(label)), words_(words), stage_(scene, run, options_),
       painter_(make_gl_context(options.gl), stage_.geometries(), options.width, options.height, options.samples) {}
 
-Image FramePainter::paint(std::size_t frame) {
-  const Moment moment = stage_.moment(frame);
-  Image image = painter_.paint(moment.drawing);
-  if (options_.captions) write_captions(image, writer_, scene_, run_, stage_, frame, moment, label_, words_);
-  return image;
+FramePainter::Wordless FramePainter::paint_wordless(std::size_t frame) {
+  Wordless painted{frame, stage_.moment(frame), {}};
+  painted.image = painter_.paint(painted.moment.drawing);
+  return painted;
+}
+
+Image FramePainter::with_words(Wordless painted) const {
+  if (options_.captions) write_captions(painted.image, writer_, scene_, run_, stage_, painted.frame, painted.moment, label_, words_);
+  return std::move(painted.image);
 }
 
 ImageNotes notes_of(const scene::Scene& scene, const Trajectory& run, double time_s) {

@@ -5,16 +5,13 @@
 #include <limits>
 
 #include "framework/core/error.h"
+#include "framework/render/stage_geometries.h"
 #include "framework/render/surfaces.h"
 #include "framework/scene/build_shape.h"
 
 namespace tumble::render {
 namespace {
 
-// The first geometries of every stage; models follow.
-enum { kBallFine, kBallCoarse, kBoxGeometry, kPlate, kArrow, kTube, kFirstMesh };
-
-constexpr std::size_t kManyBodies = 60;   // from here on balls are coarse: a picture then shows each in a few pixels
 constexpr std::size_t kExtentFrames = 400;  // frames looked at to find where things go: enough, and quick for long runs
 
 // Colours that readers with any colour vision tell apart (Okabe and Ito 2008), as linear RGB; without the yellow and the
@@ -78,17 +75,15 @@ Stage::Stage(const scene::Scene& scene, const Trajectory& run, const PictureOpti
 
 void Stage::add_actors(const std::vector<Shape>& shapes) {
   geometries_.resize(kFirstMesh);
-  geometries_[kBallFine] = unit_ball(4);
-  geometries_[kBallCoarse] = unit_ball(2);
+  for (int level = 0; level < kBallLevels; ++level) geometries_[static_cast<std::size_t>(kBall + level)] = unit_ball(level + 1);
   geometries_[kBoxGeometry] = shaded_surface(surface_of(Box{Vector3d::Ones()}));
   geometries_[kPlate] = shaded_surface(two_sided(surface_of(HalfSpace{}, 1.0)));
   geometries_[kArrow] = unit_arrow();
   geometries_[kTube] = unit_tube();
-  const int ball = shapes.size() < kManyBodies ? kBallFine : kBallCoarse;
-  for (std::size_t i = 0; i < shapes.size(); ++i) add_actor(scene_.bodies[i], shapes[i], i, ball);
+  for (std::size_t i = 0; i < shapes.size(); ++i) add_actor(scene_.bodies[i], shapes[i], i);
 }
 
-void Stage::add_actor(const scene::BodySpec& spec, const Shape& shape, std::size_t index, int ball) {
+void Stage::add_actor(const scene::BodySpec& spec, const Shape& shape, std::size_t index) {
   Actor actor;
   actor.immovable = spec.immovable;
   actor.color = spec.color ? *spec.color : spec.immovable ? kImmovableColor : kPalette[index % std::size(kPalette)];
@@ -96,7 +91,7 @@ void Stage::add_actor(const scene::BodySpec& spec, const Shape& shape, std::size
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
     // A point mass has no size: it is drawn as a dot.
     const double radius = sphere->radius > 0.0 ? sphere->radius : 0.008 * sight_m();
-    actor.geometry = ball;
+    actor.geometry = kBall;
     actor.scale = Vector3d::Constant(radius);
     actor.radius_m = radius;
     actor.quartered = !spec.immovable && sphere->radius > 0.0;
@@ -253,7 +248,8 @@ void Stage::add_bodies(const Frame& frame, Drawing& drawing) const {
     if (actor.geometry < 0 || !pose.com_world.allFinite()) continue;
     Instance instance = placed(pose.com_world, pose.world_from_body.toRotationMatrix(), actor.scale, actor.color, actor.opacity);
     instance.quartered = actor.quartered ? 1.0f : 0.0f;
-    (actor.pass == Pass::kGlass ? glass : solid)[static_cast<std::size_t>(actor.geometry)].instances.push_back(instance);
+    const int geometry = actor.geometry == kBall ? kBall + ball_level(actor.radius_m / metres_per_pixel(drawing.view, options_.height, pose.com_world)) : actor.geometry;
+    (actor.pass == Pass::kGlass ? glass : solid)[static_cast<std::size_t>(geometry)].instances.push_back(instance);
   }
   for (auto* batches : {&solid, &glass})
     for (Batch& batch : *batches)

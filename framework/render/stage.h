@@ -51,7 +51,7 @@ class Stage {
 
  private:
   void add_actors(const std::vector<Shape>& shapes);
-  void add_actor(const scene::BodySpec& spec, const Shape& shape, std::size_t index, int ball_level);
+  void add_actor(const scene::BodySpec& spec, const Shape& shape, std::size_t index);
   int geometry_of(const TriangleMesh& mesh);
   void find_extent();
   void lay_ground();

@@ -1,5 +1,7 @@
 #include "framework/render/surfaces.h"
 
+#include <array>
+#include <bit>
 #include <cmath>
 #include <map>
 #include <numbers>
@@ -67,17 +69,19 @@ Geometry shaded_surface(const TriangleMesh& mesh, double crease_angle_deg) {
     for (int corner = 0; corner < 3; ++corner) around[mesh.faces[f][corner]].emplace_back(static_cast<int>(f), corner);
   }
   Geometry geometry;
+  std::map<std::array<float, 6>, std::uint32_t> known;   // equal corners are one vertex, worked on once
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     if (normals[f].isZero(0.5)) continue;
-    Vertex corners[3];
     for (int corner = 0; corner < 3; ++corner) {
       const int vertex = mesh.faces[f][corner];
       Vector3d sum = Vector3d::Zero();
       for (const auto& [other, place] : around[vertex])
         if (normals[other].dot(normals[f]) >= cos_crease) sum += angle_at(mesh, mesh.faces[other], place) * normals[other];
-      corners[corner] = make_vertex(mesh.vertices[vertex], sum.stableNormalized());
+      const Vertex made = make_vertex(mesh.vertices[vertex], sum.stableNormalized());
+      const auto [place, is_new] = known.try_emplace(std::bit_cast<std::array<float, 6>>(made), static_cast<std::uint32_t>(geometry.vertices.size()));
+      if (is_new) geometry.vertices.push_back(made);
+      geometry.indices.push_back(place->second);
     }
-    add_triangle(geometry, corners[0], corners[1], corners[2]);
   }
   return geometry;
 }

@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <memory>
+#include <optional>
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
@@ -12,6 +14,12 @@ namespace tumble::render {
 namespace {
 
 constexpr int kSeam = 2;   // between views side by side [pixels]
+
+// What has been painted of one of the views.
+struct Part {
+  std::size_t view;
+  FramePainter::Wordless painted;
+};
 
 // Instants of the run that the pictures of a video show, the last one held for as long as an eye needs to see it.
 std::vector<double> instants(double end_s, const PictureOptions& options) {
@@ -39,10 +47,22 @@ void write_side_by_side_video(const std::filesystem::path& mp4, const scene::Sce
   Image whole(count * options.width + (count - 1) * kSeam, options.height);
   make_whole(mp4, [&](const std::filesystem::path& draft) {
     VideoWriter video(draft, whole.width, whole.height, options.video_rate_hz);
+    std::vector<std::optional<std::size_t>> shown(painters.size());   // frame
+    std::future<void> before;   // the picture before is lettered and encoded while this one is painted
     for (const double time : instants(end, options)) {
-      for (int i = 0; i < count; ++i) paste(painters[i]->paint_at(time), i * (options.width + kSeam), 0, whole);
-      video.add(whole);
+      std::vector<Part> fresh;   // a view in which nothing has changed stays
+      for (std::size_t i = 0; i < painters.size(); ++i) {
+        const std::size_t frame = painters[i]->frame_at(time);
+        if (shown[i] != frame) fresh.push_back({i, painters[i]->paint_wordless(frame)});
+        shown[i] = frame;
+      }
+      if (before.valid()) before.get();
+      before = std::async(std::launch::async, [&, fresh = std::move(fresh)]() mutable {
+        for (Part& part : fresh) paste(painters[part.view]->with_words(std::move(part.painted)), static_cast<int>(part.view) * (options.width + kSeam), 0, whole);
+        video.add(whole);
+      });
     }
+    if (before.valid()) before.get();
     video.finish();
   });
 }
