@@ -35,7 +35,9 @@ struct Impact {
 /// there is no shell around the bodies that would bias the time. A root finder that answers nonsense costs time, never correctness.
 /// @param t0, t1  [s], t0 <= t1; the motions' bounds must hold in between
 /// @pre the two do not overlap at t0 (if they do, the impact is at t0 with the negative gap)
-/// @return nothing where they stay apart until t1. A graze shallower than round-off may be reported either way.
+/// @return nothing where they stay apart until t1. A graze shallower than round-off may be reported either way. Solids that slide along
+///         each other so that 2000 advances do not get to t1 are looked at in longer strides: there a graze shallower than 1e-8 of the
+///         smaller one's size may pass, and a corner that is clipped within a stride; an overlap that lasts never does
 std::optional<Impact> first_impact(const CollisionShape& a, const Motion& motion_a, const CollisionShape& b, const Motion& motion_b,
                                    double t0, double t1, const ImpactOptions& options = {}, ImpactCost* cost = nullptr);
 

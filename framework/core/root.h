@@ -12,7 +12,7 @@ using ScalarFunction = std::function<double(double t)>;
 
 enum class RootStatus {
   kConverged,    // the bracket is as small as asked, or the function is exactly zero
-  kNoSignChange, // f(t_low) and f(t_high) have the same strict sign: nothing was searched
+  kNoSignChange, // f does not go from + (or 0) to - (or 0): no impact seen, or overlap from the start. Nothing was searched
   kNotConverged, // the iteration limit was reached first; `time` is the best so far
 };
 

@@ -43,10 +43,11 @@ RootResult bracketed_root(const ScalarFunction& f, const ScalarFunction&, double
   RootResult result;
   const auto counted = [&](double t) { ++result.evaluations; return f(t); };
   const double f_low = counted(low), f_high = counted(high);
-  if (f_low == 0.0 || f_high == 0.0) {
+  if (std::isnan(f_low) || std::isnan(f_high)) return result;   // not converged
+  if (f_low < 0 || (f_low > 0 && f_high > 0)) {
+    result.status = RootStatus::kNoSignChange;   // overlap from the start, or no impact seen
+  } else if (f_low == 0.0 || f_high == 0.0) {
     result = {RootStatus::kConverged, f_low == 0.0 ? low : high, 0.0, result.evaluations};
-  } else if ((f_low > 0) == (f_high > 0)) {
-    result.status = RootStatus::kNoSignChange;
   } else {
     std::uintmax_t limit = 200;
     const auto close = [tolerance](double a, double b) { return std::abs(b - a) <= tolerance; };

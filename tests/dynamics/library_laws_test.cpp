@@ -90,5 +90,20 @@ TEST(LibraryLaws, SaySoWhenNoImpactIsSeen) {
   EXPECT_TRUE(std::isnan(found.time));
 }
 
+TEST(LibraryLaws, RefuseAGapThatOpensInsteadOfClosing) {
+  // -1 to +1: bodies that overlap and part. The end of that is no impact.
+  for (const double high : {1.0, 2.0}) {
+    const RootResult found = laws().find_impact_time([](double t) { return t - 1; }, [](double) { return 1.0; }, 0.0, high, 1e-9);
+    EXPECT_EQ(found.status, RootStatus::kNoSignChange) << high;
+    EXPECT_TRUE(std::isnan(found.time)) << high;
+    EXPECT_EQ(found.evaluations, 2) << high;
+  }
+}
+
+TEST(LibraryLaws, FindNothingInAGapThatIsNotANumber) {
+  const RootResult found = laws().find_impact_time([](double) { return kUnset; }, [](double) { return 0.0; }, 0.0, 1.0, 1e-9);
+  EXPECT_EQ(found.status, RootStatus::kNotConverged);
+}
+
 }  // namespace
 }  // namespace tumble::testing
