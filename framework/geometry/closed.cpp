@@ -23,6 +23,10 @@ constexpr double kZeroArea = 1e-15;
 // A round rod reaches it at a length of a million radii.
 constexpr double kNeedle = 1e-12;
 
+// What rounding may leave of an integral that is zero, against the largest moment: sums over a million faces of both signs, 1e4 eps. A
+// plate is thinner than that from a millionth of its width on.
+constexpr double kRoundedMoment = 1e-12;
+
 std::string plural(std::size_t n, const char* one, const char* many) { return fmt::format("{} {}", n, n == 1 ? one : many); }
 
 // What must hold before anything can be measured: faces, indices, finite numbers.
@@ -152,12 +156,19 @@ void append(std::vector<Defect>& to, std::vector<Defect> more) {
 
 std::vector<Defect> find_impossible_mass(const TriangleMesh& closed_mesh) {
   const MassProperties mass = compute_mass_properties(closed_mesh);
-  const double ratio = mass.principal_moments[0] / mass.principal_moments[2];
+  const Vector3d& moments = mass.principal_moments;   // ascending
+  const double ratio = moments[0] / moments[2];
   const Bounds bounds = bounds_of(closed_mesh);
   const Vector3d& com = mass.com_mesh;
-  if ((com.array() < bounds.low.array()).any() || (com.array() > bounds.high.array()).any() || mass.principal_moments[2] <= 0.0) {
-    return {{DefectKind::kSelfCrossing,
-             fmt::format("faces pass through each other: parts of the inside cancel, and the centre of mass would be at {}, outside the surface", show_point(com)),
+  // The eigenvalues of int x x' are integrals of squares, positive for every solid; in terms of the moments (I_1 + I_2 - I_3) / 2 etc.
+  const double least_square = 0.5 * (moments[0] + moments[1] - moments[2]);
+  std::string impossible;
+  if ((com.array() < bounds.low.array()).any() || (com.array() > bounds.high.array()).any())
+    impossible = fmt::format("the centre of mass would be at {}, outside the surface", show_point(com));
+  else if (moments[2] <= 0.0 || least_square < -kRoundedMoment * moments[2])
+    impossible = fmt::format("what is left would have moments of inertia {:.3g}, {:.3g} and {:.3g} (at density 1), which no solid has", moments[0], moments[1], moments[2]);
+  if (!impossible.empty()) {
+    return {{DefectKind::kSelfCrossing, "faces pass through each other: parts of the inside cancel, and " + impossible,
              "Separate the crossing faces in the modelling program."}};
   }
   if (ratio >= kNeedle) return {};

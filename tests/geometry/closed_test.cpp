@@ -165,6 +165,29 @@ TEST(Closed, VertexFarFromTheOthersMakesANeedle) {
   EXPECT_TRUE(check_closed(models::box({0, 0, 0}, {1e5, 1, 1})).is_closed());
 }
 
+/// A prism over a curve like three links of a chain, seen from the side: the middle one counts, the outer two, up to x = +-reach, are
+/// turned inside out. By symmetry its centre of mass is in the middle.
+TriangleMesh three_links(double reach) {
+  const double y = reach - 4;
+  return models::extrude({{-reach, y}, {-1, -3}, {1, -3}, {reach, y}, {reach, -y}, {1, 3}, {-1, 3}, {-reach, -y}},
+                         {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 6}, {0, 6, 7}}, 0, 4);
+}
+
+TEST(Closed, InertiaThatNoSolidHasIsRefused) {
+  // int x^2 over the links: 85 - 2 * 2 (reach^4 / 4 - 4 reach^3 / 3 + 64 / 3) a metre of height: negative at 5.5, where all three moments of
+  // inertia are still positive and the centre of mass is inside.
+  expect_refused(three_links(5.5), DefectKind::kSelfCrossing, "moments of inertia", "no solid has");
+  // At 4.5 it is 70: nothing that is measured is impossible, and crossing faces are not looked for.
+  EXPECT_TRUE(check_closed(three_links(4.5)).is_closed());
+}
+
+TEST(Closed, APlateAsThinAsARoundingIsNotTakenForACrossing) {
+  for (const double thickness : {1e-6, 1e-9, 1e-12}) {
+    const ClosedReport report = check_closed(models::box({0, 0, 0}, {1, 1, thickness}));
+    for (const Defect& defect : report.defects) EXPECT_NE(defect.kind, DefectKind::kSelfCrossing) << thickness << ": " << defect.problem;
+  }
+}
+
 TEST(Closed, VolumeThatIsAllRoundingIsRefused) {
   // A spike to 1e31 m on a stone of 1 m: the sum for its volume leaves nothing but the rounding of numbers of 1e62.
   TriangleMesh mesh = models::rounded(subdivided_sphere(1));
