@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "framework/core/error.h"
+#include "framework/dynamics/anchors.h"
+#include "framework/dynamics/build_links.h"
 #include "framework/scene/build_shape.h"
 
 namespace tumble {
@@ -13,6 +15,8 @@ WorldBody build_body(const scene::BodySpec& spec, scene::Solid solid) {
   body.name = spec.name;
   body.shape = std::move(solid.shape);
   body.restitution = spec.restitution;
+  body.friction = spec.friction;
+  body.collides = spec.collides;
   body.com_at_0_world = spec.position_m;
   body.inertia = solid.is_immovable() ? infinite_inertia() : finite_inertia(solid.mass_kg, solid.inertia_body_kg_m2);
   if (spec.motion) body.motion = *spec.motion;
@@ -50,6 +54,7 @@ World build_world(const scene::Scene& scene) {
       throw UserError("point force on '" + spec.body + "'", "the body is immovable", "push a movable body");
     world.point_forces.push_back({body, spec.force_n, spec.point_m, spec.start_s, spec.start_s + spec.duration_s});
   }
+  build_links(scene, world);
   return world;
 }
 
@@ -91,6 +96,11 @@ Invariants invariants_of(const World& world, const std::vector<RigidBodyState>& 
     if (world.gravity_world) sums.potential_energy -= body.inertia.mass * world.gravity_world->dot(state.com_world);
     sums.momentum_world += state.momentum_world;
     sums.angular_momentum_world += state.angular_momentum_world + state.com_world.cross(state.momentum_world);
+  }
+  for (const SpringLink& link : world.springs) {
+    // E = k/2 (L - L0)^2
+    const double stretch = (anchor_point(link.b, states) - anchor_point(link.a, states)).norm() - link.spring.rest_length;
+    sums.potential_energy += 0.5 * link.spring.stiffness * stretch * stretch;
   }
   return sums;
 }

@@ -113,7 +113,7 @@ struct Invariants {
   Vector3d momentum_world = Vector3d::Zero();             // [kg m/s]
   Vector3d angular_momentum_world = Vector3d::Zero();     // about the world's origin [kg m^2/s]
 };
-/// @param states  by body index; those of immovable bodies are not looked at
+/// @param states  by body index; of immovable bodies only the place is looked at, for springs that end there
 Invariants invariants_of(const World& world, const std::vector<RigidBodyState>& states);
 
 }  // namespace tumble

@@ -5,6 +5,8 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "framework/scene/anchors.h"
+#include "framework/scene/check_links.h"
 #include "framework/scene/document.h"
 
 namespace tumble::scene {
@@ -33,12 +35,6 @@ void check_inertia(const Matrix3d& inertia, const Refuse& refuse) {
   // Equality is a flat plate; 1e-9 forgives its rounding.
   if (moments[0] + moments[1] < moments[2] * (1 - 1e-9))
     refuse("inertia_body_kg_m2", "no solid has these moments: the largest exceeds the sum of the two others", "Ixx + Iyy >= Izz must hold, in any order.");
-}
-
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < std::min<std::size_t>(names.size(), 8); ++i) text += (i > 0 ? ", " : "") + names[i];
-  return text + (names.size() > 8 ? ", ..." : "");
 }
 
 /// Refuses the name of a body that is not there.
@@ -111,14 +107,9 @@ void check_body(const BodySpec& body, const Refuse& refuse) {
   if (body.immovable && !body.omega_world_rad_s.isZero(0)) refuse("angular_velocity_rad_s", "it is immovable and spins", "An immovable body does not turn: delete angular_velocity_rad_s.");
 }
 
-void check_scene(const Scene& scene, const std::vector<std::string>& body_pointers, const Refuse& refuse) {
+void check_scene(const Scene& scene, const Refuse& refuse) {
   if (scene.bodies.empty()) refuse("/bodies", "the scene has no body", "Add one, here or under \"repeat\".");
   if (scene.step_s > scene.duration_s) refuse("/step_s", "the step is longer than the whole run", "Give a shorter step_s or a longer duration_s.");
-  std::map<std::string, std::string> first;
-  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
-    const auto [at, is_new] = first.emplace(scene.bodies[i].name, body_pointers[i]);
-    if (!is_new) refuse(body_pointers[i] + "/name", "the name '" + scene.bodies[i].name + "' is taken by " + at->second, "Give every body a name of its own.");
-  }
   const Names names(scene, refuse);
   for (std::size_t i = 0; i < scene.point_forces.size(); ++i) {
     const PointForceSpec& force = scene.point_forces[i];
@@ -127,6 +118,7 @@ void check_scene(const Scene& scene, const std::vector<std::string>& body_pointe
     const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(), [&](const BodySpec& b) { return b.name == force.body; });
     if (body != scene.bodies.end() && body->immovable) refuse(pointer, "body '" + force.body + "' is immovable: no force moves it", "Name a movable body.");
   }
+  check_links(scene, refuse);
   if ((scene.camera.eye_m - scene.camera.target_m).norm() == 0.0) refuse("/camera/target_m", "the camera stands where it looks", "Move eye_m or target_m.");
   if (scene.camera.follow) names.expect(*scene.camera.follow, "/camera/follow");
   for (std::size_t i = 0; i < scene.checks.size(); ++i) check_check(scene.checks[i], "/checks/" + std::to_string(i), names, refuse);

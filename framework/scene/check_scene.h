@@ -3,7 +3,6 @@
 
 #include <functional>
 #include <string>
-#include <vector>
 
 #include "framework/scene/scene.h"
 
@@ -15,8 +14,7 @@ using Refuse = std::function<void(const std::string& place, const std::string& p
 /// Everything that one body's entry must hold on its own.
 void check_body(const BodySpec& body, const Refuse& refuse);
 
-/// Everything between entries.
-/// @param body_pointers  JSON pointer of each body's entry
-void check_scene(const Scene& scene, const std::vector<std::string>& body_pointers, const Refuse& refuse);
+/// Everything between entries. @pre names of bodies are different, and those that links name are there
+void check_scene(const Scene& scene, const Refuse& refuse);
 
 }  // namespace tumble::scene

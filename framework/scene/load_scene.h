@@ -9,7 +9,7 @@
 namespace tumble::scene {
 
 /// @param file  path of a .json file
-/// @return the scene, complete and consistent: names resolve, numbers are finite, quaternions are unit, `repeat` is written out
+/// @return the scene, complete and consistent: names resolve, numbers are finite, quaternions are unit, `repeat` and `chains` are written out
 /// @throws UserError whose `where` is FILE:LINE: /json/pointer, and whose text says what was found, what was expected, what to do
 Scene load_scene(const std::filesystem::path& file);
 

@@ -50,6 +50,7 @@ struct BodySpec {
   double friction = 0.0;                           // Coulomb's coefficient; of a pair: the smaller of the two
   bool collides = true;                            // false: nothing touches it and no collision code looks at it
   std::optional<Vector3d> color;                   // linear RGB in [0, 1]
+  std::string pointer{};                           // JSON pointer of its entry, for messages; empty: made in memory
 };
 
 /// A force on a point of a body for a while (what a user's click makes). The point is fixed in the body.
@@ -59,6 +60,7 @@ struct PointForceSpec {
   Vector3d point_m;                 // world position of the point at start_s
   double start_s = 0.0;
   double duration_s = 0.0;
+  std::string pointer{};            // JSON pointer of the entry that asked for it, for messages; empty: made in memory
 };
 
 /// A point fixed in a body or, with an empty name, in the world. Of a body it may be given as a vertex of its model.
@@ -74,6 +76,7 @@ struct SpringSpec {
   double stiffness_n_m = kUnset;
   double damping_n_s_m = 0.0;
   double rest_length_m = kUnset;    // load_scene fills the distance at the start where the file leaves it out
+  std::string pointer{};            // JSON pointer of the entry that asked for it, for messages; empty: made in memory
 };
 
 /// A rod without mass: keeps two anchors at a distance.
@@ -81,6 +84,7 @@ struct RodSpec {
   std::string name;
   AnchorSpec a, b;
   double length_m = kUnset;         // load_scene fills the distance at the start where the file leaves it out
+  std::string pointer{};            // JSON pointer of the entry that asked for it, for messages; empty: made in memory
 };
 
 enum class JointKind { kBall, kHinge, kWeld };
@@ -92,6 +96,7 @@ struct JointSpec {
   std::string body_a, body_b;       // body_b "": the world
   Vector3d point_m = Vector3d::Zero();   // world, at the start
   Vector3d axis = Vector3d::UnitZ();     // unit, world, at the start; of a hinge
+  std::string pointer{};            // JSON pointer of the entry that asked for it, for messages; empty: made in memory
 };
 
 /// Resistance of a medium at low speed: force -linear v, torque -angular omega.
@@ -99,6 +104,7 @@ struct DragSpec {
   std::string body;
   double linear_n_s_m = 0.0;
   double angular_n_m_s = 0.0;
+  std::string pointer{};            // JSON pointer of the entry that asked for it, for messages; empty: made in memory
 };
 
 /// A control law (callback): every period a motor in a hinge looks at its angle and sets its torque, which it holds until the next look.
@@ -109,6 +115,7 @@ struct MotorSpec {
   double stiffness_n_m_rad = 0.0, damping_n_m_s_rad = 0.0;
   double largest_torque_n_m = std::numeric_limits<double>::infinity();
   double period_s = 0.01;
+  std::string pointer{};            // JSON pointer of the entry that asked for it, for messages; empty: made in memory
 };
 
 enum class ImpactLaw { kSequential, kSimultaneous };      // several impacts at one instant: one after the other, or together
@@ -143,6 +150,8 @@ struct CheckSpec {
   std::string why;                  // the tolerance's reason
   std::string body;                 // where the check is about one body
   std::string other;                // where it is about a pair: the second body
+  std::string link;                 // where it is about a spring, rod or joint: its name
+  std::vector<std::string> bodies;  // where it is about several bodies in order
   std::optional<Vector3d> axis;     // where it is about a direction: unit, in the frame that the kind says
   std::vector<double> expected;     // where it compares with a truth
   double at_s = 0.0;                // where it is about an instant; 0: the end

@@ -1,0 +1,10 @@
+/// What a schema cannot say about springs, rods, joints, drag, motors and contact: what is impossible or would do nothing.
+#pragma once
+
+#include "framework/scene/check_scene.h"
+
+namespace tumble::scene {
+
+void check_links(const Scene& scene, const Refuse& refuse);
+
+}  // namespace tumble::scene
