@@ -3,6 +3,7 @@
 #include "assignments/a1_impulse/a1_truths.h"
 #include "assignments/a2_integration/a2_binding.h"
 #include "assignments/a2_integration/a2_truths.h"
+#include "assignments/a3_constraints/a3_binding.h"
 #include "framework/modules/registry.h"
 
 namespace tumble {
@@ -10,6 +11,7 @@ namespace tumble {
 void register_assignments(modules::Registry& registry) {
   registry.add<a1::Module>("a1_impulse", "Impulse", a1::bind);
   registry.add<a2::Module>("a2_integration", "Integration", a2::bind);
+  registry.add<a3::Module>("a3_constraints", "Constraints", a3::bind);
   a1::register_truths(registry);
   a2::register_truths(registry);
 }

@@ -1,0 +1,11 @@
+/// Which laws of a world the a3 module provides.
+#pragma once
+
+#include "assignments/a3_constraints/a3_constraints.h"
+#include "framework/dynamics/laws.h"
+
+namespace tumble::a3 {
+
+void bind(const Module& module, Laws& laws);
+
+}  // namespace tumble::a3
