@@ -10,6 +10,7 @@
 
 #include "framework/cli/verb.h"
 #include "framework/grading/audit.h"
+#include "framework/grading/scoring.h"
 
 namespace tumble::cli {
 namespace {
@@ -27,12 +28,12 @@ std::string first_line(const std::string& text) { return text.substr(0, text.fin
 void print_mutants(const std::vector<AuditResult>& results) {
   std::size_t widest = 0;
   for (const AuditResult& r : results) widest = std::max(widest, r.candidate.name.size());
-  fmt::print("{:<{}}  caught by  names the slip  for example by\n", "known-wrong solution", widest);
+  fmt::print("{:<{}}  caught by  points  names the slip  for example by\n", "known-wrong solution", widest);
   for (const AuditResult& r : results) {
     if (r.candidate.is_right) continue;
     if (!r.fault.empty()) fmt::print("{:<{}}  FAULT      {}\n", r.candidate.name, widest, first_line(r.fault));
     else if (r.caught_by.empty()) fmt::print("{:<{}}  SURVIVES   {}\n", r.candidate.name, widest, r.candidate.slip);
-    else fmt::print("{:<{}}  {:>9}  {:<14}  {}\n", r.candidate.name, widest, r.caught_by.size(), r.is_named ? "yes" : "NO: '" + r.candidate.keyword + "'", r.best);
+    else fmt::print("{:<{}}  {:>9}  {:>6}  {:<14}  {}\n", r.candidate.name, widest, r.caught_by.size(), grading::points_text(r.score), r.is_named ? "yes" : "NO: '" + r.candidate.keyword + "'", r.best);
   }
   fmt::print("\n{:<{}}  score\n", "right solution", widest);
   for (const AuditResult& r : results) {

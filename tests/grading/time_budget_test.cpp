@@ -1,0 +1,79 @@
+// The account of a submission's time: what is charged, who is suspected, what the rest is told. And words that choose tests.
+#include <gtest/gtest.h>
+
+#include "framework/core/error.h"
+#include "framework/grading/test_words.h"
+#include "framework/grading/time_budget.h"
+
+namespace tumble::grading {
+namespace {
+
+TestResult timed_out(const std::string& function, double limit_s) {
+  TestResult result;
+  result.verdict = Verdict::kOutOfResources;
+  result.last_call = function;
+  result.timed_out_s = limit_s;
+  result.wall_s = limit_s + 0.7;   // as measured on a loaded machine
+  return result;
+}
+
+TEST(TimeBudget, ATimeOutIsChargedItsLimitHoweverLongItTook) {
+  TimeBudget budget({.budget_s = 10.0});
+  budget.charge(timed_out("f", 5.0));
+  EXPECT_FALSE(budget.is_used_up());
+  budget.charge(timed_out("f", 4.0));   // 10.4 s as measured
+  EXPECT_FALSE(budget.is_used_up());
+  budget.charge(timed_out("f", 1.0));
+  EXPECT_TRUE(budget.is_used_up());
+}
+
+TEST(TimeBudget, QuickAnswersCostNothingAndSlowOnesDo) {
+  TimeBudget budget({.budget_s = 4.0});
+  TestResult answered;
+  answered.verdict = Verdict::kRight;
+  answered.wall_s = 0.9;
+  for (int i = 0; i < 1000; ++i) budget.charge(answered);
+  EXPECT_FALSE(budget.is_used_up());
+  answered.wall_s = 4.2;
+  budget.charge(answered);
+  EXPECT_TRUE(budget.is_used_up());
+}
+
+TEST(TimeBudget, AFunctionThatTimedOutTwiceGetsLess) {
+  TimeBudget budget({.budget_s = 60.0, .full_timeouts = 2, .suspect_wall_s = 1.0});
+  budget.charge(timed_out("f", 5.0));
+  budget.charge(timed_out("g", 5.0));
+  EXPECT_TRUE(budget.suspects().empty());
+  budget.charge(timed_out("f", 5.0));
+  EXPECT_EQ(budget.suspects(), (std::map<std::string, double>{{"f", 1.0}}));
+}
+
+TEST(TimeBudget, WhoIsNotRunIsToldWhy) {
+  TimeBudget budget({.budget_s = 5.0});
+  budget.charge(timed_out("f", 5.0));
+  const TestResult result = budget.not_run("S.T");
+  EXPECT_EQ(result.verdict, Verdict::kOutOfResources);
+  EXPECT_TRUE(result.not_run);
+  EXPECT_EQ(result.story, "not run: the time budget of all tests together, 5 s, was used up by the tests before it; out of time were f (1 test)");
+}
+
+TEST(TestWords, APatternThatChoosesNothingNamesTheNearest) {
+  const std::vector<std::string> tests = {"RayTriangle.Hits", "CollisionImpulse.Central", "ApplyImpulse.Turns"};
+  EXPECT_EQ(chosen_tests(tests, "Ray*"), std::vector<std::string>{"RayTriangle.Hits"});
+  EXPECT_EQ(chosen_tests(tests, ""), tests);
+  try {
+    chosen_tests(tests, "ColisionImpulse.*");
+    ADD_FAILURE() << "chose something";
+  } catch (const UserError& error) {
+    EXPECT_NE(std::string(error.what()).find("Nearest: CollisionImpulse.Central"), std::string::npos) << error.what();
+  }
+}
+
+TEST(TestWords, DistancesCountLetters) {
+  EXPECT_EQ(edit_distance("--no-meda", "--no-media"), 1u);
+  EXPECT_EQ(edit_distance("", "abc"), 3u);
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
+}
+
+}  // namespace
+}  // namespace tumble::grading
