@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "framework/core/error.h"
+#include "framework/dynamics/world.h"
+#include "framework/engines/local_origin.h"
 #include "framework/engines/retroactive.h"
 
 namespace tumble::engines {
@@ -65,7 +67,14 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& op
   std::vector<TrajectoryBody> bodies;
   for (const scene::BodySpec& body : scene.bodies) bodies.push_back({body.name, body.immovable});
   sink.begin(info, bodies);
-  run_retroactive(scene, laws, options, sink);
+  const Vector3d origin_world = local_origin(scene);
+  if (origin_world.isZero(0.0)) return run_retroactive(scene, laws, options, sink);
+  const scene::Scene local = seen_from(origin_world, scene);
+  double mass = 0.0;
+  for (const WorldBody& body : build_world(local).bodies)
+    if (!body.immovable()) mass += body.inertia.mass;
+  WorldSink world(sink, origin_world, mass, scene.gravity_m_s2.value_or(Vector3d::Zero()));
+  run_retroactive(local, laws, options, world);
 }
 
 }  // namespace tumble::engines

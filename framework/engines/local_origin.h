@@ -1,0 +1,37 @@
+/// Scenes that play far from the world's origin are run in coordinates near them, so that nothing is lost but the rounding of what is
+/// given and of what is recorded. A place of 1e6 m is rounded by up to 6e-11 m; added up step by step, and always to the same side as
+/// long as the velocity stays, that comes to 1e-9 m before the first collision, and each that turns an edge against an edge makes it some
+/// thirty times larger.
+#pragma once
+
+#include "framework/scene/scene.h"
+#include "framework/trajectory/trajectory.h"
+
+namespace tumble::engines {
+
+/// A place among the bodies from which theirs are exact differences; zero where the scene stands near the world's
+/// origin, and for scenes with springs, rods or joints. [m]
+Vector3d local_origin(const scene::Scene& scene);
+
+/// The same scene, seen from there.
+scene::Scene seen_from(const Vector3d& origin_world, scene::Scene scene);
+
+/// Passes a run that was made in local coordinates on in those of the world.
+class WorldSink final : public TrajectorySink {
+ public:
+  /// @param mass  of all movable bodies together [kg]
+  WorldSink(TrajectorySink& sink, const Vector3d& origin_world, double mass, const Vector3d& gravity_world)
+      : sink_(sink), origin_world_(origin_world), potential_energy_(-mass * gravity_world.dot(origin_world)) {}
+
+  void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override { sink_.begin(info, bodies); }
+  void frame(const Frame& frame) override;
+  void event(const Event& event) override;
+  void end(const Counters& counters, const std::string& stopped_by) override { sink_.end(counters, stopped_by); }
+
+ private:
+  TrajectorySink& sink_;
+  Vector3d origin_world_;
+  double potential_energy_;   // of the whole at the origin [J]
+};
+
+}  // namespace tumble::engines
