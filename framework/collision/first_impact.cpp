@@ -11,8 +11,8 @@ namespace {
 
 // Advancement never goes by less than this part of the interval, or two solids that slide along each other would never get to its end.
 // While it does, the solids meet and part again unseen only where one clips a corner of the other by a chord that is shorter than their
-// speed times that: at 300 m/s and a step of 1/60 s, 5e-10 m. An overlap at either end of an advance is always seen.
-constexpr double kLeastAdvance = 1e-10;
+// speed times that: at 300 m/s and a step of 1/60 s, 5e-8 m. An overlap at either end of an advance is always seen.
+constexpr double kLeastAdvance = 1e-8;
 // Rounds of advancement before the least advance starts to grow, by kGrowth a round: from here on the chord that may pass unseen grows
 // with it, and so does an arc that one draws into the other, which is held below kShallow of the smaller solid's size: A s^2 / 8, where A
 // bounds how paths bend and s is the advance.
