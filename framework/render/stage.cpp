@@ -67,6 +67,9 @@ Stage::Stage(const scene::Scene& scene, const Trajectory& run, const PictureOpti
     if (scene.camera.follow == scene.bodies[i].name) followed_ = static_cast<int>(i);
   for (const Event& event : run.events)
     if (event.kind == EventKind::kCollision) strongest_impulse_ = std::max(strongest_impulse_, event.impulse);
+  std::vector<double> radii;
+  for (const Actor& actor : actors_) radii.push_back(actor.radius_m);
+  links_ = SceneLinks(scene, run.frames.front(), sight_m(), radii);
   find_extent();
   lay_ground();
   turn_walls_to_glass();
@@ -80,6 +83,8 @@ void Stage::add_actors(const std::vector<Shape>& shapes) {
   geometries_[kPlate] = shaded_surface(two_sided(surface_of(HalfSpace{}, 1.0)));
   geometries_[kArrow] = unit_arrow();
   geometries_[kTube] = unit_tube();
+  geometries_[kRod] = unit_rod();
+  for (int level = 0; level < kCoilLevels; ++level) geometries_[static_cast<std::size_t>(kCoil + level)] = unit_coil(coil_turns(level));
   for (std::size_t i = 0; i < shapes.size(); ++i) add_actor(scene_.bodies[i], shapes[i], i);
 }
 
@@ -133,6 +138,7 @@ void Stage::find_extent() {
       if (actor.geometry == kBoxGeometry) reach = run_.frames[f].poses[i].world_from_body.toRotationMatrix().cwiseAbs() * actor.scale;
       extent_.extend(com - reach).extend(com + reach);
     }
+    for (const Link& link : links_.at(run_.frames[f])) extent_.extend(link.a_world).extend(link.b_world);
   }
   if (extent_.isEmpty()) extent_.extend(scene_.camera.target_m);
 }
@@ -227,6 +233,7 @@ Moment Stage::moment(std::size_t index) const {
   drawing.far_m = 1.2 * reach + (view.eye_world - extent_.center()).norm();
   drawing.near_m = drawing.far_m / 2000.0;
   add_bodies(frame, drawing);
+  draw_links(links_.at(frame), options_.height, drawing);
   if (options_.paths) add_path(index, drawing);
   add_scale_bar(moment);
   if (options_.marks) {

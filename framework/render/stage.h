@@ -7,6 +7,7 @@
 
 #include "framework/geometry/shape.h"
 #include "framework/render/drawing.h"
+#include "framework/render/links.h"
 #include "framework/render/picture.h"
 
 namespace tumble::render {
@@ -72,6 +73,7 @@ class Stage {
   std::vector<Geometry> geometries_;
   std::vector<TriangleMesh> meshes_;        // of geometries_ from kFirstMesh on, to find models used twice
   std::vector<Actor> actors_;               // by body index
+  SceneLinks links_;
   Eigen::AlignedBox3d extent_;              // of everything finite, over the run
   Ground ground_;
   int floor_ = -1;                          // body whose plane the ground is

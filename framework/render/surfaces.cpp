@@ -133,6 +133,15 @@ Geometry unit_tube() {
   return tube;
 }
 
+Geometry unit_rod() {
+  constexpr int kSides = 12;
+  Geometry rod;
+  add_cone(rod, 0.0, 0.0, 1.0, 0.0, kSides);
+  add_cone(rod, 1.0, 0.0, 1.0, 1.0, kSides);
+  add_cone(rod, 1.0, 1.0, 0.0, 1.0, kSides);
+  return rod;
+}
+
 Instance placed(const Vector3d& origin_world, const Eigen::Matrix3d& world_from_local, const Vector3d& scale, const Vector3d& color,
                 double opacity) {
   Instance instance{};

@@ -17,6 +17,8 @@ Geometry unit_ball(int level);
 Geometry unit_arrow();
 /// Tube of radius 1 from the origin to (0, 0, 1), open at its ends: a segment of a path.
 Geometry unit_tube();
+/// The same with caps, and rounder.
+Geometry unit_rod();
 
 /// Local frame placed, turned and scaled. @param scale  along the local axes
 Instance placed(const Vector3d& origin_world, const Eigen::Matrix3d& world_from_local, const Vector3d& scale, const Vector3d& color,

@@ -1,0 +1,145 @@
+#include "framework/render/links.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+
+#include "framework/render/stage_geometries.h"
+#include "framework/render/surfaces.h"
+
+namespace tumble::render {
+namespace {
+
+constexpr double kPitch = 0.9;               // radii of the coil between turns, at the length at which it was wound
+constexpr double kWire = 0.17;               // radii of the coil
+constexpr double kHook = 0.07;               // share of a coil's length that leads from the axis to the turns
+const Vector3d kSpringColor(0.10, 0.13, 0.17), kRodColor(0.16, 0.18, 0.21), kJointColor(0.52, 0.30, 0.03);
+
+// Sizes as shares of the sight: 0.004 is two pixels of a picture 480 high at 40 degrees.
+constexpr double kCoilRadius = 0.016, kRodRadius = 0.0032, kBallRadius = 0.0075;
+
+// A point of the coil's middle line.
+Vector3d on_coil(double share, int turns) {
+  const double ramp = std::clamp(std::min(share, 1.0 - share) / kHook, 0.0, 1.0);
+  const double radius = (1.0 - kWire) * ramp * ramp * (3.0 - 2.0 * ramp), angle = 2 * std::numbers::pi * turns * share;
+  return {radius * std::cos(angle), radius * std::sin(angle), share};
+}
+
+int coil_level(double turns) {
+  int level = 0;
+  while (level + 1 < kCoilLevels && turns > 1.4 * coil_turns(level)) ++level;
+  return level;
+}
+
+bool is_finite(const Link& link) { return link.a_world.allFinite() && link.b_world.allFinite(); }
+
+}  // namespace
+
+Geometry unit_coil(int turns) {
+  constexpr int kSegments = 14, kSides = 6;                  // a turn; around the wire
+  const double squeeze = 1.0 / (kPitch * turns);             // of the wire along z, undone by the scale
+  Geometry coil;
+  const int rings = kSegments * turns;
+  for (int i = 0; i <= rings; ++i) {
+    const double share = static_cast<double>(i) / rings, step = 0.5 / rings;
+    const Vector3d middle = on_coil(share, turns);
+    Vector3d along = on_coil(std::min(1.0, share + step), turns) - on_coil(std::max(0.0, share - step), turns);
+    along.z() /= squeeze;
+    const Vector3d side = along.normalized().cross(Vector3d(0.02, 0.01, 1.0)).normalized(), up = side.cross(along.normalized());
+    for (int k = 0; k < kSides; ++k) {
+      const double angle = 2 * std::numbers::pi * k / kSides;
+      const Vector3d out = std::cos(angle) * side + std::sin(angle) * up;
+      const Vector3d place = middle + kWire * Vector3d(out.x(), out.y(), out.z() * squeeze);
+      // The scale along z divides a normal by it: what is given here comes out as `out`.
+      const Vector3d normal = Vector3d(out.x(), out.y(), out.z() / squeeze).normalized();
+      Vertex vertex;
+      for (int axis = 0; axis < 3; ++axis) vertex.position[axis] = static_cast<float>(place[axis]), vertex.normal[axis] = static_cast<float>(normal[axis]);
+      coil.vertices.push_back(vertex);
+      if (i == rings) continue;
+      const auto at = [&](int ring, int corner) { return static_cast<std::uint32_t>(ring * kSides + corner % kSides); };
+      for (const std::uint32_t corner : {at(i, k), at(i, k + 1), at(i + 1, k + 1), at(i, k), at(i + 1, k + 1), at(i + 1, k)}) coil.indices.push_back(corner);
+    }
+  }
+  return coil;
+}
+
+void draw_links(const std::vector<Link>& links, int height, Drawing& drawing) {
+  std::map<int, std::vector<Instance>> solid;   // by geometry
+  const auto add_ball = [&](const Vector3d& centre, double radius, const Vector3d& color) {
+    const int level = ball_level(radius / metres_per_pixel(drawing.view, height, centre));
+    solid[kBall + level].push_back(placed(centre, Eigen::Matrix3d::Identity(), Vector3d::Constant(radius), color));
+  };
+  for (const Link& link : links) {
+    if (!is_finite(link)) continue;
+    const double length = (link.b_world - link.a_world).norm();
+    const double width_pixels = link.width_m / metres_per_pixel(drawing.view, height, 0.5 * (link.a_world + link.b_world));
+    const Vector3d& color = link.kind == LinkKind::kSpring ? kSpringColor : link.kind == LinkKind::kRod ? kRodColor : kJointColor;
+    if (link.kind == LinkKind::kBallJoint) add_ball(link.a_world, link.width_m, color);
+    if (link.kind == LinkKind::kRod) add_ball(link.a_world, 1.7 * link.width_m, color), add_ball(link.b_world, 1.7 * link.width_m, color);
+    if (!(length > 0.0) || link.kind == LinkKind::kBallJoint) continue;   // a spring may have no length
+    const bool is_coil = link.kind == LinkKind::kSpring && !(width_pixels >= 0.0 && width_pixels < 2.0);
+    const int geometry = is_coil ? kCoil + coil_level(link.turned_m / (kPitch * link.width_m)) : static_cast<int>(kRod);
+    const double width = link.kind == LinkKind::kSpring && !is_coil ? 0.5 * link.width_m : link.width_m;
+    solid[geometry].push_back(laid_between(link.a_world, link.b_world, width, color));
+  }
+  for (auto& [geometry, instances] : solid) drawing.batches.push_back({geometry, Pass::kSolid, std::move(instances)});
+}
+
+SceneLinks::SceneLinks(const scene::Scene& scene, const Frame& first, double sight_m, const std::vector<double>& radius_m) {
+  std::map<std::string, int> index;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) index[scene.bodies[i].name] = static_cast<int>(i);
+  const auto body_of = [&](const std::string& name) { return name.empty() ? -1 : index.at(name); };
+  const auto anchor = [&](const scene::AnchorSpec& spec) { return Anchor{body_of(spec.body), spec.point_m}; };
+  const auto fixed = [&](int body, const Vector3d& point_world) {   // a point given in the world at the start
+    if (body < 0) return Anchor{body, point_world};
+    const BodyPose& pose = first.poses[static_cast<std::size_t>(body)];
+    return Anchor{body, pose.world_from_body.conjugate() * (point_world - pose.com_world)};
+  };
+  const auto place = [&](const Anchor& at) -> Vector3d {
+    if (at.body < 0) return at.point;
+    const BodyPose& pose = first.poses[static_cast<std::size_t>(at.body)];
+    return pose.com_world + pose.world_from_body * at.point;
+  };
+  const auto slim = [&](double share, std::initializer_list<int> bodies) {
+    double width = share * sight_m;
+    for (const int body : bodies)
+      if (body >= 0 && radius_m[static_cast<std::size_t>(body)] > 0.0) width = std::min(width, 0.4 * radius_m[static_cast<std::size_t>(body)]);
+    return width;
+  };
+  for (const auto& spring : scene.springs) {
+    const Anchor a = anchor(spring.a), b = anchor(spring.b);
+    const double length = std::max((place(b) - place(a)).norm(), std::isfinite(spring.rest_length_m) ? spring.rest_length_m : 0.0);
+    const double wound = std::max(length, 0.05 * sight_m);
+    links_.push_back({LinkKind::kSpring, a, b, std::min(kCoilRadius * sight_m, wound / 7.0), wound});
+  }
+  for (const auto& rod : scene.rods) {
+    const Anchor a = anchor(rod.a), b = anchor(rod.b);
+    links_.push_back({LinkKind::kRod, a, b, slim(kRodRadius, {a.body, b.body}), 0.0});
+  }
+  for (const auto& joint : scene.joints) {
+    const int a = body_of(joint.body_a), b = body_of(joint.body_b);
+    const double width = slim(kBallRadius, {a, b});
+    if (joint.kind == scene::JointKind::kBall) links_.push_back({LinkKind::kBallJoint, fixed(a, joint.point_m), fixed(a, joint.point_m), width, 0.0});
+    if (joint.kind != scene::JointKind::kHinge) continue;   // a weld is no moving part
+    const Vector3d half = 2.2 * width * joint.axis.normalized();
+    links_.push_back({LinkKind::kHinge, fixed(a, joint.point_m - half), fixed(a, joint.point_m + half), 0.7 * width, 0.0});
+  }
+}
+
+std::vector<Link> SceneLinks::at(const Frame& frame) const {
+  std::vector<Link> links;
+  const auto place = [&](const Anchor& at) -> Vector3d {
+    if (at.body < 0) return at.point;
+    const BodyPose& pose = frame.poses[static_cast<std::size_t>(at.body)];
+    return pose.com_world + pose.world_from_body * at.point;
+  };
+  for (const Placed& link : links_) {
+    const Link now{link.kind, place(link.a), place(link.b), link.width_m, link.turned_m};
+    if (is_finite(now)) links.push_back(now);
+  }
+  return links;
+}
+
+}  // namespace tumble::render
