@@ -1,11 +1,15 @@
 // How a contact problem is solved, cheapest first:
 //   1. the guess: at rest with last step's impulses nothing is left to do;
-//   2. block Gauss-Seidel sweeps: most small problems end here;
-//   3. a Newton method on all contacts at once, for what sweeps do slowly (stacks, arches, mass ratios).
+//   2. Newton's method on Coulomb's law, from the guess: bodies at rest or sliding steadily. From no guess at all it finds the most even
+//      distribution among redundant contacts;
+//   3. block Gauss-Seidel sweeps, which find the modes (open, stick, slide) where many change;
+//   4. Newton's method again, by turns with its convex relative, which cannot get lost (contact_newton.h).
+// Problems too large for 2 and 4 are left to the sweeps.
 #include "framework/dynamics/contact_problem.h"
 
 #include <cmath>
 
+#include "framework/dynamics/contact_newton.h"
 #include "framework/dynamics/contact_sweeps.h"
 #include "framework/dynamics/contact_system.h"
 
@@ -13,8 +17,13 @@ namespace tumble {
 namespace {
 
 using contacts::ContactBlock;
+using contacts::Goal;
 using contacts::Impulses;
+using contacts::Progress;
 using contacts::System;
+
+constexpr int kMostRounds = 30;       // of the two Newton methods by turns
+constexpr int kFirstNewtonSteps = 8;  // from the guess: at rest two or three do; where they wander, sweeps are cheaper
 
 ContactMode mode_of(const ContactBlock& block, const Vector3d& impulse) {
   constexpr double kOnTheCone = 1 - 1e-9;  // nearer to the edge than this is on it: impulses of sliding contacts lie there to round-off
@@ -22,31 +31,32 @@ ContactMode mode_of(const ContactBlock& block, const Vector3d& impulse) {
   return impulse.tail<2>().norm() >= kOnTheCone * block.friction * impulse[0] ? ContactMode::kSlide : ContactMode::kStick;
 }
 
-/// Ends, and residual, of an iteration.
-struct Judge {
-  const System& system;
-  double tolerance;
-
-  double speed(const Impulses&) const { return system.speed > 0 ? system.speed : 1.0; }
-  bool accepts(double violation, const Impulses& impulses) const {
-    return violation <= tolerance * speed(impulses) || violation <= contacts::rounding_floor(system, impulses);
-  }
-};
-
-/// Sweeps until the judge accepts, or their number is spent. Returns the violation.
-double sweep_until(const Judge& judge, int most_sweeps, Impulses& impulses, int& sweeps) {
-  const System& system = judge.system;
+/// Sweeps until the goal is met, or their number is spent.
+void sweep_until(const System& system, const Goal& goal, int most_sweeps, Impulses& impulses, Progress& progress, int& sweeps) {
   const auto locals = contacts::prepare_locals(system);
-  double violation = 0;
-  for (int i = 0;; ++i) {
-    const double change = i < most_sweeps ? contacts::sweep(system, locals, i % 2 == 0, impulses) : 0.0;
-    if (i < most_sweeps) ++sweeps;
-    // The change of a sweep is as large as the violation before it: only when it is small the true one is worth its price.
-    if (i < most_sweeps && !judge.accepts(change, impulses)) continue;
+  while (sweeps < most_sweeps && !progress.accepted) {
+    const double change = contacts::sweep(system, locals, sweeps % 2 == 0, impulses);
+    ++sweeps;
+    // The change of a sweep is about as large as the violation before it: only when it is small the true one is worth its price.
+    if (sweeps < most_sweeps && !goal.accepts(system, impulses, change)) continue;
     contacts::sum_impulses(system, impulses);
-    violation = contacts::largest_violation(system, impulses);
-    if (i >= most_sweeps || judge.accepts(violation, impulses)) return violation;
+    progress.violation = contacts::largest_violation(system, impulses);
+    progress.accepted = goal.accepts(system, impulses, progress.violation);
   }
+}
+
+void iterate(const System& system, const Goal& goal, const ContactOptions& options, Impulses& impulses, Progress& progress, int& sweeps) {
+  const std::size_t size = system.contacts.size() + system.rows.size();
+  if (size == 1) sweep_until(system, goal, 1, impulses, progress, sweeps);  // exact
+  if (progress.accepted) return;
+  if (static_cast<int>(size) > options.largest_direct) {
+    sweep_until(system, goal, options.most_sweeps_alone, impulses, progress, sweeps);
+    return;
+  }
+  contacts::BodyMatrix matrix(system);
+  contacts::finish(system, goal, kFirstNewtonSteps, matrix, impulses, progress);
+  if (!progress.accepted) sweep_until(system, goal, options.most_sweeps, impulses, progress, sweeps);
+  if (!progress.accepted) contacts::solve_together(system, goal, kMostRounds, matrix, impulses, progress);
 }
 
 ContactSolution describe(const ContactProblem& problem, const System& system, const Impulses& impulses) {
@@ -73,14 +83,18 @@ ContactSolution describe(const ContactProblem& problem, const System& system, co
 ContactSolution solve_contacts(const ContactProblem& problem, const ContactOptions& options) {
   const System system = contacts::build_system(problem);
   Impulses impulses = contacts::first_guess(system, problem);
-  const Judge judge{system, options.tolerance};
+  const double speed = system.speed > 0 ? system.speed : 1.0;
+  const Goal goal{options.tolerance * speed};
+  Progress progress;
   int sweeps = 0;
-  double violation = contacts::largest_violation(system, impulses);
-  if (!judge.accepts(violation, impulses)) violation = sweep_until(judge, options.most_sweeps_alone, impulses, sweeps);
+  progress.violation = contacts::largest_violation(system, impulses);
+  progress.accepted = goal.accepts(system, impulses, progress.violation);
+  if (!progress.accepted) iterate(system, goal, options, impulses, progress, sweeps);
   ContactSolution solution = describe(problem, system, impulses);
-  solution.residual = violation / judge.speed(impulses);
-  solution.converged = judge.accepts(violation, impulses);
+  solution.residual = progress.violation / speed;
+  solution.converged = progress.accepted;
   solution.sweeps = sweeps;
+  solution.factorisations = progress.factorisations;
   return solution;
 }
 

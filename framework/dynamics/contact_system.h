@@ -56,21 +56,35 @@ Impulses first_guess(const System& system, const ContactProblem& problem);
 /// y from the impulses, summed anew in a fixed order: what rounding has gathered in y goes.
 void sum_impulses(const System& system, Impulses& impulses);
 
-inline Vector3d contact_velocity(const ContactBlock& c, const std::vector<Vector6d>& y) {
-  Vector3d v = c.base;
+/// v += G y.
+inline void add_velocity(const ContactBlock& c, const std::vector<Vector6d>& y, Vector3d& v) {
   if (!c.is_frictional()) {
     if (c.body_a != kFixed) v[0] += c.g_a.row(0).dot(y[c.body_a]);
     if (c.body_b != kFixed) v[0] += c.g_b.row(0).dot(y[c.body_b]);
-    return v;
+    return;
   }
   if (c.body_a != kFixed) v.noalias() += c.g_a * y[c.body_a];
   if (c.body_b != kFixed) v.noalias() += c.g_b * y[c.body_b];
+}
+
+inline Vector3d contact_velocity(const ContactBlock& c, const std::vector<Vector6d>& y) {
+  Vector3d v = c.base;
+  add_velocity(c, y, v);
   return v;
 }
 
-inline double row_velocity(const RowBlock& r, const std::vector<Vector6d>& y) {
-  return r.base + (r.body_a != kFixed ? r.g_a.dot(y[r.body_a]) : 0.0) + (r.body_b != kFixed ? r.g_b.dot(y[r.body_b]) : 0.0);
+/// G y: what a change of y changes. Not a difference of two velocities, which would round it away.
+inline Vector3d velocity_change(const ContactBlock& c, const std::vector<Vector6d>& y) {
+  Vector3d v = Vector3d::Zero();
+  add_velocity(c, y, v);
+  return v;
 }
+
+inline double velocity_change(const RowBlock& r, const std::vector<Vector6d>& y) {
+  return (r.body_a != kFixed ? r.g_a.dot(y[r.body_a]) : 0.0) + (r.body_b != kFixed ? r.g_b.dot(y[r.body_b]) : 0.0);
+}
+
+inline double row_velocity(const RowBlock& r, const std::vector<Vector6d>& y) { return r.base + velocity_change(r, y); }
 
 inline void push(const ContactBlock& c, const Vector3d& impulse, std::vector<Vector6d>& y) {
   if (!c.is_frictional()) {

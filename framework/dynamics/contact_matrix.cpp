@@ -1,0 +1,153 @@
+#include "framework/dynamics/contact_matrix.h"
+
+#include <algorithm>
+
+#include <Eigen/LU>
+
+namespace tumble::contacts {
+namespace {
+
+void connect(std::vector<std::vector<int>>& neighbours, int a, int b) {
+  if (a == kFixed || b == kFixed || a == b) return;
+  neighbours[a].push_back(b);
+  neighbours[b].push_back(a);
+}
+
+void sort_unique(std::vector<int>& list) {
+  std::sort(list.begin(), list.end());
+  list.erase(std::unique(list.begin(), list.end()), list.end());
+}
+
+/// Of the steps still open, the one with the fewest neighbours; the first of equals.
+int least_degree(const std::vector<std::vector<int>>& neighbours, const std::vector<char>& open) {
+  int best = -1;
+  for (std::size_t i = 0; i < neighbours.size(); ++i)
+    if (open[i] && (best < 0 || neighbours[i].size() < neighbours[best].size())) best = static_cast<int>(i);
+  return best;
+}
+
+}  // namespace
+
+BodyMatrix::BodyMatrix(const System& system) {
+  std::vector<std::vector<int>> neighbours(system.root_inverse_mass.size());
+  step_of_body_.assign(neighbours.size(), -1);
+  const auto take = [&](int a, int b) {
+    if (a != kFixed) step_of_body_[a] = 0;
+    if (b != kFixed) step_of_body_[b] = 0;
+    connect(neighbours, a, b);
+  };
+  for (const ContactBlock& contact : system.contacts) take(contact.body_a, contact.body_b);
+  for (const RowBlock& row : system.rows) take(row.body_a, row.body_b);
+  for (std::vector<int>& list : neighbours) sort_unique(list);
+  find_order(std::move(neighbours));
+}
+
+void BodyMatrix::find_order(std::vector<std::vector<int>> neighbours) {
+  std::vector<char> open(neighbours.size());
+  for (std::size_t i = 0; i < open.size(); ++i) open[i] = step_of_body_[i] == 0;
+  std::vector<std::vector<int>> couples;  // by step, as bodies
+  for (int body = least_degree(neighbours, open); body >= 0; body = least_degree(neighbours, open)) {
+    open[body] = 0;
+    step_of_body_[body] = static_cast<int>(body_of_step_.size());
+    body_of_step_.push_back(body);
+    couples.push_back(neighbours[body]);
+    for (const int other : couples.back()) {  // its neighbours become each other's
+      std::vector<int>& list = neighbours[other];
+      list.insert(list.end(), couples.back().begin(), couples.back().end());
+      sort_unique(list);
+      std::erase_if(list, [&](int k) { return k == body || k == other; });
+    }
+  }
+  columns_.resize(body_of_step_.size());
+  for (std::size_t step = 0; step < columns_.size(); ++step) {
+    Column& column = columns_[step];
+    for (const int body : couples[step]) column.rows.push_back(step_of_body_[body]);
+    std::sort(column.rows.begin(), column.rows.end());
+    column.lower.resize(column.rows.size());
+    column.upper.resize(column.rows.size());
+  }
+}
+
+void BodyMatrix::set_identity() {
+  for (Column& column : columns_) {
+    column.diagonal.setIdentity();
+    for (Block6& block : column.lower) block.setZero();
+    for (Block6& block : column.upper) block.setZero();
+  }
+}
+
+void BodyMatrix::add_pair(int body_a, int body_b, const Block6& ab, const Block6& ba) {
+  const int a = step_of_body_[body_a], b = step_of_body_[body_b];
+  Column& column = columns_[std::min(a, b)];
+  const auto place = std::lower_bound(column.rows.begin(), column.rows.end(), std::max(a, b)) - column.rows.begin();
+  column.upper[place] += a < b ? ab : ba;
+  column.lower[place] += a < b ? ba : ab;
+}
+
+void BodyMatrix::add(const ContactBlock& contact, const Matrix3d& d) {
+  const int n = contact.is_frictional() ? 3 : 1;
+  const auto g_a = contact.g_a.topRows(n), g_b = contact.g_b.topRows(n);
+  const auto small = d.topLeftCorner(n, n);
+  using Tall = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 3>;
+  if (contact.body_a != kFixed) {
+    const Tall left = g_a.transpose() * small;
+    columns_[step_of_body_[contact.body_a]].diagonal.noalias() += left * g_a;
+    if (contact.body_b != kFixed) {
+      const Tall right = g_b.transpose() * small;
+      add_pair(contact.body_a, contact.body_b, left * g_b, right * g_a);
+    }
+  }
+  if (contact.body_b != kFixed) columns_[step_of_body_[contact.body_b]].diagonal.noalias() += g_b.transpose() * small * g_b;
+}
+
+void BodyMatrix::add(const RowBlock& row, double d) {
+  if (row.body_a != kFixed) columns_[step_of_body_[row.body_a]].diagonal += d * row.g_a * row.g_a.transpose();
+  if (row.body_b != kFixed) columns_[step_of_body_[row.body_b]].diagonal += d * row.g_b * row.g_b.transpose();
+  if (row.body_a != kFixed && row.body_b != kFixed)
+    add_pair(row.body_a, row.body_b, d * row.g_a * row.g_b.transpose(), d * row.g_b * row.g_a.transpose());
+}
+
+void BodyMatrix::eliminate(std::size_t step) {
+  Column& column = columns_[step];
+  for (std::size_t i = 0; i < column.rows.size(); ++i) {
+    column.lower[i] = (column.lower[i] * column.diagonal).eval();  // times the inverse
+    const int row = column.rows[i];
+    columns_[row].diagonal.noalias() -= column.lower[i] * column.upper[i];
+  }
+  for (std::size_t j = 0; j < column.rows.size(); ++j) {  // blocks (row_i, row_j), i > j, and their mirror images
+    Column& target = columns_[column.rows[j]];
+    std::size_t place = 0;
+    for (std::size_t i = j + 1; i < column.rows.size(); ++i) {
+      while (target.rows[place] != column.rows[i]) ++place;
+      target.lower[place].noalias() -= column.lower[i] * column.upper[j];
+      target.upper[place].noalias() -= column.lower[j] * column.upper[i];
+    }
+  }
+}
+
+bool BodyMatrix::factorise() {
+  for (std::size_t step = 0; step < columns_.size(); ++step) {
+    Block6& diagonal = columns_[step].diagonal;
+    const Eigen::PartialPivLU<Block6> lu(diagonal);
+    diagonal = lu.inverse();
+    if (!diagonal.allFinite()) return false;
+    eliminate(step);
+  }
+  return true;
+}
+
+void BodyMatrix::solve(std::vector<Vector6d>& x) const {
+  for (std::size_t step = 0; step < columns_.size(); ++step) {
+    const Column& column = columns_[step];
+    const Vector6d& here = x[body_of_step_[step]];
+    for (std::size_t i = 0; i < column.rows.size(); ++i) x[body_of_step_[column.rows[i]]].noalias() -= column.lower[i] * here;
+  }
+  for (std::size_t step = columns_.size(); step-- > 0;) {
+    const Column& column = columns_[step];
+    Vector6d here = x[body_of_step_[step]];
+    for (std::size_t i = 0; i < column.rows.size(); ++i) here.noalias() -= column.upper[i] * x[body_of_step_[column.rows[i]]];
+    x[body_of_step_[step]].noalias() = column.diagonal * here;
+  }
+}
+
+}  // namespace tumble::contacts

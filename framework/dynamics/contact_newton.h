@@ -1,0 +1,48 @@
+/// Newton's methods on all contacts at once, for what Gauss-Seidel does slowly. Internal to dynamics.
+///
+/// Two, which take turns:
+/// - `finish`: semismooth Newton on Coulomb's law itself, p = P(p - v / r) for all contacts, r = give. Near the answer its error squares at each step;
+///   far from it, it may wander, so a step that does not lessen the violation ends it. With the modes found (open, stick, slide) the
+///   equations of redundant contacts are singular; a compliance delta r keeps them regular and fades as the steps repeat (a proximal
+///   method), so that nothing of it stays in the answer.
+/// - `soften`: with De Saxce's shift g_i = mu |v_t,i| held, the law is convex: p in the friction cone K, v + g n in its dual. With a compliance
+///   eps its velocities minimise
+///     1/2 |y|^2 + sum eps_i / 2 |Pi_K(p_i - (v_i(y) + g_i n) / eps_i)|^2                                             (C.6)
+///   a smooth convex function: Newton's method with an exact line search gets there from anywhere. Then p := Pi_K(..), g := mu |v_t|, and
+///   again with less compliance (an augmented Lagrangian with Cadoux's fixed point on g).
+/// Why these: both need one matrix of 6 rows a body, however many contacts a body has; the first gives the last digits, the second cannot get lost;
+/// no strictly feasible point is needed (a wedge has none), unlike by an interior point method.
+/// Sources: P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991; F. Cadoux, PhD thesis, Grenoble 2009; A. Castro, F. Permenter, X. Han,
+/// IEEE Trans. Robotics 39, 2023 (C.6 and its line search); G. De Saxce, Z.-Q. Feng, Math. Comput. Modelling 28, 1998.
+#pragma once
+
+#include "framework/dynamics/contact_matrix.h"
+#include "framework/dynamics/contact_system.h"
+
+namespace tumble::contacts {
+
+/// The violation, by which the iterations stop.
+struct Progress {
+  double violation = 0;                                       // of the impulses [m/s]
+  bool accepted = false;
+  int factorisations = 0;
+};
+
+/// When is it good enough.
+struct Goal {
+  double violation = 0;                                       // [m/s]
+  bool accepts(const System& system, const Impulses& impulses, double now) const {
+    return now <= violation || now <= rounding_floor(system, impulses);
+  }
+};
+
+/// Steps of semismooth Newton while they help. `impulses` get no worse.
+void finish(const System& system, const Goal& goal, int most_steps, BodyMatrix& matrix, Impulses& impulses, Progress& progress);
+
+/// One problem (C.6) solved, impulses and shift renewed from it. `impulses` may get worse.
+void soften(const System& system, double compliance_over_give, BodyMatrix& matrix, Impulses& impulses, Progress& progress);
+
+/// Both by turns until the goal is met or `most_rounds` are spent; leaves the best impulses met.
+void solve_together(const System& system, const Goal& goal, int most_rounds, BodyMatrix& matrix, Impulses& impulses, Progress& progress);
+
+}  // namespace tumble::contacts
