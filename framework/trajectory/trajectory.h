@@ -36,10 +36,10 @@ struct Frame {
   Vector3d momentum_world;         // [kg m/s], movable bodies
   Vector3d angular_momentum_world; // [kg m^2/s], movable bodies, about the world's origin
   double smallest_gap;             // [m], over all pairs that may collide; +infinity where there is none
-  std::vector<double> spring_forces;      // by spring of the scene; > 0 pulls its ends together [N]
-  std::vector<double> rod_tensions;       // by rod of the scene; > 0 pulls its ends together [N]
-  std::vector<double> joint_forces;       // by joint of the scene: size of the force in it [N]
-  std::vector<ContactPoint> contacts;     // lasting ones
+  std::vector<double> spring_forces{};      // by spring of the scene; > 0 pulls its ends together [N]
+  std::vector<double> rod_tensions{};       // by rod of the scene; > 0 pulls its ends together [N]
+  std::vector<double> joint_forces{};       // by joint of the scene: size of the force in it [N]
+  std::vector<ContactPoint> contacts{};     // lasting ones
 };
 
 enum class EventKind : std::uint8_t { kCollision = 1, kRest, kForceOn, kForceOff, kContact, kBreak, kStick, kSlide, kSleep, kWake, kControl };
@@ -73,6 +73,7 @@ struct TrajectoryInfo {
   double step_s = 0.0;
   double frame_rate_hz = 0.0;
   std::uint64_t seed = 0;
+  std::string constraint_source{};   // who provides springs, rods and contact forces; "none" where the scene asks for none
 };
 
 struct Trajectory {

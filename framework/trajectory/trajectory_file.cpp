@@ -1,12 +1,14 @@
 // The one file format of a run. Little-endian; IEEE 754 doubles, so that a run comes back bit for bit:
 //
 //   "TUMBLE\r\n"                8 bytes: a transfer that touches line ends spoils them, and is noticed
-//   version                     u32, 1
+//   version                     u32, 2
 //   info                        strings command, version, scene_name, scene_hash, engine, impulse_source, integrator_source;
-//                               f64 step_s, frame_rate_hz; u64 seed
+//                               f64 step_s, frame_rate_hz; u64 seed; string constraint_source
 //   bodies                      u64 count; each: string name, u8 immovable
 //   frames                      u64 count; each: f64 time; a body: com (3), quaternion x y z w, velocity (3), omega (3);
-//                               f64 kinetic, potential; momentum (3), angular momentum (3); f64 smallest gap
+//                               f64 kinetic, potential; momentum (3), angular momentum (3); f64 smallest gap;
+//                               spring forces, rod tensions, joint forces: u64 count, f64 each;
+//                               contacts: u64 count; each: i32 body_a, body_b; point (3), normal (3), force (3)
 //   events                      u64 count; each: f64 time; u8 kind; i32 body_a, body_b; point (3), normal (3);
 //                               f64 impulse, normal velocity before, after
 //   counts                      u64 count; each: string name, u64 value; in order of name
@@ -32,7 +34,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the format is little-endian and written as the memory has it");
 
 constexpr std::string_view kMagic = "TUMBLE\r\n", kEnd = "end\n";
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 class Writer {
  public:
@@ -74,7 +76,8 @@ class Reader {
   void operator()(EventKind& kind) {
     std::uint8_t byte = 0;
     (*this)(byte);
-    if (byte < 1 || byte > 4) fail(1, "an event of kind " + std::to_string(byte) + ", expected 1 to 4");
+    constexpr auto kLast = static_cast<std::uint8_t>(EventKind::kControl);
+    if (byte < 1 || byte > kLast) fail(1, "an event of kind " + std::to_string(byte) + ", expected 1 to " + std::to_string(kLast));
     kind = static_cast<EventKind>(byte);
   }
   void operator()(Vector3d& v) { for (int i = 0; i < 3; ++i) (*this)(v[i]); }
@@ -129,13 +132,18 @@ void pass_list(Archive& archive, List& list, std::size_t least_bytes, const Item
 
 template <class Archive, class Run>
 void pass_frames(Archive& archive, Run& run) {
-  constexpr std::size_t kPoseBytes = 13 * sizeof(double), kFrameBytes = 10 * sizeof(double);
+  constexpr std::size_t kPoseBytes = 13 * sizeof(double), kFrameBytes = 10 * sizeof(double) + 4 * sizeof(std::uint64_t);
+  constexpr std::size_t kContactBytes = 2 * sizeof(std::int32_t) + 9 * sizeof(double);
   const std::size_t bodies = run.bodies.size();
   pass_list(archive, run.frames, kFrameBytes + bodies * kPoseBytes, [&](auto& frame) {
     archive(frame.time);
     if constexpr (std::is_same_v<Archive, Reader>) frame.poses.resize(bodies);
     for (auto& pose : frame.poses) pass(archive, pose.com_world, pose.world_from_body, pose.velocity_world, pose.omega_world);
     pass(archive, frame.kinetic_energy, frame.potential_energy, frame.momentum_world, frame.angular_momentum_world, frame.smallest_gap);
+    for (auto* forces : {&frame.spring_forces, &frame.rod_tensions, &frame.joint_forces}) pass_list(archive, *forces, sizeof(double), [&](auto& force) { archive(force); });
+    pass_list(archive, frame.contacts, kContactBytes, [&](auto& contact) {
+      pass(archive, contact.body_a, contact.body_b, contact.point_world, contact.normal_b_to_a_world, contact.force_on_a_world);
+    });
   });
 }
 
@@ -143,7 +151,7 @@ template <class Archive, class Run>
 void pass_run(Archive& archive, Run& run) {
   auto& info = run.info;
   pass(archive, info.command, info.version, info.scene_name, info.scene_hash, info.engine, info.impulse_source, info.integrator_source,
-       info.step_s, info.frame_rate_hz, info.seed);
+       info.step_s, info.frame_rate_hz, info.seed, info.constraint_source);
   pass_list(archive, run.bodies, 9, [&](auto& body) { pass(archive, body.name, body.immovable); });
   pass_frames(archive, run);
   pass_list(archive, run.events, 9 + 10 * sizeof(double), [&](auto& event) {
@@ -175,7 +183,9 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
   reader.word(kMagic);
   std::uint32_t version = 0;
   reader(version);
-  if (version != kVersion) reader.fail(4, "format version " + std::to_string(version) + ", this program reads " + std::to_string(kVersion));
+  if (version != kVersion)
+    reader.fail(4, std::string(version < kVersion ? "recorded by an older version of this program" : "recorded by a newer version of this program, or spoilt") +
+                       ": format version " + std::to_string(version) + ", this program reads " + std::to_string(kVersion));
   Trajectory run;
   pass_run(reader, run);
   for (std::uint64_t left = reader.size(0, 16); left > 0; --left) {

@@ -32,7 +32,13 @@ Trajectory small_run() {
   const BodyPose pose{{0.1, -0.0, 1e-310}, Quaterniond(0.5, -0.5, 0.5, 0.5), {1, 2, 3}, {4, 5, 6}};
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double time : {0.0, 1.0 / 3.0}) run.frames.push_back({time, {pose, pose}, 0.1, 0.2, {1, 2, 3}, {4, 5, 6}, infinity});
+  run.info.constraint_source = "student";
+  run.frames[1].spring_forces = {-2.5, 1e-310};
+  run.frames[1].rod_tensions = {9.81};
+  run.frames[1].joint_forces = {1, 2, 3};
+  run.frames[1].contacts.push_back({0, 1, {1, 2, 3}, {0, 0, 1}, {0.5, 0, 9.81}});
   run.events.push_back({0.3, EventKind::kCollision, 0, 1, {1, 2, 3}, {0, 0, 1}, 2.5, -1.25, 0.625});
+  run.events.push_back({0.4, EventKind::kControl, 0, -1, {0, 0, 0}, {0, 0, 1}, 0, 0, 0});
   run.counters.counts = {{"integrations", 12}, {"rollbacks", 1}};
   run.stopped_by = "ball flew off";
   return run;
@@ -70,6 +76,15 @@ TEST(TrajectoryFile, ComesBackBitForBit) {
   EXPECT_TRUE(std::signbit(read.frames[1].poses[0].com_world.y()));
   EXPECT_EQ(read.frames[1].poses[1].world_from_body.coeffs(), small_run().frames[1].poses[1].world_from_body.coeffs());
   EXPECT_EQ(read.events[0].normal_velocity_after, 0.625);
+  EXPECT_EQ(read.events[1].kind, EventKind::kControl);
+  EXPECT_TRUE(read.frames[0].spring_forces.empty());
+  EXPECT_EQ(read.frames[1].spring_forces, small_run().frames[1].spring_forces);
+  EXPECT_EQ(read.frames[1].rod_tensions, small_run().frames[1].rod_tensions);
+  EXPECT_EQ(read.frames[1].joint_forces, small_run().frames[1].joint_forces);
+  ASSERT_EQ(read.frames[1].contacts.size(), 1u);
+  EXPECT_EQ(read.frames[1].contacts[0].body_b, 1);
+  EXPECT_EQ(read.frames[1].contacts[0].force_on_a_world, Vector3d(0.5, 0, 9.81));
+  EXPECT_EQ(read.info.constraint_source, "student");
   EXPECT_EQ(read.info.seed, 7u);
   EXPECT_EQ(read.counters.counts, small_run().counters.counts);
   EXPECT_EQ(read.stopped_by, "ball flew off");
@@ -96,10 +111,36 @@ TEST(TrajectoryFile, ForeignFileIsNamedAsSuch) {
   EXPECT_NE(problem_of("{\"name\": \"a scene, not a run\"}").find("byte 0: not a recorded run"), std::string::npos);
 }
 
-TEST(TrajectoryFile, OtherVersionIsNamed) {
+TEST(TrajectoryFile, OtherVersionIsNamedAsOlderOrNewer) {
   std::string bytes = good_bytes();
+  bytes[8] = 1;
+  EXPECT_NE(problem_of(bytes).find("byte 8: recorded by an older version of this program: format version 1, this program reads 2"), std::string::npos);
   bytes[8] = 9;
-  EXPECT_NE(problem_of(bytes).find("byte 8: format version 9, this program reads 1"), std::string::npos);
+  EXPECT_NE(problem_of(bytes).find("byte 8: recorded by a newer version"), std::string::npos);
+}
+
+TEST(TrajectoryFile, AnyByteChangedIsReadOrRefusedAndNothingElse) {
+  const std::string good = good_bytes();
+  int refused = 0;
+  for (std::size_t at = 0; at < good.size(); ++at)
+    for (const int flip : {0x01, 0x80, 0xff}) {
+      std::string bytes = good;
+      bytes[at] = static_cast<char>(bytes[at] ^ flip);
+      const std::string said = problem_of(bytes);   // any exception but a UserError fails the test
+      if (said != "no error") ++refused;
+    }
+  // Counts and lengths, of which there are about 30 of 8 bytes, magic, version and end are noticed; a changed number cannot be.
+  EXPECT_GT(refused, 500);
+}
+
+TEST(TrajectoryFile, AnEventOfAnUnknownKindIsNamed) {
+  const std::string good = good_bytes();
+  // Seen from the end: "end\n", stopped_by (8 + 13), counts (8 + 8 + 12 + 8 + 8 + 9 + 8), and the last event but its time.
+  const std::size_t kind_at = good.size() - 4 - (8 + small_run().stopped_by.size()) - (8 + (8 + 12 + 8) + (8 + 9 + 8)) - (1 + 8 + 9 * 8);
+  std::string bytes = good;
+  ASSERT_EQ(bytes[kind_at], static_cast<char>(EventKind::kControl));
+  bytes[kind_at] = 12;
+  EXPECT_NE(problem_of(bytes).find("an event of kind 12, expected 1 to 11"), std::string::npos);
 }
 
 TEST(TrajectoryFile, CountBeyondTheFileIsRefusedBeforeMemoryIsTaken) {
