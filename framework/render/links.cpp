@@ -59,7 +59,7 @@ Geometry unit_coil(int turns) {
       coil.vertices.push_back(vertex);
       if (i == rings) continue;
       const auto at = [&](int ring, int corner) { return static_cast<std::uint32_t>(ring * kSides + corner % kSides); };
-      for (const std::uint32_t corner : {at(i, k), at(i, k + 1), at(i + 1, k + 1), at(i, k), at(i + 1, k + 1), at(i + 1, k)}) coil.indices.push_back(corner);
+      for (const std::uint32_t corner : {at(i, k), at(i + 1, k + 1), at(i, k + 1), at(i, k), at(i + 1, k), at(i + 1, k + 1)}) coil.indices.push_back(corner);
     }
   }
   return coil;

@@ -106,7 +106,7 @@ TEST_F(Pictures, TellingInstantIsJustAfterTheStrongestImpact) {
   Trajectory run = ball_at(2.0);
   EXPECT_DOUBLE_EQ(telling_instant(run), 0.5 / 3);
   run.frames.clear();
-  for (int i = 0; i <= 10; ++i) run.frames.push_back({i * 0.1, {}, 0, 0, Vector3d::Zero(), Vector3d::Zero(), 1});
+  for (int i = 0; i <= 10; ++i) run.frames.push_back({i * 0.1, {}, 0, 0, Vector3d::Zero(), Vector3d::Zero(), 1, {}, {}, {}, {}});
   run.events = {{0.2, EventKind::kCollision, 0, 1, Vector3d::Zero(), Vector3d::UnitZ(), 1.0, -1.0}, {0.4, EventKind::kCollision, 0, 1, Vector3d::Zero(), Vector3d::UnitZ(), 3.0, -1.0}};
   EXPECT_DOUBLE_EQ(telling_instant(run), 0.6);
 }
