@@ -170,7 +170,8 @@ void add_poke(CLI::App& app, Context& context) {
   verb->add_option("--point", words->point, "BODY,X,Y,Z: a point that moves with the body, where it is at the start [m], world")->type_name("POINT");
   verb->add_option("--force", words->force, "FX,FY,FZ [N], world, constant while it lasts")->required()->type_name("FORCE");
   verb->add_option("--duration-s", words->push_s, "How long the force lasts [s]")->required()->check(CLI::PositiveNumber);
-  verb->footer("Example: tumble poke poked_box --pixel 200,250 --force 0,60,0 --duration-s 0.2 --video poke.mp4");
+  verb->footer("The face is found through a tree of boxes over the model, then asked of your own ray function, whose answer counts.\n"
+               "Example: tumble poke poked_box --pixel 200,250 --force 0,60,0 --duration-s 0.2 --video poke.mp4");
   verb->callback([&context, words] { poke(context, *words); });
 }
 

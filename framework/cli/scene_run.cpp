@@ -1,11 +1,13 @@
 #include "framework/cli/scene_run.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -50,6 +52,22 @@ std::map<std::string, int> count_events(const Trajectory& run) {
   return counts;
 }
 
+/// What happened at all, three to a line, numbers under numbers; what is 0 stands in --json.
+void print_counts(const std::map<std::string, std::uint64_t>& counts) {
+  constexpr int kColumns = 3;
+  int column = 0;
+  const char* head = "counts";
+  for (const auto& [name, count] : counts) {
+    if (count == 0) continue;
+    std::string words = name;
+    std::replace(words.begin(), words.end(), '_', ' ');
+    if (column == 0) fmt::print("  {:<9}", std::exchange(head, ""));
+    fmt::print("{:<24}{:>9}{}", words, count, column + 1 == kColumns ? "\n" : "   ");
+    column = (column + 1) % kColumns;
+  }
+  if (column != 0) fmt::print("\n");
+}
+
 void print_summary(const scene::Scene& scene, const ChosenLaws& chosen, const Trajectory& run, const std::vector<CheckResult>& checks, const std::string& extra) {
   fmt::print("{}\n", scene.title);
   if (!extra.empty()) fmt::print("  {}\n", extra);
@@ -60,9 +78,7 @@ void print_summary(const scene::Scene& scene, const ChosenLaws& chosen, const Tr
   std::string events;
   for (const auto& [name, count] : count_events(run)) events += fmt::format("{}{} {}", events.empty() ? "" : " · ", name, count);
   fmt::print("  events   {}\n", events.empty() ? "none" : events);
-  std::string counts;
-  for (const auto& [name, count] : run.counters.counts) counts += fmt::format("{}{} {}", counts.empty() ? "" : " · ", name, count);
-  if (!counts.empty()) fmt::print("  counts   {}\n", counts);
+  print_counts(run.counters.counts);
   for (const auto& notice : run.counters.notices) fmt::print("  note     {}\n", notice);
   if (!run.stopped_by.empty()) fmt::print("  STOPPED  {}\n", run.stopped_by);
   fmt::print("{}", judgement_table(checks));

@@ -110,6 +110,7 @@ ExitCode run_truths(const Context& context, const Options& options) {
   const Chosen chosen = load_modules(context, options.modules);
   std::vector<CaseResult> results;
   std::map<std::string, int> skipped;
+  std::set<std::string> said;   // hints
   if (!options.json) print_truths_head();
   for (const auto& file : files) {
     const Case truth = read_truth(file);
@@ -119,7 +120,7 @@ ExitCode run_truths(const Context& context, const Options& options) {
       continue;
     }
     results.push_back(*result);
-    if (!options.json) print_truths_case(*result, options.each), std::fflush(stdout);
+    if (!options.json) print_truths_case(*result, options.each, said), std::fflush(stdout);
   }
   if (options.json) {
     nlohmann::ordered_json all{{"command", context.command_line}, {"modules", options.modules}};

@@ -65,8 +65,8 @@ void print_failures(const CaseResult& result) {
   if (failures > kMostFailures) std::printf("    and %zu more outputs are wrong: --each shows all\n", failures - kMostFailures);
 }
 
-void print_stubs(const CaseResult& result) {
-  std::set<std::string> said;
+// What is not written yet is said once, below the first case that misses it.
+void print_stubs(const CaseResult& result, std::set<std::string>& said) {
   for (const Line& line : result.lines) {
     if (line.verdict == Verdict::kNotAttempted && said.insert(line.note).second) print_note(line.note);
   }
@@ -78,7 +78,7 @@ void print_truths_head() {
   std::printf("%-40s %-20s %7s %7s %7s  %s\n", "case", "closest to its mark", "error", "floor", "mark", "verdict");
 }
 
-void print_truths_case(const CaseResult& result, bool each) {
+void print_truths_case(const CaseResult& result, bool each, std::set<std::string>& said) {
   const Line* worst = truths::worst_line(result.lines);
   if (worst == nullptr) return;
   print_row(result.id, worst->output, *worst, truths::word_of(truths::verdict_of(result.lines)));
@@ -87,7 +87,7 @@ void print_truths_case(const CaseResult& result, bool each) {
     return;
   }
   print_failures(result);
-  print_stubs(result);
+  print_stubs(result, said);
   const bool about_orders = result.family == "logistic";
   for (const Line& line : result.lines) {
     if (about_orders && is_order(line)) print_note(line.output.substr(line.output.find("order_") + 6) + ": " + line.note);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,7 +22,8 @@ struct CaseResult {
 void print_truths_head();
 /// One line; below it what failed, what was measured about convergence, or what is not attempted.
 /// @param each  every output, with its note
-void print_truths_case(const CaseResult& result, bool each);
+/// @param said  hints that stand above already, not to be repeated; grows
+void print_truths_case(const CaseResult& result, bool each, std::set<std::string>& said);
 /// @param skipped  how many cases of each family are not known here
 void print_truths_count(const std::vector<CaseResult>& results, const std::map<std::string, int>& skipped);
 
