@@ -4,6 +4,7 @@
 #include <fstream>
 #include <iterator>
 #include <regex>
+#include <sstream>
 
 #include <sys/wait.h>
 #include <unistd.h>
@@ -105,6 +106,37 @@ TEST_F(CommandLine, InspectWeighsABox) {
   EXPECT_TRUE(object.at("closed").get<bool>());
 }
 
+// Golden facts of a box: every line that a person looks for, and its number.
+TEST_F(CommandLine, InspectPrintsEveryLineOfAGoodModel) {
+  const Said said = type("inspect box --density 1200");
+  EXPECT_EQ(said.code, 0) << said.err;
+  const nlohmann::json object = nlohmann::json::parse(type("inspect box --density 1200 --json").out).at("objects").at(0);
+  for (const char* line : {"1 object ", "density 1200 kg/m^3", "closed, convex", "vertices, faces 8, 12", "bounding box", "size", "volume", "mass", "centre of mass", "inertia",
+                           "about the centre of mass", "principal axes"})
+    EXPECT_TRUE(holds(said.out, line)) << line << "\n" << said.out;
+  EXPECT_FALSE(holds(said.out, "wrong") || holds(said.out, "remedy")) << said.out;
+  // Whatever the box's size: mass is density times volume, volume is that of the bounding box, and a box's moment about an axis is
+  // m (b^2 + c^2) / 12. Its corners are float32 in the file: 1e-6 of a number.
+  const auto low = object.at("bounding_box_m").at("low"), high = object.at("bounding_box_m").at("high");
+  double size[3], volume = 1.0;
+  for (int i = 0; i < 3; ++i) size[i] = high.at(i).get<double>() - low.at(i).get<double>(), volume *= size[i];
+  const double mass = object.at("mass_kg");
+  EXPECT_NEAR(object.at("volume_m3").get<double>(), volume, 1e-6 * volume);
+  EXPECT_NEAR(mass, 1200 * volume, 1e-6 * mass);
+  for (int i = 0; i < 3; ++i) {
+    const double b = size[(i + 1) % 3], c = size[(i + 2) % 3], moment = mass * (b * b + c * c) / 12;
+    EXPECT_NEAR(object.at("inertia_com_mesh_kg_m2").at(i).at(i).get<double>(), moment, 1e-6 * moment);
+    EXPECT_NEAR(object.at("com_mesh_m").at(i).get<double>(), 0.5 * (low.at(i).get<double>() + high.at(i).get<double>()), 1e-6 * size[i]);
+  }
+  EXPECT_EQ(object.at("principal_moments_kg_m2").size(), 3u);
+}
+
+TEST_F(CommandLine, InspectOfABrokenModelKeepsWhatIsKnownAndSaysWhatToDo) {
+  const Said said = type("inspect broken/lampshade");
+  for (const char* line : {"not a solid", "vertices, faces", "bounding box", "wrong", "remedy"}) EXPECT_TRUE(holds(said.out, line)) << line << "\n" << said.out;
+  EXPECT_FALSE(holds(said.out, "centre of mass")) << "what is no solid has no weight: " << said.out;
+}
+
 TEST_F(CommandLine, InspectOfAnOpenSurfaceSaysWhereAndExitsWith1) {
   const Said said = type("inspect broken/lampshade");
   EXPECT_EQ(said.code, 1) << said.err;
@@ -124,6 +156,28 @@ TEST_F(CommandLine, ARunIsJudgedOnStdoutAndToldOnStderr) {
   EXPECT_TRUE(holds(said.err, "wrote t.png")) << said.err;
   EXPECT_GT(fs::file_size(folder_ / "t.png"), 10000u);
   EXPECT_GT(fs::file_size(folder_ / "t.run"), 10000u);
+}
+
+TEST_F(CommandLine, CountsAreATableOfWhatHappened) {
+  const Said said = type("run pong_1 --modules reference --duration-s 1");
+  const std::size_t at = said.out.find("  counts");
+  ASSERT_NE(at, std::string::npos) << said.out;
+  EXPECT_TRUE(std::regex_search(said.out, std::regex("gap evaluations +[1-9]"))) << said.out;
+  EXPECT_FALSE(std::regex_search(said.out.substr(at), std::regex(" 0\\s"))) << "what is 0 is left out: " << said.out;
+  std::istringstream lines(said.out);
+  for (std::string line; std::getline(lines, line);)
+    if (holds(line, "evaluations")) EXPECT_LE(line.size(), 120u) << line;
+}
+
+// Two balls of radius 0.5 whose centres are 0.8 apart lie 0.2 m in each other.
+TEST_F(CommandLine, BodiesThatOverlapAtTheStartAreRefusedByNameDepthAndRemedy) {
+  write_whole(folder_ / "deep.json", R"({"title": "t", "duration_s": 1, "bodies": [
+    {"name": "left", "shape": {"sphere": {"radius_m": 0.5}}, "mass_kg": 1, "position_m": [0, 0, 0], "velocity_m_s": [1, 0, 0]},
+    {"name": "right", "shape": {"sphere": {"radius_m": 0.5}}, "mass_kg": 1, "position_m": [0.8, 0, 0]}]})");
+  const Said said = type("run deep.json --modules reference --png p.png");
+  EXPECT_EQ(said.code, 2) << said.out << said.err;
+  EXPECT_TRUE(holds(said.err, "left") && holds(said.err, "right") && holds(said.err, "overlap") && holds(said.err, "0.2 m") && holds(said.err, "apart")) << said.err;
+  EXPECT_FALSE(fs::exists(folder_ / "p.png"));
 }
 
 // A run is a function of its scene: the same words give the same bytes.
