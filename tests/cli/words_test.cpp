@@ -166,7 +166,7 @@ TEST_F(CommandLine, CountsAreATableOfWhatHappened) {
   EXPECT_FALSE(std::regex_search(said.out.substr(at), std::regex(" 0\\s"))) << "what is 0 is left out: " << said.out;
   std::istringstream lines(said.out);
   for (std::string line; std::getline(lines, line);)
-    if (holds(line, "evaluations")) EXPECT_LE(line.size(), 120u) << line;
+    EXPECT_TRUE(!holds(line, "evaluations") || line.size() <= 120) << line;
 }
 
 // Two balls of radius 0.5 whose centres are 0.8 apart lie 0.2 m in each other.
