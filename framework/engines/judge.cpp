@@ -9,37 +9,10 @@
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
+#include "framework/engines/measures.h"
 
 namespace tumble::engines {
 namespace {
-
-using scene::CheckSpec;
-using scene::Scene;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// The worst that a check found.
-struct Finding {
-  double value = 0.0;
-  std::string detail;
-
-  /// Keeps the larger; NaN is worse than anything.
-  void worst(double candidate, const std::string& where) {
-    if (std::isnan(value) || candidate <= value) return;
-    value = candidate;
-    detail = where;
-  }
-};
-
-using Measure = Finding (*)(const CheckSpec&, const Scene&, const Trajectory&);
-
-std::string at_time(double time) { return fmt::format("at t = {:.6g} s", time); }
-
-int index_of(const std::string& name, const Trajectory& run) {
-  for (std::size_t i = 0; i < run.bodies.size(); ++i)
-    if (run.bodies[i].name == name) return static_cast<int>(i);
-  throw UserError("check", "the run has no body '" + name + "'", "Judge a run by the scene that it was made from.");
-}
 
 double total_energy(const Frame& frame) { return frame.kinetic_energy + frame.potential_energy; }
 
@@ -110,15 +83,6 @@ Finding gap(const CheckSpec&, const Scene&, const Trajectory& run) {
     finding = {frame.smallest_gap, at_time(frame.time)};
   }
   return finding;
-}
-
-const Frame* frame_at(double time, const Trajectory& run) {
-  if (time == 0.0) return &run.frames.back();
-  // Frames are recorded at multiples of the frame time, which rounding shifts by far less than a microsecond.
-  constexpr double kSameInstant = 1e-6;   // s
-  for (const Frame& frame : run.frames)
-    if (std::abs(frame.time - time) <= kSameInstant) return &frame;
-  return nullptr;
 }
 
 Finding vector_at(const CheckSpec& check, const Trajectory& run, Vector3d BodyPose::*quantity) {
@@ -203,10 +167,12 @@ Finding flips(const CheckSpec& check, const Scene&, const Trajectory& run) {
   return {std::abs(count - check.expected[0]), fmt::format("{} flips, expected {}{}", count, check.expected[0], times.empty() ? "" : "; at t = " + times + " s")};
 }
 
+enum class Right { kAtMost, kAtLeast, kAtLeastMinus };   // value <= tolerance, >= tolerance, >= -tolerance
+
 struct Kind {
   Measure measure;
   const char* unit;
-  bool at_least = false;
+  Right right = Right::kAtMost;
 };
 
 const std::map<std::string, Kind>& kinds() {
@@ -215,19 +181,34 @@ const std::map<std::string, Kind>& kinds() {
       {"energy_not_rising", {energy_not_rising, ""}},
       {"momentum", {momentum, "kg m/s"}},
       {"angular_momentum", {angular_momentum, "kg m^2/s"}},
-      {"gap", {gap, "m", true}},
+      {"gap", {gap, "m", Right::kAtLeastMinus}},
       {"final_position", {final_position, "m"}},
       {"final_velocity", {final_velocity, "m/s"}},
       {"impact_times", {impact_times, "s"}},
       {"event_count", {event_count, ""}},
       {"restitution_law", {restitution_law, ""}},
-      {"side_of_wall", {side_of_wall, "m", true}},
+      {"side_of_wall", {side_of_wall, "m", Right::kAtLeastMinus}},
       {"flips", {flips, ""}},
+      {"rod_length", {rod_length, "m"}},
+      {"joint_gap", {joint_gap, "m"}},
+      {"joint_angle", {joint_angle, "rad"}},
+      {"link_force", {link_force, ""}},
+      {"reaction", {reaction, ""}},
+      {"drift", {drift, "m"}},
+      {"tilt", {tilt, "rad"}},
+      {"at_rest", {at_rest, "J/kg"}},
+      {"distance_travelled", {distance_travelled, "m"}},
+      {"angle_at", {angle_at, "rad"}},
+      {"stands", {stands, "rad"}},
+      {"falls", {falls, "rad", Right::kAtLeast}},
+      {"order_of_falls", {order_of_falls, ""}},
   };
   return table;
 }
 
 std::string subject_of(const CheckSpec& check) {
+  if (!check.link.empty()) return check.link;
+  if (!check.bodies.empty()) return check.bodies.front() + " ... " + check.bodies.back();
   if (check.body.empty()) return "all";
   return check.other.empty() ? check.body : check.body + ", " + check.other;
 }
@@ -241,10 +222,10 @@ CheckResult judge(const CheckSpec& check, const Scene& scene, const Trajectory& 
   result.kind = check.kind;
   result.subject = subject_of(check);
   result.value = finding.value;
-  result.at_least = kind.at_least;
-  result.threshold = kind.at_least ? 0.0 - check.tolerance : check.tolerance;
+  result.at_least = kind.right != Right::kAtMost;
+  result.threshold = kind.right == Right::kAtLeastMinus ? 0.0 - check.tolerance : check.tolerance;
   result.unit = check.unit.empty() ? kind.unit : check.unit;
-  result.passed = kind.at_least ? result.value >= result.threshold : result.value <= result.threshold;   // never true of NaN
+  result.passed = result.at_least ? result.value >= result.threshold : result.value <= result.threshold;   // never true of NaN
   result.why = check.why;
   result.detail = finding.detail;
   return result;

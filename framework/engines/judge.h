@@ -13,10 +13,24 @@
 /// | restitution_law  | largest |v_after + e v_before| over |v_before|, of all collisions [-] | <= tolerance               |
 /// | side_of_wall     | smallest distance of body from other's centre along `axis` (world), on the side where it began [m] | >= -tolerance |
 /// | flips            | |flips - expected|: how often the body's own `axis` turned over against where it pointed first [-]  | <= tolerance |
+/// | rod_length       | largest |length - L0| of `link`, or of any rod, from places alone [m]  | <= tolerance               |
+/// | joint_gap        | largest distance of the two points that `link`, or any joint, holds together [m] | <= tolerance     |
+/// | joint_angle      | largest angle of the two axes of a hinge, or of the two bodies of a weld [rad]   | <= tolerance     |
+/// | link_force       | |force in `link` - expected| over |expected| at `at_s` [-], N where it is 0; what pulls together is > 0 | <= tolerance |
+/// | reaction         | the same for the force of lasting contacts on `body`, from `other` where named, along `axis` (world)   | <= tolerance |
+/// | drift            | largest distance from where it was at `at_s`, of `body`, `bodies`, or any [m]    | <= tolerance     |
+/// | tilt             | largest turn against its orientation at `at_s`, of the same [rad]                | <= tolerance     |
+/// | at_rest          | largest kinetic energy a kilogram, of the same, from `at_s` on; 0: at the end [J/kg] | <= tolerance |
+/// | distance_travelled | |way of body from its start - expected| at `at_s`, along `axis` (world) where given [m] | <= tolerance |
+/// | angle_at         | |angle - expected| at `at_s`: how far body turned about `axis` (world), whole turns included [rad]; it must
+///                      turn less than half way round between two frames                               | <= tolerance |
+/// | stands           | how far the own `axis` of `body` or `bodies` leans from where it pointed first, at `at_s`; the largest [rad] | <= tolerance |
+/// | falls            | the same; the smallest [rad]                                          | >= tolerance               |
+/// | order_of_falls   | how many of `bodies` lean by expected [rad] before the one before them, or never [-] | <= tolerance |
 ///
 /// Energies are compared with the kinetic energy at `at_s` plus the deepest fall of the potential energy below its value there:
 /// what a run makes from nothing is not in it, so that it cannot widen its own pass mark.
-/// For energy, momentum and angular momentum `at_s` is the instant from which on the quantity must stay (a push has ended by
+/// For energy, momentum, angular momentum, drift and tilt `at_s` is the instant from which on the quantity must stay (a push has ended by
 /// then); elsewhere the instant that is looked at; 0 is the beginning or the end.
 #pragma once
 

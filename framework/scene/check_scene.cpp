@@ -1,13 +1,12 @@
 #include "framework/scene/check_scene.h"
 
 #include <algorithm>
-#include <map>
 
 #include <Eigen/Eigenvalues>
 
 #include "framework/scene/anchors.h"
+#include "framework/scene/check_checks.h"
 #include "framework/scene/check_links.h"
-#include "framework/scene/document.h"
 
 namespace tumble::scene {
 namespace {
@@ -37,67 +36,18 @@ void check_inertia(const Matrix3d& inertia, const Refuse& refuse) {
     refuse("inertia_body_kg_m2", "no solid has these moments: the largest exceeds the sum of the two others", "Ixx + Iyy >= Izz must hold, in any order.");
 }
 
-/// Refuses the name of a body that is not there.
-class Names {
- public:
-  Names(const Scene& scene, const Refuse& refuse) : refuse_(refuse) {
-    for (const auto& body : scene.bodies) names_.push_back(body.name);
-  }
-  void expect(const std::string& name, const std::string& pointer) const {
-    if (std::find(names_.begin(), names_.end(), name) == names_.end())
-      refuse_(pointer, "no body is named '" + name + "'." + did_you_mean(name, names_), "Bodies: " + listed(names_) + ".");
-  }
-
- private:
-  const Refuse& refuse_;
-  std::vector<std::string> names_;
-};
-
-/// What a kind of check cannot do without.
-struct CheckNeeds {
-  bool body = false, other = false, axis = false, expected = false;
-};
-const std::map<std::string, CheckNeeds>& check_needs() {
-  static const std::map<std::string, CheckNeeds> needs = {
-      {"energy", {}},
-      {"energy_not_rising", {}},
-      {"momentum", {}},
-      {"angular_momentum", {}},
-      {"gap", {}},
-      {"final_position", {.body = true, .expected = true}},
-      {"final_velocity", {.body = true, .expected = true}},
-      {"impact_times", {.body = true, .other = true, .expected = true}},
-      {"event_count", {.expected = true}},
-      {"restitution_law", {}},
-      {"side_of_wall", {.body = true, .other = true, .axis = true}},
-      {"flips", {.body = true, .axis = true, .expected = true}},
-  };
-  return needs;
-}
-
-void check_check(const CheckSpec& check, const std::string& pointer, const Names& names, const Refuse& refuse) {
-  const auto found = check_needs().find(check.kind);
-  if (found == check_needs().end()) refuse(pointer + "/kind", "unknown kind of check '" + check.kind + "'", "");
-  const CheckNeeds& needs = found->second;
-  const auto need = [&](bool needed, bool given, const char* key) {
-    if (needed && !given) refuse(pointer, "a check of kind " + check.kind + " needs the key '" + key + "'", "Add it.");
-  };
-  need(needs.body, !check.body.empty(), "body");
-  need(needs.other, !check.other.empty(), "other");
-  need(needs.axis, check.axis.has_value(), "axis");
-  need(needs.expected, !check.expected.empty(), "expected");
-  if (!check.body.empty()) names.expect(check.body, pointer + "/body");
-  if (!check.other.empty()) names.expect(check.other, pointer + "/other");
-  if (check.axis && check.axis->norm() == 0.0) refuse(pointer + "/axis", "found the zero vector, expected a direction", "");
-  const bool is_vector = check.kind == "final_position" || check.kind == "final_velocity" || check.kind.ends_with("momentum");
-  if (is_vector && !check.expected.empty() && check.expected.size() != 3)
-    refuse(pointer + "/expected", "found a list of " + std::to_string(check.expected.size()) + ", expected [x, y, z]", "");
-  const bool is_count = check.kind == "event_count" || check.kind == "flips";
-  if (is_count && check.expected.size() != 1)
-    refuse(pointer + "/expected", "found a list of " + std::to_string(check.expected.size()) + ", expected a list of one count", "");
-}
-
 }  // namespace
+
+void Names::expect(const std::string& name, const std::string& pointer, const Refuse& refuse) const {
+  if (std::find(names_.begin(), names_.end(), name) != names_.end()) return;
+  refuse(pointer, "no " + what_ + " is named '" + name + "'." + did_you_mean(name, names_), names_.empty() ? "The scene has none." : plural_ + ": " + listed(names_) + ".");
+}
+
+Names names_of_bodies(const Scene& scene) {
+  std::vector<std::string> names;
+  for (const auto& body : scene.bodies) names.push_back(body.name);
+  return Names("body", "Bodies", std::move(names));
+}
 
 void check_body(const BodySpec& body, const Refuse& refuse) {
   check_mass(body, refuse);
@@ -110,18 +60,18 @@ void check_body(const BodySpec& body, const Refuse& refuse) {
 void check_scene(const Scene& scene, const Refuse& refuse) {
   if (scene.bodies.empty()) refuse("/bodies", "the scene has no body", "Add one, here or under \"repeat\".");
   if (scene.step_s > scene.duration_s) refuse("/step_s", "the step is longer than the whole run", "Give a shorter step_s or a longer duration_s.");
-  const Names names(scene, refuse);
+  const Names names = names_of_bodies(scene);
   for (std::size_t i = 0; i < scene.point_forces.size(); ++i) {
     const PointForceSpec& force = scene.point_forces[i];
     const std::string pointer = "/point_forces/" + std::to_string(i) + "/body";
-    names.expect(force.body, pointer);
+    names.expect(force.body, pointer, refuse);
     const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(), [&](const BodySpec& b) { return b.name == force.body; });
     if (body != scene.bodies.end() && body->immovable) refuse(pointer, "body '" + force.body + "' is immovable: no force moves it", "Name a movable body.");
   }
   check_links(scene, refuse);
   if ((scene.camera.eye_m - scene.camera.target_m).norm() == 0.0) refuse("/camera/target_m", "the camera stands where it looks", "Move eye_m or target_m.");
-  if (scene.camera.follow) names.expect(*scene.camera.follow, "/camera/follow");
-  for (std::size_t i = 0; i < scene.checks.size(); ++i) check_check(scene.checks[i], "/checks/" + std::to_string(i), names, refuse);
+  if (scene.camera.follow) names.expect(*scene.camera.follow, "/camera/follow", refuse);
+  check_checks(scene, refuse);
 }
 
 }  // namespace tumble::scene

@@ -1,0 +1,59 @@
+/// What the kinds of checks measure on a recorded run (judge.h says what each is). For judge.cpp and the measures' own files only.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "framework/scene/scene.h"
+#include "framework/trajectory/trajectory.h"
+
+namespace tumble::engines {
+
+using scene::CheckSpec;
+using scene::Scene;
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The worst that a check found.
+struct Finding {
+  double value = 0.0;
+  std::string detail;
+
+  /// Keeps the larger; NaN is worse than anything.
+  void worst(double candidate, const std::string& where) {
+    if (std::isnan(value) || candidate <= value) return;
+    value = candidate;
+    detail = where;
+  }
+};
+
+/// @pre the run has a frame
+using Measure = Finding (*)(const CheckSpec&, const Scene&, const Trajectory&);
+
+std::string at_time(double time);
+
+/// @throws UserError when the run has no body of that name
+int index_of(const std::string& name, const Trajectory& run);
+
+/// The frame recorded at an instant; 0 is the end; nullptr where none was recorded then.
+const Frame* frame_at(double time, const Trajectory& run);
+
+// Links and contacts (measures_links.cpp)
+Finding rod_length(const CheckSpec&, const Scene&, const Trajectory&);
+Finding joint_gap(const CheckSpec&, const Scene&, const Trajectory&);
+Finding joint_angle(const CheckSpec&, const Scene&, const Trajectory&);
+Finding link_force(const CheckSpec&, const Scene&, const Trajectory&);
+Finding reaction(const CheckSpec&, const Scene&, const Trajectory&);
+
+// What stays, what slides, what falls (measures_rest.cpp)
+Finding drift(const CheckSpec&, const Scene&, const Trajectory&);
+Finding tilt(const CheckSpec&, const Scene&, const Trajectory&);
+Finding at_rest(const CheckSpec&, const Scene&, const Trajectory&);
+Finding distance_travelled(const CheckSpec&, const Scene&, const Trajectory&);
+Finding angle_at(const CheckSpec&, const Scene&, const Trajectory&);
+Finding stands(const CheckSpec&, const Scene&, const Trajectory&);
+Finding falls(const CheckSpec&, const Scene&, const Trajectory&);
+Finding order_of_falls(const CheckSpec&, const Scene&, const Trajectory&);
+
+}  // namespace tumble::engines
