@@ -19,6 +19,7 @@ constexpr double kReach = 0.25;           // of the smaller body: points farther
 constexpr int kMostShifts = 8;            // rounds of taking back overlaps
 constexpr int kMostOfStudents = 64;       // contacts of a group that the laws' contact_forces is asked for: it is given a dense matrix
 constexpr int kMostLocated = 12;          // contacts of a group whose end of sliding is located in time
+constexpr int kMostSearches = 16;         // for ends of sliding from one instant
 constexpr double kSlides = 1e-9;          // of the group's speed: slower than this nothing slides
 
 Vector3d velocity_at(const PushedBody& body, const Vector3d& velocity, const Vector3d& omega, const Vector3d& point) {
@@ -43,6 +44,20 @@ void LastingContacts::begin(Pair pair, const collision::Gap& gap) {
   if (!lasting_.try_emplace(pair, false).second) return;
   ++counters_.contacts_begun;
   sink_.event({moving_.time(), EventKind::kContact, pair.first, pair.second, gap.point_b_world, gap.normal_b_to_a_world, 0.0, 0.0});
+}
+
+void LastingContacts::begin_where_touching(const std::vector<Pair>& pairs, double rest_speed) {
+  for (const Pair& pair : pairs) {
+    const collision::Gap gap = collision::compute_gap(moving_.shape(pair.first), pose(pair.first, moving_.states()), moving_.shape(pair.second), pose(pair.second, moving_.states()));
+    if (gap.distance > shell(pair)) continue;
+    const Points points = points_at(pair, moving_.states(), shell(pair));
+    const Body a = moving_.body_at_impact(pair.first), b = moving_.body_at_impact(pair.second);
+    const bool slow = std::all_of(points.begin(), points.end(), [&](const collision::NearPoint& p) {
+      const Vector3d relative = a.velocity_world + a.omega_world.cross(middle(p) - a.com_world) - b.velocity_world - b.omega_world.cross(middle(p) - b.com_world);
+      return std::abs(relative.dot(p.normal_b_to_a_world)) < rest_speed;
+    });
+    if (slow) begin(pair, gap);
+  }
 }
 
 double LastingContacts::friction(Pair pair) const {
@@ -259,7 +274,9 @@ std::optional<double> LastingContacts::stop_of_sliding(const ContactProblem& pro
       const Vector3d& n = c.normal_b_to_a_world;
       const auto velocity = [&](int body) -> Vector3d {
         const Body b = moving_.body_at_impact(body);
-        return b.velocity_world + b.omega_world.cross(c.point_world - b.com_world);
+        const Vector3d arm = c.point_world - b.com_world;
+        if (!moving_.world().bodies[body].immovable()) speed = std::max(speed, b.velocity_world.norm() + b.omega_world.norm() * arm.norm());
+        return b.velocity_world + b.omega_world.cross(arm);
       };
       const Vector3d va = velocity(pair.first), vb = velocity(pair.second), relative = va - vb;
       slip = std::max(slip, (relative - relative.dot(n) * n).norm());
@@ -277,6 +294,11 @@ std::optional<double> LastingContacts::stop_of_sliding(const ContactProblem& pro
     at_hand = limit;
   }
   if (!stopping) return std::nullopt;
+  if (searched_at_ != moving_.time()) {
+    searched_at_ = moving_.time();
+    searches_ = 0;
+  }
+  if (++searches_ > kMostSearches) return std::nullopt;
   if (locating_ && locating_->pair == *stopping && locating_->start == moving_.time()) {
     if (locating_->found) return std::nullopt;
     const double F = (locating_->impulse - stopping_impulse) / (locating_->duration - h), A = stopping_impulse - F * h, M = at_hand / h;

@@ -32,6 +32,8 @@ class LastingContacts {
 
   /// A collision has become a lasting contact.
   void begin(Pair pair, const collision::Gap& gap);
+  /// Pairs that touch at the start and do not approach faster than the rest speed.
+  void begin_where_touching(const std::vector<Pair>& pairs, double rest_speed);
   bool lasts(Pair pair) const { return lasting_.contains(pair); }
 
   /// Gives the bodies in contact their paths for the step that has begun. @param candidates  pairs whose boxes meet, sorted
@@ -95,6 +97,8 @@ class LastingContacts {
   std::map<Pair, std::vector<Warm>> warm_;
   std::vector<Group> groups_;                    // of the step
   std::vector<ContactPoint> forces_;
+  double searched_at_ = kUnset;                  // instant from which ends of sliding were looked for, and how often
+  int searches_ = 0;
   std::optional<Locating> locating_;             // the end of sliding that is being looked for
 };
 

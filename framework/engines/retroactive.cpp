@@ -388,6 +388,12 @@ void RetroactiveRun::run() {
 
 void RetroactiveRun::run_to_the_end() {
   switch_forces();
+  std::vector<std::pair<int, int>> all;   // bodies that touch at the start may overlap by a rounding
+  for (int i = 0; i < moving_.size(); ++i)
+    for (int j = i + 1; j < moving_.size(); ++j)
+      if (moving_.may_collide(i, j)) all.emplace_back(i, j);
+  separate(all);
+  if (contacts_) contacts_->begin_where_touching(all, scene_.rest_speed_m_s);
   recorder_.record_committed(moving_);
   while (stopped_by_.empty() && moving_.time() < duration_) {
     next_look_ = moving_.look();
