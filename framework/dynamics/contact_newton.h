@@ -21,28 +21,30 @@
 
 namespace tumble::contacts {
 
-/// The violation, by which the iterations stop.
+/// What an iteration works on and what it has reached.
 struct Progress {
-  double violation = 0;                                       // of the impulses [m/s]
+  Impulses impulses;
+  Violation violation;                                        // of the impulses
   bool accepted = false;
-  int factorisations = 0;
+  int sweeps = 0, factorisations = 0;
 };
 
-/// When is it good enough.
+/// When it is good enough.
 struct Goal {
+  const System& system;
   double violation = 0;                                       // [m/s]
-  bool accepts(const System& system, const Impulses& impulses, double now) const {
-    return now <= violation || now <= rounding_floor(system, impulses);
+  bool accepts(const Impulses& impulses, double now) const { return now <= violation || now <= rounding_floor(system, impulses); }
+  /// Measures what `progress` has reached.
+  void measure(Progress& progress) const {
+    progress.violation = measure_violation(system, progress.impulses);
+    progress.accepted = accepts(progress.impulses, progress.violation.largest);
   }
 };
 
-/// Steps of semismooth Newton while they help. `impulses` get no worse.
-void finish(const System& system, const Goal& goal, int most_steps, BodyMatrix& matrix, Impulses& impulses, Progress& progress);
+/// Steps of semismooth Newton while they help; the sum of squared violations never grows.
+void finish(const Goal& goal, int most_steps, BodyMatrix& matrix, Progress& progress);
 
-/// One problem (C.6) solved, impulses and shift renewed from it. `impulses` may get worse.
-void soften(const System& system, double compliance_over_give, BodyMatrix& matrix, Impulses& impulses, Progress& progress);
-
-/// Both by turns until the goal is met or `most_rounds` are spent; leaves the best impulses met.
-void solve_together(const System& system, const Goal& goal, int most_rounds, BodyMatrix& matrix, Impulses& impulses, Progress& progress);
+/// One problem (C.6) solved, impulses and shift renewed from it. False, and nothing changed: Newton's method did not reach its minimum.
+bool soften(const Goal& goal, double compliance_over_give, BodyMatrix& matrix, Progress& progress);
 
 }  // namespace tumble::contacts

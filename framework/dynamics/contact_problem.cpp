@@ -22,8 +22,12 @@ using contacts::Impulses;
 using contacts::Progress;
 using contacts::System;
 
-constexpr int kMostRounds = 30;       // of the two Newton methods by turns
-constexpr int kFirstNewtonSteps = 8;  // from the guess: at rest two or three do; where they wander, sweeps are cheaper
+constexpr int kMostRounds = 16;         // of sweeps and both Newton methods by turns
+constexpr int kNewtonSteps = 30;        // in a round
+constexpr int kRoundsOfFewSweeps = 2;   // after these each round sweeps twice as often as the one before
+constexpr int kMostSweepsARound = 1000;
+constexpr double kFirstCompliance = 1e-2, kLeastCompliance = 1e-5;  // over a contact's own give: of the convex problem
+constexpr int kFirstNewtonSteps = 8;    // from the guess: at rest two or three do; where they wander, sweeps are cheaper
 
 ContactMode mode_of(const ContactBlock& block, const Vector3d& impulse) {
   constexpr double kOnTheCone = 1 - 1e-9;  // nearer to the edge than this is on it: impulses of sliding contacts lie there to round-off
@@ -32,31 +36,50 @@ ContactMode mode_of(const ContactBlock& block, const Vector3d& impulse) {
 }
 
 /// Sweeps until the goal is met, or their number is spent.
-void sweep_until(const System& system, const Goal& goal, int most_sweeps, Impulses& impulses, Progress& progress, int& sweeps) {
-  const auto locals = contacts::prepare_locals(system);
-  while (sweeps < most_sweeps && !progress.accepted) {
-    const double change = contacts::sweep(system, locals, sweeps % 2 == 0, impulses);
-    ++sweeps;
+void sweep_until(const Goal& goal, const std::vector<contacts::LocalContact>& locals, int most_sweeps, Progress& progress) {
+  for (int i = 0; i < most_sweeps && !progress.accepted; ++i) {
+    const double change = contacts::sweep(goal.system, locals, i % 2 == 0, progress.impulses);
+    ++progress.sweeps;
     // The change of a sweep is about as large as the violation before it: only when it is small the true one is worth its price.
-    if (sweeps < most_sweeps && !goal.accepts(system, impulses, change)) continue;
-    contacts::sum_impulses(system, impulses);
-    progress.violation = contacts::largest_violation(system, impulses);
-    progress.accepted = goal.accepts(system, impulses, progress.violation);
+    if (i + 1 < most_sweeps && !goal.accepts(progress.impulses, change)) continue;
+    contacts::sum_impulses(goal.system, progress.impulses);
+    goal.measure(progress);
   }
 }
 
-void iterate(const System& system, const Goal& goal, const ContactOptions& options, Impulses& impulses, Progress& progress, int& sweeps) {
-  const std::size_t size = system.contacts.size() + system.rows.size();
-  if (size == 1) sweep_until(system, goal, 1, impulses, progress, sweeps);  // exact
-  if (progress.accepted) return;
-  if (static_cast<int>(size) > options.largest_direct) {
-    sweep_until(system, goal, options.most_sweeps_alone, impulses, progress, sweeps);
+/// Sweeps, Newton's method, and the convex problem by turns; ends with the best that was met.
+void solve_by_turns(const Goal& goal, const std::vector<contacts::LocalContact>& locals, int sweeps, contacts::BodyMatrix& matrix, Progress& progress) {
+  double compliance = kFirstCompliance;
+  Progress best = progress;
+  const auto try_to_finish = [&] {
+    contacts::finish(goal, kNewtonSteps, matrix, progress);
+    if (progress.accepted || progress.violation.squares < best.violation.squares) best = progress;
+  };
+  for (int round = 0; round < kMostRounds && !progress.accepted; ++round) {
+    sweep_until(goal, locals, sweeps, progress);
+    if (!progress.accepted) try_to_finish();
+    if (progress.accepted) break;
+    const bool reached = contacts::soften(goal, compliance, matrix, progress);
+    compliance = reached ? std::max(kLeastCompliance, 0.1 * compliance) : std::min(1.0, 10 * compliance);
+    if (reached) try_to_finish();
+    if (round >= kRoundsOfFewSweeps) sweeps = std::min(2 * sweeps, kMostSweepsARound);
+  }
+  if (!progress.accepted) {
+    best.sweeps = progress.sweeps;
+    best.factorisations = progress.factorisations;
+    progress = std::move(best);
+  }
+}
+
+void iterate(const Goal& goal, const ContactOptions& options, Progress& progress) {
+  const std::size_t size = goal.system.contacts.size() + goal.system.rows.size();
+  if (static_cast<int>(size) > options.largest_direct || size == 1) {  // one contact: the first sweep is exact
+    sweep_until(goal, contacts::prepare_locals(goal.system), options.most_sweeps_alone, progress);
     return;
   }
-  contacts::BodyMatrix matrix(system);
-  contacts::finish(system, goal, kFirstNewtonSteps, matrix, impulses, progress);
-  if (!progress.accepted) sweep_until(system, goal, options.most_sweeps, impulses, progress, sweeps);
-  if (!progress.accepted) contacts::solve_together(system, goal, kMostRounds, matrix, impulses, progress);
+  contacts::BodyMatrix matrix(goal.system);
+  contacts::finish(goal, kFirstNewtonSteps, matrix, progress);
+  if (!progress.accepted) solve_by_turns(goal, contacts::prepare_locals(goal.system), options.most_sweeps, matrix, progress);
 }
 
 ContactSolution describe(const ContactProblem& problem, const System& system, const Impulses& impulses) {
@@ -82,18 +105,16 @@ ContactSolution describe(const ContactProblem& problem, const System& system, co
 
 ContactSolution solve_contacts(const ContactProblem& problem, const ContactOptions& options) {
   const System system = contacts::build_system(problem);
-  Impulses impulses = contacts::first_guess(system, problem);
   const double speed = system.speed > 0 ? system.speed : 1.0;
-  const Goal goal{options.tolerance * speed};
+  const Goal goal{system, options.tolerance * speed};
   Progress progress;
-  int sweeps = 0;
-  progress.violation = contacts::largest_violation(system, impulses);
-  progress.accepted = goal.accepts(system, impulses, progress.violation);
-  if (!progress.accepted) iterate(system, goal, options, impulses, progress, sweeps);
-  ContactSolution solution = describe(problem, system, impulses);
-  solution.residual = progress.violation / speed;
+  progress.impulses = contacts::first_guess(system, problem);
+  goal.measure(progress);
+  if (!progress.accepted) iterate(goal, options, progress);
+  ContactSolution solution = describe(problem, system, progress.impulses);
+  solution.residual = progress.violation.largest / speed;
   solution.converged = progress.accepted;
-  solution.sweeps = sweeps;
+  solution.sweeps = progress.sweeps;
   solution.factorisations = progress.factorisations;
   return solution;
 }

@@ -144,18 +144,23 @@ void sum_impulses(const System& system, Impulses& impulses) {
   for (std::size_t i = 0; i < system.rows.size(); ++i) push(system.rows[i], impulses.rows[i], impulses.y);
 }
 
-double largest_violation(const System& system, const Impulses& impulses) {
-  double worst = 0;
+Violation measure_violation(const System& system, const Impulses& impulses) {
+  Violation violation;
+  const auto take = [&](double square) {
+    violation.largest = std::max(violation.largest, square);
+    violation.squares += square;
+  };
   for (std::size_t i = 0; i < system.contacts.size(); ++i) {
     const ContactBlock& block = system.contacts[i];
     if (!(block.give > 0)) continue;  // between two bodies that nothing pushes there is no impulse to find
     const Vector3d& p = impulses.contacts[i];
     const Vector3d v = contact_velocity(block, impulses.y);
-    worst = std::max(worst, block.give * (p - coulomb_projection(p - v / block.give, block.friction)).norm());
+    take(block.give * block.give * (p - coulomb_projection(p - v / block.give, block.friction)).squaredNorm());
   }
   for (std::size_t i = 0; i < system.rows.size(); ++i)
-    if (system.rows[i].give > 0) worst = std::max(worst, std::abs(row_velocity(system.rows[i], impulses.y)));
-  return worst;
+    if (system.rows[i].give > 0) take(std::pow(row_velocity(system.rows[i], impulses.y), 2));
+  violation.largest = std::sqrt(violation.largest);
+  return violation;
 }
 
 double rounding_floor(const System& system, const Impulses& impulses) {

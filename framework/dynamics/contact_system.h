@@ -101,8 +101,12 @@ inline void push(const RowBlock& r, double impulse, std::vector<Vector6d>& y) {
   if (r.body_b != kFixed) y[r.body_b] += impulse * r.g_b;
 }
 
-/// How far the impulses are from (C.1) to (C.3), as a velocity: the largest  give |p - P(p - v / give)|,  P as in contact_cone.h.
-double largest_violation(const System& system, const Impulses& impulses);
+/// How far the impulses are from (C.1) to (C.3), as velocities:  give |p - P(p - v / give)|,  P as in contact_cone.h.
+struct Violation {
+  double largest = 0;                                         // [m/s]
+  double squares = 0;                                         // sum of their squares [m^2/s^2]
+};
+Violation measure_violation(const System& system, const Impulses& impulses);
 
 /// Below this no iteration gets: what the rounding of the largest impulse alone does to a velocity.
 double rounding_floor(const System& system, const Impulses& impulses);

@@ -41,7 +41,7 @@ void judge_contact(const PushingContact& c, const Vector3d& impulse, const Vecto
   keep(verdict.stick, std::min(v_t.norm(), (c.friction * p_n - p_t.norm()) * inverse_mass));
   if (!(p_t.norm() > 0)) return;
   const double against = p_t.dot(v_t) / p_t.norm();
-  keep(verdict.direction, against);
+  keep(verdict.direction, std::min(against, p_t.norm() * inverse_mass));
   // A direction is wrong by as much as the velocity, or as much as the friction, that a right one would change.
   const double side = (v_t - against * p_t.normalized()).norm();
   if (v_t.norm() > 0) keep(verdict.direction, side / v_t.norm() * std::min(v_t.norm(), p_t.norm() * inverse_mass));

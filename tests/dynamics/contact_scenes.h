@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ostream>
 #include <vector>
 
 #include "framework/dynamics/contact_problem.h"
@@ -101,6 +102,11 @@ struct Verdict {
   double row = 0;             // m/s: J u - target
   double worst() const { return std::max({momentum, penetration, pull, complementarity, cone, stick, direction, row}); }
 };
+
+inline std::ostream& operator<<(std::ostream& out, const Verdict& v) {
+  return out << "momentum " << v.momentum << " penetration " << v.penetration << " pull " << v.pull << " complementarity " << v.complementarity
+             << " cone " << v.cone << " stick " << v.stick << " direction " << v.direction << " row " << v.row;
+}
 
 Verdict judge(const ContactProblem& problem, const ContactSolution& solution);
 

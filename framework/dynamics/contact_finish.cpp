@@ -1,0 +1,200 @@
+// Semismooth Newton on Coulomb's law (contact_newton.h).
+#include "framework/dynamics/contact_newton.h"
+
+#include <cmath>
+#include <limits>
+
+#include <Eigen/LU>
+
+#include "framework/dynamics/contact_cone.h"
+
+namespace tumble::contacts {
+namespace {
+
+constexpr double kTie = 1e-9;   // of the problem's speed: a contact this near to opening or sliding is taken as closed, or sticking
+
+/// delta, the compliance of a step over the contact's own give. A full step takes the error in the stiffest direction down by delta over the
+/// smallest eigenvalue of W (N^-4 in a stack of N); the rounding of the linear equations grows with 1 / delta. So it is lessened where steps
+/// are slow and the equations were solved well, and raised where they were not.
+constexpr double kFirstFade = 1e-8, kLeastFade = 1e-11, kMostFade = 1e-4;
+
+/// dp = f - D dv: how one contact's impulse answers.
+struct Response {
+  Vector3d f;
+  Matrix3d d;
+};
+
+/// Linearised p = P(p - v / r):  (I - (1 - delta) P') dp = F - P' dv / r,   F = P(z) - p.
+Response law_response(const ContactBlock& c, const Vector3d& p, const Vector3d& v, double r, double fade, double tie) {
+  const Vector3d z = p - v / r;
+  Response response{-p, Matrix3d::Zero()};
+  if (z[0] < -tie) return response;  // open
+  const double length = z.tail<2>().norm(), radius = c.friction * z[0];
+  if (!c.is_frictional() || length <= radius + tie) {
+    response.f = -v / (fade * r);
+    response.d.diagonal().setConstant(1 / (fade * r));
+    if (!c.is_frictional()) response.f.tail<2>().setZero();
+    return response;
+  }
+  const Vector2d t = z.tail<2>() / length;
+  Matrix3d slope = Matrix3d::Zero();  // P'
+  slope(0, 0) = 1;
+  slope.block<2, 1>(1, 0) = c.friction * t;
+  slope.block<2, 2>(1, 1) = radius / length * (Eigen::Matrix2d::Identity() - t * t.transpose());
+  Vector3d misfit;
+  misfit << z[0] - p[0], radius * t - p.tail<2>();
+  misfit[0] = -v[0] / r;  // the same, without rounding
+  const Matrix3d inverse = (Matrix3d::Identity() - (1 - fade) * slope).inverse();
+  response.f = inverse * misfit;
+  response.d = inverse * slope / r;
+  return response;
+}
+
+/// The linear equations of one Newton step:   dp + D G (G^T dp) = f   for all contacts and rows at once.
+class StepEquations {
+ public:
+  /// False where the matrix fails.
+  bool prepare(const System& system, double fade, BodyMatrix& matrix, const Impulses& now);
+  /// The change of all impulses, refined until what is left of the equations is small beside `violation`. True if it got so far.
+  bool solve(const BodyMatrix& matrix, double violation, Impulses& change);
+
+ private:
+  void add_solution(const BodyMatrix& matrix, Impulses& change);
+  double renew_rest(const Impulses& change);
+
+  const System* system_ = nullptr;
+  double fade_ = 0;
+  std::vector<Response> responses_;
+  std::vector<double> row_pushes_;           // f of the rows; their D is 1 / (fade give)
+  std::vector<Vector3d> rest_;               // what the equations still lack
+  std::vector<double> row_rest_;
+  std::vector<Vector6d> x_;
+};
+
+bool StepEquations::prepare(const System& system, double fade, BodyMatrix& matrix, const Impulses& now) {
+  system_ = &system;
+  fade_ = fade;
+  responses_.assign(system.contacts.size(), Response{Vector3d::Zero(), Matrix3d::Zero()});
+  row_pushes_.assign(system.rows.size(), 0.0);
+  matrix.set_identity();
+  for (std::size_t i = 0; i < responses_.size(); ++i) {
+    const ContactBlock& c = system.contacts[i];
+    if (!(c.give > 0)) continue;
+    responses_[i] = law_response(c, now.contacts[i], contact_velocity(c, now.y), c.give, fade, kTie * system.speed / c.give);
+    if (responses_[i].d(0, 0) != 0) matrix.add(c, responses_[i].d);
+  }
+  for (std::size_t i = 0; i < row_pushes_.size(); ++i) {
+    const RowBlock& row = system.rows[i];
+    if (!(row.give > 0)) continue;
+    row_pushes_[i] = -row_velocity(row, now.y) / (fade * row.give);
+    matrix.add(row, 1 / (fade * row.give));
+  }
+  return matrix.factorise();
+}
+
+/// change += rest - D G H^-1 G^T rest.
+void StepEquations::add_solution(const BodyMatrix& matrix, Impulses& change) {
+  const System& system = *system_;
+  x_.assign(system.root_inverse_mass.size(), Vector6d::Zero());
+  for (std::size_t i = 0; i < rest_.size(); ++i) push(system.contacts[i], rest_[i], x_);
+  for (std::size_t i = 0; i < row_rest_.size(); ++i) push(system.rows[i], row_rest_[i], x_);
+  matrix.solve(x_);
+  for (std::size_t i = 0; i < rest_.size(); ++i) change.contacts[i] += rest_[i] - responses_[i].d * velocity_change(system.contacts[i], x_);
+  for (std::size_t i = 0; i < row_rest_.size(); ++i)
+    if (system.rows[i].give > 0) change.rows[i] += row_rest_[i] - velocity_change(system.rows[i], x_) / (fade_ * system.rows[i].give);
+}
+
+/// rest := f - dp - D G G^T dp; returns its largest part as a velocity.
+double StepEquations::renew_rest(const Impulses& change) {
+  const System& system = *system_;
+  double largest = 0;
+  x_.assign(system.root_inverse_mass.size(), Vector6d::Zero());
+  for (std::size_t i = 0; i < rest_.size(); ++i) push(system.contacts[i], change.contacts[i], x_);
+  for (std::size_t i = 0; i < row_rest_.size(); ++i) push(system.rows[i], change.rows[i], x_);
+  for (std::size_t i = 0; i < rest_.size(); ++i) {
+    rest_[i] = responses_[i].f - change.contacts[i] - responses_[i].d * velocity_change(system.contacts[i], x_);
+    largest = std::max(largest, fade_ * system.contacts[i].give * rest_[i].norm());
+  }
+  for (std::size_t i = 0; i < row_rest_.size(); ++i) {
+    if (!(system.rows[i].give > 0)) continue;
+    const double stiffness = 1 / (fade_ * system.rows[i].give);
+    row_rest_[i] = row_pushes_[i] - change.rows[i] - stiffness * velocity_change(system.rows[i], x_);
+    largest = std::max(largest, std::abs(row_rest_[i]) / stiffness);
+  }
+  return largest;
+}
+
+bool StepEquations::solve(const BodyMatrix& matrix, double violation, Impulses& change) {
+  constexpr int kMostPasses = 4;
+  constexpr double kSmall = 1e-3;
+  change.contacts.assign(responses_.size(), Vector3d::Zero());
+  change.rows.assign(row_pushes_.size(), 0.0);
+  rest_.resize(responses_.size());
+  for (std::size_t i = 0; i < rest_.size(); ++i) rest_[i] = responses_[i].f;
+  row_rest_ = row_pushes_;
+  double before = std::numeric_limits<double>::infinity();
+  for (int pass = 0; pass < kMostPasses; ++pass) {
+    add_solution(matrix, change);
+    const double left = renew_rest(change);
+    if (left <= kSmall * violation) return true;
+    if (!(left < 0.5 * before)) return false;
+    before = left;
+  }
+  return false;
+}
+
+/// impulses + share * change, back into the law's set.
+Impulses moved(const System& system, const Impulses& impulses, const Impulses& change, double share) {
+  Impulses next = impulses;
+  for (std::size_t i = 0; i < next.contacts.size(); ++i) {
+    next.contacts[i] = coulomb_projection(impulses.contacts[i] + share * change.contacts[i], system.contacts[i].friction);
+  }
+  for (std::size_t i = 0; i < next.rows.size(); ++i) next.rows[i] += share * change.rows[i];
+  sum_impulses(system, next);
+  return next;
+}
+
+}  // namespace
+
+void finish(const Goal& goal, int most_steps, BodyMatrix& matrix, Progress& progress) {
+  constexpr double kHelps = 0.5;      // a step that leaves more of the sum of squares is shortened
+  constexpr double kShortest = 0.03;
+  constexpr double kSlow = 1e-4;      // of the sum of squares: a full step that leaves more may owe it to the fade
+  constexpr int kMostPoorSteps = 3;   // in a row
+  double fade = kFirstFade;
+  StepEquations equations;
+  Impulses change;
+  for (int i = 0, poor = 0; i < most_steps && poor < kMostPoorSteps; ++i) {
+    const bool was_accepted = progress.accepted;
+    const Violation before = progress.violation;
+    if (!equations.prepare(goal.system, fade, matrix, progress.impulses)) return;
+    const bool solved = equations.solve(matrix, before.largest, change);
+    ++progress.factorisations;
+    double share = 1, best_share = 1;
+    Impulses next = moved(goal.system, progress.impulses, change, share);
+    Violation after = measure_violation(goal.system, next);
+    while (after.squares > kHelps * before.squares && share > kShortest && !was_accepted) {
+      share *= 0.5;
+      Impulses shorter = moved(goal.system, progress.impulses, change, share);
+      const Violation there = measure_violation(goal.system, shorter);
+      if (!(there.squares < after.squares)) continue;
+      after = there;
+      next = std::move(shorter);
+      best_share = share;
+    }
+    if (!(after.squares < before.squares)) return;
+    if (!solved) {
+      fade = std::min(kMostFade, 10 * fade);
+    } else if (best_share == 1 && after.squares > kSlow * before.squares) {
+      fade = std::max(kLeastFade, 0.1 * fade);
+    }
+    poor = after.squares > 0.8 * before.squares ? poor + 1 : 0;
+    progress.impulses = std::move(next);
+    progress.violation = after;
+    progress.accepted = goal.accepts(progress.impulses, after.largest);
+    // One step past the goal: the velocities of a high stack are sums of many contacts' violations.
+    if (was_accepted || after.largest <= rounding_floor(goal.system, progress.impulses)) return;
+  }
+}
+
+}  // namespace tumble::contacts

@@ -1,0 +1,146 @@
+// The convex problem of given De Saxce shifts, minimised by Newton's method (contact_newton.h).
+#include "framework/dynamics/contact_newton.h"
+
+#include <cmath>
+
+#include "framework/dynamics/contact_cone.h"
+
+namespace tumble::contacts {
+namespace {
+
+/// Projection on the friction cone K = {|p_t| <= mu p_n} and its derivative.
+struct ConeProjection {
+  Vector3d p;
+  Matrix3d slope;
+};
+
+ConeProjection project_on_cone(const Vector3d& z, double mu) {
+  ConeProjection result{Vector3d::Zero(), Matrix3d::Zero()};
+  const double length = z.tail<2>().norm();
+  if (mu > 0 ? mu * length <= -z[0] : z[0] <= 0) return result;
+  if (mu == 0) {
+    result.p[0] = z[0];
+    result.slope(0, 0) = 1;
+    return result;
+  }
+  if (length <= mu * z[0]) return {z, Matrix3d::Identity()};
+  const double share = 1 / (1 + mu * mu), normal = share * (z[0] + mu * length);
+  const Vector2d t = z.tail<2>() / length;
+  Vector3d edge;
+  edge << 1, mu * t;
+  const Vector3d side(0, -t[1], t[0]);
+  result.p = normal * edge;
+  result.slope = share * edge * edge.transpose() + mu * normal / length * side * side.transpose();
+  return result;
+}
+
+/// The problem (C.6) and its derivatives at y.
+struct SoftProblem {
+  const System& system;
+  const Impulses& before;            // p_i
+  std::vector<double> shifts;        // g_i
+  double compliance;                 // eps over give
+
+  Vector3d argument(std::size_t i, const std::vector<Vector6d>& y) const {
+    const ContactBlock& c = system.contacts[i];
+    Vector3d v = contact_velocity(c, y);
+    v[0] += shifts[i];
+    return before.contacts[i] - v / (compliance * c.give);
+  }
+  double row_argument(std::size_t i, const std::vector<Vector6d>& y) const {
+    return before.rows[i] - row_velocity(system.rows[i], y) / (compliance * system.rows[i].give);
+  }
+
+  /// y - sum G^T Pi(z); with a matrix, its derivative too.
+  std::vector<Vector6d> gradient(const std::vector<Vector6d>& y, BodyMatrix* matrix) const {
+    std::vector<Vector6d> result = y;
+    if (matrix) matrix->set_identity();
+    for (std::size_t i = 0; i < system.contacts.size(); ++i) {
+      const ContactBlock& c = system.contacts[i];
+      if (!(c.give > 0)) continue;
+      const ConeProjection projection = project_on_cone(argument(i, y), c.friction);
+      if (projection.p[0] > 0) push(c, -projection.p, result);
+      if (matrix && projection.p[0] > 0) matrix->add(c, projection.slope / (compliance * c.give));
+    }
+    for (std::size_t i = 0; i < system.rows.size(); ++i) {
+      const RowBlock& row = system.rows[i];
+      if (!(row.give > 0)) continue;
+      push(row, -row_argument(i, y), result);
+      if (matrix) matrix->add(row, 1 / (compliance * row.give));
+    }
+    return result;
+  }
+};
+
+double dot(const std::vector<Vector6d>& a, const std::vector<Vector6d>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
+  return sum;
+}
+
+std::vector<Vector6d> along(const std::vector<Vector6d>& y, double share, const std::vector<Vector6d>& direction) {
+  std::vector<Vector6d> result = y;
+  for (std::size_t i = 0; i < y.size(); ++i) result[i] += share * direction[i];
+  return result;
+}
+
+/// The step along `direction` at which the slope of (C.6), rising from `slope_0` < 0, has nearly gone. Bracketed secants (Illinois).
+double line_search(const SoftProblem& problem, const std::vector<Vector6d>& y, const std::vector<Vector6d>& direction, double slope_0) {
+  constexpr double kSmall = 0.1;
+  constexpr int kMost = 30;
+  const auto slope = [&](double share) { return dot(problem.gradient(along(y, share, direction), nullptr), direction); };
+  double low = 0, high = 1, at_low = slope_0, at_high = slope(1);
+  if (at_high <= kSmall * std::abs(slope_0)) return 1;
+  double share = 1;
+  for (int i = 0; i < kMost; ++i) {
+    share = low + (high - low) * at_low / (at_low - at_high);
+    const double here = slope(share);
+    if (std::abs(here) <= kSmall * std::abs(slope_0)) break;
+    if (here > 0) {
+      high = share;
+      at_high = here;
+      at_low *= 0.5;
+    } else {
+      low = share;
+      at_low = here;
+      at_high *= 0.5;
+    }
+  }
+  return share;
+}
+
+}  // namespace
+
+bool soften(const Goal& goal, double compliance_over_give, BodyMatrix& matrix, Progress& progress) {
+  constexpr int kMostSteps = 40;
+  constexpr double kSmall = 1e-6;  // gradient over the size of y: the rounds that follow renew the problem anyway
+  const System& system = goal.system;
+  SoftProblem problem{system, progress.impulses, std::vector<double>(system.contacts.size(), 0.0), compliance_over_give};
+  std::vector<Vector6d> y = progress.impulses.y;
+  for (std::size_t i = 0; i < system.contacts.size(); ++i)
+    if (system.contacts[i].is_frictional()) problem.shifts[i] = system.contacts[i].friction * contact_velocity(system.contacts[i], y).tail<2>().norm();
+  bool there = false;
+  for (int i = 0; i < kMostSteps && !there; ++i) {
+    const std::vector<Vector6d> gradient = problem.gradient(y, &matrix);
+    there = dot(gradient, gradient) <= kSmall * kSmall * (dot(y, y) + 1e-30);
+    if (there || !matrix.factorise()) break;
+    ++progress.factorisations;
+    std::vector<Vector6d> direction = gradient;
+    matrix.solve(direction);
+    for (Vector6d& part : direction) part = -part;
+    const double slope = dot(gradient, direction);
+    if (!(slope < 0)) break;
+    y = along(y, line_search(problem, y, direction, slope), direction);
+  }
+  if (!there) return false;
+  Impulses& impulses = progress.impulses;
+  for (std::size_t i = 0; i < system.contacts.size(); ++i)  // each argument looks at its own contact's impulse only
+    if (system.contacts[i].give > 0) impulses.contacts[i] = project_on_cone(problem.argument(i, y), system.contacts[i].friction).p;
+  for (std::size_t i = 0; i < system.rows.size(); ++i)
+    if (system.rows[i].give > 0) impulses.rows[i] = problem.row_argument(i, y);
+  sum_impulses(system, impulses);
+  goal.measure(progress);
+  return true;
+}
+
+}  // namespace tumble::contacts
