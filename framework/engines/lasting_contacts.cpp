@@ -36,7 +36,6 @@ Quaterniond turned(const Quaterniond& q, const Vector3d& turn) {
   return angle > 0 ? (Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * q).normalized() : q;
 }
 
-Vector3d middle(const collision::NearPoint& p) { return 0.5 * (p.point_a_world + p.point_b_world); }
 
 }  // namespace
 
@@ -53,11 +52,18 @@ void LastingContacts::begin_where_touching(const std::vector<Pair>& pairs, doubl
     const Points points = points_at(pair, moving_.states(), shell(pair));
     const Body a = moving_.body_at_impact(pair.first), b = moving_.body_at_impact(pair.second);
     const bool slow = std::all_of(points.begin(), points.end(), [&](const collision::NearPoint& p) {
-      const Vector3d relative = a.velocity_world + a.omega_world.cross(middle(p) - a.com_world) - b.velocity_world - b.omega_world.cross(middle(p) - b.com_world);
+      const Vector3d relative = a.velocity_world + a.omega_world.cross(point_of(pair, p) - a.com_world) - b.velocity_world - b.omega_world.cross(point_of(pair, p) - b.com_world);
       return std::abs(relative.dot(p.normal_b_to_a_world)) < rest_speed;
     });
     if (slow) begin(pair, gap);
   }
+}
+
+// Where forces act: on the surface of the body that moves, so that a rolling ball's arm is its radius; between two that move, in the middle.
+Vector3d LastingContacts::point_of(Pair pair, const collision::NearPoint& p) const {
+  if (moving_.world().bodies[pair.second].immovable()) return p.point_a_world;
+  if (moving_.world().bodies[pair.first].immovable()) return p.point_b_world;
+  return 0.5 * (p.point_a_world + p.point_b_world);
 }
 
 double LastingContacts::friction(Pair pair) const {
@@ -192,7 +198,7 @@ ContactProblem LastingContacts::problem_of(const Group& group, const std::vector
     PushingContact contact;
     contact.body_a = place(touch.pair.first, moving_.target(), places, moving_.states(), &moving_.state(touch.pair.first), problem);
     contact.body_b = place(touch.pair.second, moving_.target(), places, moving_.states(), &moving_.state(touch.pair.second), problem);
-    contact.point_world = middle(touch.point);
+    contact.point_world = point_of(touch.pair, touch.point);
     contact.normal_b_to_a_world = touch.point.normal_b_to_a_world;
     contact.friction = friction(touch.pair);
     const double room = touch.point.gap - touch.shell;
@@ -286,7 +292,9 @@ std::optional<double> LastingContacts::stop_of_sliding(const ContactProblem& pro
       limit += c.friction * normal;
       sticks = sticks && (solution.modes[i] == ContactMode::kStick || (solution.modes[i] == ContactMode::kOpen && normal == 0.0));
     }
-    if (!sticks || !(limit > 0) || slip <= kSlides * speed) continue;
+    // What friction stops within a billionth of the step has stopped.
+    const double within_step = limit * (moving_.world().bodies[pair.first].inertia.inverse_mass + moving_.world().bodies[pair.second].inertia.inverse_mass);
+    if (!sticks || !(limit > 0) || slip <= kSlides * (speed + within_step)) continue;
     if (along.norm() >= least * limit) continue;
     least = along.norm() / limit;
     stopping = &pair;
@@ -356,7 +364,7 @@ void LastingContacts::keep_apart(const Group& group, std::vector<RigidBodyState>
         PushingContact contact;
         contact.body_a = place(pair.first, t, places, states, nullptr, problem);
         contact.body_b = place(pair.second, t, places, states, nullptr, problem);
-        contact.point_world = middle(point);
+        contact.point_world = point_of(pair, point);
         contact.normal_b_to_a_world = point.normal_b_to_a_world;
         contact.target = room - point.gap;
         problem.contacts.push_back(contact);

@@ -73,6 +73,7 @@ class LastingContacts {
   };
 
   bool plastic(Pair pair) const;
+  Vector3d point_of(Pair pair, const collision::NearPoint& point) const;
   double shell(Pair pair) const;
   double reach(Pair pair);
   collision::Pose pose(int body, const std::vector<RigidBodyState>& states) const;

@@ -25,6 +25,15 @@ void compare_moving_floor(const Case& truth, const Laws& laws, Comparison& compa
 void compare_shaken_floor(const Case& truth, const Laws& laws, Comparison& comparison);
 void compare_cradle(const Case& truth, const Laws& laws, Comparison& comparison);
 void compare_hard_spheres(const Case& truth, const Laws& laws, Comparison& comparison);
+void compare_spring_mass(const Case& truth, const Laws& laws, Comparison& comparison);
+void compare_elastic_pendulum(const Case& truth, const Laws& laws, Comparison& comparison);
+void compare_two_body_spring(const Case& truth, const Laws& laws, Comparison& comparison);
+void compare_chain(const Case& truth, const Laws& laws, Comparison& comparison);
+void compare_compound_pendulum(const Case& truth, const Laws& laws, Comparison& comparison);
+void compare_heavy_top(const Case& truth, const Laws& laws, Comparison& comparison);
+void compare_friction_incline(const Case& truth, const Laws& laws, Comparison& comparison);
+void compare_roll_incline(const Case& truth, const Laws& laws, Comparison& comparison);
+void compare_slip_to_roll(const Case& truth, const Laws& laws, Comparison& comparison);
 /// The part of toi_tunnel that runs a scene.
 void compare_tunnel_run(const Case& truth, const Laws& laws, Comparison& comparison);
 

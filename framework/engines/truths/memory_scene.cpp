@@ -25,6 +25,13 @@ scene::BodySpec ball(const std::string& name, double mass, double radius, const 
   return body;
 }
 
+scene::BodySpec point_mass(const std::string& name, double mass, const Vector3d& position, const Vector3d& velocity) {
+  constexpr double kRadius = 0.01;   // m: seen by nothing
+  scene::BodySpec body = ball(name, mass, kRadius, position, velocity, 1.0);
+  body.collides = false;
+  return body;
+}
+
 scene::BodySpec wall(const std::string& name, const Vector3d& position, const Vector3d& normal, double restitution) {
   scene::BodySpec body;
   body.name = name;
@@ -50,6 +57,12 @@ Frame frame_at(const scene::Scene& scene, const Laws& laws, double t) {
   const double rate = 1.0 / t;
   shorter.duration_s = std::max(t, 1.0 / rate);  // the frame falls on the rounded 1 / rate
   return run_in_memory(shorter, laws, rate).frames.back();
+}
+
+Frame start_of(const scene::Scene& scene, const Laws& laws) {
+  scene::Scene shorter = scene;
+  shorter.step_s = shorter.duration_s = 1e-9;   // s: one step, which is not looked at
+  return run_in_memory(shorter, laws, 1.0).frames.front();
 }
 
 std::vector<Event> impacts_of(const Trajectory& run) {

@@ -14,12 +14,18 @@ scene::BodySpec ball(const std::string& name, double mass, double radius, const 
 /// Immovable half-space below a plane. @param normal  unit, world, out of the solid
 scene::BodySpec wall(const std::string& name, const Vector3d& position, const Vector3d& normal, double restitution);
 
+/// A body that nothing touches and that springs and rods hold at its centre, so that its inertia does not matter.
+scene::BodySpec point_mass(const std::string& name, double mass, const Vector3d& position, const Vector3d& velocity);
+
 /// The whole run; `frame_rate_hz` as small as wanted where only events matter.
 /// @throws UserError as run_scene; std::runtime_error when the run was stopped early
 Trajectory run_in_memory(const scene::Scene& scene, const Laws& laws, double frame_rate_hz);
 
 /// All bodies at one instant of the run: a run that ends there. @param t  [s], > 0
 Frame frame_at(const scene::Scene& scene, const Laws& laws, double t);
+
+/// All bodies at the start.
+Frame start_of(const scene::Scene& scene, const Laws& laws);
 
 /// Impacts of a run, in order: rest and forces left out.
 std::vector<Event> impacts_of(const Trajectory& run);

@@ -1,0 +1,145 @@
+#include "framework/engines/truths/refined_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace tumble::truths {
+namespace {
+
+constexpr double kOrder = 4.0, kOrderTolerance = 0.1;   // of the classical Runge-Kutta method, where its error goes as h^4
+constexpr double kFirstAngle = 0.2;                     // rad: what the fastest motion turns in the first run's step
+constexpr long kFewestSteps = 16;
+constexpr double kMostBodySteps = 1e6;                  // of all runs of one instant together: seconds
+constexpr double kNextTerm = 2.0;                       // what terms after C h^4 may add to a prediction
+constexpr double kAboveRoundOff = 1e4;                  // floors: a change this large is known to 1 % after hundreds of roundings, its log2 to 0.02
+constexpr double kTellsNothing = 1e-3;                  // of a quantity's size: a predicted error as large would pass what is wrong
+
+using Readings = std::vector<VectorXd>;
+
+/// All quantities at the end of a run of `steps` equal steps.
+Readings read(const RefinedRun& run, const Laws& laws, const std::vector<Quantity>& quantities, long frames, long steps) {
+  // The last frame falls on the rounded frames / rate, and the last step ends there and not a rounding before: a frame on a step's end
+  // is the state itself, while one within a step stands on a path through the ends.
+  const double rate = static_cast<double>(frames) / run.t, end = static_cast<double>(frames) / rate;
+  scene::Scene scene = run.scene;
+  scene.duration_s = end;
+  scene.step_s = end / static_cast<double>(steps);
+  while (static_cast<double>(steps) * scene.step_s < end) scene.step_s = std::nextafter(scene.step_s, std::numeric_limits<double>::infinity());
+  const Trajectory trajectory = run_in_memory(scene, laws, rate);
+  Readings readings;
+  for (const Quantity& quantity : quantities) readings.push_back(quantity.found(trajectory));
+  return readings;
+}
+
+struct Level {
+  long steps = 0;
+  Readings readings;
+  std::vector<double> changes;   // by the last halving
+  double state_change = kUnset;  // of all that is state, in floors: root of the sum of squares
+};
+
+/// 0 where a floor of 0 says that the value is exact.
+double in_floors(double change, double floor) { return floor > 0.0 ? change / floor : 0.0; }
+
+Level next_level(const Level& last, Readings readings, const std::vector<Quantity>& quantities) {
+  Level level{2 * last.steps, std::move(readings), {}, 0.0};
+  double squares = 0.0;
+  for (std::size_t i = 0; i < quantities.size(); ++i) {
+    level.changes.push_back(quantities[i].difference(level.readings[i], last.readings[i]));
+    if (quantities[i].is_state) squares += std::pow(in_floors(level.changes[i], quantities[i].floor), 2);
+  }
+  level.state_change = std::sqrt(squares);
+  return level;
+}
+
+/// Error that is left in quantity i of the finest level: a fifteenth of the last change. The change before last, a sixteenth of it, speaks
+/// where the last one happens to cross zero.
+double truncation(const std::vector<Level>& levels, std::size_t i) {
+  const Level &last = levels.back(), &before = levels[levels.size() - 2];
+  return kNextTerm * std::max(last.changes[i], before.changes[i] / 16.0) / 15.0;
+}
+
+bool is_fine_enough(const std::vector<Level>& levels, const std::vector<Quantity>& quantities) {
+  if (levels.size() < 3) return false;
+  for (std::size_t i = 0; i < quantities.size(); ++i)
+    if (truncation(levels, i) > kClosedFormFactor * quantities[i].floor) return false;
+  return true;
+}
+
+std::vector<Level> refine(const RefinedRun& run, const Laws& laws, const std::vector<Quantity>& quantities) {
+  const double needed = std::ceil(run.t * run.fastest_rate / kFirstAngle);
+  const long first = std::max(kFewestSteps, static_cast<long>(needed)), frames = run.frames_throughout ? first : 1;
+  const double bodies = static_cast<double>(run.scene.bodies.size());
+  std::vector<Level> levels{{first, read(run, laws, quantities, frames, first), std::vector<double>(quantities.size(), kUnset), kUnset}};
+  double spent = bodies * static_cast<double>(first);
+  while (!is_fine_enough(levels, quantities)) {
+    const long steps = 2 * levels.back().steps;
+    spent += bodies * static_cast<double>(steps);
+    if (levels.size() >= 3 && spent > kMostBodySteps) break;
+    levels.push_back(next_level(levels.back(), read(run, laws, quantities, frames, steps), quantities));
+    if (!std::isfinite(levels.back().state_change)) break;
+  }
+  return levels;
+}
+
+/// The order between the two finest changes that stand clear of round-off.
+void compare_order(const RefinedRun& run, const std::vector<Level>& levels, Comparison& comparison) {
+  const std::string output = "rk4.order_" + run.name;
+  for (std::size_t k = levels.size() - 1; k >= 2; --k) {
+    if (levels[k].state_change <= kAboveRoundOff) continue;
+    const double order = std::log2(levels[k - 1].state_change / levels[k].state_change);
+    comparison.check(output, std::abs(order - kOrder), kUnset, kOrderTolerance, fmt::format("order {:.3f} on halving the step to {} steps", order, levels[k].steps));
+    return;
+  }
+  comparison.not_compared(output, "round-off hides the order");
+}
+
+}  // namespace
+
+Quantity quantity(const Case& truth, const std::string& output, Quantity::Reading found) {
+  const Value& value = truth.output(output);
+  return {output, std::move(found), value.is_list() ? value.vector() : VectorXd::Constant(1, value.number()), truth.floor(output)};
+}
+
+Quantity derived(const Case& truth, const std::string& output, Quantity::Reading found) {
+  Quantity made = quantity(truth, output, std::move(found));
+  made.is_state = false;
+  return made;
+}
+
+Quantity::Reading of_last_frame(std::function<double(const Frame&)> number) {
+  return [number = std::move(number)](const Trajectory& run) -> VectorXd { return VectorXd::Constant(1, number(run.frames.back())); };
+}
+
+Quantity::Reading vector_of_last_frame(std::function<VectorXd(const Frame&)> vector) {
+  return [vector = std::move(vector)](const Trajectory& run) -> VectorXd { return vector(run.frames.back()); };
+}
+
+VectorXd components(const Quaterniond& q) { return Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()); }
+
+double difference_of_orientations(const VectorXd& found, const VectorXd& expected) {
+  if (found.size() != 4) return kUnset;
+  return quaternion_difference(Quaterniond(found[0], found[1], found[2], found[3]), expected);
+}
+
+void compare_refined(const RefinedRun& run, const Laws& laws, const std::vector<Quantity>& quantities, Comparison& comparison) {
+  const std::vector<Level> levels = refine(run, laws, quantities);
+  compare_order(run, levels, comparison);
+  for (std::size_t i = 0; i < quantities.size(); ++i) {
+    const Quantity& q = quantities[i];
+    const double error = q.difference(levels.back().readings[i], q.expected), predicted = truncation(levels, i), rounding = kClosedFormFactor * q.floor;
+    const std::string note = fmt::format("predicted truncation error {:.1e} of {} steps", predicted, levels.back().steps);
+    double size = q.expected.size() > 0 ? q.expected.cwiseAbs().maxCoeff() : 0.0;
+    for (const Level& level : levels) size = std::max(size, level.readings[i].size() > 0 ? level.readings[i].cwiseAbs().maxCoeff() : 0.0);
+    if (predicted > rounding && predicted > kTellsNothing * size) {
+      comparison.check(q.output, kUnset, q.floor, rounding, note + ": too much to tell right from wrong");
+      continue;
+    }
+    comparison.check(q.output, error, q.floor, std::max(rounding, predicted), note);
+  }
+}
+
+}  // namespace tumble::truths

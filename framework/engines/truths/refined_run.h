@@ -1,0 +1,51 @@
+/// Runs of a scene on ever finer steps, compared with a truth at the instant where they end.
+///
+/// The classical Runge-Kutta method errs by C h^4. Each halving of the step therefore tells what error is left, a fifteenth of what it
+/// changed (Richardson), before any truth is looked at; and the order that is seen says whether the method is the one it claims to be.
+#pragma once
+
+#include <functional>
+
+#include "framework/engines/truths/comparison.h"
+#include "framework/engines/truths/memory_scene.h"
+
+namespace tumble::truths {
+
+/// What a run to some instant shows at its end, and what it should be.
+struct Quantity {
+  using Reading = std::function<VectorXd(const Trajectory&)>;
+  using Difference = std::function<double(const VectorXd& found, const VectorXd& expected)>;
+
+  std::string output;                  // as the truth file calls it
+  Reading found;                       // of a run whose last frame is at the instant
+  VectorXd expected;
+  double floor = kUnset;
+  bool is_state = true;                // its error shows the method's order; energies, which many methods keep better, do not
+  Difference difference = largest_difference;
+};
+
+/// A quantity that a case has as an output of this name.
+Quantity quantity(const Case& truth, const std::string& output, Quantity::Reading found);
+/// The same for something that is no part of the state.
+Quantity derived(const Case& truth, const std::string& output, Quantity::Reading found);
+/// The reading of a number of the last frame.
+Quantity::Reading of_last_frame(std::function<double(const Frame&)> number);
+Quantity::Reading vector_of_last_frame(std::function<VectorXd(const Frame&)> vector);
+/// A unit quaternion as four numbers, w first.
+VectorXd components(const Quaterniond& q);
+/// Largest difference of two quaternions given so, of which q and -q are one orientation.
+double difference_of_orientations(const VectorXd& found, const VectorXd& expected);
+
+struct RefinedRun {
+  scene::Scene scene;                  // its duration and step do not matter
+  double t;                            // the instant, > 0 [s]
+  std::string name;                    // of the instant, for the line about the order: "t0.5"
+  double fastest_rate;                 // of the motion, roughly: what the first step is chosen by [rad/s]
+  bool frames_throughout = false;      // frames close enough to follow the motion, not only the last
+};
+
+/// Halves the step until no quantity's predicted truncation error exceeds 100 floors, or the time for it is used up; then compares each
+/// with the larger of the two, and the order of the method with 4.
+void compare_refined(const RefinedRun& run, const Laws& laws, const std::vector<Quantity>& quantities, Comparison& comparison);
+
+}  // namespace tumble::truths
