@@ -239,30 +239,4 @@ std::string show(const json& value) {
   return (value.is_string() ? "the text " : value.is_object() ? "the object " : value.is_array() ? "the list " : "") + text;
 }
 
-std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates) {
-  std::string nearest;
-  std::size_t least = std::max<std::size_t>(2, word.size() / 3) + 1;
-  for (const auto& candidate : candidates) {
-    // Edit distance, a row at a time; "mass" for "mass_kg" counts as one slip.
-    std::vector<std::size_t> row(candidate.size() + 1);
-    for (std::size_t j = 0; j < row.size(); ++j) row[j] = j;
-    for (std::size_t i = 1; i <= word.size(); ++i) {
-      std::size_t diagonal = row[0];
-      row[0] = i;
-      for (std::size_t j = 1; j < row.size(); ++j) {
-        const std::size_t swapped = diagonal + (word[i - 1] == candidate[j - 1] ? 0 : 1);
-        diagonal = row[j];
-        row[j] = std::min({row[j] + 1, row[j - 1] + 1, swapped});
-      }
-    }
-    const bool unit_differs = candidate.starts_with(word) || word.starts_with(candidate.substr(0, candidate.find('_')) + '_');
-    const std::size_t distance = unit_differs ? std::min<std::size_t>(row.back(), 1) : row.back();
-    if (distance < least) {
-      least = distance;
-      nearest = candidate;
-    }
-  }
-  return nearest.empty() ? "" : " Did you mean '" + nearest + "'?";
-}
-
 }  // namespace tumble::scene

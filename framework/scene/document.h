@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/core/error.h"
+#include "framework/core/nearest_word.h"
 
 namespace tumble::scene {
 
@@ -28,8 +29,5 @@ void check_against_schema(const Document& document, const nlohmann::json& schema
 
 /// A value as an error shows it: shortened to one line.
 std::string show(const nlohmann::json& value);
-
-/// " Did you mean 'x'?" for the candidate nearest to a mistyped word, or "".
-std::string did_you_mean(const std::string& word, const std::vector<std::string>& candidates);
 
 }  // namespace tumble::scene

@@ -1,0 +1,233 @@
+// tumble explain SCENE: which effects a scene calls for, who asked for each, which stages a run of it has, and what each costs.
+#include <algorithm>
+#include <cstdio>
+#include <memory>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "framework/cli/scene_run.h"
+#include "framework/engines/run.h"
+#include "framework/scene/effects.h"
+
+namespace tumble::cli {
+namespace {
+
+using scene::Effect;
+
+struct ExplainWords {
+  std::string scene, modules;
+  bool run = false, json = false;
+  std::optional<double> duration_s;
+};
+
+/// A part of a run: built where an effect needs it.
+struct Stage {
+  std::string name;
+  std::string does;
+  bool is_built;
+  std::vector<std::string> counts;   // names in Counters
+};
+
+bool is_on(const std::vector<Effect>& effects, const std::string& name) {
+  return std::any_of(effects.begin(), effects.end(), [&](const Effect& effect) { return effect.name == name && effect.is_on(); });
+}
+
+std::vector<Stage> stages_of(const std::vector<Effect>& effects) {
+  const bool constrained = is_on(effects, "rod") || is_on(effects, "joint"), colliding = is_on(effects, "collision");
+  return {
+      {"integration", "moves bodies by their forces, and takes back what went too far", true,
+       {"steps", "shortened_steps", "integrations", "undone_integrations", "derivative_evaluations", "rollbacks", "gravity_calls", "point_force_calls", "spring_calls", "drag_calls"}},
+      {"constraints", "the forces that hold rods and joints, and bringing them back", constrained, {"rod_calls", "joint_calls", "constraint_solves", "constraint_corrections"}},
+      {"control", "motors look and set their torques", is_on(effects, "motor"), {"motor_calls"}},
+      {"collision", "which bodies are near, how far apart, when they meet", colliding, {"candidate_pairs", "gap_evaluations", "root_findings"}},
+      {"impacts", "impulses where bodies meet", colliding, {"impacts", "impulses", "micro_impacts", "nudges", "bodies_put_to_rest", "bodies_woken"}},
+      {"contacts", "the forces where bodies lie, slide and roll", is_on(effects, "lasting contact"),
+       {"contact_solves", "contact_points", "contact_sweeps", "contact_factorisations", "contacts_begun", "contacts_ended", "friction_points", "bodies_put_to_sleep"}},
+      {"recording", "frames and events", true, {}},
+  };
+}
+
+std::uint64_t count_of(const Trajectory& run, const std::string& name) {
+  const auto found = run.counters.counts.find(name);
+  return found == run.counters.counts.end() ? 0 : found->second;
+}
+
+/// Counts of a run that no stage here lists: later engines may count more.
+std::vector<std::string> other_counts(const std::vector<Stage>& stages, const Trajectory& run) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : run.counters.counts)
+    if (value > 0 && std::none_of(stages.begin(), stages.end(), [&name = name](const Stage& stage) { return std::find(stage.counts.begin(), stage.counts.end(), name) != stage.counts.end(); }))
+      names.push_back(name);
+  return names;
+}
+
+/// "1234567" as people read it.
+std::string grouped(std::uint64_t value) {
+  std::string digits = std::to_string(value);
+  for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3) digits.insert(static_cast<std::size_t>(at), " ");
+  return digits;
+}
+
+/// The entries that asked, those of one entry (a chain, a lattice) on one line.
+struct AskerLine {
+  std::string pointer, what;
+  std::size_t count;
+};
+std::vector<AskerLine> lines_of(const Effect& effect) {
+  std::vector<AskerLine> lines;
+  for (const auto& asker : effect.askers) {
+    if (!lines.empty() && lines.back().pointer == asker.pointer && !asker.pointer.empty()) ++lines.back().count;
+    else lines.push_back({asker.pointer, asker.what, 1});
+  }
+  for (AskerLine& line : lines)
+    if (line.count > 1) line.what += fmt::format(" ... ({} like it)", line.count);
+  return lines;
+}
+
+void print_effects(const std::vector<Effect>& effects, const Trajectory* run) {
+  constexpr std::size_t kMostLines = 6;
+  fmt::print("\n  {:<16} {:<24} {}\n", "effects", "asked for by", "that is");
+  for (const Effect& effect : effects) {
+    if (!effect.is_on()) continue;
+    const auto lines = lines_of(effect);
+    std::string name = effect.name;
+    for (std::size_t i = 0; i < std::min(lines.size(), kMostLines); ++i) {
+      fmt::print("  {:<16} {:<24} {}\n", name, lines[i].pointer, lines[i].what);
+      name.clear();
+    }
+    if (lines.size() > kMostLines) fmt::print("  {:<16} {:<24} (--json lists all)\n", "", fmt::format("... and {} more", lines.size() - kMostLines));
+    if (run != nullptr) fmt::print("  {:<16} {:<24} asked {} times ({})\n", "", "", grouped(count_of(*run, effect.counter)), effect.counter);
+    if (!effect.note.empty()) fmt::print("  {:<16} note: {}\n", "", effect.note);
+  }
+  std::string off, notes;
+  std::uint64_t calls = 0;
+  for (const Effect& effect : effects) {
+    if (effect.is_on()) continue;
+    off += (off.empty() ? "" : ", ") + effect.name;
+    if (!effect.note.empty()) notes += fmt::format("  {:<16} {}: {}\n", "", effect.name, effect.note);
+    if (run != nullptr) calls += count_of(*run, effect.counter);
+  }
+  if (off.empty()) return;
+  fmt::print("  {:<16} {}\n{}", "not there", off, notes);
+  if (run != nullptr) fmt::print("  {:<16} their code was called {} times{}\n", "", grouped(calls), calls == 0 ? "" : ", and should not have been");
+}
+
+void print_counts(const std::vector<std::string>& names, const Trajectory& run) {
+  constexpr std::size_t kColumns = 110;
+  const std::string indent(27, ' ');
+  std::string line;
+  for (const auto& name : names) {
+    const std::uint64_t value = count_of(run, name);
+    if (value == 0) continue;
+    std::string word = name;
+    std::replace(word.begin(), word.end(), '_', ' ');
+    const std::string part = fmt::format("{} {}", word, grouped(value));
+    if (!line.empty() && indent.size() + line.size() + 3 + part.size() > kColumns) {
+      fmt::print("{}{} ·\n", indent, line);
+      line.clear();
+    }
+    line += (line.empty() ? "" : " · ") + part;
+  }
+  if (!line.empty()) fmt::print("{}{}\n", indent, line);
+}
+
+void print_stages(const std::vector<Stage>& stages, const Trajectory* run) {
+  fmt::print("\n  {:<16} {}\n", "stages", run != nullptr ? "time" : "");
+  std::string absent;
+  for (const Stage& stage : stages) {
+    if (!stage.is_built) {
+      absent += (absent.empty() ? "" : ", ") + stage.name;
+      continue;
+    }
+    std::string time;
+    if (run != nullptr && run->counters.stage_seconds.contains(stage.name)) time = fmt::format("{:.3f} s", run->counters.stage_seconds.at(stage.name));
+    fmt::print("  {:<16} {}{}\n", stage.name, run != nullptr ? fmt::format("{:<9}", time) : "", stage.does);
+    if (run != nullptr) print_counts(stage.counts, *run);
+  }
+  if (!absent.empty()) fmt::print("  {:<16} {}\n", "not built", absent);
+  if (run == nullptr) return;
+  const auto others = other_counts(stages, *run);
+  if (!others.empty()) {
+    fmt::print("  {:<16}\n", "other counts");
+    print_counts(others, *run);
+  }
+  fmt::print("\n  A stage's time holds that of the stages it asks: bodies that are tied are moved, constraints and control included, when\n"
+             "  integration or collision first wants to know where they are.\n");
+}
+
+std::string bodies_line(const scene::Scene& scene) {
+  const auto immovable = std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const scene::BodySpec& body) { return body.immovable; });
+  const auto movable = static_cast<std::ptrdiff_t>(scene.bodies.size()) - immovable;
+  return fmt::format("{} {} move{}, {} immovable", movable, movable == 1 ? "body" : "bodies", movable == 1 ? "s" : "", immovable);
+}
+
+void print_page(const scene::Scene& scene, const std::vector<Effect>& effects, const std::vector<Stage>& stages, const Trajectory* run) {
+  fmt::print("{}\n  {}, {:g} s in steps of {:.6g} s\n", scene.title, bodies_line(scene), scene.duration_s, scene.step_s);
+  if (scene.stabilisation) {
+    static const char* const kinds[] = {"nothing", "Baumgarte's term", "projection"};
+    fmt::print("  rods and joints are kept together by {}\n", kinds[static_cast<int>(scene.stabilisation->kind)]);
+  }
+  print_effects(effects, run);
+  print_stages(stages, run);
+  if (run == nullptr) fmt::print("\n  --run runs it and adds what each costs.\n");
+  else if (!run->stopped_by.empty()) fmt::print("\n  STOPPED: {}\n", run->stopped_by);
+}
+
+void print_json(const scene::Scene& scene, const std::vector<Effect>& effects, const std::vector<Stage>& stages, const Trajectory* run) {
+  nlohmann::ordered_json page;
+  page["scene"] = scene.name;
+  page["title"] = scene.title;
+  page["scene_hash"] = scene.hash;
+  for (const Effect& effect : effects) {
+    nlohmann::ordered_json entry = {{"name", effect.name}, {"on", effect.is_on()}, {"stage", effect.stage}, {"asked_for_by", nlohmann::json::array()}, {"note", effect.note}};
+    for (const auto& asker : effect.askers) entry["asked_for_by"].push_back({{"pointer", asker.pointer}, {"what", asker.what}});
+    if (run != nullptr) entry["calls"] = count_of(*run, effect.counter);
+    page["effects"].push_back(entry);
+  }
+  for (const Stage& stage : stages) {
+    nlohmann::ordered_json entry = {{"name", stage.name}, {"built", stage.is_built}, {"does", stage.does}};
+    if (run != nullptr) {
+      if (run->counters.stage_seconds.contains(stage.name)) entry["seconds"] = run->counters.stage_seconds.at(stage.name);
+      for (const auto& name : stage.counts) entry["counts"][name] = count_of(*run, name);
+    }
+    page["stages"].push_back(entry);
+  }
+  if (run != nullptr) page["stopped_by"] = run->stopped_by;
+  fmt::print("{}\n", page.dump(2));
+}
+
+void explain(Context& context, const ExplainWords& words) {
+  const scene::Scene scene = find_scene(context, words.scene);
+  const auto effects = scene::effects_of(scene);
+  const auto stages = stages_of(effects);
+  TrajectoryRecorder recorder;
+  if (words.run) {
+    const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(words.modules, context.registry));
+    for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
+    engines::RunOptions options;
+    options.duration_s = words.duration_s;
+    options.command = context.command_line;
+    engines::run_scene(scene, chosen.laws, options, recorder);
+    if (!recorder.trajectory().stopped_by.empty()) context.exit = ExitCode::kCheckFailed;
+  }
+  const Trajectory* run = words.run ? &recorder.trajectory() : nullptr;
+  if (words.json) print_json(scene, effects, stages, run);
+  else print_page(scene, effects, stages, run);
+}
+
+}  // namespace
+
+void add_explain(CLI::App& app, Context& context) {
+  auto words = std::make_shared<ExplainWords>();
+  CLI::App* verb = app.add_subcommand("explain", "Say which effects a scene has, which entry asked for each, and what each costs");
+  verb->add_option("scene", words->scene, "A scene file, or the bare name of one under assignments/*/scenes")->required()->type_name("SCENE");
+  CLI::Option* run = verb->add_flag("--run", words->run, "Run it, and add times and counts");
+  verb->add_option("--modules", words->modules, "Whose laws, as for tumble run")->type_name("WORDS")->needs(run);
+  verb->add_option("--duration-s", words->duration_s, "Simulated time [s] instead of the scene's")->check(CLI::PositiveNumber)->needs(run);
+  verb->add_flag("--json", words->json, "For machines");
+  verb->footer("Example: tumble explain bouncing_ball --run --modules reference\nExit: 0 told, 1 the run was stopped, 2 something to repair, 4 not attempted.");
+  verb->callback([&context, words] { explain(context, *words); });
+}
+
+}  // namespace tumble::cli

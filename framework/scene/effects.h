@@ -1,0 +1,30 @@
+/// Which effects a scene calls for, and which entry of its file asked for each. An effect that is off has no code in a run.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/scene/scene.h"
+
+namespace tumble::scene {
+
+/// Who asked for an effect.
+struct Asker {
+  std::string pointer;        // JSON pointer of the entry; empty where the scene was made in memory
+  std::string what;           // in words, such as "rod 1: ball_1 to the world, 0.5 m"
+};
+
+struct Effect {
+  std::string name;           // "gravity", "spring", ...
+  std::string stage;          // the part of a run that its code stands in: "integration", "constraints", ...
+  std::string counter;        // the count of a run that tells how often it was asked
+  std::vector<Asker> askers;  // in the file's order; empty: the effect is off
+  std::string note;           // why it is off although something in the file seems to ask for it, or ""
+
+  bool is_on() const { return !askers.empty(); }
+};
+
+/// All effects that the framework knows, on or off, always in the same order.
+std::vector<Effect> effects_of(const Scene& scene);
+
+}  // namespace tumble::scene
