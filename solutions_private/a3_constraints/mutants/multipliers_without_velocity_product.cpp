@@ -1,0 +1,364 @@
+// mutant: multipliers_without_velocity_product - J' u left out
+// caught-by: velocity product is missing
+#include "assignments/a3_constraints/a3_constraints.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <Eigen/SparseCholesky>
+
+namespace tumble::a3 {
+
+// ---- Anchors and springs -----------------------------------------------------------------------------------------------
+
+Vector3d anchor_position(const Body& body, const Vector3d& point_body) { return body.com_world + body.world_from_body * point_body; }
+
+Vector3d anchor_velocity(const Body& body, const Vector3d& point_body) {
+  return body.velocity_world + body.omega_world.cross(body.world_from_body * point_body);
+}
+
+namespace {
+
+struct Line {
+  double length = 0.0;
+  Vector3d direction = Vector3d::Zero();  // unit, or zero where there is none
+};
+
+/// Length and direction of d, from d brought to the size of 1: |d|^2 would leave the range of doubles at 1e-162 and 1e+154.
+Line line_along(const Vector3d& d) {
+  const double size = d.cwiseAbs().maxCoeff();
+  if (!(size > 0)) return {};
+  const Vector3d scaled = d / size;
+  const double norm = scaled.norm();
+  return {size * norm, scaled / norm};
+}
+
+}  // namespace
+
+Vector3d spring_force(const Spring& spring, const AnchorState& a, const AnchorState& b) {
+  const Line line = line_along(b.point_world - a.point_world);
+  const double stretching = line.direction.dot(b.velocity_world - a.velocity_world);
+  return (spring.stiffness * (line.length - spring.rest_length) + spring.damping * stretching) * line.direction;
+}
+
+// ---- Rods --------------------------------------------------------------------------------------------------------------
+
+ConstraintRow rod_row(const Body& a, const Vector3d& point_a_body, const Body& b, const Vector3d& point_b_body, double length) {
+  const Vector3d arm_a = a.world_from_body * point_a_body, arm_b = b.world_from_body * point_b_body;
+  // Centres first: two bodies far from the origin and near each other lose no digits to the arms.
+  const Line line = line_along((a.com_world - b.com_world) + (arm_a - arm_b));
+  const Vector3d& n = line.direction;
+  const Vector3d d_rate = anchor_velocity(a, point_a_body) - anchor_velocity(b, point_b_body);
+
+  ConstraintRow row;
+  row.value = line.length - length;
+  row.rate = n.dot(d_rate);
+  row.jacobian_a << n, arm_a.cross(n);
+  row.jacobian_b << -n, -arm_b.cross(n);
+  row.velocity_product = 0.0;
+  if (line.length > 0) {
+    const Vector3d centripetal = a.omega_world.cross(a.omega_world.cross(arm_a)) - b.omega_world.cross(b.omega_world.cross(arm_b));
+    const Vector3d across = d_rate - row.rate * n;  // its square is |d'|^2 - (n . d')^2 without the cancellation
+    row.velocity_product = n.dot(centripetal) + across.squaredNorm() / line.length;
+  }
+  return row;
+}
+
+double baumgarte_acceleration(double value, double rate, double time_constant_s) {
+  const double T = time_constant_s;
+  return -(2 / T) * rate - value / (T * T);
+}
+
+// ---- J M^-1 J^T --------------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// A lambda = right-hand side for the rows of a system of bodies, with A scaled to a unit diagonal: rods that hold grams stand
+/// beside rods that hold tons.
+class RowSystem {
+ public:
+  RowSystem(const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies) : rows_(rows), bodies_(bodies) {
+    if (!rows_.empty()) factorise();
+  }
+
+  /// M^-1 J^T lambda, (6n).
+  VectorXd response(const VectorXd& lambda) const {
+    // Forces are summed before they are divided by masses: neighbours' tensions cancel where they should.
+    VectorXd change = VectorXd::Zero(6 * static_cast<Eigen::Index>(bodies_.size()));
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      change.segment<6>(6 * rows_[i].body_a) += lambda[static_cast<Eigen::Index>(i)] * rows_[i].row.jacobian_a;
+      change.segment<6>(6 * rows_[i].body_b) += lambda[static_cast<Eigen::Index>(i)] * rows_[i].row.jacobian_b;
+    }
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      auto six = change.segment<6>(6 * static_cast<Eigen::Index>(i));
+      six = accelerated(bodies_[i], six);
+    }
+    return change;
+  }
+
+  /// J u for u as six numbers a body, (m).
+  VectorXd rates(const VectorXd& u) const {
+    VectorXd result(static_cast<Eigen::Index>(rows_.size()));
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      result[static_cast<Eigen::Index>(i)] = rows_[i].row.jacobian_a.dot(u.segment<6>(6 * rows_[i].body_a)) + rows_[i].row.jacobian_b.dot(u.segment<6>(6 * rows_[i].body_b));
+    return result;
+  }
+
+  /// lambda with A lambda = wanted, by a factorisation and refinement: what is left over is computed by way of the bodies, in
+  /// which light and heavy ones do not swallow each other's digits as they do in A.
+  VectorXd solve(const VectorXd& wanted) const {
+    constexpr int kMostRounds = 8;
+    VectorXd lambda = VectorXd::Zero(wanted.size());
+    VectorXd left = scale_.cwiseProduct(wanted);
+    for (int round = 0; round < kMostRounds && left.squaredNorm() > 0; ++round) {
+      const VectorXd next = lambda + scale_.cwiseProduct(solve_once(left));
+      const VectorXd next_left = scale_.cwiseProduct(wanted - rates(response(next)));
+      if (!(next_left.norm() < left.norm())) break;
+      const bool is_done = next_left.norm() > 0.5 * left.norm();
+      lambda = next;
+      left = next_left;
+      if (is_done) break;
+    }
+    return lambda;
+  }
+
+ private:
+  static Vector6d accelerated(const ConstrainedBody& body, const Vector6d& force) {
+    Vector6d u;
+    u << body.inverse_mass * force.head<3>(), body.inverse_inertia_world * force.tail<3>();
+    return u;
+  }
+
+  void factorise() {
+    const Eigen::Index m = static_cast<Eigen::Index>(rows_.size());
+    struct Touch { Eigen::Index row; const Vector6d* jacobian; };
+    std::vector<std::vector<Touch>> touching(bodies_.size());
+    for (Eigen::Index i = 0; i < m; ++i) {
+      const Constraint& c = rows_[static_cast<std::size_t>(i)];
+      touching[static_cast<std::size_t>(c.body_a)].push_back({i, &c.row.jacobian_a});
+      touching[static_cast<std::size_t>(c.body_b)].push_back({i, &c.row.jacobian_b});
+    }
+    // Rows meet in A where they share a body that can be moved: the ceiling, which may hold all of them, couples none.
+    std::vector<Eigen::Triplet<double>> entries;
+    VectorXd diagonal = VectorXd::Zero(m);
+    for (std::size_t k = 0; k < bodies_.size(); ++k) {
+      if (bodies_[k].inverse_mass == 0 && bodies_[k].inverse_inertia_world.isZero(0)) continue;
+      for (const Touch& i : touching[k]) {
+        const Vector6d moved = accelerated(bodies_[k], *i.jacobian);
+        for (const Touch& j : touching[k]) {
+          if (j.row < i.row) continue;
+          const double value = moved.dot(*j.jacobian);
+          if (j.row == i.row) diagonal[i.row] += value;
+          else entries.emplace_back(j.row, i.row, value);
+        }
+      }
+    }
+    scale_ = (diagonal.array() > 0).select(diagonal.array().rsqrt(), 0.0);
+    for (auto& e : entries) e = {e.row(), e.col(), e.value() * scale_[e.row()] * scale_[e.col()]};
+    for (Eigen::Index i = 0; i < m; ++i) entries.emplace_back(i, i, 1.0);  // a row that moves nothing stands alone, with 0 to do
+    Eigen::SparseMatrix<double> scaled(m, m);
+    scaled.setFromTriplets(entries.begin(), entries.end());
+    factor_.setShift(kShift);
+    factor_.compute(scaled);
+    inverse_pivots_ = (factor_.vectorD().array() > kDependent).select(factor_.vectorD().cwiseInverse(), 0.0);
+  }
+
+  VectorXd solve_once(const VectorXd& b) const {
+    VectorXd x = factor_.permutationP() * b;
+    factor_.matrixL().solveInPlace(x);
+    x = inverse_pivots_.cwiseProduct(x);
+    factor_.matrixU().solveInPlace(x);
+    return factor_.permutationPinv() * x;
+  }
+
+  // A row that says what others say leaves a pivot of round-off only, some 1e-16 times the links in the loop. The shift keeps it
+  // from being divided by; below kDependent it counts as dependent and its force is left to the others. Masses that differ by
+  // 1e6 in a chain of 1,000 leave pivots of 1e-9.
+  static constexpr double kShift = 1e-13, kDependent = 2e-12;
+
+  const std::vector<Constraint>& rows_;
+  const std::vector<ConstrainedBody>& bodies_;
+  VectorXd scale_;           // 1 / sqrt(A_ii), or 0 where nothing moves
+  VectorXd inverse_pivots_;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::AMDOrdering<int>> factor_;
+};
+
+}  // namespace
+
+VectorXd constraint_multipliers(const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies, const VectorXd& wanted_acceleration) {
+  VectorXd right_hand_side = wanted_acceleration;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto& [a, b, row] = rows[i];
+    const double free = row.jacobian_a.dot(bodies[static_cast<std::size_t>(a)].free_acceleration) + row.jacobian_b.dot(bodies[static_cast<std::size_t>(b)].free_acceleration);
+    right_hand_side[static_cast<Eigen::Index>(i)] -= free;
+  }
+  return RowSystem(rows, bodies).solve(right_hand_side);
+}
+
+VectorXd constraint_correction(const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies, const VectorXd& error) {
+  const RowSystem system(rows, bodies);
+  return -system.response(system.solve(error));
+}
+
+// ---- Resting contact ---------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// Rows and columns of A that carry force now, with their Cholesky factor, which grows and shrinks with them.
+class Carriers {
+ public:
+  explicit Carriers(const MatrixXd& A) : A_(A), L_(A.rows(), A.cols()) {}
+
+  const std::vector<Eigen::Index>& indices() const { return carrying_; }
+
+  /// Appends contact j, unless its column depends on the others'. @return whether it did
+  bool append(Eigen::Index j) {
+    constexpr double kDependent = 1e-11;  // of A_jj = 1: round-off leaves some 1e-15, masses 1 : 1e6 leave 1e-7
+    const Eigen::Index n = size();
+    VectorXd column = gathered(A_.col(j));
+    L_.topLeftCorner(n, n).triangularView<Eigen::Lower>().solveInPlace(column);
+    const double pivot = A_(j, j) - column.squaredNorm();
+    if (!(pivot > kDependent * A_(j, j))) return false;
+    L_.row(n).head(n) = column.transpose();
+    L_(n, n) = std::sqrt(pivot);
+    carrying_.push_back(j);
+    return true;
+  }
+
+  void remove(Eigen::Index place) {
+    const std::vector<Eigen::Index> after(carrying_.begin() + place + 1, carrying_.end());
+    carrying_.resize(static_cast<std::size_t>(place));
+    for (const Eigen::Index j : after) append(j);
+  }
+
+  /// x with A_PP x = b_P, refined once. @param b  (m), of which the carrying entries count
+  VectorXd solve(const VectorXd& b) const {
+    const VectorXd right = gathered(b);
+    VectorXd x = solve_once(right);
+    VectorXd left = right;
+    for (Eigen::Index k = 0; k < size(); ++k) left -= x[k] * gathered(A_.col(carrying_[static_cast<std::size_t>(k)]));
+    return x + solve_once(left);
+  }
+
+ private:
+  Eigen::Index size() const { return static_cast<Eigen::Index>(carrying_.size()); }
+
+  VectorXd solve_once(VectorXd x) const {
+    const auto L = L_.topLeftCorner(size(), size());
+    L.triangularView<Eigen::Lower>().solveInPlace(x);
+    L.transpose().triangularView<Eigen::Upper>().solveInPlace(x);
+    return x;
+  }
+
+  VectorXd gathered(const VectorXd& all) const {
+    VectorXd some(size());
+    for (Eigen::Index k = 0; k < size(); ++k) some[k] = all[carrying_[static_cast<std::size_t>(k)]];
+    return some;
+  }
+
+  const MatrixXd& A_;
+  MatrixXd L_;
+  std::vector<Eigen::Index> carrying_;
+};
+
+/// f >= 0 that minimises 1/2 f A f + b f, which is (A3.9), by an active set: the contact that is violated most is let carry,
+/// the forces follow, and whoever would have to pull lets go. The minimum falls with each round, so no set comes twice.
+/// A has a unit diagonal.
+class PushingForces {
+ public:
+  PushingForces(const MatrixXd& A, const VectorXd& b) : A_(A), b_(b), carriers_(A), f_(VectorXd::Zero(b.size())), refused_(static_cast<std::size_t>(b.size()), false) {}
+
+  VectorXd find() {
+    const Eigen::Index most_rounds = 30 * b_.size() + 100;  // a few per contact are usual; rounding must not run in circles
+    for (Eigen::Index round = 0; round < most_rounds; ++round) {
+      const Eigen::Index j = most_violated();
+      if (j < 0) break;
+      const bool carries = let_carry(j);
+      if (carries) std::fill(refused_.begin(), refused_.end(), false);
+      else refused_[static_cast<std::size_t>(j)] = true;
+    }
+    return f_.cwiseMax(0.0);
+  }
+
+ private:
+  Eigen::Index most_violated() const {
+    const double round_off = 8 * std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(b_.size()));
+    const VectorXd a = A_ * f_ + b_, size = A_.cwiseAbs() * f_ + b_.cwiseAbs();
+    Eigen::Index worst = -1;
+    for (Eigen::Index i = 0; i < a.size(); ++i) {
+      const bool is_violated = a[i] < -round_off * size[i] && f_[i] == 0 && !refused_[static_cast<std::size_t>(i)];
+      if (is_violated && (worst < 0 || a[i] < a[worst])) worst = i;
+    }
+    return worst;
+  }
+
+  bool let_carry(Eigen::Index j) {
+    while (!carriers_.append(j))
+      if (!exchange(j)) return false;
+    return relax() && f_[j] > 0;
+  }
+
+  /// j's column is a mix of the carriers': force moves from them to j, changing no acceleration but that which is violated, until one
+  /// of them is free of it. @return false where none ever is: no forces hold this contact
+  bool exchange(Eigen::Index j) {
+    const VectorXd per_force = -carriers_.solve(A_.col(j));
+    const auto& carrying = carriers_.indices();
+    double step = std::numeric_limits<double>::infinity();
+    Eigen::Index first = -1;
+    for (Eigen::Index k = 0; k < per_force.size(); ++k) {
+      const double at = per_force[k] < 0 ? f_[carrying[static_cast<std::size_t>(k)]] / -per_force[k] : std::numeric_limits<double>::infinity();
+      if (at < step) step = at, first = k;
+    }
+    if (first < 0) return false;
+    for (Eigen::Index k = 0; k < per_force.size(); ++k) f_[carrying[static_cast<std::size_t>(k)]] += step * per_force[k];
+    f_[j] += step;
+    f_[carrying[static_cast<std::size_t>(first)]] = 0;
+    carriers_.remove(first);
+    return true;
+  }
+
+  /// Goes to the forces at which no carrier accelerates; on the way, who reaches 0 lets go.
+  bool relax() {
+    while (!carriers_.indices().empty()) {
+      const std::vector<Eigen::Index> carrying = carriers_.indices();
+      const VectorXd target = -carriers_.solve(b_);
+      double step = 1.0;
+      Eigen::Index first = -1;
+      for (Eigen::Index k = 0; k < target.size(); ++k) {
+        const double f = f_[carrying[static_cast<std::size_t>(k)]];
+        if (target[k] > 0) continue;
+        const double at = f > 0 ? f / (f - target[k]) : 0.0;
+        if (first < 0 || at < step) step = at, first = k;
+      }
+      for (Eigen::Index k = 0; k < target.size(); ++k) {
+        double& f = f_[carrying[static_cast<std::size_t>(k)]];
+        f = first < 0 ? target[k] : std::max(0.0, f + step * (target[k] - f));
+      }
+      if (first < 0) return true;
+      f_[carrying[static_cast<std::size_t>(first)]] = 0;
+      carriers_.remove(first);
+    }
+    return true;
+  }
+
+  const MatrixXd& A_;
+  const VectorXd& b_;
+  Carriers carriers_;
+  VectorXd f_;
+  std::vector<bool> refused_;
+};
+
+}  // namespace
+
+VectorXd contact_forces(const MatrixXd& A, const VectorXd& b) {
+  // Scaled to a unit diagonal; a contact where nothing can be moved takes no part.
+  const VectorXd scale = (A.diagonal().array() > 0).select(A.diagonal().array().rsqrt(), 0.0);
+  MatrixXd scaled = scale.asDiagonal() * A * scale.asDiagonal();
+  scaled.diagonal().setOnes();
+  return scale.cwiseProduct(PushingForces(scaled, scale.cwiseProduct(b)).find());
+}
+
+bool ends_in_contact(double approach_speed, double restitution, double rest_speed) { return restitution * approach_speed <= rest_speed; }
+
+}  // namespace tumble::a3

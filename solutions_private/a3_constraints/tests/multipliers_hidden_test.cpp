@@ -1,0 +1,149 @@
+// Hidden: multipliers and corrections of systems that nobody solves by hand, and of those that are hard to solve.
+#include <algorithm>
+
+#include "tests/a3_constraints/a3_fixtures.h"
+
+namespace tumble::a3_testing {
+namespace {
+
+const Vector3d kNoArm = Vector3d::Zero();
+
+void expect_fulfilled(const Rig& rig, const VectorXd& lambda, double tolerance, const std::string& slip) {
+  const Story story{.scene = rig.scene, .slip = lambda.allFinite() ? slip : "singular rows: a pivot of 0 is divided by", .handout = equation(7)};
+  const VectorXd found = lambda.size() == rig.size() ? accelerations_of_rows(rig, lambda) : VectorXd(VectorXd::Constant(rig.size(), kUnset));
+  expect_near(found, rig.wanted, tolerance * size_of_terms(rig, lambda), "m/s^2 (C'')", story);
+}
+
+TEST(ConstraintMultipliers, FulfilRandomSystems) {
+  Random random(341);
+  for (int i = 0; i < 40; ++i) {
+    const int bodies = 1 + static_cast<int>(random.between(0, 12));
+    const Rig rig = random_rig(random, bodies, static_cast<int>(random.between(0, bodies)));
+    expect_fulfilled(rig, rig.multipliers(), 1e-11, "C'' is not what is wanted: a term of the right-hand side, or a side of a row");  // condition below 1e4
+  }
+}
+
+TEST(ConstraintMultipliers, CarryTonsOnGrams) {
+  for (const double heavy : {1e4, 1e6}) {
+    for (const int links : {1, 2, 8, 60}) {
+      std::vector<double> masses(static_cast<std::size_t>(links), 1.0);
+      masses.back() = heavy;
+      const Rig rig = hanging_chain(masses);
+      const VectorXd found = rig.multipliers();
+      VectorXd expected(links);
+      for (int i = 0; i < links; ++i) expected[i] = -(heavy + (links - 1 - i)) * kGravity;
+      expect_near(found, expected, 1e-8 * heavy * kGravity, "N",
+                  {.scene = show(heavy) + " kg below " + std::to_string(links - 1) + " links of 1 kg", .slip = "an iteration that stops too early, or a regularisation that is not small against the heavy body's 1/m", .handout = equation(7)});
+    }
+  }
+}
+
+TEST(ConstraintMultipliers, CloseLoopsWithRowsTooMany) {
+  // Four masses in a square, all six distances held, in a plane: one row too many. Two corners hang on rods.
+  Rig rig;
+  rig.scene = "a square of four masses with both diagonals, hung by two corners: 8 rods, of which one is redundant";
+  const Vector3d corners[] = {{0, 0, 0}, {1, 0, 0}, {1, 0, -1}, {0, 0, -1}};
+  rig.bodies.push_back(ceiling());
+  for (int i = 0; i < 4; ++i) {
+    ConstrainedBody mass = point_mass(1 + i);
+    mass.free_acceleration.head<3>() += Vector3d(0.3 * i, 0, -0.1 * i * i);
+    rig.bodies.push_back(mass);
+  }
+  for (int i = 0; i < 4; ++i)
+    for (int k = i + 1; k < 4; ++k) rig.rows.push_back(rod_between(i + 1, kNoArm, k + 1, kNoArm, (corners[i] - corners[k]).normalized()));
+  rig.rows.push_back(rod_between(1, kNoArm, 0, kNoArm, -Vector3d::UnitZ()));
+  rig.rows.push_back(rod_between(2, kNoArm, 0, kNoArm, -Vector3d::UnitZ()));
+  rig.wanted = VectorXd::Zero(rig.size());
+  expect_fulfilled(rig, rig.multipliers(), 1e-10, "singular rows: a pivot of round-off is divided by");
+}
+
+TEST(ConstraintMultipliers, DoNotCareHowOftenARodIsThere) {
+  Random random(342);
+  for (int i = 0; i < 20; ++i) {
+    Rig rig = random_rig(random, 5, 3);
+    const VectorXd once = forces_on_bodies(rig, rig.multipliers());
+    const std::size_t rows = rig.rows.size();
+    for (std::size_t k = 0; k < rows; k += 2) rig.rows.push_back(rig.rows[k]);
+    const VectorXd wanted = rig.wanted;
+    rig.wanted.conservativeResize(rig.size());
+    for (std::size_t k = 0, at = rows; k < rows; k += 2, ++at) rig.wanted[static_cast<Eigen::Index>(at)] = wanted[static_cast<Eigen::Index>(k)];
+    const VectorXd found = forces_on_bodies(rig, rig.multipliers());
+    expect_near(found, once, 1e-8 * (1 + once.cwiseAbs().maxCoeff()), "N (and N m) on all bodies",
+                {.scene = rig.scene + ", every other one of them twice", .slip = "singular rows: a pivot of round-off is divided by", .handout = equation(7)});
+  }
+}
+
+TEST(ConstraintMultipliers, AnswerSomethingFiniteToAContradiction) {
+  Rig rig = hanging_chain({1, 2});
+  rig.rows.push_back(rig.rows[0]);
+  rig.wanted = vector({0, 0, 1});  // the same rod, and another C''
+  const VectorXd found = rig.multipliers();
+  expect_true(found.size() == 3 && found.allFinite() && found.norm() > 1, "three finite numbers", show(found), {.scene = "a rod twice, with C'' wanted 0 and 1 m/s^2", .slip = "singular rows: NaN or nothing", .handout = equation(7)});
+}
+
+TEST(ConstraintMultipliers, HoldWhatTheCeilingHoldsAlone) {
+  // A thousand pendulums on one ceiling share nothing that moves: every rod for itself.
+  Rig rig;
+  rig.bodies.push_back(ceiling());
+  for (int i = 1; i <= 1000; ++i) {
+    rig.bodies.push_back(point_mass(i));
+    rig.rows.push_back(rod_between(0, kNoArm, i, kNoArm, Vector3d::UnitZ()));
+  }
+  rig.wanted = VectorXd::Zero(rig.size());
+  const VectorXd found = rig.multipliers();
+  VectorXd expected(1000);
+  for (int i = 0; i < 1000; ++i) expected[i] = -(i + 1) * kGravity;
+  expect_near(found, expected, 1e-10 * 1000 * kGravity, "N", {.scene = "1,000 weights of 1 to 1,000 kg, each on its own rod below one ceiling", .slip = "a body of infinite mass couples no rows", .handout = equation(7)});
+}
+
+TEST(ConstraintMultipliers, HaveNothingToSayAboutNothing) {
+  const Rig one = hanging_chain({1});
+  expect_near(one.multipliers(), vector({-kGravity}), 1e-12, "N", {.scene = "asked first: 1 kg on a rod", .slip = "the function gives nothing whatever it is asked", .handout = equation(7)});
+  Rig rig;
+  rig.bodies = {ceiling(), point_mass(1)};
+  rig.wanted = VectorXd(0);
+  expect_near(static_cast<double>(rig.multipliers().size()), 0.0, 0.0, "multipliers", {.scene = "two bodies without any row", .slip = "an empty list", .handout = equation(7)});
+  const VectorXd x = a3_module().constraint_correction(rig.rows, rig.bodies, rig.wanted);
+  expect_near(x, VectorXd::Zero(12), 0.0, "m (and rad)", {.scene = "two bodies without any row: the correction", .slip = "an empty list", .handout = equation(8)});
+}
+
+TEST(ConstraintCorrection, RemovesErrorsOfRandomSystems) {
+  Random random(343);
+  for (int i = 0; i < 30; ++i) {
+    const int bodies = 1 + static_cast<int>(random.between(0, 10));
+    Rig rig = random_rig(random, bodies, static_cast<int>(random.between(0, bodies)));
+    const VectorXd x = a3_module().constraint_correction(rig.rows, rig.bodies, rig.wanted);
+    // Seen as accelerations: bodies that accelerate by x, and nothing else, change C'' by J x.
+    Rig moved = rig;
+    for (Constraint& c : moved.rows) c.row.velocity_product = 0;
+    const bool right_size = x.size() == 6 * static_cast<Eigen::Index>(rig.bodies.size());
+    for (std::size_t k = 0; k < rig.bodies.size(); ++k) moved.bodies[k].free_acceleration = right_size ? Vector6d(x.segment<6>(6 * static_cast<Eigen::Index>(k))) : Vector6d(Vector6d::Constant(kUnset));
+    const VectorXd changes = accelerations_of_rows(moved, VectorXd::Zero(rig.size()));
+    expect_near(changes, VectorXd(-rig.wanted), 1e-10 * (1 + x.cwiseAbs().maxCoeff()), "m (J x)",
+                {.scene = rig.scene + ", number " + std::to_string(i), .slip = "J x = -error in every row at once", .handout = equation(8)});
+    expect_near(right_size ? Vector6d(x.head<6>()) : Vector6d(Vector6d::Constant(kUnset)), Vector6d::Zero(), 0.0, "m (the ceiling)", {.scene = rig.scene, .slip = "a body of infinite mass moves", .handout = equation(8)});
+  }
+}
+
+TEST(ConstraintCorrection, IsWhatTheMultipliersDo) {
+  // Multipliers for C'' = -error from rest make the accelerations that the correction makes of places.
+  Random random(344);
+  for (int i = 0; i < 10; ++i) {
+    Rig rig = random_rig(random, 6, 2);
+    for (ConstrainedBody& body : rig.bodies) body.free_acceleration.setZero();
+    for (Constraint& c : rig.rows) c.row.velocity_product = 0;
+    const VectorXd x = a3_module().constraint_correction(rig.rows, rig.bodies, rig.wanted);
+    Rig other = rig;
+    other.wanted = -rig.wanted;
+    VectorXd forces = forces_on_bodies(other, other.multipliers());
+    for (std::size_t k = 0; k < rig.bodies.size(); ++k) {
+      const Eigen::Index at = 6 * static_cast<Eigen::Index>(k);
+      forces.segment<3>(at) *= rig.bodies[k].inverse_mass;
+      forces.segment<3>(at + 3) = (rig.bodies[k].inverse_inertia_world * forces.segment<3>(at + 3)).eval();
+    }
+    expect_near(x, forces, 1e-10 * (1 + forces.cwiseAbs().maxCoeff()), "m (and rad)", {.scene = rig.scene, .slip = "mass for inverse mass, or a sign: x = -M^-1 J^T lambda", .handout = equation(8)});
+  }
+}
+
+}  // namespace
+}  // namespace tumble::a3_testing
