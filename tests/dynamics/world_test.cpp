@@ -1,9 +1,13 @@
 // A world is what its scene asks for, and nothing else.
 #include "framework/dynamics/world.h"
 
+#include <cmath>
+#include <numbers>
+
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
+#include "framework/dynamics/anchors.h"
 #include "tests/dynamics/tops.h"
 
 namespace tumble::testing {
@@ -102,6 +106,96 @@ TEST(World, SumsInvariantsOverMovableBodiesAboutTheOrigin) {
   EXPECT_NEAR(sums.potential_energy, 80.0, 4 * kEps * 80);
   EXPECT_EQ(sums.momentum_world, Vector3d(0, 2, 0));
   EXPECT_EQ(sums.angular_momentum_world, Vector3d(-8, 0, 2));
+}
+
+TEST(World, HasNoLinksThatTheSceneDoesNotAskFor) {
+  const World world = build_world(scene_of({ball("a", 2.0), ball("b", 2.0)}));
+  EXPECT_TRUE(world.springs.empty() && world.rods.empty() && world.joints.empty() && world.drags.empty() && world.motors.empty() && world.apart.empty());
+  EXPECT_FALSE(world.contact.has_value());
+  EXPECT_FALSE(world.stabilisation.has_value());
+}
+
+/// Two balls, the second turned by 90 degrees about z.
+scene::Scene two_balls() {
+  scene::Scene scene = scene_of({ball("a", 2.0), ball("b", 3.0)});
+  scene.bodies[1].position_m = {4, 0, 0};
+  scene.bodies[1].world_from_body = Quaterniond(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vector3d::UnitZ()));
+  return scene;
+}
+
+TEST(World, AnchorsMoveWithTheirBodies) {
+  scene::Scene scene = two_balls();
+  scene.springs.push_back({"coil", {"b", {1, 0, 0}}, {"", {4, 7, 0}}, 10.0, 1.0, 2.0, ""});
+  World world = build_world(scene);
+  const SpringLink& link = world.springs[0];
+  EXPECT_EQ(link.a.body, 1);
+  EXPECT_EQ(link.b.body, -1);
+  std::vector<RigidBodyState> states = {world.bodies[0].state, world.bodies[1].state};
+  EXPECT_LE((anchor_point(link.a, states) - Vector3d(4, 1, 0)).norm(), 10 * kEps * 4);
+  states[1].momentum_world = 3.0 * Vector3d(0, 0, 5);
+  states[1].angular_momentum_world = angular_momentum_of({0, 0, 2}, states[1].world_from_body, world.bodies[1].inertia);
+  const AnchorState moving = anchor_state(link.a, world, states, 0.0);
+  EXPECT_LE((moving.velocity_world - Vector3d(-2, 0, 5)).norm(), 50 * kEps * 5);   // v + w x (0, 1, 0)
+  EXPECT_EQ(anchor_state(link.b, world, states, 0.0).velocity_world, Vector3d::Zero());
+  // E = 10 N/m / 2 (6 m - 2 m)^2
+  EXPECT_NEAR(invariants_of(world, states).potential_energy, 80.0, 50 * kEps * 80);
+}
+
+TEST(World, AnchorOfAMovingWallFollowsIt) {
+  scene::Scene scene = two_balls();
+  scene.bodies[0].immovable = true;
+  scene.bodies[0].mass_kg.reset();
+  scene.bodies[0].motion = scene::PrescribedMotion{{0, 0, 2}, {0, 0, 0}, 0.0};
+  scene.rods.push_back({"stick", {"a", {0, 1, 0}}, {"b", {0, 0, 0}}, std::sqrt(17.0), ""});
+  const World world = build_world(scene);
+  const AnchorState moved = anchor_state(world.rods[0].a, world, {world.bodies[0].state, world.bodies[1].state}, 3.0);
+  EXPECT_EQ(moved.point_world, Vector3d(0, 1, 6));
+  EXPECT_EQ(moved.velocity_world, Vector3d(0, 0, 2));
+  EXPECT_TRUE(world.stabilisation.has_value());
+}
+
+TEST(World, BothBodiesOfAJointSeeItsPointAndAxisInTheSamePlace) {
+  scene::Scene scene = two_balls();
+  scene::JointSpec hinge;
+  hinge.name = "elbow";
+  hinge.kind = scene::JointKind::kHinge;
+  hinge.body_a = "b";
+  hinge.body_b = "a";
+  hinge.point_m = {2, 0.5, -1};
+  hinge.axis = Vector3d(0.6, 0, -0.8);
+  scene.joints.push_back(hinge);
+  scene::MotorSpec motor;
+  motor.joint = "elbow";
+  scene.motors.push_back(motor);
+  const World world = build_world(scene);
+  const JointLink& link = world.joints[0];
+  const std::vector<RigidBodyState> states = {world.bodies[0].state, world.bodies[1].state};
+  EXPECT_LE((anchor_point(link.a, states) - hinge.point_m).norm(), 10 * kEps * 4);
+  EXPECT_LE((anchor_point(link.b, states) - hinge.point_m).norm(), 10 * kEps * 4);
+  EXPECT_LE((states[1].world_from_body * link.a_from_joint * Vector3d::UnitZ() - hinge.axis).norm(), 20 * kEps);
+  EXPECT_LE((states[0].world_from_body * link.b_from_joint * Vector3d::UnitZ() - hinge.axis).norm(), 20 * kEps);
+  EXPECT_EQ(world.motors[0].joint, 0);
+  EXPECT_EQ(world.apart, (std::vector<std::pair<int, int>>{{0, 1}})) << "joined bodies never collide";
+}
+
+TEST(World, RodsDoNotKeepFromCollidingAndPairsApartAreSortedOnce) {
+  scene::Scene scene = two_balls();
+  scene.rods.push_back({"stick", {"a", {0, 0, 0}}, {"b", {0, 0, 0}}, 4.0, ""});
+  EXPECT_TRUE(build_world(scene).apart.empty());
+  scene.apart = {{"b", "a"}, {"a", "b"}};
+  EXPECT_EQ(build_world(scene).apart, (std::vector<std::pair<int, int>>{{0, 1}}));
+}
+
+TEST(World, RefusesLinksThatCannotBe) {
+  scene::Scene scene = two_balls();
+  scene.springs.push_back({"coil", {"c", {0, 0, 0}}, {"", {0, 0, 0}}, 1, 0, 1, ""});
+  EXPECT_THROW(build_world(scene), UserError);
+  scene.springs.clear();
+  scene.rods.push_back({"stick", {"", {0, 0, 0}}, {"", {1, 0, 0}}, 1, ""});
+  EXPECT_THROW(build_world(scene), UserError);
+  scene.rods.clear();
+  scene.motors.emplace_back();
+  EXPECT_THROW(build_world(scene), UserError);
 }
 
 }  // namespace
