@@ -9,6 +9,7 @@
 
 #include <cmath>
 
+#include "framework/dynamics/contact_cone.h"
 #include "framework/dynamics/contact_newton.h"
 #include "framework/dynamics/contact_sweeps.h"
 #include "framework/dynamics/contact_system.h"
@@ -22,12 +23,14 @@ using contacts::Impulses;
 using contacts::Progress;
 using contacts::System;
 
-constexpr int kMostRounds = 16;         // of sweeps and both Newton methods by turns
-constexpr int kNewtonSteps = 30;        // in a round
-constexpr int kRoundsOfFewSweeps = 2;   // after these each round sweeps twice as often as the one before
-constexpr int kMostSweepsARound = 1000;
-constexpr double kFirstCompliance = 1e-2, kLeastCompliance = 1e-5;  // over a contact's own give: of the convex problem
 constexpr int kFirstNewtonSteps = 8;    // from the guess: at rest two or three do; where they wander, sweeps are cheaper
+constexpr int kNewtonSteps = 30;        // later
+constexpr int kSweepRounds = 2;         // each of four times as many sweeps as the one before
+constexpr int kFewSoftRounds = 10, kManySoftRounds = 200, kFinishEvery = 5;
+constexpr int kLastRounds = 3, kLastSweeps = 500;
+constexpr double kSteady = 0.9;         // cosine squared between two steps whose sum may be extrapolated
+constexpr double kFirstCompliance = 1e-2, kLeastCompliance = 1e-4, kSteadyCompliance = 1e-6;  // of the convex problems, over a contact's own give
+constexpr double kSoftest = 10, kWorthFinishing = 0.05, kHardest = 1e-7, kPathStep = 0.3;  // of the path
 
 ContactMode mode_of(const ContactBlock& block, const Vector3d& impulse) {
   constexpr double kOnTheCone = 1 - 1e-9;  // nearer to the edge than this is on it: impulses of sliding contacts lie there to round-off
@@ -47,29 +50,96 @@ void sweep_until(const Goal& goal, const std::vector<contacts::LocalContact>& lo
   }
 }
 
-/// Sweeps, Newton's method, and the convex problem by turns; ends with the best that was met.
-void solve_by_turns(const Goal& goal, const std::vector<contacts::LocalContact>& locals, int sweeps, contacts::BodyMatrix& matrix, Progress& progress) {
-  double compliance = kFirstCompliance;
-  Progress best = progress;
-  const auto try_to_finish = [&] {
-    contacts::finish(goal, kNewtonSteps, matrix, progress);
-    if (progress.accepted || progress.violation.squares < best.violation.squares) best = progress;
-  };
-  for (int round = 0; round < kMostRounds && !progress.accepted; ++round) {
-    sweep_until(goal, locals, sweeps, progress);
-    if (!progress.accepted) try_to_finish();
-    if (progress.accepted) break;
-    const bool reached = contacts::soften(goal, compliance, matrix, progress);
-    compliance = reached ? std::max(kLeastCompliance, 0.1 * compliance) : std::min(1.0, 10 * compliance);
-    if (reached) try_to_finish();
-    if (round >= kRoundsOfFewSweeps) sweeps = std::min(2 * sweeps, kMostSweepsARound);
+/// The means by turns, cheap ones first; `best` is the best that was met.
+class Turns {
+ public:
+  Turns(const Goal& goal, contacts::BodyMatrix& matrix, Progress& progress)
+      : goal_(goal), locals_(contacts::prepare_locals(goal.system)), matrix_(matrix), now_(progress), best_(progress) {}
+
+  void run(int sweeps) {
+    for (int round = 0; round < kSweepRounds && !best_.accepted; ++round) sweep_and_finish(sweeps << (2 * round));
+    if (!best_.accepted) soften(kFewSoftRounds, kLeastCompliance);
+    if (!best_.accepted) follow();
+    if (!best_.accepted) soften(kManySoftRounds, kSteadyCompliance);
+    for (int round = 0; round < kLastRounds && !best_.accepted; ++round) {
+      take_best();
+      sweep_and_finish(kLastSweeps);
+    }
+    best_.sweeps = now_.sweeps;
+    best_.factorisations = now_.factorisations;
+    now_ = std::move(best_);
   }
-  if (!progress.accepted) {
-    best.sweeps = progress.sweeps;
-    best.factorisations = progress.factorisations;
-    progress = std::move(best);
+
+ private:
+  /// Newton's method on the law, from where we are. It leaves us there: where it fails it has gone astray.
+  void try_to_finish() {
+    Progress trial = now_;
+    contacts::finish(goal_, kNewtonSteps, matrix_, trial);
+    now_.factorisations = trial.factorisations;
+    if (trial.accepted || trial.violation.squares < best_.violation.squares) best_ = std::move(trial);
   }
-}
+
+  void sweep_and_finish(int sweeps) {
+    sweep_until(goal_, locals_, sweeps, now_);
+    try_to_finish();
+  }
+
+  void take_best() {
+    const Progress counts = now_;
+    now_ = best_;
+    now_.sweeps = counts.sweeps;
+    now_.factorisations = counts.factorisations;
+  }
+
+  /// Where steps fall by a steady ratio, their sum is known (Aitken): goes there, and back again if that is no better.
+  void extrapolate(const Impulses& second_last, const Impulses& last) {
+    double before = 0, after = 0, product = 0;
+    for (std::size_t i = 0; i < last.y.size(); ++i) {
+      const Vector6d step = last.y[i] - second_last.y[i], next = now_.impulses.y[i] - last.y[i];
+      before += step.squaredNorm();
+      after += next.squaredNorm();
+      product += step.dot(next);
+    }
+    const double ratio = product / before;
+    if (!(ratio > 0.3 && ratio < 0.999 && product * product > kSteady * before * after)) return;
+    const double share = ratio / (1 - ratio);
+    Progress there = now_;
+    for (std::size_t i = 0; i < last.contacts.size(); ++i) {
+      const Vector3d ahead = now_.impulses.contacts[i] + share * (now_.impulses.contacts[i] - last.contacts[i]);
+      there.impulses.contacts[i] = contacts::coulomb_projection(ahead, goal_.system.contacts[i].friction);
+    }
+    for (std::size_t i = 0; i < last.rows.size(); ++i) there.impulses.rows[i] += share * (now_.impulses.rows[i] - last.rows[i]);
+    contacts::sum_impulses(goal_.system, there.impulses);
+    goal_.measure(there);
+    if (there.violation.squares < now_.violation.squares) now_ = std::move(there);
+  }
+
+  void soften(int rounds, double least_compliance) {
+    double compliance = std::max(kFirstCompliance, least_compliance);
+    Impulses second_last, last = now_.impulses;
+    for (int round = 0; round < rounds && !best_.accepted; ++round) {
+      if (round % kFinishEvery == 2) extrapolate(second_last, last);
+      second_last = std::move(last);
+      last = now_.impulses;
+      const bool reached = contacts::soften(goal_, compliance, matrix_, now_);
+      compliance = reached ? std::max(least_compliance, 0.3 * compliance) : std::min(1.0, 10 * compliance);
+      if (now_.accepted || round % kFinishEvery == kFinishEvery - 1) try_to_finish();
+    }
+  }
+
+  void follow() {
+    for (double eps = kSoftest; eps > kHardest && !best_.accepted; eps *= kPathStep) {
+      contacts::follow(goal_, eps, matrix_, now_);
+      if (eps < kWorthFinishing) try_to_finish();
+    }
+  }
+
+  const Goal& goal_;
+  std::vector<contacts::LocalContact> locals_;
+  contacts::BodyMatrix& matrix_;
+  Progress& now_;
+  Progress best_;
+};
 
 void iterate(const Goal& goal, const ContactOptions& options, Progress& progress) {
   const std::size_t size = goal.system.contacts.size() + goal.system.rows.size();
@@ -79,7 +149,7 @@ void iterate(const Goal& goal, const ContactOptions& options, Progress& progress
   }
   contacts::BodyMatrix matrix(goal.system);
   contacts::finish(goal, kFirstNewtonSteps, matrix, progress);
-  if (!progress.accepted) solve_by_turns(goal, contacts::prepare_locals(goal.system), options.most_sweeps, matrix, progress);
+  if (!progress.accepted) Turns(goal, matrix, progress).run(options.most_sweeps);
 }
 
 ContactSolution describe(const ContactProblem& problem, const System& system, const Impulses& impulses) {

@@ -1,4 +1,4 @@
-// The convex problem of given De Saxce shifts, minimised by Newton's method (contact_newton.h).
+// Contacts made compliant: the convex problem of given De Saxce shifts, and Coulomb's law on a path of falling compliance (contact_newton.h).
 #include "framework/dynamics/contact_newton.h"
 
 #include <cmath>
@@ -34,12 +34,29 @@ ConeProjection project_on_cone(const Vector3d& z, double mu) {
   return result;
 }
 
-/// The problem (C.6) and its derivatives at y.
+/// P of Coulomb's law (contact_cone.h) and its derivative, which is not symmetric where the contact slides.
+ConeProjection project_on_law(const Vector3d& z, double mu) {
+  ConeProjection result{coulomb_projection(z, mu), Matrix3d::Zero()};
+  if (!(z[0] > 0)) return result;
+  result.slope(0, 0) = 1;
+  const double length = z.tail<2>().norm(), radius = mu * z[0];
+  if (length <= radius) {
+    result.slope.setIdentity();
+  } else if (mu > 0) {
+    const Vector2d t = z.tail<2>() / length;
+    result.slope.block<2, 1>(1, 0) = mu * t;
+    result.slope.block<2, 2>(1, 1) = radius / length * (Eigen::Matrix2d::Identity() - t * t.transpose());
+  }
+  return result;
+}
+
+/// The problem (C.6), or with `law` (C.7), and its derivatives at y.
 struct SoftProblem {
   const System& system;
   const Impulses& before;            // p_i
   std::vector<double> shifts;        // g_i
   double compliance;                 // eps over give
+  bool law = false;                  // (C.7): project on Coulomb's law instead of the cone; no shifts
 
   Vector3d argument(std::size_t i, const std::vector<Vector6d>& y) const {
     const ContactBlock& c = system.contacts[i];
@@ -51,6 +68,11 @@ struct SoftProblem {
     return before.rows[i] - row_velocity(system.rows[i], y) / (compliance * system.rows[i].give);
   }
 
+  ConeProjection project(std::size_t i, const std::vector<Vector6d>& y) const {
+    const Vector3d z = argument(i, y);
+    return law ? project_on_law(z, system.contacts[i].friction) : project_on_cone(z, system.contacts[i].friction);
+  }
+
   /// y - sum G^T Pi(z); with a matrix, its derivative too.
   std::vector<Vector6d> gradient(const std::vector<Vector6d>& y, BodyMatrix* matrix) const {
     std::vector<Vector6d> result = y;
@@ -58,7 +80,7 @@ struct SoftProblem {
     for (std::size_t i = 0; i < system.contacts.size(); ++i) {
       const ContactBlock& c = system.contacts[i];
       if (!(c.give > 0)) continue;
-      const ConeProjection projection = project_on_cone(argument(i, y), c.friction);
+      const ConeProjection projection = project(i, y);
       if (projection.p[0] > 0) push(c, -projection.p, result);
       if (matrix && projection.p[0] > 0) matrix->add(c, projection.slope / (compliance * c.give));
     }
@@ -109,6 +131,18 @@ double line_search(const SoftProblem& problem, const std::vector<Vector6d>& y, c
   return share;
 }
 
+/// The impulses that belong to y become those of `progress`.
+void take_over(const SoftProblem& problem, const std::vector<Vector6d>& y, const Goal& goal, Progress& progress) {
+  Impulses next = progress.impulses;
+  for (std::size_t i = 0; i < next.contacts.size(); ++i)
+    if (problem.system.contacts[i].give > 0) next.contacts[i] = problem.project(i, y).p;
+  for (std::size_t i = 0; i < next.rows.size(); ++i)
+    if (problem.system.rows[i].give > 0) next.rows[i] = problem.row_argument(i, y);
+  sum_impulses(problem.system, next);
+  progress.impulses = std::move(next);
+  goal.measure(progress);
+}
+
 }  // namespace
 
 bool soften(const Goal& goal, double compliance_over_give, BodyMatrix& matrix, Progress& progress) {
@@ -133,14 +167,35 @@ bool soften(const Goal& goal, double compliance_over_give, BodyMatrix& matrix, P
     y = along(y, line_search(problem, y, direction, slope), direction);
   }
   if (!there) return false;
-  Impulses& impulses = progress.impulses;
-  for (std::size_t i = 0; i < system.contacts.size(); ++i)  // each argument looks at its own contact's impulse only
-    if (system.contacts[i].give > 0) impulses.contacts[i] = project_on_cone(problem.argument(i, y), system.contacts[i].friction).p;
-  for (std::size_t i = 0; i < system.rows.size(); ++i)
-    if (system.rows[i].give > 0) impulses.rows[i] = problem.row_argument(i, y);
-  sum_impulses(system, impulses);
-  goal.measure(progress);
+  take_over(problem, y, goal, progress);
   return true;
+}
+
+void follow(const Goal& goal, double compliance_over_give, BodyMatrix& matrix, Progress& progress) {
+  constexpr int kMostSteps = 15;
+  constexpr double kSmall = 1e-12;    // of |y|^2: this is one point of a path, no answer
+  constexpr double kShortest = 1e-3;
+  Impulses nothing = progress.impulses;
+  for (Vector3d& p : nothing.contacts) p.setZero();
+  for (double& p : nothing.rows) p = 0;
+  const SoftProblem problem{goal.system, nothing, std::vector<double>(goal.system.contacts.size(), 0.0), compliance_over_give, true};
+  std::vector<Vector6d> y = progress.impulses.y;
+  std::vector<Vector6d> direction = problem.gradient(y, &matrix);
+  double square = dot(direction, direction);
+  for (int i = 0; i < kMostSteps && square > kSmall * dot(y, y) && matrix.factorise(); ++i) {
+    ++progress.factorisations;
+    matrix.solve(direction);
+    double share = 1, next = square;
+    for (; share > kShortest; share *= 0.5) {
+      const std::vector<Vector6d> gradient = problem.gradient(along(y, -share, direction), nullptr);
+      next = dot(gradient, gradient);
+      if (next < (1 - 0.1 * share) * square) break;
+    }
+    y = along(y, -share, direction);
+    direction = problem.gradient(y, &matrix);
+    square = next;
+  }
+  take_over(problem, y, goal, progress);
 }
 
 }  // namespace tumble::contacts
