@@ -69,7 +69,7 @@ std::vector<const BodySpec*> colliding_bodies(const Scene& scene) {
 }
 
 Effect collision(const Scene& scene) {
-  Effect effect{"collision", "collision, impacts", "gap_evaluations", {}, ""};
+  Effect effect{"collision", "collision, impacts", "candidate_pairs", {}, ""};
   for (const BodySpec* body : colliding_bodies(scene)) effect.askers.push_back({body->pointer, fmt::format("{}: restitution {:g}", body->name, body->restitution)});
   if (!effect.is_on()) effect.note = "no two bodies can meet: one alone, immovable, or \"collides\": false";
   return effect;
