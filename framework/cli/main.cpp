@@ -1,11 +1,12 @@
 // tumble VERB ...: reads the words, runs the verb, turns errors into exit codes.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 
 #include "framework/cli/verb.h"
+#include "framework/core/nearest_word.h"
 #include "framework/core/not_implemented.h"
-#include "framework/grading/test_words.h"
 
 namespace {
 
@@ -20,34 +21,31 @@ void find_trees(tumble::cli::Context& context) {
   context.root = told != nullptr ? std::filesystem::path(told) : context.build.parent_path();
 }
 
+std::string joined(const std::vector<std::string>& words) {
+  std::string all;
+  for (const std::string& word : words) all += (all.empty() ? "" : ", ") + word;
+  return all;
+}
+
 // The parser would only say that a verb is missing.
 void refuse_unknown_verb(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return;
-  std::string known;
-  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) {
-    if (verb->get_name() == argv[1]) return;
-    known += (known.empty() ? "" : ", ") + verb->get_name();
-  }
-  throw tumble::UserError(argv[1], "there is no such verb", "Known: " + known + ". tumble --help says what each does.");
+  std::vector<std::string> known;
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) known.push_back(verb->get_name());
+  if (std::find(known.begin(), known.end(), argv[1]) != known.end()) return;
+  throw tumble::UserError(argv[1], "there is no such verb." + tumble::did_you_mean(argv[1], known), "Known: " + joined(known) + ". tumble --help says what each does.");
 }
 
 // The parser would only say that a flag was not expected.
 void refuse_unknown_flag(const CLI::App& app) {
   for (const CLI::App* verb : app.get_subcommands()) {
+    std::vector<std::string> known;
+    for (const CLI::Option* option : verb->get_options())
+      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
     for (const std::string& word : verb->remaining()) {
       const std::string flag = word.substr(0, word.find('='));
       if (!flag.starts_with("-") || flag == "-") continue;
-      std::string known, nearest;
-      std::size_t least = flag.size();
-      for (const CLI::Option* option : verb->get_options()) {
-        for (const std::string& name : option->get_lnames()) {
-          known += (known.empty() ? "--" : ", --") + name;
-          const std::size_t distance = tumble::grading::edit_distance("--" + name, flag);
-          if (distance < least) least = distance, nearest = "--" + name;
-        }
-      }
-      const bool is_near = least <= 2 + flag.size() / 4;
-      throw tumble::UserError(flag, verb->get_name() + " has no such flag", (is_near ? "Did you mean " + nearest + "? " : "") + "Known: " + known + ".");
+      throw tumble::UserError(flag, verb->get_name() + " has no such flag." + tumble::did_you_mean(flag, known), "Known: " + joined(known) + ".");
     }
   }
 }

@@ -224,6 +224,10 @@ ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const 
     const auto told = words.contains(kind->id) ? words.find(kind->id) : words.find("");
     const std::string otherwise = default_word(context, scene, *kind, has_home);
     chosen[kind->id] = told != words.end() ? told->second : otherwise;
+    // One word for all modules is meant for those that the scene is about and those there are: "reference" where a later
+    // assignment has none yet.
+    const bool for_all = told != words.end() && told->first.empty() && (told->second == "reference" || told->second == "student");
+    if (for_all && !is_about(scene, *kind) && !fs::exists(built(context, kind->id, told->second))) chosen[kind->id] = otherwise;
     if (told == words.end() || !is_path(told->second)) continue;
     files[kind->id] = file_for(context, *kind, told->second, told->first.empty());
     // A submission of another assignment beside it: this one must not be paid for, so it is right where it can be.

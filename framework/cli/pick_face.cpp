@@ -1,5 +1,9 @@
 #include "framework/cli/pick_face.h"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
@@ -16,9 +20,25 @@ double distance_to(const Vector3d& point_world, const Ray& ray) {
   return (to_point - along * ray.direction_world).norm();
 }
 
+// Length of the coordinates that are rounded on the way to a point on the ray [m].
+double coordinates(const Ray& ray, const Vector3d& centre_world, double along) {
+  return ray.origin_world.norm() + centre_world.norm() + along;
+}
+
 bool meets_ball(const Ray& ray, const Vector3d& centre_world, double radius) {
-  // 1e-9: a ray that grazes the ball is asked about, not decided here.
-  return !std::isfinite(radius) || distance_to(centre_world, ray) <= radius * (1 + 1e-9);
+  // distance_to rounds numbers of that length about ten times: a ray that grazes the ball is asked about, not decided here.
+  const double rounding = 32 * std::numeric_limits<double>::epsilon() * (coordinates(ray, centre_world, 0.0) + radius);
+  return !std::isfinite(radius) || distance_to(centre_world, ray) <= radius + rounding;
+}
+
+// Whether two ways of finding a point on the ray found one point. Each rounds its coordinates about ten times, in the body's frame
+// or in the world's, which moves a face by some 1e-15 of their length, and the point on a ray that meets the face at the angle a
+// by 1 / sin a of that: 1e-9 is met by all rays but those within 1e-6 rad of the face. Those, and every answer that is wrong by
+// more, take the long way, where only the law is asked: nothing but the time taken hangs on the number.
+bool is_same_place(double t, double other, const Ray& ray, const Vector3d& centre_world) {
+  constexpr double kRelative = 1e-9;
+  const double length = ray.direction_world.norm();
+  return std::abs(t - other) * length <= kRelative * coordinates(ray, centre_world, other * length);
 }
 
 double drawn_extent(const scene::BodySpec& body) {
@@ -55,10 +75,8 @@ std::optional<PickedFace> pick_face(const scene::Scene& scene, const Laws& laws,
       least = hit->t;
       nearest = PickedFace{static_cast<int>(i), face, ray.origin_world + hit->t * ray.direction_world, hit->t * ray.direction_world.norm()};
     };
-    // m: between two ways of finding one point; a wrong law is off by far more.
-    constexpr double kSamePlace = 1e-9;
     const auto hit = found ? ask(laws, ray, body, tree.mesh(), found->face) : std::nullopt;
-    if (found && hit && std::abs(hit->t - found->t) <= kSamePlace * (1.0 + found->t)) {
+    if (hit && is_same_place(hit->t, found->t, ray, body.position_m)) {
       keep(found->face, hit);
       continue;
     }

@@ -8,6 +8,7 @@
 
 #include "framework/cli/pick_face.h"
 #include "framework/cli/scene_run.h"
+#include "framework/core/nearest_word.h"
 #include "framework/render/camera.h"
 #include "framework/scene/build_shape.h"
 
@@ -69,12 +70,14 @@ Target find_target(const Context& context, const PokeWords& words, const scene::
 
 const scene::BodySpec& pushed_body(const scene::Scene& scene, const Target& target) {
   std::string movable;
+  std::vector<std::string> names;
   for (const auto& body : scene.bodies) {
+    names.push_back(body.name);
     if (body.name == target.body && !body.immovable) return body;
     if (body.name == target.body) throw UserError("poke", "body '" + body.name + "' is immovable: no force moves it", "Aim at a movable body.");
     if (!body.immovable && movable.size() < 200) movable += (movable.empty() ? "" : ", ") + body.name;
   }
-  throw UserError("poke", "no body is named '" + target.body + "'", "Movable bodies: " + movable + ".");
+  throw UserError("poke", "no body is named '" + target.body + "'." + did_you_mean(target.body, names), "Movable bodies: " + movable + ".");
 }
 
 /// Momentum and angular momentum that a closed system has after the push, and how far the latter may be off.

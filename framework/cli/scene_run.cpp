@@ -14,6 +14,7 @@
 
 #include "framework/cli/judgement_table.h"
 #include "framework/cli/scene_pictures.h"
+#include "framework/core/nearest_word.h"
 #include "framework/engines/judge.h"
 #include "framework/engines/run.h"
 #include "framework/grading/worker_connection.h"
@@ -177,12 +178,14 @@ scene::Scene find_scene(const Context& context, const std::string& word) {
   if (fs::exists(word)) return scene::load_scene(word);
   if (word.ends_with(".json") || word.find('/') != std::string::npos) throw UserError(word, "there is no such file", "Check the path, or give a scene's bare name: " + listing(context));
   std::vector<fs::path> beginning;   // a name may be cut short where that is clear
+  std::vector<std::string> names_there;
   for (const auto& file : scenes_of(context)) {
     if (file.stem() == word) return scene::load_scene(file);
     if (file.stem().string().starts_with(word)) beginning.push_back(file);
+    names_there.push_back(file.stem());
   }
   if (beginning.size() == 1) return scene::load_scene(beginning.front());
-  if (beginning.empty()) throw UserError(word, "there is no such scene", "Give the path of a scene file, or one of these: " + listing(context));
+  if (beginning.empty()) throw UserError(word, "there is no such scene." + did_you_mean(word, names_there), "Give the path of a scene file, or one of these: " + listing(context));
   std::string names;
   for (const auto& file : beginning) names += (names.empty() ? "" : ", ") + file.stem().string();
   throw UserError(word, "more than one scene begins like this: " + names, "Give more of the name.");

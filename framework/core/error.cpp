@@ -5,7 +5,8 @@ namespace {
 
 std::string sentence(const std::string& where, const std::string& problem, const std::string& remedy) {
   std::string text = where.empty() ? problem : where + ": " + problem;
-  if (!remedy.empty()) text += (text.ends_with('.') ? " " : ". ") + remedy;
+  const bool is_ended = text.ends_with('.') || text.ends_with('?') || text.ends_with('!');
+  if (!remedy.empty()) text += (is_ended ? " " : ". ") + remedy;
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "framework/core/error.h"
+#include "framework/core/nearest_word.h"
 
 namespace tumble::grading {
 namespace {
@@ -31,21 +32,6 @@ std::size_t distance_of(const std::string& test, std::string pattern) {
 }
 
 }  // namespace
-
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t corner = row[0];   // of the row above, one to the left
-    row[0] = i;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t above = row[j];
-      row[j] = std::min({above + 1, row[j - 1] + 1, corner + (a[i - 1] == b[j - 1] ? 0 : 1)});
-      corner = above;
-    }
-  }
-  return row[b.size()];
-}
 
 std::vector<std::string> chosen_tests(const std::vector<std::string>& tests, const std::string& filter) {
   std::vector<std::string> found;

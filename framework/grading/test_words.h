@@ -9,9 +9,6 @@ namespace tumble::grading {
 /// GoogleTest's own pattern language: '*' and '?', patterns joined by ':'. An empty filter chooses all.
 bool chosen(const std::string& test, const std::string& filter);
 
-/// Letters to insert, remove or change to make one word of the other (Levenshtein 1966).
-std::size_t edit_distance(const std::string& a, const std::string& b);
-
 /// The tests that the filter chooses, in their order.
 /// @throws UserError with the nearest names when it chooses none
 std::vector<std::string> chosen_tests(const std::vector<std::string>& tests, const std::string& filter);

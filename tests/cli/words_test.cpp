@@ -60,10 +60,18 @@ TEST_F(CommandLine, WithoutAVerbOrWithAnUnknownOneItTellsAndExitsWith2) {
   EXPECT_TRUE(holds(said.err, "simulate")) << said.err;
 }
 
+TEST_F(CommandLine, AMistypedVerbOrSceneIsAnsweredWithTheNearest) {
+  const Said verb = type("chek a1"), scene = type("run pon_200");
+  EXPECT_EQ(verb.code, 2);
+  EXPECT_TRUE(holds(verb.err, "chek: there is no such verb. Did you mean 'check'? Known: ")) << verb.err;
+  EXPECT_EQ(scene.code, 2);
+  EXPECT_TRUE(holds(scene.err, "pon_200: there is no such scene. Did you mean 'pong_200'? ")) << scene.err;
+}
+
 TEST_F(CommandLine, AnUnknownFlagIsAnsweredWithTheNearest) {
   const Said said = type("grade a1 somewhere --no-meda");
   EXPECT_EQ(said.code, 2);
-  EXPECT_NE(said.err.find("--no-meda: grade has no such flag. Did you mean --no-media?"), std::string::npos) << said.err;
+  EXPECT_NE(said.err.find("--no-meda: grade has no such flag. Did you mean '--no-media'? Known: "), std::string::npos) << said.err;
 }
 
 TEST_F(CommandLine, HelpListsEveryVerb) {
