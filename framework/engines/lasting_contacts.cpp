@@ -14,11 +14,14 @@ constexpr double kEpsilon = 2.220446049250313e-16;
 constexpr double kShell = 1e-10;          // of the smaller body's radius: far above rounding, far below what is seen or measured
 constexpr double kRounding = 64;          // of coordinates far from the origin, in the shell
 constexpr double kBand = 2.0;             // shells: nearer than this two touch
-constexpr double kApart = 8.0;            // shells: farther than this a contact has ended
+constexpr double kApart = 8.0;            // shells: farther than this, and than the rest speed goes in a step, a contact has ended
 constexpr double kReach = 0.25;           // of the smaller body: points farther away are not looked at
+constexpr double kTurns = 1e-3;           // rad: a body that turns less in a step meets the same points at its end
+constexpr double kMidway = 0.3;           // of the smaller body: how far from each other points of one contact may lie at the middle of a step
 constexpr int kMostShifts = 8;            // rounds of taking back overlaps
 constexpr int kMostOfStudents = 64;       // contacts of a group that the laws' contact_forces is asked for: it is given a dense matrix
 constexpr int kMostLocated = 12;          // contacts of a group whose end of sliding is located in time
+constexpr double kShortest = 1e-6;        // of the longest step: ends of sliding that come sooner are taken with it
 constexpr int kMostSearches = 16;         // for ends of sliding from one instant
 constexpr double kSlides = 1e-9;          // of the group's speed: slower than this nothing slides
 
@@ -45,7 +48,7 @@ void LastingContacts::begin(Pair pair, const collision::Gap& gap) {
   sink_.event({moving_.time(), EventKind::kContact, pair.first, pair.second, gap.point_b_world, gap.normal_b_to_a_world, 0.0, 0.0});
 }
 
-void LastingContacts::begin_where_touching(const std::vector<Pair>& pairs, double rest_speed) {
+void LastingContacts::begin_where_touching(const std::vector<Pair>& pairs) {
   for (const Pair& pair : pairs) {
     const collision::Gap gap = collision::compute_gap(moving_.shape(pair.first), pose(pair.first, moving_.states()), moving_.shape(pair.second), pose(pair.second, moving_.states()));
     if (gap.distance > shell(pair)) continue;
@@ -53,7 +56,7 @@ void LastingContacts::begin_where_touching(const std::vector<Pair>& pairs, doubl
     const Body a = moving_.body_at_impact(pair.first), b = moving_.body_at_impact(pair.second);
     const bool slow = std::all_of(points.begin(), points.end(), [&](const collision::NearPoint& p) {
       const Vector3d relative = a.velocity_world + a.omega_world.cross(point_of(pair, p) - a.com_world) - b.velocity_world - b.omega_world.cross(point_of(pair, p) - b.com_world);
-      return std::abs(relative.dot(p.normal_b_to_a_world)) < rest_speed;
+      return std::abs(relative.dot(p.normal_b_to_a_world)) < rest_speed_;
     });
     if (slow) begin(pair, gap);
   }
@@ -135,7 +138,11 @@ std::vector<LastingContacts::Group> LastingContacts::groups(const std::vector<Pa
 std::vector<LastingContacts::Touch> LastingContacts::touches_of(const Group& group) const {
   std::vector<Touch> touches;
   for (const Pair& pair : group.pairs)
-    for (const collision::NearPoint& point : points_.at(pair)) touches.push_back({pair, point, shell(pair)});
+    for (const collision::NearPoint& point : points_.at(pair)) {
+      const double thickness = shell(pair), room = point.gap - thickness;
+      const bool lands = room > kBand * thickness;
+      touches.push_back({pair, point, lands ? -room / (moving_.target() - moving_.time()) : 0.0, lands});
+    }
   return touches;
 }
 
@@ -190,21 +197,20 @@ void LastingContacts::add_rows(const Group& group, const std::vector<RigidBodySt
   problem.row_targets = Eigen::Map<const VectorXd>(targets.data(), static_cast<Eigen::Index>(targets.size()));
 }
 
-ContactProblem LastingContacts::problem_of(const Group& group, const std::vector<Touch>& touches, double h) {
+ContactProblem LastingContacts::problem_of(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& states, double h) {
   ContactProblem problem;
   std::map<int, int> places;
-  for (const int body : group.bodies) place(body, moving_.target(), places, moving_.states(), &moving_.path_end(body), problem);
+  for (const int body : group.bodies) place(body, moving_.target(), places, states, &moving_.path_end(body), problem);
   for (const Touch& touch : touches) {
     PushingContact contact;
-    contact.body_a = place(touch.pair.first, moving_.target(), places, moving_.states(), &moving_.state(touch.pair.first), problem);
-    contact.body_b = place(touch.pair.second, moving_.target(), places, moving_.states(), &moving_.state(touch.pair.second), problem);
+    contact.body_a = place(touch.pair.first, moving_.target(), places, states, &states[touch.pair.first], problem);
+    contact.body_b = place(touch.pair.second, moving_.target(), places, states, &states[touch.pair.second], problem);
     contact.point_world = point_of(touch.pair, touch.point);
     contact.normal_b_to_a_world = touch.point.normal_b_to_a_world;
     contact.friction = friction(touch.pair);
-    const double room = touch.point.gap - touch.shell;
-    contact.target = room <= kBand * touch.shell ? 0.0 : -room / h;
+    contact.target = touch.target;
     if (const auto warm = warm_.find(touch.pair); warm != warm_.end()) {
-      const Vector3d point_body_a = moving_.state(touch.pair.first).world_from_body.conjugate() * (contact.point_world - moving_.state(touch.pair.first).com_world);
+      const Vector3d point_body_a = states[touch.pair.first].world_from_body.conjugate() * (contact.point_world - states[touch.pair.first].com_world);
       double nearest = 1e-2 * std::min(moving_.shape(touch.pair.first).bounding_radius(), moving_.shape(touch.pair.second).bounding_radius());
       for (const Warm& known : warm->second) {
         const double distance = (known.point_body_a - point_body_a).norm();
@@ -311,27 +317,32 @@ std::optional<double> LastingContacts::stop_of_sliding(const ContactProblem& pro
     if (locating_->found) return std::nullopt;
     const double F = (locating_->impulse - stopping_impulse) / (locating_->duration - h), A = stopping_impulse - F * h, M = at_hand / h;
     const double stop = A / (M - F);
-    if (!(stop > 0) || !(stop < locating_->duration)) return std::nullopt;
+    if (!(stop > kShortest * step_) || !(stop < locating_->duration)) return std::nullopt;
     locating_->found = true;
     return moving_.time() + stop;
   }
-  if (least >= 1 - 1e-12) return std::nullopt;
+  if (least >= 1 - 1e-12 || h <= kShortest * step_) return std::nullopt;
   locating_ = Locating{*stopping, moving_.time(), h, stopping_impulse, false};
   return moving_.time() + h * std::max(least, 1e-3);
 }
 
-void LastingContacts::give_paths(const Group& group, const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h) {
-  // Does anything come down in this step that did not touch before?
-  bool lands = false;
-  for (std::size_t i = 0; i < touches.size(); ++i) lands = lands || (problem.contacts[i].target < 0.0 && solution.impulses_world[i].squaredNorm() > 0.0);
-  std::vector<RigidBodyState> ends = moving_.states();
-  std::vector<RigidBodyState> starts = moving_.states();
+// Does anything come down in this step that did not touch before?
+bool LastingContacts::lands(const std::vector<Touch>& touches, const ContactSolution& solution) {
+  for (std::size_t i = 0; i < touches.size(); ++i)
+    if (touches[i].lands && solution.impulses_world[i].squaredNorm() > 0.0) return true;
+  return false;
+}
+
+// Where the group's bodies come out with these impulses. `starts`: with what velocities their paths begin.
+std::vector<RigidBodyState> LastingContacts::ends_of(const Group& group, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing,
+                                                     std::vector<RigidBodyState>& starts) const {
+  std::vector<RigidBodyState> ends = starts;
   for (std::size_t k = 0; k < group.bodies.size(); ++k) {   // the problem's first bodies are the group's
     const int body = group.bodies[k];
     const Inertia& inertia = moving_.world().bodies[body].inertia;
     const Velocity& after = solution.velocities[k];
     RigidBodyState& end = ends[body];
-    if (lands) {
+    if (landing) {
       end.com_world += h * after.linear_world;
       end.world_from_body = turned(end.world_from_body, h * after.angular_world);
       starts[body].momentum_world = inertia.mass * after.linear_world;
@@ -344,6 +355,75 @@ void LastingContacts::give_paths(const Group& group, const std::vector<Touch>& t
     end.momentum_world = inertia.mass * after.linear_world;
     end.angular_momentum_world = angular_momentum_of(after.angular_world, end.world_from_body, inertia);
   }
+  return ends;
+}
+
+bool LastingContacts::turns(const Group& group, const std::vector<RigidBodyState>& ends, double h) const {
+  return std::any_of(group.bodies.begin(), group.bodies.end(), [&](int body) {
+    return !moving_.shape(body).is_ball() && omega_of(ends[body], moving_.world().bodies[body].inertia).norm() * h > kTurns;
+  });
+}
+
+// Contacts of a group that turns: at the middle of the step, where their forces act evenly, with targets that make the velocities at the
+// step's end fit the surfaces there: J_middle v' = target - (J_end - J_middle) v'. Without that a body that tips over its edge gains or
+// loses energy in proportion to the step.
+std::vector<LastingContacts::Touch> LastingContacts::touches_midway(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& ends,
+                                                                    std::vector<RigidBodyState>& middle) const {
+  const std::vector<RigidBodyState>& starts = moving_.states();
+  for (const int body : group.bodies) {
+    middle[body].com_world = 0.5 * (starts[body].com_world + ends[body].com_world);
+    middle[body].world_from_body = starts[body].world_from_body.slerp(0.5, ends[body].world_from_body);
+  }
+  const auto rate = [&](Pair pair, const std::vector<RigidBodyState>& at, const collision::NearPoint& p) {
+    const Vector3d point = point_of(pair, p);
+    const auto velocity = [&](int body) -> Vector3d {
+      const WorldBody& b = moving_.world().bodies[body];
+      if (b.immovable()) return prescribed_velocity(b, moving_.target());
+      return b.inertia.inverse_mass * ends[body].momentum_world + omega_of(ends[body], b.inertia).cross(point - at[body].com_world);
+    };
+    return p.normal_b_to_a_world.dot(velocity(pair.first) - velocity(pair.second));
+  };
+  std::vector<Touch> result;
+  std::size_t from = 0;
+  for (const Pair& pair : group.pairs) {
+    std::size_t to = from;
+    while (to < touches.size() && touches[to].pair == pair) ++to;
+    const double near = kMidway * std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius());
+    const Points at_middle = points_at(pair, middle, near), at_end = points_at(pair, ends, near);
+    // The same point at another time: fixed in one of the two bodies.
+    const auto between = [&](const collision::NearPoint& p, const std::vector<RigidBodyState>& p_at, const collision::NearPoint& q, const std::vector<RigidBodyState>& q_at) {
+      const auto in = [](const RigidBodyState& s, const Vector3d& x) -> Vector3d { return s.world_from_body.conjugate() * (x - s.com_world); };
+      return std::min((in(p_at[pair.first], p.point_a_world) - in(q_at[pair.first], q.point_a_world)).norm(),
+                      (in(p_at[pair.second], p.point_b_world) - in(q_at[pair.second], q.point_b_world)).norm());
+    };
+    const auto nearest = [&](const Points& points, const std::vector<RigidBodyState>& at, const collision::NearPoint& p, const std::vector<RigidBodyState>& p_at) {
+      const collision::NearPoint* best = nullptr;
+      double distance = near;
+      for (const collision::NearPoint& q : points)
+        if (const double d = between(p, p_at, q, at); d < distance) {
+          distance = d;
+          best = &q;
+        }
+      return best;
+    };
+    for (std::size_t i = from; i < to; ++i) {
+      Touch touch = touches[i];
+      const collision::NearPoint* mid = nearest(at_middle, middle, touch.point, starts);
+      const collision::NearPoint* end = mid ? nearest(at_end, ends, *mid, middle) : nullptr;
+      if (mid && end) {
+        touch.point = *mid;
+        touch.target -= rate(pair, ends, *end) - rate(pair, middle, *mid);
+      }
+      result.push_back(touch);
+    }
+    from = to;
+  }
+  return result;
+}
+
+void LastingContacts::give_paths(const Group& group, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing) {
+  std::vector<RigidBodyState> starts = moving_.states();
+  std::vector<RigidBodyState> ends = ends_of(group, problem, solution, h, landing, starts);
   keep_apart(group, ends, moving_.target());
   for (const int body : group.bodies) moving_.set_path(body, starts[body], ends[body]);
 }
@@ -393,6 +473,7 @@ void LastingContacts::keep_apart(const Group& group, std::vector<RigidBodyState>
 std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidates) {
   const StageTimer timer(counters_.contact_seconds);
   const double h = moving_.target() - moving_.time();
+  step_ = std::max(step_, h);
   points_.clear();
   forces_.clear();
   groups_.clear();
@@ -408,15 +489,27 @@ std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidat
   groups_ = groups(touching);
   std::map<Pair, std::vector<Warm>> warm;
   for (const Group& group : groups_) {
-    const std::vector<Touch> touches = touches_of(group);
-    const ContactProblem problem = problem_of(group, touches, h);
-    const ContactSolution solution = solve(group, problem, h);
+    std::vector<Touch> touches = touches_of(group);
+    ContactProblem problem = problem_of(group, touches, moving_.states(), h);
+    ContactSolution solution = solve(group, problem, h);
+    bool landing = lands(touches, solution);
+    std::vector<RigidBodyState> states = moving_.states();
+    if (const auto ends = ends_of(group, problem, solution, h, landing, states); !landing && turns(group, ends, h)) {
+      std::vector<RigidBodyState> middle = moving_.states();
+      touches = touches_midway(group, touches, ends, middle);
+      problem = problem_of(group, touches, middle, h);
+      solution = solve(group, problem, h);
+      landing = lands(touches, solution);
+    }
+    for (std::size_t k = 0; k < group.bodies.size(); ++k)
+      if (!solution.velocities[k].linear_world.allFinite() || !solution.velocities[k].angular_world.allFinite())
+        throw StoppedRun("lasting contact: the impulses on body '" + moving_.world().bodies[group.bodies[k]].name + "' are not numbers");
     if (const auto stop = stop_of_sliding(problem, touches, solution, h)) return stop;
-    give_paths(group, touches, problem, solution, h);
+    give_paths(group, problem, solution, h, landing);
     for (std::size_t i = 0; i < touches.size(); ++i) {
       const RigidBodyState& a = moving_.state(touches[i].pair.first);
       const Vector3d force = solution.impulses_world[i] / h, point = problem.contacts[i].point_world;
-      warm[touches[i].pair].push_back({a.world_from_body.conjugate() * (point - a.com_world), force});
+        if (force.allFinite()) warm[touches[i].pair].push_back({a.world_from_body.conjugate() * (point - a.com_world), force});
       if (!force.isZero(0.0)) forces_.push_back({touches[i].pair.first, touches[i].pair.second, point, touches[i].point.normal_b_to_a_world, force});
     }
   }
@@ -433,7 +526,7 @@ void LastingContacts::commit() {
     for (const int body : group.bodies) moving_.set_state(body, states[body]);
     for (const Pair& pair : group.pairs) {
       const collision::Gap gap = collision::compute_gap(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states));
-      if (gap.distance <= kApart * shell(pair)) {
+      if (gap.distance <= std::max(kApart * shell(pair), lasting_.contains(pair) ? rest_speed_ * step_ : 0.0)) {
         begin(pair, gap);
       } else if (lasting_.erase(pair) > 0) {
         ++counters_.contacts_ended;

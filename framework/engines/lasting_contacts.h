@@ -27,13 +27,13 @@ class LastingContacts {
  public:
   using Pair = std::pair<int, int>;   // bodies, first < second
 
-  LastingContacts(MovingWorld& moving, const Laws& laws, const scene::ContactSpec& rules, RunCounters& counters, TrajectorySink& sink)
-      : moving_(moving), laws_(laws), rules_(rules), counters_(counters), sink_(sink) {}
+  LastingContacts(MovingWorld& moving, const Laws& laws, const scene::ContactSpec& rules, double rest_speed, RunCounters& counters, TrajectorySink& sink)
+      : moving_(moving), laws_(laws), rules_(rules), rest_speed_(rest_speed), counters_(counters), sink_(sink) {}
 
   /// A collision has become a lasting contact.
   void begin(Pair pair, const collision::Gap& gap);
   /// Pairs that touch at the start and do not approach faster than the rest speed.
-  void begin_where_touching(const std::vector<Pair>& pairs, double rest_speed);
+  void begin_where_touching(const std::vector<Pair>& pairs);
   bool lasts(Pair pair) const { return lasting_.contains(pair); }
 
   /// Gives the bodies in contact their paths for the step that has begun. @param candidates  pairs whose boxes meet, sorted
@@ -63,7 +63,8 @@ class LastingContacts {
   struct Touch {
     Pair pair;
     collision::NearPoint point;
-    double shell;
+    double target;               // least normal velocity afterwards [m/s]
+    bool lands;                  // apart at the start of the step
   };
 
   struct Locating {
@@ -80,10 +81,16 @@ class LastingContacts {
   Points points_at(Pair pair, const std::vector<RigidBodyState>& states, double reach) const;
   std::vector<Group> groups(const std::vector<Pair>& touching);
   std::vector<Touch> touches_of(const Group& group) const;
-  ContactProblem problem_of(const Group& group, const std::vector<Touch>& touches, double h);
+  ContactProblem problem_of(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& states, double h);
   ContactSolution solve(const Group& group, const ContactProblem& problem, double h);
   std::optional<double> stop_of_sliding(const ContactProblem& problem, const std::vector<Touch>& touches, const ContactSolution& solution, double h);
-  void give_paths(const Group& group, const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h);
+  static bool lands(const std::vector<Touch>& touches, const ContactSolution& solution);
+  std::vector<RigidBodyState> ends_of(const Group& group, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing,
+                                      std::vector<RigidBodyState>& starts) const;
+  bool turns(const Group& group, const std::vector<RigidBodyState>& ends, double h) const;
+  std::vector<Touch> touches_midway(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& ends,
+                                    std::vector<RigidBodyState>& middle) const;
+  void give_paths(const Group& group, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing);
   void keep_apart(const Group& group, std::vector<RigidBodyState>& states, double t);
   void add_rows(const Group& group, const std::vector<RigidBodyState>& states, double t, const std::map<int, int>& places, bool of_places, ContactProblem& problem);
   int place(int body, double t, std::map<int, int>& places, const std::vector<RigidBodyState>& states, const RigidBodyState* velocities, ContactProblem& problem) const;
@@ -91,6 +98,7 @@ class LastingContacts {
   MovingWorld& moving_;
   const Laws& laws_;
   scene::ContactSpec rules_;
+  double rest_speed_, step_ = 0.0;               // [m/s], the longest step so far [s]
   RunCounters& counters_;
   TrajectorySink& sink_;
   std::map<Pair, bool> lasting_;                 // value: whether it slid in the last step

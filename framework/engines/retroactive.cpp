@@ -40,7 +40,7 @@ class RetroactiveRun {
         duration_(options.duration_s.value_or(scene.duration_s)), moving_(build_world(scene), laws_, counters_),
         impacts_(laws_, {scene.rest_speed_m_s, step_ / 100}, counters_), recorder_(options.frame_rate_hz, duration_, sink) {
     if (!moving_.world().contact) return;
-    contacts_.emplace(moving_, laws_, *moving_.world().contact, counters_, sink);
+    contacts_.emplace(moving_, laws_, *moving_.world().contact, scene.rest_speed_m_s, counters_, sink);
     impacts_.use_contact_rules(scene.rest_speed_m_s);
     recorder_.record_contacts_of(*contacts_);
   }
@@ -393,7 +393,7 @@ void RetroactiveRun::run_to_the_end() {
     for (int j = i + 1; j < moving_.size(); ++j)
       if (moving_.may_collide(i, j)) all.emplace_back(i, j);
   separate(all);
-  if (contacts_) contacts_->begin_where_touching(all, scene_.rest_speed_m_s);
+  if (contacts_) contacts_->begin_where_touching(all);
   recorder_.record_committed(moving_);
   while (stopped_by_.empty() && moving_.time() < duration_) {
     next_look_ = moving_.look();

@@ -3,7 +3,7 @@
 // Gravity along -z, fixed point at the world's origin, body z the axis, centre of mass at l on it; tilted by theta0 about world x.
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <numbers>
 
 #include "framework/engines/truths/families.h"
 #include "framework/engines/truths/memory_scene.h"
@@ -51,7 +51,7 @@ Vector3d roots_of_cubic(const double (&c)[4]) {
   const double radius = 2.0 * std::sqrt(std::max(0.0, -p / 3.0));
   const double angle = radius > 0.0 ? std::acos(std::clamp(3.0 * q / (p * radius), -1.0, 1.0)) / 3.0 : 0.0;
   Vector3d roots;
-  for (int k = 0; k < 3; ++k) roots[k] = radius * std::cos(angle - 2.0 * M_PI * k / 3.0) - shift;
+  for (int k = 0; k < 3; ++k) roots[k] = radius * std::cos(angle - 2.0 * std::numbers::pi * k / 3.0) - shift;
   for (double& d : roots) {
     for (int round = 0; round < 60; ++round) {
       const double value = c[0] + d * (c[1] + d * (c[2] + d * c[3])), slope = c[1] + d * (2.0 * c[2] + d * 3.0 * c[3]);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace tumble::truths {
@@ -50,6 +51,16 @@ Trajectory run_in_memory(const scene::Scene& scene, const Laws& laws, double fra
   engines::run_scene(scene, laws, options, recorder);
   if (!recorder.trajectory().stopped_by.empty()) throw std::runtime_error("the run was stopped: " + recorder.trajectory().stopped_by);
   return recorder.trajectory();
+}
+
+Trajectory run_in_steps(const scene::Scene& scene, const Laws& laws, double t, long steps, long frames) {
+  // The last frame falls on the rounded frames / rate. There the last step ends too, and not a rounding before.
+  const double rate = static_cast<double>(frames) / t, end = static_cast<double>(frames) / rate;
+  scene::Scene stepped = scene;
+  stepped.duration_s = end;
+  stepped.step_s = end / static_cast<double>(steps);
+  while (static_cast<double>(steps) * stepped.step_s < end) stepped.step_s = std::nextafter(stepped.step_s, std::numeric_limits<double>::infinity());
+  return run_in_memory(stepped, laws, rate);
 }
 
 Frame frame_at(const scene::Scene& scene, const Laws& laws, double t) {

@@ -21,6 +21,10 @@ scene::BodySpec point_mass(const std::string& name, double mass, const Vector3d&
 /// @throws UserError as run_scene; std::runtime_error when the run was stopped early
 Trajectory run_in_memory(const scene::Scene& scene, const Laws& laws, double frame_rate_hz);
 
+/// A run to t of equal steps with equally many or fewer frames, each of which falls on the end of a step: what it shows is a state, while a
+/// frame within a step stands on a path through the step's ends. @pre frames divides steps
+Trajectory run_in_steps(const scene::Scene& scene, const Laws& laws, double t, long steps, long frames);
+
 /// All bodies at one instant of the run: a run that ends there. @param t  [s], > 0
 Frame frame_at(const scene::Scene& scene, const Laws& laws, double t);
 

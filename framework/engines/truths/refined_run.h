@@ -44,8 +44,8 @@ struct RefinedRun {
   bool frames_throughout = false;      // frames close enough to follow the motion, not only the last
 };
 
-/// Halves the step until no quantity's predicted truncation error exceeds 100 floors, or the time for it is used up; then compares each
-/// with the larger of the two, and the order of the method with 4.
+/// Halves the step until the order has settled and what a halving changes is small, though still clear of round-off, or the time for it is
+/// used up. Then compares each quantity with the larger of 100 floors and the predicted truncation error, and the order with 4.
 void compare_refined(const RefinedRun& run, const Laws& laws, const std::vector<Quantity>& quantities, Comparison& comparison);
 
 }  // namespace tumble::truths

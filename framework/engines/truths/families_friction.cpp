@@ -1,0 +1,206 @@
+// friction_incline, roll_incline, slip_to_roll: a block or a ball in lasting contact with a plane, run by the engine with the laws chosen.
+//
+// The forces are constant while a body slides, sticks or rolls, and the engine's motion is exact for constant forces: no step size enters,
+// and every mark is that of a closed form. x runs down the incline, y across it, z out of it.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "framework/engines/truths/families.h"
+#include "framework/engines/truths/memory_scene.h"
+
+namespace tumble::truths {
+namespace {
+
+constexpr double kRestSpeed = 1e-9;   // m/s: nothing here bounces
+constexpr long kSteps = 50;           // of a run at least; none of them is where a motion changes
+constexpr double kLongestStep = 1.0;  // s: contact forces come from what gravity does in a step, g h, and are rounded at its size
+constexpr double kStands = 1e-9;      // of the speed at the start: slower than this a body stands, or rolls
+
+struct Incline {
+  double angle, mu, g, m;
+
+  Incline(const Case& truth, double degrees)
+      : angle(degrees * std::numbers::pi / 180.0), mu(truth.input("mu").number()), g(truth.input("g").number()), m(truth.input("m").number()) {}
+  Quaterniond orientation() const { return Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitY())); }
+  Vector3d down() const { return {std::cos(angle), 0.0, -std::sin(angle)}; }
+  Vector3d out() const { return {std::sin(angle), 0.0, std::cos(angle)}; }
+  scene::Scene scene(const std::string& name, double duration, scene::BodySpec body, double height) const;
+};
+
+/// @param height  of the body's centre above the plane [m]
+scene::Scene Incline::scene(const std::string& name, double duration, scene::BodySpec body, double height) const {
+  scene::Scene scene = empty_scene(name, duration, kRestSpeed);
+  scene.gravity_m_s2 = Vector3d(0, 0, -g);
+  scene.contact = scene::ContactSpec{};
+  body.position_m = height * out();
+  scene::BodySpec plane = wall("incline", Vector3d::Zero(), Vector3d::UnitZ(), 0.0);
+  plane.world_from_body = orientation();
+  for (scene::BodySpec* spec : {&body, &plane}) {
+    spec->friction = mu;
+    spec->restitution = 0.0;
+  }
+  scene.bodies = {body, plane};
+  return scene;
+}
+
+/// Frames on every step.
+Trajectory run_by_steps(const scene::Scene& scene, const Laws& laws) {
+  const long steps = std::max(kSteps, static_cast<long>(scene.duration_s / kLongestStep));
+  return run_in_steps(scene, laws, scene.duration_s, steps, steps);
+}
+
+struct Push {
+  double normal = 0.0;
+  Vector3d friction = Vector3d::Zero();
+};
+/// Of the incline on the body (the first one), over all points of contact.
+Push push_in(const Frame& frame) {
+  Push push;
+  for (const ContactPoint& contact : frame.contacts) {
+    const double sign = contact.body_a == 0 ? 1.0 : -1.0;
+    const double normal = contact.force_on_a_world.dot(contact.normal_b_to_a_world);
+    push.normal += normal;
+    push.friction += sign * (contact.force_on_a_world - normal * contact.normal_b_to_a_world);
+  }
+  return push;
+}
+
+/// What friction has taken on the way. Heights count along the incline: that bodies are kept a hair off it is no work of friction.
+double energy_lost(const Incline& incline, const Frame& from, const Frame& to) {
+  const double way = incline.down().dot(to.poses[0].com_world - from.poses[0].com_world);
+  return from.kinetic_energy - to.kinetic_energy + incline.m * incline.g * std::sin(incline.angle) * way;
+}
+
+// ---- friction_incline ------------------------------------------------------------------------------------------------
+
+// A flat block: friction at its base, mu m g high at most, does not lift its edge.
+scene::Scene block_on(const Incline& incline, const std::string& name, double duration, double v0) {
+  constexpr double kHalfLength = 0.5;   // m
+  const double half_height = 0.25 * kHalfLength / (1.0 + incline.mu);
+  scene::BodySpec block = ball("block", incline.m, 1.0, Vector3d::Zero(), v0 * incline.down(), 0.0);
+  block.shape = scene::BoxSpec{Vector3d(kHalfLength, kHalfLength, half_height)};
+  block.world_from_body = incline.orientation();
+  return incline.scene(name, duration, block, half_height);
+}
+
+double speed_down(const Incline& incline, const Frame& frame) { return incline.down().dot(frame.poses[0].velocity_world); }
+
+/// Whether a block on an incline of this friction that is let go stays where it is.
+bool holds(Incline incline, double mu, const Laws& laws) {
+  incline.mu = mu;
+  const Trajectory run = run_by_steps(block_on(incline, "let go", 1.0, 0.0), laws);
+  return run.frames.back().poses[0].velocity_world.norm() <= kStands;
+}
+
+/// The last frame in which a speed is still there. @pre it is in the first
+template <class Speed>
+const Frame& last_sliding(const Trajectory& run, const Speed& speed) {
+  const double least = kStands * std::abs(speed(run.frames.front()));
+  std::size_t last = 0;
+  while (last + 1 < run.frames.size() && std::abs(speed(run.frames[last + 1])) > least) ++last;
+  return run.frames[last];
+}
+
+}  // namespace
+
+void compare_friction_incline(const Case& truth, const Laws& laws, Comparison& comparison) {
+  const Incline incline(truth, truth.input("alpha_deg").number());
+  const double v0 = truth.input("v0").number();
+  const double critical = std::tan(incline.angle);
+  comparison.closed_form(truth, "critical_mu", critical);
+  if (critical > 0.0) {
+    comparison.attempt("critical_mu in runs", [&] {
+      constexpr double kJust = 1e-6;
+      comparison.agree("critical_mu in runs", holds(incline, critical * (1.0 + kJust), laws) && !holds(incline, critical * (1.0 - kJust), laws),
+                       "a block let go stays at a friction 1e-6 above it and slides at one 1e-6 below");
+    });
+  }
+
+  comparison.attempt("run", [&] {
+    // Long enough to stop and stand, if it stops.
+    const double braking = incline.g * (incline.mu * std::cos(incline.angle) - std::sin(incline.angle));
+    const bool stops = braking > 0.0;
+    const double duration = stops ? 1.3 * std::abs(v0) / braking : 1.0;
+    const Trajectory run = run_by_steps(block_on(incline, truth.id, duration, v0), laws);
+    const auto speed = [&](const Frame& frame) { return speed_down(incline, frame); };
+    const Frame &first = run.frames.front(), &sliding = last_sliding(run, speed), &end = run.frames.back();
+    const double deceleration = (speed(first) - speed(sliding)) / sliding.time;
+    comparison.closed_form(truth, "deceleration", deceleration);
+    comparison.closed_form(truth, "normal_force", push_in(sliding).normal);
+    comparison.closed_form(truth, "friction_force_sliding", push_in(sliding).friction.norm());
+    if (!stops || truth.output("stop_time").is_null()) {
+      comparison.agree("stop_time", !stops && truth.output("stop_time").is_null() && &sliding == &end, "never stops");
+      return;
+    }
+    comparison.closed_form(truth, "stop_time", sliding.time + speed(sliding) / deceleration);
+    comparison.closed_form(truth, "stop_distance", incline.down().dot(end.poses[0].com_world - first.poses[0].com_world));
+    comparison.closed_form(truth, "friction_force_rest", push_in(end).friction.norm());
+    comparison.closed_form(truth, "energy_dissipated", energy_lost(incline, first, end));
+    comparison.agree("stands", end.poses[0].velocity_world.norm() <= kStands * std::abs(v0) && push_in(end).normal > 0.0, "stands still at the end, pressed onto the incline");
+  });
+}
+
+// ---- Round bodies ----------------------------------------------------------------------------------------------------
+
+namespace {
+
+/// A ball with I = beta m R^2: what rolls straight, be it a cylinder or a hoop, moves like it.
+scene::BodySpec round_body(double m, double R, double beta, const Vector3d& velocity, const Vector3d& omega) {
+  scene::BodySpec body = ball("round", m, R, Vector3d::Zero(), velocity, 0.0);
+  body.inertia_body_kg_m2 = beta * m * R * R * Matrix3d::Identity();
+  body.omega_world_rad_s = omega;
+  return body;
+}
+
+}  // namespace
+
+void compare_roll_incline(const Case& truth, const Laws& laws, Comparison& comparison) {
+  const Incline incline(truth, truth.input("alpha_deg").number());
+  const double R = truth.input("R").number(), beta = truth.input("beta").number(), T = truth.input("T").number();
+  comparison.closed_form(truth, "critical_mu", std::tan(incline.angle) * beta / (1.0 + beta));
+  comparison.attempt("run", [&] {
+    const scene::Scene scene = incline.scene(truth.id, T, round_body(incline.m, R, beta, Vector3d::Zero(), Vector3d::Zero()), R);
+    const Trajectory run = run_by_steps(scene, laws);
+    const Frame &first = run.frames.front(), &middle = run.frames[run.frames.size() / 2], &end = run.frames.back();
+    const auto speed = [&](const Frame& frame) { return speed_down(incline, frame); };
+    const auto spin = [](const Frame& frame) { return frame.poses[0].omega_world.y(); };
+    const bool rolls = std::abs(speed(end) - R * spin(end)) <= kStands * std::abs(speed(end));
+    comparison.agree("rolls_without_slip", rolls == truth.output("rolls_without_slip").truth(), rolls ? "it rolls" : "it slides");
+    const double time = end.time - middle.time;
+    comparison.closed_form(truth, "acceleration", (speed(end) - speed(middle)) / time);
+    comparison.closed_form(truth, "angular_acceleration", (spin(end) - spin(middle)) / time);
+    comparison.closed_form(truth, "friction_force", push_in(end).friction.norm());
+    comparison.closed_form(truth, "x_T", incline.down().dot(end.poses[0].com_world - first.poses[0].com_world));
+    comparison.closed_form(truth, "v_T", speed(end));
+    comparison.closed_form(truth, "omega_T", spin(end));
+  });
+}
+
+void compare_slip_to_roll(const Case& truth, const Laws& laws, Comparison& comparison) {
+  const Incline level(truth, 0.0);
+  const double R = truth.input("R").number(), beta = truth.input("beta").number(), v0 = truth.input("v0").number(), w0 = truth.input("omega0_forward").number();
+  comparison.attempt("run", [&] {
+    // Long enough to roll, if friction makes it.
+    const double braking = level.mu * level.g * (1.0 + 1.0 / beta), slip0 = std::abs(v0 - R * w0);
+    const double duration = braking > 0.0 && slip0 > 0.0 ? 1.3 * slip0 / braking : 1.0;
+    const Trajectory run = run_by_steps(level.scene(truth.id, duration, round_body(level.m, R, beta, Vector3d(v0, 0, 0), Vector3d(0, w0, 0)), R), laws);
+    const auto slip = [R](const Frame& frame) { return frame.poses[0].velocity_world.x() - R * frame.poses[0].omega_world.y(); };
+    const Frame &first = run.frames.front(), &sliding = last_sliding(run, slip), &end = run.frames.back();
+    const bool rolls = std::abs(slip(end)) <= kStands * std::max(slip0, std::abs(v0));
+    if (!rolls || truth.output("roll_time").is_null()) {
+      comparison.agree("roll_time", !rolls && truth.output("roll_time").is_null(), rolls ? "it rolls" : "it never rolls");
+      return;
+    }
+    // While it slides the slip goes down evenly.
+    const double change = std::abs(slip(first) - slip(sliding)), roll_time = change > 0.0 ? sliding.time * std::abs(slip(first)) / change : 0.0;
+    const double speed = end.poses[0].velocity_world.x();
+    comparison.closed_form(truth, "roll_time", roll_time);
+    comparison.closed_form(truth, "roll_velocity", speed);
+    comparison.closed_form(truth, "roll_omega", end.poses[0].omega_world.y());
+    comparison.closed_form(truth, "roll_distance", end.poses[0].com_world.x() - first.poses[0].com_world.x() - speed * (end.time - roll_time));
+    comparison.closed_form(truth, "energy_lost", energy_lost(level, first, end));
+  });
+}
+
+}  // namespace tumble::truths
