@@ -85,19 +85,29 @@ void BodyMatrix::add_pair(int body_a, int body_b, const Block6& ab, const Block6
 }
 
 void BodyMatrix::add(const ContactBlock& contact, const Matrix3d& d) {
-  const int n = contact.is_frictional() ? 3 : 1;
-  const auto g_a = contact.g_a.topRows(n), g_b = contact.g_b.topRows(n);
-  const auto small = d.topLeftCorner(n, n);
-  using Tall = Eigen::Matrix<double, 6, Eigen::Dynamic, 0, 6, 3>;
+  if (contact.is_frictional()) {
+    add_product<3>(contact, d);
+  } else {
+    add_product<1>(contact, d);
+  }
+}
+
+template <int kRows>
+void BodyMatrix::add_product(const ContactBlock& contact, const Matrix3d& d) {
+  using Tall = Eigen::Matrix<double, 6, kRows>;
+  const Tall g_a = contact.g_a.topRows<kRows>().transpose(), g_b = contact.g_b.topRows<kRows>().transpose();
+  const auto small = d.topLeftCorner<kRows, kRows>();
   if (contact.body_a != kFixed) {
-    const Tall left = g_a.transpose() * small;
-    columns_[step_of_body_[contact.body_a]].diagonal.noalias() += left * g_a;
+    const Tall left = g_a.lazyProduct(small);
+    columns_[step_of_body_[contact.body_a]].diagonal += left.lazyProduct(g_a.transpose());
     if (contact.body_b != kFixed) {
-      const Tall right = g_b.transpose() * small;
-      add_pair(contact.body_a, contact.body_b, left * g_b, right * g_a);
+      const Tall right = g_b.lazyProduct(small);
+      add_pair(contact.body_a, contact.body_b, left.lazyProduct(g_b.transpose()), right.lazyProduct(g_a.transpose()));
     }
   }
-  if (contact.body_b != kFixed) columns_[step_of_body_[contact.body_b]].diagonal.noalias() += g_b.transpose() * small * g_b;
+  if (contact.body_b == kFixed) return;
+  const Tall right = g_b.lazyProduct(small);
+  columns_[step_of_body_[contact.body_b]].diagonal += right.lazyProduct(g_b.transpose());
 }
 
 void BodyMatrix::add(const RowBlock& row, double d) {

@@ -30,6 +30,8 @@ class BodyMatrix {
 
  private:
   void find_order(std::vector<std::vector<int>> neighbours);
+  template <int kRows>
+  void add_product(const ContactBlock& contact, const Matrix3d& d);
   void add_pair(int body_a, int body_b, const Block6& ab, const Block6& ba);
   void eliminate(std::size_t step);
 
