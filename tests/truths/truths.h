@@ -5,6 +5,7 @@
 
 #include "assignments/a1_impulse/a1_binding.h"
 #include "assignments/a2_integration/a2_binding.h"
+#include "assignments/a3_constraints/a3_binding.h"
 #include "framework/cli/read_truth.h"
 #include "framework/engines/truths/families.h"
 #include "framework/modules/load.h"
@@ -15,19 +16,27 @@ struct Reference {
   modules::Registry registry;
   a1::Module a1;
   a2::Module a2;
+  a3::Module a3;
 
   Reference() {
     register_assignments(registry);
     const std::filesystem::path built = std::filesystem::path(TUMBLE_BINARY_DIR) / "modules";
     a1 = *std::static_pointer_cast<const a1::Module>(modules::load_module(registry.find("a1"), built / "a1_reference.so"));
     a2 = *std::static_pointer_cast<const a2::Module>(modules::load_module(registry.find("a2"), built / "a2_reference.so"));
+    a3 = *std::static_pointer_cast<const a3::Module>(modules::load_module(registry.find("a3"), built / "a3_reference.so"));
+  }
+
+  Laws laws() const {
+    Laws laws = library_laws();
+    a1::bind(a1, laws);
+    a2::bind(a2, laws);
+    a3::bind(a3, laws);
+    return laws;
   }
 
   /// The lines of a case; empty for a family that nobody knows.
   std::vector<truths::Line> compare(const truths::Case& truth) const {
-    Laws laws = library_laws();
-    a1::bind(a1, laws);
-    a2::bind(a2, laws);
+    const Laws laws = this->laws();
     truths::Comparison comparison;
     if (const auto family = truths::framework_families().find(truth.family); family != truths::framework_families().end())
       comparison.attempt(truth.family, [&] { family->second(truth, laws, comparison); });

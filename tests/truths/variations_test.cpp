@@ -5,18 +5,13 @@
 #include <gtest/gtest.h>
 
 #include "framework/engines/truths/memory_scene.h"
+#include "tests/truths/made_case.h"
 #include "tests/truths/truths.h"
 
 namespace tumble::testing {
 namespace {
 
-Laws reference_laws() {
-  const Reference reference;
-  Laws laws = library_laws();
-  a1::bind(reference.a1, laws);
-  a2::bind(reference.a2, laws);
-  return laws;
-}
+Laws reference_laws() { return Reference().laws(); }
 
 // t_1 = sqrt(2 h / g), then 2 e^k t_1 between impacts. 1e-12: a thousand roundings of seconds; forgetting e is off by tenths.
 TEST(TruthVariations, BouncingBallOfOtherHeightsAndRestitutions) {
@@ -58,25 +53,6 @@ TEST(TruthVariations, CradleOfTwoAtOtherRestitutions) {
     EXPECT_NEAR(end.poses[0].velocity_world.x(), 1.5 * (1.0 - e), 1e-13) << e;
     EXPECT_NEAR(end.poses[1].velocity_world.x(), 1.5 * (1.0 + e), 1e-13) << e;
   }
-}
-
-/// {value, unit, floor} as a file has it.
-truths::Value entry(const std::string& name, const truths::Value::Content& value, const std::string& floor = "") {
-  truths::Value::Members members{{"value", {name + "/value", value}}};
-  if (!floor.empty()) members.emplace_back("tolerance_floor", truths::Value(name + "/tolerance_floor", floor));
-  return {name, members};
-}
-
-std::string exact_text(double x) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.17g", x);
-  return text;
-}
-
-truths::Value::Content vector_of(const Vector3d& v) {
-  truths::Value::List list;
-  for (int i = 0; i < 3; ++i) list.emplace_back("item", exact_text(v[i]));
-  return list;
 }
 
 // h = v t + g t^2 / 2 for a ball thrown down: t = 2 h / (v + sqrt(v^2 + 2 g h)), which cancels nothing.
