@@ -33,7 +33,7 @@ TEST(RodRow, MeasuresHowMuchTooLong) {
                                             {10.5, "half the squares of the lengths: this C has another scale and another J"},
                                             {5, "the length is forgotten"},
                                             {std::sqrt(5.0) - 2, "the rod is taken from centre to centre: it ends at the points"},
-                                            {std::sqrt(40.0) - 2, "a body point used as a world arm: turn it with the body first"}},
+                                            {std::sqrt(29.0) - 2, "a body point used as a world arm: turn it with the body first"}},
                               "C = |d| - length"),
                .handout = equation(4)});
 }

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/SparseCholesky>
-
 namespace tumble::a3 {
 
 // ---- Anchors and springs -----------------------------------------------------------------------------------------------
@@ -74,51 +72,35 @@ double baumgarte_acceleration(double value, double rate, double time_constant_s)
 
 namespace {
 
-/// A lambda = right-hand side for the rows of a system of bodies, with A scaled to a unit diagonal: rods that hold grams stand
-/// beside rods that hold tons.
+using Row = std::vector<double>;
+
+/// A lambda = right-hand side, by elimination within the skyline of A: for a chain, two numbers a row. A has a unit diagonal.
 class RowSystem {
  public:
-  RowSystem(const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies) : rows_(rows), bodies_(bodies) {
-    if (!rows_.empty()) factorise();
+  RowSystem(const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies)
+      : rows_(rows), bodies_(bodies), scale_(VectorXd::Zero(static_cast<Eigen::Index>(rows.size()))), first_(rows.size()), entries_(rows.size()), inverse_pivots_(rows.size(), 0.0) {
+    assemble();
+    eliminate();
   }
 
   /// M^-1 J^T lambda, (6n).
   VectorXd response(const VectorXd& lambda) const {
-    // Forces are summed before they are divided by masses: neighbours' tensions cancel where they should.
     VectorXd change = VectorXd::Zero(6 * static_cast<Eigen::Index>(bodies_.size()));
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       change.segment<6>(6 * rows_[i].body_a) += lambda[static_cast<Eigen::Index>(i)] * rows_[i].row.jacobian_a;
       change.segment<6>(6 * rows_[i].body_b) += lambda[static_cast<Eigen::Index>(i)] * rows_[i].row.jacobian_b;
     }
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      auto six = change.segment<6>(6 * static_cast<Eigen::Index>(i));
-      six = accelerated(bodies_[i], six);
-    }
+    for (std::size_t i = 0; i < bodies_.size(); ++i) change.segment<6>(6 * static_cast<Eigen::Index>(i)) = accelerated(bodies_[i], change.segment<6>(6 * static_cast<Eigen::Index>(i)));
     return change;
   }
 
-  /// J u for u as six numbers a body, (m).
-  VectorXd rates(const VectorXd& u) const {
-    VectorXd result(static_cast<Eigen::Index>(rows_.size()));
-    for (std::size_t i = 0; i < rows_.size(); ++i)
-      result[static_cast<Eigen::Index>(i)] = rows_[i].row.jacobian_a.dot(u.segment<6>(6 * rows_[i].body_a)) + rows_[i].row.jacobian_b.dot(u.segment<6>(6 * rows_[i].body_b));
-    return result;
-  }
-
-  /// lambda with A lambda = wanted, by a factorisation and refinement: what is left over is computed by way of the bodies, in
-  /// which light and heavy ones do not swallow each other's digits as they do in A.
   VectorXd solve(const VectorXd& wanted) const {
-    constexpr int kMostRounds = 8;
-    VectorXd lambda = VectorXd::Zero(wanted.size());
-    VectorXd left = scale_.cwiseProduct(wanted);
-    for (int round = 0; round < kMostRounds && left.squaredNorm() > 0; ++round) {
-      const VectorXd next = lambda + scale_.cwiseProduct(solve_once(left));
-      const VectorXd next_left = scale_.cwiseProduct(wanted - rates(response(next)));
-      if (!(next_left.norm() < left.norm())) break;
-      const bool is_done = next_left.norm() > 0.5 * left.norm();
-      lambda = next;
-      left = next_left;
-      if (is_done) break;
+    VectorXd lambda = VectorXd::Zero(wanted.size()), left = wanted;
+    for (int round = 0; round < 3; ++round) {
+      lambda += scale_.cwiseProduct(solve_once(scale_.cwiseProduct(left)));
+      const VectorXd u = response(lambda);
+      for (std::size_t i = 0; i < rows_.size(); ++i)
+        left[static_cast<Eigen::Index>(i)] = wanted[static_cast<Eigen::Index>(i)] - rows_[i].row.jacobian_a.dot(u.segment<6>(6 * rows_[i].body_a)) - rows_[i].row.jacobian_b.dot(u.segment<6>(6 * rows_[i].body_b));
     }
     return lambda;
   }
@@ -130,58 +112,64 @@ class RowSystem {
     return u;
   }
 
-  void factorise() {
-    const Eigen::Index m = static_cast<Eigen::Index>(rows_.size());
-    struct Touch { Eigen::Index row; const Vector6d* jacobian; };
+  void assemble() {
+    struct Touch { std::size_t row; const Vector6d* jacobian; };
     std::vector<std::vector<Touch>> touching(bodies_.size());
-    for (Eigen::Index i = 0; i < m; ++i) {
-      const Constraint& c = rows_[static_cast<std::size_t>(i)];
-      touching[static_cast<std::size_t>(c.body_a)].push_back({i, &c.row.jacobian_a});
-      touching[static_cast<std::size_t>(c.body_b)].push_back({i, &c.row.jacobian_b});
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      touching[static_cast<std::size_t>(rows_[i].body_a)].push_back({i, &rows_[i].row.jacobian_a});
+      touching[static_cast<std::size_t>(rows_[i].body_b)].push_back({i, &rows_[i].row.jacobian_b});
+      first_[i] = i;
     }
-    // Rows meet in A where they share a body that can be moved: the ceiling, which may hold all of them, couples none.
-    std::vector<Eigen::Triplet<double>> entries;
-    VectorXd diagonal = VectorXd::Zero(m);
+    for (std::size_t k = 0; k < bodies_.size(); ++k)
+      for (const Touch& i : touching[k])
+        if (bodies_[k].inverse_mass > 0) first_[i.row] = std::min(first_[i.row], touching[k].front().row);
+    for (std::size_t i = 0; i < rows_.size(); ++i) entries_[i].assign(i - first_[i] + 1, 0.0);
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
-      if (bodies_[k].inverse_mass == 0 && bodies_[k].inverse_inertia_world.isZero(0)) continue;
+      if (bodies_[k].inverse_mass == 0) continue;
       for (const Touch& i : touching[k]) {
         const Vector6d moved = accelerated(bodies_[k], *i.jacobian);
-        for (const Touch& j : touching[k]) {
-          if (j.row < i.row) continue;
-          const double value = moved.dot(*j.jacobian);
-          if (j.row == i.row) diagonal[i.row] += value;
-          else entries.emplace_back(j.row, i.row, value);
-        }
+        for (const Touch& j : touching[k])
+          if (j.row <= i.row) entries_[i.row][j.row - first_[i.row]] += moved.dot(*j.jacobian);
       }
     }
-    scale_ = (diagonal.array() > 0).select(diagonal.array().rsqrt(), 0.0);
-    for (auto& e : entries) e = {e.row(), e.col(), e.value() * scale_[e.row()] * scale_[e.col()]};
-    for (Eigen::Index i = 0; i < m; ++i) entries.emplace_back(i, i, 1.0);  // a row that moves nothing stands alone, with 0 to do
-    Eigen::SparseMatrix<double> scaled(m, m);
-    scaled.setFromTriplets(entries.begin(), entries.end());
-    factor_.setShift(kShift);
-    factor_.compute(scaled);
-    inverse_pivots_ = (factor_.vectorD().array() > kDependent).select(factor_.vectorD().cwiseInverse(), 0.0);
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      if (entries_[i].back() > 0) scale_[static_cast<Eigen::Index>(i)] = 1 / std::sqrt(entries_[i].back());
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      for (std::size_t j = first_[i]; j <= i; ++j) entries_[i][j - first_[i]] *= scale_[static_cast<Eigen::Index>(i)] * scale_[static_cast<Eigen::Index>(j)];
   }
 
-  VectorXd solve_once(const VectorXd& b) const {
-    VectorXd x = factor_.permutationP() * b;
-    factor_.matrixL().solveInPlace(x);
-    x = inverse_pivots_.cwiseProduct(x);
-    factor_.matrixU().solveInPlace(x);
-    return factor_.permutationPinv() * x;
+  /// L D L^T. A pivot of round-off is a row that says what rows before it say: it is left out.
+  void eliminate() {
+    constexpr double kDependent = 1e-12;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      Row& row = entries_[i];
+      for (std::size_t j = first_[i]; j < i; ++j)
+        for (std::size_t k = std::max(first_[i], first_[j]); k < j; ++k) row[j - first_[i]] -= row[k - first_[i]] * entries_[j][k - first_[j]];
+      double pivot = row.back();
+      for (std::size_t j = first_[i]; j < i; ++j) {
+        const double before = row[j - first_[i]];
+        row[j - first_[i]] = before * inverse_pivots_[j];
+        pivot -= before * row[j - first_[i]];
+      }
+      if (pivot > kDependent) inverse_pivots_[i] = 1 / pivot;
+    }
   }
 
-  // A row that says what others say leaves a pivot of round-off only, some 1e-16 times the links in the loop. The shift keeps it
-  // from being divided by; below kDependent it counts as dependent and its force is left to the others. Masses that differ by
-  // 1e6 in a chain of 1,000 leave pivots of 1e-9.
-  static constexpr double kShift = 1e-13, kDependent = 2e-12;
+  VectorXd solve_once(VectorXd x) const {
+    for (std::size_t i = 0; i < rows_.size(); ++i)
+      for (std::size_t k = first_[i]; k < i; ++k) x[static_cast<Eigen::Index>(i)] -= entries_[i][k - first_[i]] * x[static_cast<Eigen::Index>(k)];
+    for (std::size_t i = 0; i < rows_.size(); ++i) x[static_cast<Eigen::Index>(i)] *= inverse_pivots_[i];
+    for (std::size_t i = rows_.size(); i-- > 0;)
+      for (std::size_t k = first_[i]; k < i; ++k) x[static_cast<Eigen::Index>(k)] -= entries_[i][k - first_[i]] * x[static_cast<Eigen::Index>(i)];
+    return x;
+  }
 
   const std::vector<Constraint>& rows_;
   const std::vector<ConstrainedBody>& bodies_;
-  VectorXd scale_;           // 1 / sqrt(A_ii), or 0 where nothing moves
-  VectorXd inverse_pivots_;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower, Eigen::AMDOrdering<int>> factor_;
+  VectorXd scale_;                    // 1 / sqrt(A_ii), or 0 where nothing moves
+  std::vector<std::size_t> first_;    // of each row, its first column that is not zero
+  std::vector<Row> entries_;          // from there to the diagonal
+  Row inverse_pivots_;
 };
 
 }  // namespace
@@ -217,7 +205,7 @@ class Carriers {
     constexpr double kDependent = 1e-11;  // of A_jj = 1: round-off leaves some 1e-15, masses 1 : 1e6 leave 1e-7
     const Eigen::Index n = size();
     VectorXd column = gathered(A_.col(j));
-    L_.topLeftCorner(n, n).triangularView<Eigen::Lower>().solveInPlace(column);
+    for (Eigen::Index i = 0; i < n; ++i) column[i] = (column[i] - L_.row(i).head(i).dot(column.head(i))) / L_(i, i);
     const double pivot = A_(j, j) - column.squaredNorm();
     if (!(pivot > kDependent * A_(j, j))) return false;
     L_.row(n).head(n) = column.transpose();
@@ -245,9 +233,11 @@ class Carriers {
   Eigen::Index size() const { return static_cast<Eigen::Index>(carrying_.size()); }
 
   VectorXd solve_once(VectorXd x) const {
-    const auto L = L_.topLeftCorner(size(), size());
-    L.triangularView<Eigen::Lower>().solveInPlace(x);
-    L.transpose().triangularView<Eigen::Upper>().solveInPlace(x);
+    for (Eigen::Index i = 0; i < size(); ++i) x[i] = (x[i] - L_.row(i).head(i).dot(x.head(i))) / L_(i, i);
+    for (Eigen::Index i = size(); i-- > 0;) {
+      x[i] /= L_(i, i);
+      x.head(i) -= x[i] * L_.row(i).head(i).transpose();
+    }
     return x;
   }
 

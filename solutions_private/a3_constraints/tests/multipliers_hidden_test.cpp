@@ -62,6 +62,7 @@ TEST(ConstraintMultipliers, DoNotCareHowOftenARodIsThere) {
   for (int i = 0; i < 20; ++i) {
     Rig rig = random_rig(random, 5, 3);
     const VectorXd once = forces_on_bodies(rig, rig.multipliers());
+    expect_true(once.norm() > 0.1, "forces", "none", {.scene = rig.scene, .slip = "the function gives nothing (0 or NaN) whatever it is asked", .handout = equation(7)});
     const std::size_t rows = rig.rows.size();
     for (std::size_t k = 0; k < rows; k += 2) rig.rows.push_back(rig.rows[k]);
     const VectorXd wanted = rig.wanted;
@@ -133,6 +134,7 @@ TEST(ConstraintCorrection, IsWhatTheMultipliersDo) {
     for (ConstrainedBody& body : rig.bodies) body.free_acceleration.setZero();
     for (Constraint& c : rig.rows) c.row.velocity_product = 0;
     const VectorXd x = a3_module().constraint_correction(rig.rows, rig.bodies, rig.wanted);
+    expect_true(x.norm() > 0.01, "a change", "none", {.scene = rig.scene, .slip = "the function gives nothing (0 or NaN) whatever it is asked", .handout = equation(8)});
     Rig other = rig;
     other.wanted = -rig.wanted;
     VectorXd forces = forces_on_bodies(other, other.multipliers());

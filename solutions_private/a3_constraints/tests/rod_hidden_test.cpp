@@ -26,6 +26,7 @@ TEST(RodRow, DerivativesAreThoseOfTheMotion) {
     const double c[] = {row_at(-2 * h).value, row_at(-h).value, row_at(0).value, row_at(h).value, row_at(2 * h).value};
     const ConstraintRow row = row_at(0);
     const Story story{.scene = "two bodies in free flight, number " + std::to_string(i) + ": C' and C'' from C at five times", .slip = "the velocity product: the centripetal term of both bodies, and the turning of the rod", .handout = equation(5)};
+    expect_true(row.jacobian_a.norm() > 0.9, "|J_a| >= 1", show(row.jacobian_a.norm()), story);
     expect_near(row.rate, (c[0] - 8 * c[1] + 8 * c[3] - c[4]) / (12 * h), 1e-7, "m/s (C')", story);
     expect_near(row.velocity_product, (-c[0] + 16 * c[1] - 30 * c[2] + 16 * c[3] - c[4]) / (12 * h * h), 1e-6, "m/s^2 (C'')", story);
   }

@@ -79,6 +79,7 @@ TEST(SpringForce, MakesAPeriodOfTwoPiRootMOverK) {
   const int steps = 1000;
   const double h = period / steps;
   Vector3d x(1.3, 0, 0), v = Vector3d::Zero();
+  expect_near(a3_module().spring_force(spring, {x, v}, anchor), Vector3d(-15, 0, 0), 1e-12, "N", {.scene = "the same spring before it is let go", .slip = "the sign of the force, or the rest length", .handout = equation(3)});
   for (int i = 0; i < steps; ++i) {
     v += h / 2 / mass * a3_module().spring_force(spring, {x, v}, anchor);
     x += h * v;
