@@ -38,7 +38,7 @@ void write_captions(Image& image, const TextWriter& writer, const scene::Scene& 
   const double margin = 14.0 * unit, small = std::max(11.0 * unit, 9.5), large = std::max(17.0 * unit, 11.0);
   for (const Label& place : moment.labels)
     if (const auto at = project(moment.drawing.view, image.width, image.height, place.point_world))
-      writer.write(image, place.text, at->x(), at->y() + 1.5 * small, small * 1.08, kDark, Align::kCentre, true);
+      writer.write(image, place.text, at->x(), at->y() + 1.5 * small + place.drop_pixels, small * 1.08, kDark, Align::kCentre, true);
 
   const std::string time = fmt::format("t = {:.2f} s", run.frames[frame].time);
   writer.write(image, time, margin, h - margin, words == Words::kAll ? 15.0 * unit : small, kDark, Align::kLeft, true);

@@ -1,6 +1,7 @@
 // What a drawing adds to the bodies: impulses, forces, paths, the scale of the grid.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -16,12 +17,61 @@ constexpr double kForceLinger = 0.12;        // s of video after a push has ende
 constexpr std::size_t kMaxFlashes = 40;      // the latest; more would hide the bodies
 constexpr std::size_t kMaxPaths = 6;         // moving bodies; the paths of more would be a tangle
 constexpr std::size_t kPathSegments = 160;
+constexpr int kMaxCorners = 200;             // the first; a ball that bounces ever faster has no more to show
 const Vector3d kImpulseColor(0.72, 0.10, 0.01);
 const Vector3d kFlashColor(1.0, 0.78, 0.22);
 const Vector3d kForceColor(0.45, 0.02, 0.20);
 const Vector3d kBarColor(0.03, 0.05, 0.07);
 
+// Frames that a path is drawn through: some of all, and those on both sides of an impact, so that its corners are corners.
+std::vector<std::size_t> path_frames(const Trajectory& run, std::size_t last) {
+  std::vector<std::size_t> frames;
+  const std::size_t stride = std::max<std::size_t>(1, run.frames.size() / kPathSegments);
+  for (std::size_t f = stride; f < last; f += stride) frames.push_back(f);
+  int corners = 0;
+  for (const Event& event : run.events) {
+    if (event.kind != EventKind::kCollision || ++corners > kMaxCorners) continue;
+    const auto after = std::lower_bound(run.frames.begin(), run.frames.end(), event.time, [](const Frame& frame, double time) { return frame.time < time; });
+    const auto f = static_cast<std::size_t>(after - run.frames.begin());
+    if (f > 0 && f - 1 <= last) frames.push_back(f - 1);
+    if (f <= last) frames.push_back(f);
+  }
+  frames.push_back(last);
+  std::sort(frames.begin(), frames.end());
+  frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+  return frames;
+}
+
 }  // namespace
+
+// The bar lies between two lines of the grid, where it is seen well at the lower left and nothing that stays stands before it.
+void Stage::place_scale_bar() {
+  if (!ground_.shown || ground_.spacing_m <= 0.0 || followed_ >= 0 || !options_.captions) return;
+  const View view = view_of(scene_.camera);
+  const double w = options_.width, h = options_.height, step = ground_.spacing_m;
+  const Vector2d wanted(0.22 * w, 0.80 * h);
+  const auto is_seen = [&](const Vector3d& point) {
+    for (std::size_t i = 0; i < actors_.size(); ++i)
+      if (actors_[i].immovable && hides(surface(actors_[i]), run_.frames.front().poses[i], view.eye_world, point)) return false;
+    return true;
+  };
+  double best = std::numeric_limits<double>::infinity();
+  const int ci = static_cast<int>(std::lround(scene_.camera.target_m.x() / step)), cj = static_cast<int>(std::lround(scene_.camera.target_m.y() / step));
+  for (int i = ci - 30; i <= ci + 30; ++i) {
+    for (int j = cj - 30; j <= cj + 30; ++j) {
+      const Vector3d from(i * step, j * step, ground_.height_m), to = from + Vector3d(step, 0, 0);
+      const auto a = project(view, options_.width, options_.height, from), b = project(view, options_.width, options_.height, to);
+      if (!a || !b || (*a - *b).norm() < 0.045 * w) continue;
+      const bool inside = std::min(a->x(), b->x()) > 0.04 * w && std::max(a->x(), b->x()) < 0.96 * w && std::min(a->y(), b->y()) > 0.15 * h &&
+                          std::max(a->y(), b->y()) < 0.86 * h;
+      const double distance = (0.5 * (*a + *b) - wanted).norm();
+      if (!inside || distance >= best || !is_seen(from) || !is_seen(0.5 * (from + to)) || !is_seen(to)) continue;
+      best = distance;
+      scale_bar_from_ = from;
+      scale_bar_m_ = step;
+    }
+  }
+}
 
 void Stage::add_scale_bar(Moment& moment) const {
   if (scale_bar_m_ <= 0.0) return;
@@ -33,7 +83,10 @@ void Stage::add_scale_bar(Moment& moment) const {
   bar.instances = {laid_between(from, to, width, kBarColor), laid_between(from - tick, from + tick, width, kBarColor),
                    laid_between(to - tick, to + tick, width, kBarColor)};
   moment.drawing.batches.push_back(bar);
-  moment.labels.push_back({0.5 * (from + to), fmt::format("{:g} m", scale_bar_m_)});
+  const auto a = project(moment.drawing.view, options_.width, options_.height, from), b = project(moment.drawing.view, options_.width, options_.height, to);
+  // A slanting bar would run into its own words: they stand below its lower end.
+  const double slant = a && b ? 0.5 * std::abs(a->y() - b->y()) : 0.0;
+  moment.labels.push_back({0.5 * (from + to), fmt::format("{:g} m", scale_bar_m_), slant});
 }
 
 void Stage::add_path(std::size_t last, Drawing& drawing) const {
@@ -41,14 +94,14 @@ void Stage::add_path(std::size_t last, Drawing& drawing) const {
   for (std::size_t i = 0; i < actors_.size(); ++i)
     if (!actors_[i].immovable) moving.push_back(i);
   if (moving.empty() || moving.size() > kMaxPaths) return;
-  const std::size_t stride = std::max<std::size_t>(1, run_.frames.size() / kPathSegments);
+  const std::vector<std::size_t> shown = path_frames(run_, last);
   const double width = 0.9 * metres_per_pixel(drawing.view, options_.height, drawing.view.eye_world + sight_m() * drawing.view.forward_world);
   Batch path{kTube, Pass::kLine, {}};
   for (const std::size_t i : moving) {
     const Vector3d color = 0.75 * actors_[i].color;
     Vector3d from = run_.frames.front().poses[i].com_world;
-    for (std::size_t f = stride; f < last + stride; f += stride) {
-      const Vector3d to = run_.frames[std::min(f, last)].poses[i].com_world;
+    for (const std::size_t f : shown) {
+      const Vector3d to = run_.frames[f].poses[i].com_world;
       if (!to.allFinite() || !((to - from).norm() > 0.5 * width)) continue;
       path.instances.push_back(laid_between(from, to, width, color, 0.55));
       from = to;
@@ -102,7 +155,7 @@ void Stage::add_forces(const Frame& frame, Moment& moment) const {
     const double length = 0.17 * sight_m() * std::sqrt(force.force_n.norm() / strongest);
     const Vector3d tail = tip - length * force.force_n.normalized();
     arrows.instances.push_back(laid_between(tail, tip, length, kForceColor));
-    moment.labels.push_back({tail, fmt::format("{:.3g} N", force.force_n.norm())});
+    moment.labels.push_back({tail, fmt::format("{:.3g} N", force.force_n.norm()), 0.0});
   }
   if (!arrows.instances.empty()) moment.drawing.batches.push_back(std::move(arrows));
 }

@@ -34,23 +34,6 @@ double round_length(double x) {
   return 10.0 * decade;
 }
 
-// Whether the segment from the eye to a point passes through an actor's surface (Moeller and Trumbore, Journal of Graphics
-// Tools 2(1), 1997; only whether, so degenerate triangles may answer either way).
-bool hides(const TriangleMesh& mesh_body, const BodyPose& pose, const Vector3d& eye_world, const Vector3d& point_world) {
-  const Quaterniond body_from_world = pose.world_from_body.conjugate();
-  const Vector3d from = body_from_world * (eye_world - pose.com_world), along = body_from_world * (point_world - eye_world);
-  for (const auto& [i, j, k] : mesh_body.faces) {
-    const Vector3d& a = mesh_body.vertices[i];
-    const Vector3d ab = mesh_body.vertices[j] - a, ac = mesh_body.vertices[k] - a, p = along.cross(ac);
-    const double determinant = ab.dot(p);
-    if (determinant == 0.0) continue;
-    const Vector3d s = from - a, q = s.cross(ab);
-    const double u = s.dot(p) / determinant, v = along.dot(q) / determinant, t = ac.dot(q) / determinant;
-    if (u >= 0 && v >= 0 && u + v <= 1 && t > 0 && t < 1) return true;
-  }
-  return false;
-}
-
 std::size_t stride_of(const Trajectory& run) { return std::max<std::size_t>(1, run.frames.size() / kExtentFrames); }
 
 }  // namespace
@@ -159,6 +142,11 @@ View Stage::view_at(const Frame& frame) const {
   return view_of(scene_.camera, frame.poses[i].com_world - run_.frames.front().poses[i].com_world);
 }
 
+TriangleMesh Stage::surface(const Actor& actor) const {
+  if (actor.geometry == kBoxGeometry) return surface_of(Box{actor.scale});
+  return actor.geometry >= kFirstMesh ? meshes_[static_cast<std::size_t>(actor.geometry - kFirstMesh)] : TriangleMesh{};
+}
+
 // An immovable body between the eye and a moving one would hide what is to be seen: it becomes glass, for the whole run.
 void Stage::turn_walls_to_glass() {
   constexpr std::size_t kLooks = 40;
@@ -166,41 +154,14 @@ void Stage::turn_walls_to_glass() {
   for (std::size_t wall = 0; wall < actors_.size(); ++wall) {
     Actor& actor = actors_[wall];
     if (!actor.immovable || actor.geometry < 0 || actor.pass == Pass::kGlass) continue;
-    TriangleMesh surface;
-    if (actor.geometry == kBoxGeometry) surface = surface_of(Box{actor.scale});
-    else if (actor.geometry >= kFirstMesh) surface = meshes_[static_cast<std::size_t>(actor.geometry - kFirstMesh)];
-    else continue;
+    const TriangleMesh shape = surface(actor);
     bool in_the_way = false;
     for (std::size_t f = 0; f < run_.frames.size() && !in_the_way; f += stride) {
       const Frame& frame = run_.frames[f];
       for (std::size_t i = 0; i < actors_.size() && !in_the_way; ++i)
-        in_the_way = !actors_[i].immovable && hides(surface, frame.poses[wall], view_at(frame).eye_world, frame.poses[i].com_world);
+        in_the_way = !actors_[i].immovable && hides(shape, frame.poses[wall], view_at(frame).eye_world, frame.poses[i].com_world);
     }
     if (in_the_way) actor.pass = Pass::kGlass, actor.opacity = 0.25;
-  }
-}
-
-// The bar lies between two lines of the grid, where it is seen well at the lower left, and stays there.
-void Stage::place_scale_bar() {
-  if (!ground_.shown || ground_.spacing_m <= 0.0 || followed_ >= 0 || !options_.captions) return;
-  const View view = view_of(scene_.camera);
-  const double w = options_.width, h = options_.height, step = ground_.spacing_m;
-  const Vector2d wanted(0.22 * w, 0.80 * h);
-  double best = std::numeric_limits<double>::infinity();
-  const int ci = static_cast<int>(std::lround(scene_.camera.target_m.x() / step)), cj = static_cast<int>(std::lround(scene_.camera.target_m.y() / step));
-  for (int i = ci - 30; i <= ci + 30; ++i) {
-    for (int j = cj - 30; j <= cj + 30; ++j) {
-      const Vector3d from(i * step, j * step, ground_.height_m), to = from + Vector3d(step, 0, 0);
-      const auto a = project(view, options_.width, options_.height, from), b = project(view, options_.width, options_.height, to);
-      if (!a || !b || (*a - *b).norm() < 0.045 * w) continue;
-      const bool inside = std::min(a->x(), b->x()) > 0.04 * w && std::max(a->x(), b->x()) < 0.96 * w && std::min(a->y(), b->y()) > 0.15 * h &&
-                          std::max(a->y(), b->y()) < 0.86 * h;
-      const double distance = (0.5 * (*a + *b) - wanted).norm();
-      if (!inside || distance >= best) continue;
-      best = distance;
-      scale_bar_from_ = from;
-      scale_bar_m_ = step;
-    }
   }
 }
 

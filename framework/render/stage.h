@@ -28,6 +28,7 @@ struct Actor {
 struct Label {
   Vector3d point_world;
   std::string text;
+  double drop_pixels = 0.0;   // further down than just below the point
 };
 
 /// What the stage says of one instant.
@@ -65,6 +66,7 @@ class Stage {
   void add_forces(const Frame& frame, Moment& moment) const;
   void add_impacts(const Frame& frame, Drawing& drawing) const;
   View view_at(const Frame& frame) const;
+  TriangleMesh surface(const Actor& actor) const;   // body frame; empty for balls and planes
   double sight_m() const { return (scene_.camera.eye_m - scene_.camera.target_m).norm(); }
 
   const scene::Scene& scene_;

@@ -162,4 +162,19 @@ Instance laid_between(const Vector3d& from_world, const Vector3d& to_world, doub
   return placed(from_world, turned, {width, width, along.norm()}, color, opacity);
 }
 
+bool hides(const TriangleMesh& mesh_body, const BodyPose& pose, const Vector3d& eye_world, const Vector3d& point_world) {
+  const Quaterniond body_from_world = pose.world_from_body.conjugate();
+  const Vector3d from = body_from_world * (eye_world - pose.com_world), along = body_from_world * (point_world - eye_world);
+  for (const auto& [i, j, k] : mesh_body.faces) {
+    const Vector3d& a = mesh_body.vertices[i];
+    const Vector3d ab = mesh_body.vertices[j] - a, ac = mesh_body.vertices[k] - a, p = along.cross(ac);
+    const double determinant = ab.dot(p);
+    if (determinant == 0.0) continue;
+    const Vector3d s = from - a, q = s.cross(ab);
+    const double u = s.dot(p) / determinant, v = along.dot(q) / determinant, t = ac.dot(q) / determinant;
+    if (u >= 0 && v >= 0 && u + v <= 1 && t > 0 && t < 1) return true;
+  }
+  return false;
+}
+
 }  // namespace tumble::render

@@ -3,6 +3,7 @@
 
 #include "framework/geometry/triangle_mesh.h"
 #include "framework/render/drawing.h"
+#include "framework/trajectory/trajectory.h"
 
 namespace tumble::render {
 
@@ -25,5 +26,9 @@ Instance placed(const Vector3d& origin_world, const Eigen::Matrix3d& world_from_
                 double opacity = 1.0);
 /// The local z axis laid from one point to another, `width` the scale across it. @pre the points differ
 Instance laid_between(const Vector3d& from_world, const Vector3d& to_world, double width, const Vector3d& color, double opacity = 1.0);
+
+/// Whether the segment from the eye to a point passes through a body's surface; degenerate triangles may answer either way.
+/// Source: T. Moeller, B. Trumbore, Journal of Graphics Tools 2(1), 1997.   Cost: O(faces)
+bool hides(const TriangleMesh& mesh_body, const BodyPose& pose, const Vector3d& eye_world, const Vector3d& point_world);
 
 }  // namespace tumble::render

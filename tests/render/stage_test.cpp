@@ -1,0 +1,78 @@
+// What a drawing adds to the bodies: the grid's scale where it is seen, paths with their corners.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "framework/render/camera.h"
+#include "framework/render/stage.h"
+#include "framework/render/stage_geometries.h"
+#include "framework/render/surfaces.h"
+#include "tests/render/render_fixtures.h"
+
+namespace tumble::render {
+namespace {
+
+const BodyPose kAtOrigin{Vector3d::Zero(), Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero()};
+
+PictureOptions as_shown() {
+  PictureOptions options;
+  options.width = 640;
+  options.height = 480;
+  return options;
+}
+
+// A low wall across the lower part of the picture, in front of the ground where the bar would lie without it.
+TEST(Stage, TheScaleBarLiesWhereNoWallHidesIt) {
+  scene::Scene scene = falling_ball();
+  scene.grid_spacing_m = 0.5;
+  const auto middle_of_bar = [](const Stage& stage) { return stage.moment(0).labels.back().point_world; };
+  const Trajectory alone = ball_at(2.0);
+  const Vector3d wanted = middle_of_bar(Stage(scene, alone, as_shown()));
+
+  const View view = view_of(scene.camera);
+  scene::BodySpec wall;
+  wall.name = "wall";
+  wall.shape = scene::BoxSpec{{4.0, 0.02, 0.15}};
+  wall.immovable = true;
+  wall.position_m = wanted + 0.1 * (view.eye_world - wanted).normalized();
+  scene.bodies.push_back(wall);
+  Trajectory run = alone;
+  run.bodies.push_back({"wall", true});
+  BodyPose pose = kAtOrigin;
+  pose.com_world = wall.position_m;
+  for (Frame& frame : run.frames) frame.poses.push_back(pose);
+
+  const TriangleMesh surface = surface_of(Box{{4.0, 0.02, 0.15}});
+  ASSERT_TRUE(hides(surface, pose, view.eye_world, wanted));
+  const Stage stage(scene, run, as_shown());
+  ASSERT_TRUE(stage.has_scale_bar());
+  EXPECT_FALSE(hides(surface, pose, view.eye_world, middle_of_bar(stage)));
+}
+
+// A ball goes out along x and comes back after 1000 steps; of 2000 frames a path shows every twelfth, and the corner besides.
+TEST(Stage, APathTurnsWhereTheBodyDid) {
+  constexpr int kCorner = 1003;      // no multiple of the frames shown
+  constexpr double kStride = 1e-2;   // m: more than a line is wide, which is all that a path leaves out
+  const scene::Scene scene = falling_ball();
+  Trajectory run = ball_at(1.0);
+  const Frame first = run.frames.front();
+  run.frames.clear();
+  for (int i = 0; i <= 2 * kCorner; ++i) {
+    Frame frame = first;
+    frame.time = i;
+    frame.poses[0].com_world = {kStride * (kCorner - std::abs(i - kCorner)), 0, 1};
+    run.frames.push_back(frame);
+  }
+  run.events.push_back({kCorner, EventKind::kCollision, 0, 1, {10.3, 0, 1}, {-1, 0, 0}, 1.0, -1.0, 1.0});
+  double farthest = 0.0;
+  for (const Batch& batch : Stage(scene, run, as_shown()).moment(run.frames.size() - 1).drawing.batches)
+    if (batch.geometry == kTube && batch.pass == Pass::kLine)
+      for (const Instance& piece : batch.instances)
+        if (piece.world_from_local[11] > 0.5f)   // at the ball's height: not the scale bar
+          farthest = std::max({farthest, double(piece.world_from_local[3]), double(piece.world_from_local[3]) + double(piece.world_from_local[2])});
+  // Single precision of 10 m; without the corner's own frames 5e-2 less.
+  EXPECT_NEAR(farthest, kStride * kCorner, 1e-5);
+}
+
+}  // namespace
+}  // namespace tumble::render
