@@ -12,7 +12,7 @@ fault() { echo "check_report: $*" >&2; faults=$((faults + 1)); }
 [ -s "$demo/index.html" ] || { fault "$demo/index.html is missing"; exit 1; }
 
 # Scores: the reference has them all, the untouched starter none, the flawed submission some.
-for assignment in a1 a2; do
+for assignment in a1 a2 a3; do
   book=$demo/$assignment/gradebook.csv
   [ -s "$book" ] || { fault "$book is missing"; continue; }
   score() { awk -F, -v who="$1" '{ gsub(/"/, "") } $1 == who { print $NF }' "$book"; }
@@ -55,4 +55,4 @@ for page in "$demo"/**/*.html; do
 done
 
 [ "$faults" = 0 ] || { echo "check_report: $faults faults in $demo" >&2; exit 1; }
-echo "check_report: scores of 6 submissions, pictures and videos of $scenes scenes, $links links: all as they should be"
+echo "check_report: scores of 9 submissions, pictures and videos of $scenes scenes, $links links: all as they should be"

@@ -90,6 +90,7 @@ void bind_module(const ModuleKind& kind, const AnyModule& module, const std::str
   kind.bind(module, alone);
   if (alone.collision_impulse) laws.impulse_source = kind.id + ' ' + source;
   if (alone.integrate_step) laws.integrator_source = kind.id + ' ' + source;
+  if (alone.constraint_multipliers) laws.constraint_source = kind.id + ' ' + source;
 }
 
 bool is_path(const std::string& word) { return !word.empty() && word != "student" && word != "reference" && word != "library"; }
