@@ -79,17 +79,12 @@ double angle_after_drop(const HeavyTop& top, double d) {
   return 2.0 * std::atan2(std::sqrt(std::max(0.0, sine2)), std::sqrt(std::max(0.0, 1.0 - sine2)));
 }
 
-struct Nutation {
-  double least, most;   // theta [rad]
-};
-
-Nutation compare_closed_forms(const Case& truth, const HeavyTop& top, Comparison& comparison) {
+void compare_closed_forms(const Case& truth, const HeavyTop& top, Comparison& comparison) {
   const Vector3d drops = drops_of_nutation(top);   // ascending d: the unphysical root u > 1 first
   const double u0 = std::cos(top.tilt), moment = top.m * top.g * top.l, L3 = top.I3 * top.spin();
   comparison.closed_form(truth, "cubic_roots_u", VectorXd(Vector3d(u0 - drops[2], u0 - drops[1], u0 - drops[0])));
-  const Nutation nutation{angle_after_drop(top, drops[1]), angle_after_drop(top, drops[2])};
-  comparison.closed_form(truth, "nutation_theta_min", nutation.least);
-  comparison.closed_form(truth, "nutation_theta_max", nutation.most);
+  comparison.closed_form(truth, "nutation_theta_min", angle_after_drop(top, drops[1]));
+  comparison.closed_form(truth, "nutation_theta_max", angle_after_drop(top, drops[2]));
   comparison.closed_form(truth, "sleeping_stability_w3_critical", 2.0 * std::sqrt(moment * top.It) / top.I3);
   // It cos(theta) W^2 - I3 w3 W + m g l = 0, without cancellation: the larger root by the formula, the other by their product.
   const double A = top.It * u0, discriminant = L3 * L3 - 4.0 * A * moment;
@@ -97,7 +92,6 @@ Nutation compare_closed_forms(const Case& truth, const HeavyTop& top, Comparison
     const double larger = 0.5 * (L3 + std::copysign(std::sqrt(discriminant), L3)), fast = larger / A, slow = moment / larger;
     comparison.closed_form(truth, "steady_precession_rates_at_theta0", VectorXd(Eigen::Vector2d(slow, fast)));
   }
-  return nutation;
 }
 
 // ---- Runs ------------------------------------------------------------------------------------------------------------
@@ -119,20 +113,12 @@ std::vector<Quantity> quantities_of_top(const Case& truth, const std::string& t)
           quantity(truth, "com_world_" + t, vector_of_last_frame([](const Frame& frame) { return VectorXd(frame.poses[0].com_world); }))};
 }
 
-/// By how much the tilts of a run leave the range of the nutation.
-double outside(const Trajectory& run, const Nutation& nutation) {
-  double worst = 0.0;
-  for (const Frame& frame : run.frames) worst = std::max({worst, nutation.least - tilt_of(frame), tilt_of(frame) - nutation.most});
-  return worst;
-}
-
-void compare_start(const Case& truth, const HeavyTop& top, const Frame& start, Comparison& comparison) {
+void compare_start(const Case& truth, const Frame& start, Comparison& comparison) {
   comparison.closed_form(truth, "omega0_body", omega_body_of(start));
   comparison.closed_form("q0", quaternion_difference(start.poses[0].world_from_body, truth.output("q0").vector()), truth.floor("q0"));
   comparison.closed_form(truth, "energy", start.kinetic_energy + start.potential_energy);
   comparison.closed_form(truth, "p_phi", start.angular_momentum_world.z());
   comparison.closed_form(truth, "p_psi", start.angular_momentum_world.dot(rotation_of(start).col(2)));
-  (void)top;
 }
 
 }  // namespace
@@ -140,10 +126,8 @@ void compare_start(const Case& truth, const HeavyTop& top, const Frame& start, C
 void compare_heavy_top(const Case& truth, const Laws& laws, Comparison& comparison) {
   const HeavyTop top(truth);
   const scene::Scene scene = top.scene(truth.id);
-  const Nutation nutation = compare_closed_forms(truth, top, comparison);
-  comparison.attempt("start", [&] { compare_start(truth, top, start_of(scene, laws), comparison); });
-  (void)outside;
-  (void)nutation;
+  compare_closed_forms(truth, top, comparison);
+  comparison.attempt("start", [&] { compare_start(truth, start_of(scene, laws), comparison); });
   for (const Value& time : truth.input("times").list()) {
     const std::string t = "t" + time.text();
     const double rate = std::max(top.omega_body().norm(), std::sqrt(top.m * top.g * top.l / top.It));
