@@ -12,10 +12,10 @@ constexpr double kOrder = 4.0, kOrderTolerance = 0.1;   // of the classical Rung
 constexpr double kFirstAngle = 0.2;                     // rad: what the fastest motion turns in the first run's step, at most
 constexpr double kFirstError = 1e-2;                    // rad: nor does an oscillation lag behind more than this in the first run, by (w h)^4 / 120 w t
 constexpr long kFewestSteps = 16;
-constexpr double kMostBodySteps = 2e5;                  // of all runs of one instant together, beyond the first three: seconds
+constexpr double kMostSteps = 8e4;                      // of all runs of one instant together, beyond the first three: seconds
 constexpr double kNextTerm = 2.0;                       // what terms after C h^4 may add to a prediction
 constexpr double kUnsettled = 0.5;                      // off the order of a first glance by less: nothing is said
-constexpr double kSettled = 0.03;                       // two successive orders this close: a third of what the order may be off
+constexpr double kSettled = 0.05;                       // two successive orders this close: half of what the order may be off
 // Changes in floors. Thousands of steps, each with tens of roundings, may add up to a thousand floors or a few.
 constexpr double kFine = 1e6;                           // small enough: about 1e-10 of what is compared
 constexpr double kAboveRoundOff = 1e5;                  // known to a few per cent, its log2 to less than what the order may be off
@@ -106,13 +106,12 @@ struct Refinement {
 Refinement refine(const RefinedRun& run, const Laws& laws, const std::vector<Quantity>& quantities) {
   const double turned = run.t * run.fastest_rate, angle = std::min(kFirstAngle, std::pow(120.0 * kFirstError / turned, 0.25));
   const long first = std::max(kFewestSteps, static_cast<long>(std::ceil(turned / angle))), frames = run.frames_throughout ? first : 1;
-  const double bodies = static_cast<double>(run.scene.bodies.size());
   std::vector<Level> levels{{first, read(run, laws, quantities, frames, first), std::vector<double>(quantities.size(), kUnset), kUnset}};
-  double spent = bodies * static_cast<double>(first);
+  double spent = static_cast<double>(first);
   while (!is_fine_enough(levels)) {
     const long steps = 2 * levels.back().steps;
-    spent += bodies * static_cast<double>(steps);
-    if (levels.size() >= 3 && spent > kMostBodySteps) break;
+    spent += static_cast<double>(steps);
+    if (levels.size() >= 3 && spent > kMostSteps) break;
     levels.push_back(next_level(levels.back(), read(run, laws, quantities, frames, steps), quantities));
     if (!std::isfinite(levels.back().state_change)) break;
   }
