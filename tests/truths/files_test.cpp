@@ -50,7 +50,25 @@ TEST(TruthFiles, AStageUsedTwiceByRk4IsWrong) {
     };
     return right_step(repeating, t, y, h);
   };
-  for (const char* name : {"logistic__lecture_a6_b0.007_dt0.5", "free_top_symmetric__rod_prolate", "free_top_asymmetric__generic_123"})
+  for (const char* name : {"logistic__lecture_a6_b0.007_dt0.5", "free_top_symmetric__rod_prolate", "free_top_asymmetric__generic_123", "spring_mass__critical"})
+    EXPECT_EQ(truths::verdict_of(spoilt.compare(truth_named(name))), Verdict::kWrong) << name;
+}
+
+TEST(TruthFiles, DampingOfTheWrongSignAndARodWithoutItsVelocityProductAreWrong) {
+  Reference spoilt;
+  const auto right_force = spoilt.a3.spring_force;
+  spoilt.a3.spring_force = [=](const Spring& spring, const AnchorState& a, const AnchorState& b) {
+    Spring driven = spring;
+    driven.damping = -spring.damping;
+    return right_force(driven, a, b);
+  };
+  const auto right_row = spoilt.a3.rod_row;
+  spoilt.a3.rod_row = [=](const Body& a, const Vector3d& point_a, const Body& b, const Vector3d& point_b, double length) {
+    ConstraintRow row = right_row(a, point_a, b, point_b, length);
+    row.velocity_product = 0.0;
+    return row;
+  };
+  for (const char* name : {"spring_mass__critical", "two_body_spring__damped_k20_c0.5", "double_pendulum__rest_horizontal_equal"})
     EXPECT_EQ(truths::verdict_of(spoilt.compare(truth_named(name))), Verdict::kWrong) << name;
 }
 
@@ -58,7 +76,8 @@ TEST(TruthFiles, AStubIsNotAttempted) {
   Reference stub;
   stub.a2.rk4_step = [](const OdeFunction&, double, const VectorXd&, double) -> VectorXd { throw NotImplemented("rk4_step", "handout"); };
   stub.a1.collision_impulse = [](const Contact&, const Body&, const Body&, double) -> double { throw NotImplemented("collision_impulse", "handout"); };
-  for (const char* name : {"logistic__lecture_to_T2", "free_top_symmetric__rod_prolate", "impulse_rod_ball__tip_e1", "bouncing_ball__e0.5"})
+  stub.a3.spring_force = [](const Spring&, const AnchorState&, const AnchorState&) -> Vector3d { throw NotImplemented("spring_force", "handout"); };
+  for (const char* name : {"logistic__lecture_to_T2", "free_top_symmetric__rod_prolate", "impulse_rod_ball__tip_e1", "bouncing_ball__e0.5", "spring_mass__overdamped"})
     EXPECT_EQ(truths::verdict_of(stub.compare(truth_named(name))), Verdict::kNotAttempted) << name;
 }
 
