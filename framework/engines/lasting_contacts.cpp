@@ -16,13 +16,19 @@ constexpr double kRounding = 64;          // of coordinates far from the origin,
 constexpr double kBand = 2.0;             // shells: nearer than this two touch
 constexpr double kApart = 8.0;            // shells: farther than this, and than the rest speed goes in a step, a contact has ended
 constexpr double kReach = 0.25;           // of the smaller body: points farther away are not looked at
+constexpr double kEnough = 1e-8;          // of the group's speed: what is left of approach and slip; problems at rest come out to rounding
+// A heap that is asked for in steps, not in instants, gets answers of that kind.
+constexpr std::size_t kPile = 60;         // contacts of a group
+constexpr double kEnoughOfAPile = 1e-5;
+constexpr int kSweepsOfAPile = 120;
+constexpr double kMostTurn = 0.05;        // rad: a group with contacts that turns twice as far gets shorter steps; what is left is of second order
 constexpr double kTurns = 1e-3;           // rad: a body that turns less in a step meets the same points at its end
 constexpr double kMidway = 0.3;           // of the smaller body: how far from each other points of one contact may lie at the middle of a step
 constexpr int kMostShifts = 8;            // rounds of taking back overlaps
 constexpr int kMostOfStudents = 64;       // contacts of a group that the laws' contact_forces is asked for: it is given a dense matrix
 constexpr int kMostLocated = 12;          // contacts of a group whose end of sliding is located in time
 constexpr double kShortest = 1e-6;        // of the longest step: ends of sliding that come sooner are taken with it
-constexpr int kMostSearches = 16;         // for ends of sliding from one instant
+constexpr int kMostSearches = 16;         // for ends of sliding within a step: bodies that chatter stop with the step
 constexpr double kSlides = 1e-9;          // of the group's speed: slower than this nothing slides
 
 Vector3d velocity_at(const PushedBody& body, const Vector3d& velocity, const Vector3d& omega, const Vector3d& point) {
@@ -232,9 +238,17 @@ ContactSolution LastingContacts::solve(const Group& group, const ContactProblem&
   const bool frictionless = std::all_of(problem.contacts.begin(), problem.contacts.end(), smooth);
   if (!frictionless) counters_.friction_points += static_cast<std::uint64_t>(std::count_if(problem.contacts.begin(), problem.contacts.end(), [&](const auto& c) { return !smooth(c); }));
   if (!frictionless || !problem.rows.empty() || static_cast<int>(problem.contacts.size()) > kMostOfStudents) {
-    const ContactSolution solution = solve_contacts(problem);
+    ContactOptions options;
+    if (static_cast<int>(problem.contacts.size()) > kMostLocated) options.tolerance = kEnough;
+    if (rules_.plastic_impacts == scene::PlasticImpacts::kInStep && problem.contacts.size() > kPile) {
+      options.tolerance = kEnoughOfAPile;
+      options.largest_direct = 0;
+      options.most_sweeps_alone = kSweepsOfAPile;
+    }
+    const ContactSolution solution = solve_contacts(problem, options);
     counters_.contact_sweeps += static_cast<std::uint64_t>(solution.sweeps);
     counters_.contact_factorisations += static_cast<std::uint64_t>(solution.factorisations);
+    if (!solution.converged) ++counters_.contact_unsolved;
     return solution;
   }
   // The laws' part: A f + b are accelerations, f forces.
@@ -308,8 +322,8 @@ std::optional<double> LastingContacts::stop_of_sliding(const ContactProblem& pro
     at_hand = limit;
   }
   if (!stopping) return std::nullopt;
-  if (searched_at_ != moving_.time()) {
-    searched_at_ = moving_.time();
+  if (!(moving_.time() < searched_from_ + step_)) {
+    searched_from_ = moving_.time();
     searches_ = 0;
   }
   if (++searches_ > kMostSearches) return std::nullopt;
@@ -333,10 +347,9 @@ bool LastingContacts::lands(const std::vector<Touch>& touches, const ContactSolu
   return false;
 }
 
-// Where the group's bodies come out with these impulses. `starts`: with what velocities their paths begin.
-std::vector<RigidBodyState> LastingContacts::ends_of(const Group& group, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing,
-                                                     std::vector<RigidBodyState>& starts) const {
-  std::vector<RigidBodyState> ends = starts;
+// Where the group's bodies come out with these impulses.
+std::vector<RigidBodyState> LastingContacts::ends_of(const Group& group, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing) const {
+  std::vector<RigidBodyState> ends = moving_.states();
   for (std::size_t k = 0; k < group.bodies.size(); ++k) {   // the problem's first bodies are the group's
     const int body = group.bodies[k];
     const Inertia& inertia = moving_.world().bodies[body].inertia;
@@ -345,8 +358,6 @@ std::vector<RigidBodyState> LastingContacts::ends_of(const Group& group, const C
     if (landing) {
       end.com_world += h * after.linear_world;
       end.world_from_body = turned(end.world_from_body, h * after.angular_world);
-      starts[body].momentum_world = inertia.mass * after.linear_world;
-      starts[body].angular_momentum_world = angular_momentum_of(after.angular_world, starts[body].world_from_body, inertia);
     } else {
       end = moving_.path_end(body);
       end.com_world += 0.5 * h * (after.linear_world - problem.bodies[k].velocity_world);
@@ -358,10 +369,12 @@ std::vector<RigidBodyState> LastingContacts::ends_of(const Group& group, const C
   return ends;
 }
 
-bool LastingContacts::turns(const Group& group, const std::vector<RigidBodyState>& ends, double h) const {
-  return std::any_of(group.bodies.begin(), group.bodies.end(), [&](int body) {
-    return !moving_.shape(body).is_ball() && omega_of(ends[body], moving_.world().bodies[body].inertia).norm() * h > kTurns;
-  });
+// The angle that the fastest of the group's bodies turns in the step; a ball looks the same however it turns.
+double LastingContacts::largest_turn(const Group& group, const std::vector<RigidBodyState>& ends, double h) const {
+  double turn = 0.0;
+  for (const int body : group.bodies)
+    if (!moving_.shape(body).is_ball()) turn = std::max(turn, omega_of(ends[body], moving_.world().bodies[body].inertia).norm() * h);
+  return turn;
 }
 
 // Contacts of a group that turns: at the middle of the step, where their forces act evenly, with targets that make the velocities at the
@@ -422,10 +435,9 @@ std::vector<LastingContacts::Touch> LastingContacts::touches_midway(const Group&
 }
 
 void LastingContacts::give_paths(const Group& group, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing) {
-  std::vector<RigidBodyState> starts = moving_.states();
-  std::vector<RigidBodyState> ends = ends_of(group, problem, solution, h, landing, starts);
+  std::vector<RigidBodyState> ends = ends_of(group, problem, solution, h, landing);
   keep_apart(group, ends, moving_.target());
-  for (const int body : group.bodies) moving_.set_path(body, starts[body], ends[body]);
+  for (const int body : group.bodies) moving_.set_path(body, moving_.state(body), ends[body]);
 }
 
 // The smallest shift (in the measure of the masses) that leaves no gap of the group below its shell, and no rod or joint open.
@@ -437,13 +449,18 @@ void LastingContacts::keep_apart(const Group& group, std::vector<RigidBodyState>
     std::map<int, int> places;
     for (const int body : group.bodies) place(body, t, places, states, nullptr, problem);
     bool overlap = false;
-    for (const Pair& pair : group.pairs) {
+    for (const Pair& pair : group.near) {
       const double room = shell(pair), near = 1e3 * room;
       for (const collision::NearPoint& point : points_at(pair, states, near)) {
         overlap = overlap || point.gap < 0.5 * room;
         PushingContact contact;
         contact.body_a = place(pair.first, t, places, states, nullptr, problem);
         contact.body_b = place(pair.second, t, places, states, nullptr, problem);
+        for (const int index : {contact.body_a, contact.body_b})   // bodies of other groups stay where they are
+          if (index >= static_cast<int>(group.bodies.size())) {
+            problem.bodies[index].inverse_mass = 0.0;
+            problem.bodies[index].inverse_inertia_world.setZero();
+          }
         contact.point_world = point_of(pair, point);
         contact.normal_b_to_a_world = point.normal_b_to_a_world;
         contact.target = room - point.gap;
@@ -487,14 +504,19 @@ std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidat
   }
   if (touching.empty()) return std::nullopt;
   groups_ = groups(touching);
+  for (Group& group : groups_)
+    for (const Pair& pair : candidates)
+      if (std::binary_search(group.bodies.begin(), group.bodies.end(), pair.first) || std::binary_search(group.bodies.begin(), group.bodies.end(), pair.second)) group.near.push_back(pair);
   std::map<Pair, std::vector<Warm>> warm;
   for (const Group& group : groups_) {
     std::vector<Touch> touches = touches_of(group);
     ContactProblem problem = problem_of(group, touches, moving_.states(), h);
     ContactSolution solution = solve(group, problem, h);
     bool landing = lands(touches, solution);
-    std::vector<RigidBodyState> states = moving_.states();
-    if (const auto ends = ends_of(group, problem, solution, h, landing, states); !landing && turns(group, ends, h)) {
+    const std::vector<RigidBodyState> ends = ends_of(group, problem, solution, h, landing);
+    const double turn = largest_turn(group, ends, h);
+    if (rules_.plastic_impacts == scene::PlasticImpacts::kLocated && turn > 2 * kMostTurn && h > kShortest * step_) return moving_.time() + h * kMostTurn / turn;
+    if (!landing && turn > kTurns) {
       std::vector<RigidBodyState> middle = moving_.states();
       touches = touches_midway(group, touches, ends, middle);
       problem = problem_of(group, touches, middle, h);

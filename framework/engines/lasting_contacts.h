@@ -57,7 +57,8 @@ class LastingContacts {
   };
   struct Group {
     std::vector<int> bodies;     // that can move, ascending
-    std::vector<Pair> pairs;
+    std::vector<Pair> pairs;     // in contact
+    std::vector<Pair> near;      // pairs with a body of the group that may meet in the step; those in contact among them
     std::vector<int> linked;     // places in linked_groups()
   };
   struct Touch {
@@ -85,9 +86,8 @@ class LastingContacts {
   ContactSolution solve(const Group& group, const ContactProblem& problem, double h);
   std::optional<double> stop_of_sliding(const ContactProblem& problem, const std::vector<Touch>& touches, const ContactSolution& solution, double h);
   static bool lands(const std::vector<Touch>& touches, const ContactSolution& solution);
-  std::vector<RigidBodyState> ends_of(const Group& group, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing,
-                                      std::vector<RigidBodyState>& starts) const;
-  bool turns(const Group& group, const std::vector<RigidBodyState>& ends, double h) const;
+  std::vector<RigidBodyState> ends_of(const Group& group, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing) const;
+  double largest_turn(const Group& group, const std::vector<RigidBodyState>& ends, double h) const;
   std::vector<Touch> touches_midway(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& ends,
                                     std::vector<RigidBodyState>& middle) const;
   void give_paths(const Group& group, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing);
@@ -106,7 +106,7 @@ class LastingContacts {
   std::map<Pair, std::vector<Warm>> warm_;
   std::vector<Group> groups_;                    // of the step
   std::vector<ContactPoint> forces_;
-  double searched_at_ = kUnset;                  // instant from which ends of sliding were looked for, and how often
+  double searched_from_ = -1e300;                // ends of sliding were looked for since, and how often
   int searches_ = 0;
   std::optional<Locating> locating_;             // the end of sliding that is being looked for
 };

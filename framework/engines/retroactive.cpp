@@ -347,6 +347,7 @@ void RetroactiveRun::advance_to(double target) {
     std::vector<std::pair<int, int>> pairs = candidates();
     if (moving_.shorten_step(pairs)) pairs = candidates();
     if (contacts_) pairs = keep_contacts(std::move(pairs));
+    const std::vector<std::pair<int, int>> near = contacts_ && !contacts_->empty() ? candidates() : std::vector<std::pair<int, int>>{};
     std::optional<Earliest> earliest;
     {
       const StageTimer timer(counters_.collision_seconds);
@@ -360,6 +361,7 @@ void RetroactiveRun::advance_to(double target) {
     if (!stopped_by_.empty()) return;
     separate(pairs);
     if (contacts_) contacts_->commit();
+    if (contacts_ && !contacts_->empty()) separate(near);
     if (!earliest) continue;
     ++counters_.rollbacks;
     resolve_at(pairs, pairs[earliest->pair]);

@@ -32,6 +32,7 @@ Counters RunCounters::named() const {
                   {"contact_points", contact_points},
                   {"contact_sweeps", contact_sweeps},
                   {"contact_factorisations", contact_factorisations},
+                  {"contact_unsolved", contact_unsolved},
                   {"contacts_begun", contacts_begun},
                   {"contacts_ended", contacts_ended},
                   {"friction_points", friction_points},
