@@ -71,19 +71,21 @@ class Painter::Body {
     draw_shadow_map(drawing, shadow);
     gl_.BindFramebuffer(gl::kFramebuffer, canvas_);
     gl_.Viewport(0, 0, width_, height_);
-    gl_.Enable(gl::kFramebufferSrgb);
+    gl_.Disable(gl::kFramebufferSrgb);   // until something is blended
     gl_.Clear(gl::kColorBufferBit | gl::kDepthBufferBit);
     const Matrix4f clip = clip_from_world(drawing.view, static_cast<double>(width_) / height_, drawing.near_m, drawing.far_m);
-    draw_backdrop();
     gl_.Enable(gl::kDepthTest);
     // Surfaces are closed, so their far sides are never seen. Blending costs more than lighting here: only what needs it pays.
     gl_.Enable(gl::kCullFace);
     gl_.CullFace(gl::kBack);
     draw_bodies(drawing, clip, shadow, Pass::kSolid);
     gl_.Disable(gl::kCullFace);
+    // What is nearer comes first: what it hides is not shaded.
+    draw_ground(drawing, clip, shadow);
+    draw_backdrop();
+    gl_.Enable(gl::kFramebufferSrgb);
     gl_.Enable(gl::kBlend);
     gl_.BlendFuncSeparate(gl::kSrcAlpha, gl::kOneMinusSrcAlpha, gl::kOne, gl::kOneMinusSrcAlpha);
-    draw_ground(drawing, clip, shadow);   // after the bodies: what they hide is not shaded
     draw_unlit(drawing, clip, Pass::kLine);
     // Glass is seen through, so it hides nothing: no depth is written, and its far side is not drawn.
     gl_.DepthMask(0);
@@ -212,18 +214,19 @@ class Painter::Body {
     gl_.Enable(gl::kDepthTest);
     gl_.Enable(gl::kPolygonOffsetFill);
     gl_.PolygonOffset(2.0f, 4.0f);
+    gl_.Enable(gl::kCullFace);   // of a closed surface, the side that looks away from the light is behind the other
+    gl_.CullFace(gl::kBack);
     gl_.UseProgram(depth_);
     uniform(depth_, "clip_from_world", shadow);
     for (const Batch& batch : drawing.batches)
       if (batch.pass == Pass::kSolid) draw(batch);
+    gl_.Disable(gl::kCullFace);
     gl_.Disable(gl::kPolygonOffsetFill);
   }
 
   void draw_backdrop() {
-    gl_.Disable(gl::kDepthTest);
     gl_.UseProgram(backdrop_);
-    uniform(backdrop_, "low", Eigen::Vector3f(0.86f, 0.875f, 0.885f));
-    uniform(backdrop_, "high", Eigen::Vector3f(0.52f, 0.63f, 0.74f));
+    use_sky(backdrop_);
     gl_.BindVertexArray(no_vertices_);
     gl_.DrawArrays(gl::kTriangles, 0, 3);
   }
@@ -237,6 +240,8 @@ class Painter::Body {
     uniform(ground_, "centre", to_float({ground.centre_m.x(), ground.centre_m.y(), ground.height_m}));
     uniform(ground_, "reach", static_cast<float>(ground.fade_m));
     uniform(ground_, "spacing", static_cast<float>(ground.spacing_m));
+    uniform(ground_, "picture", Eigen::Vector3f(static_cast<float>(width_), static_cast<float>(height_), 0.0f));
+    use_sky(ground_);
     gl_.BindVertexArray(no_vertices_);
     gl_.DrawArrays(gl::kTriangles, 0, 6);
   }
@@ -249,6 +254,7 @@ class Painter::Body {
     uniform(bodies_, "eye", to_float(view.eye_world));
     uniform(bodies_, "to_light", to_float(drawing.to_light_world));
     uniform(bodies_, "to_fill", to_float((view.right_world * 0.8 - view.forward_world * 0.6 + view.up_world * 0.1).normalized()));
+    uniform(bodies_, "is_blended", pass == Pass::kGlass ? 1.0f : 0.0f);
     uniform(bodies_, "shadow_bias", static_cast<float>(2.0 * drawing.shadow_radius_m / kShadowSide));
     for (const Batch& batch : drawing.batches)
       if (batch.pass == pass) draw(batch);
@@ -260,6 +266,11 @@ class Painter::Body {
     uniform(marks_, "eye", to_float(drawing.view.eye_world));
     for (const Batch& batch : drawing.batches)
       if (batch.pass == pass) draw(batch);
+  }
+
+  void use_sky(GlName program) {
+    uniform(program, "low", Eigen::Vector3f(0.86f, 0.875f, 0.885f));
+    uniform(program, "high", Eigen::Vector3f(0.52f, 0.63f, 0.74f));
   }
 
   void use_shadow(GlName program, const Matrix4f& shadow) {

@@ -5,7 +5,15 @@
 
 namespace tumble::render {
 
-// Everything is computed in linear light; the framebuffer is sRGB, so the gamma curve is applied when a pixel is stored.
+// Everything is computed in linear light, and samples of a pixel are mixed in it. What covers its pixel applies the curve of sRGB
+// itself, once; what is blended leaves it to the framebuffer, which applies it to every sample: in software that takes as long as
+// all the rest.
+inline const std::string kStored = R"(
+vec3 stored(vec3 light) {   // IEC 61966-2-1
+  light = max(light, 0.0);
+  return mix(12.92 * light, 1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055, step(0.0031308, light));
+}
+)";
 
 inline constexpr const char* kBodyVertex = R"(#version 330 core
 layout(location = 0) in vec3 position;
@@ -51,19 +59,23 @@ inline constexpr const char* kDepthFragment = R"(#version 330 core
 void main() {}
 )";
 
-// Share of the key light that arrives: nine comparisons, each interpolated between four texels by the hardware filter.
+// Share of the key light that arrives: nine comparisons, each interpolated between four texels by the hardware filter. Where the
+// middle and the corners agree, as nearly everywhere, the sides between them are not asked.
 inline const std::string kLightShare = R"(
 uniform sampler2DShadow shadow_map;
 uniform mat4 shadow_from_world;
 uniform float shadow_texel;
+float lit(vec3 s, float i, float j) { return textureLod(shadow_map, s + vec3(1.4 * shadow_texel * vec2(i, j), 0.0), 0.0); }
 float light_share(vec3 p) {
   vec3 s = (shadow_from_world * vec4(p, 1.0)).xyz * 0.5 + 0.5;
   if (any(lessThan(s.xy, vec2(0.0))) || any(greaterThan(s.xy, vec2(1.0)))) return 1.0;
   s.z = clamp(s.z, 0.0, 1.0);  // what lies beyond the casters along the light, as the ground may, is shaded by them too
-  float sum = 0.0;
-  for (int i = -1; i <= 1; ++i)
-    for (int j = -1; j <= 1; ++j) sum += texture(shadow_map, s + vec3(1.4 * shadow_texel * vec2(i, j), 0.0));
-  return sum / 9.0;
+  float corners = lit(s, 0.0, 0.0) + lit(s, -1.0, -1.0) + lit(s, 1.0, -1.0) + lit(s, -1.0, 1.0) + lit(s, 1.0, 1.0);
+  // A loop, because software runs both ways of an "if" for all pixels.
+  int asked = corners > 0.0 && corners < 5.0 ? 4 : 0;
+  float sides = 0.0;
+  for (int k = 0; k < asked; ++k) sides += lit(s, k == 0 ? -1.0 : k == 1 ? 1.0 : 0.0, k == 2 ? -1.0 : k == 3 ? 1.0 : 0.0);
+  return asked == 0 ? corners / 5.0 : (corners + sides) / 9.0;
 }
 )";
 
@@ -77,8 +89,9 @@ uniform vec3 eye;
 uniform vec3 to_light;
 uniform vec3 to_fill;
 uniform float shadow_bias;
+uniform float is_blended;
 out vec4 pixel;
-)") + kLightShare + R"(
+)") + kStored + kLightShare + R"(
 void main() {
   vec3 n = normalize(normal_world);
   vec3 v = normalize(eye - at_world);
@@ -98,7 +111,8 @@ void main() {
   float rim = pow(1.0 - max(dot(n, v), 0.0), 3.0);
   // Glass shows its edges: more is reflected where the surface turns away.
   float opacity = body_color.a < 1.0 ? mix(body_color.a, min(1.0, body_color.a * 2.5), rim) : 1.0;
-  pixel = vec4(base * light + vec3(gloss), opacity);
+  vec3 seen = base * light + vec3(gloss);
+  pixel = vec4(is_blended > 0.5 ? seen : stored(seen), opacity);
 }
 )";
 
@@ -116,26 +130,32 @@ void main() {
 }
 )";
 
-// One triangle over the whole picture.
+// One triangle over the whole picture, just before the end of sight: it is seen where nothing else is.
 inline constexpr const char* kBackdropVertex = R"(#version 330 core
 out vec2 place;
 void main() {
   vec2 corner = vec2(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0);
   place = corner;
-  gl_Position = vec4(corner, 1.0, 1.0);
+  gl_Position = vec4(corner, 0.999999, 1.0);
 }
 )";
 
-inline constexpr const char* kBackdropFragment = R"(#version 330 core
-in vec2 place;
+// The sky behind everything. @param place  of the pixel, -1 to 1 across the picture
+inline const std::string kSky = R"(
 uniform vec3 low;
 uniform vec3 high;
-out vec4 pixel;
-void main() {
+vec3 sky(vec2 place) {
   float t = smoothstep(-1.0, 1.0, place.y);
   float corner = 1.0 - 0.07 * dot(place, place);
-  pixel = vec4(mix(low, high, t) * corner, 1.0);
+  return mix(low, high, t) * corner;
 }
+)";
+
+inline const std::string kBackdropFragment = std::string(R"(#version 330 core
+in vec2 place;
+out vec4 pixel;
+)") + kStored + kSky + R"(
+void main() { pixel = vec4(stored(sky(place)), 1.0); }
 )";
 
 inline constexpr const char* kGroundVertex = R"(#version 330 core
@@ -157,8 +177,9 @@ in vec3 at_world;
 uniform vec3 centre;
 uniform float reach;
 uniform float spacing;
+uniform vec3 picture;
 out vec4 pixel;
-)") + kLightShare + R"(
+)") + kStored + kLightShare + kSky + R"(
 float lines(vec2 p, float step, float width) {
   vec2 q = p / step;
   vec2 blur = max(fwidth(q), vec2(1e-6));
@@ -174,7 +195,8 @@ void main() {
     color = mix(color, vec3(0.36, 0.42, 0.48), line);
   }
   color *= mix(0.36, 1.0, light_share(at_world));
-  pixel = vec4(color, fade);
+  // Where it fades it shows the sky: mixed here, for blending all of a picture costs more than drawing it.
+  pixel = vec4(stored(mix(sky(2.0 * gl_FragCoord.xy / picture.xy - 1.0), color, fade)), 1.0);
 }
 )";
 
