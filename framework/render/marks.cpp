@@ -112,7 +112,7 @@ void Stage::add_path(std::size_t last, Drawing& drawing) const {
 
 void Stage::add_impacts(const Frame& frame, Drawing& drawing) const {
   const double life = kFlashSeconds * options_.speed;
-  Batch flashes{kBall + 1, Pass::kMark, {}}, arrows{kArrow, Pass::kMark, {}};
+  Batch flashes{kBall + ball_level(6.0 * options_.height / 480.0), Pass::kMark, {}}, arrows{kArrow, Pass::kMark, {}};
   const auto add_arrow = [&](const Event& event, int body, double sign, double opacity) {
     const Actor& actor = actors_[static_cast<std::size_t>(body)];
     if (actor.immovable) return;
