@@ -14,6 +14,7 @@ constexpr double kEpsilon = 2.220446049250313e-16;
 constexpr double kShell = 1e-10;          // of the smaller body's radius: far above rounding, far below what is seen or measured
 constexpr double kRounding = 64;          // of coordinates far from the origin, in the shell
 constexpr double kBand = 2.0;             // shells: nearer than this two touch
+constexpr double kUnseenRoom = 1e-9;      // of the way in a step: what the tolerance of the impulses leaves between bodies that touch
 constexpr double kApart = 8.0;            // shells: farther than this, and than the rest speed goes in a step, a contact has ended
 constexpr double kReach = 0.25;           // of the smaller body: points farther away are not looked at
 constexpr double kEnough = 1e-8;          // of the group's speed: what is left of approach and slip; problems at rest come out to rounding
@@ -141,12 +142,12 @@ std::vector<LastingContacts::Group> LastingContacts::groups(const std::vector<Pa
   return result;
 }
 
-std::vector<LastingContacts::Touch> LastingContacts::touches_of(const Group& group) const {
+std::vector<LastingContacts::Touch> LastingContacts::touches_of(const Group& group) {
   std::vector<Touch> touches;
   for (const Pair& pair : group.pairs)
     for (const collision::NearPoint& point : points_.at(pair)) {
       const double thickness = shell(pair), room = point.gap - thickness;
-      const bool lands = room > kBand * thickness;
+      const bool lands = room > kBand * thickness + kUnseenRoom * reach(pair);
       touches.push_back({pair, point, lands ? -room / (moving_.target() - moving_.time()) : 0.0, lands});
     }
   return touches;
@@ -293,6 +294,7 @@ std::optional<double> LastingContacts::stop_of_sliding(const ContactProblem& pro
   for (std::size_t i = 0; i < touches.size();) {
     const Pair& pair = touches[i].pair;
     Vector3d along = Vector3d::Zero();
+    Vector3d slips = Vector3d::Zero();   // of the point that slides fastest
     double limit = 0.0, slip = 0.0, speed = 0.0;
     bool sticks = true;
     for (; i < touches.size() && touches[i].pair == pair; ++i) {
@@ -305,7 +307,10 @@ std::optional<double> LastingContacts::stop_of_sliding(const ContactProblem& pro
         return b.velocity_world + b.omega_world.cross(arm);
       };
       const Vector3d va = velocity(pair.first), vb = velocity(pair.second), relative = va - vb;
-      slip = std::max(slip, (relative - relative.dot(n) * n).norm());
+      if (const Vector3d slides = relative - relative.dot(n) * n; slides.norm() > slip) {
+        slips = slides;
+        slip = slides.norm();
+      }
       speed = std::max({speed, va.norm(), vb.norm()});
       const double normal = solution.impulses_world[i].dot(n);
       along += solution.impulses_world[i] - normal * n;
@@ -318,7 +323,7 @@ std::optional<double> LastingContacts::stop_of_sliding(const ContactProblem& pro
     if (along.norm() >= least * limit) continue;
     least = along.norm() / limit;
     stopping = &pair;
-    stopping_impulse = along.norm();
+    stopping_impulse = -along.dot(slips) / slip;   // signed: on a slope gravity may do more than stop it, and friction holds it then
     at_hand = limit;
   }
   if (!stopping) return std::nullopt;

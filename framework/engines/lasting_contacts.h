@@ -81,7 +81,7 @@ class LastingContacts {
   collision::Pose pose(int body, const std::vector<RigidBodyState>& states) const;
   Points points_at(Pair pair, const std::vector<RigidBodyState>& states, double reach) const;
   std::vector<Group> groups(const std::vector<Pair>& touching);
-  std::vector<Touch> touches_of(const Group& group) const;
+  std::vector<Touch> touches_of(const Group& group);
   ContactProblem problem_of(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& states, double h);
   ContactSolution solve(const Group& group, const ContactProblem& problem, double h);
   std::optional<double> stop_of_sliding(const ContactProblem& problem, const std::vector<Touch>& touches, const ContactSolution& solution, double h);

@@ -24,6 +24,7 @@ constexpr double kTouching = 64 * kEpsilon;
 constexpr double kSamePatch = 1e-9;
 // A support that leans by less [rad] counts as level: in 100 s a ball would slide 5e-8 m.
 constexpr double kLevel = 1e-12;
+constexpr double kNoStep = 1e-9;         // of the step: a shorter last one is taken with the one before
 constexpr int kMostPassings = 100;        // of a blow to and fro between bodies that touch and bodies that are joined
 constexpr int kMostIdleSteps = 1000;      // in a row without progress of time
 constexpr int kMostImpactsAStep = 20000;  // of one pair: a Zeno sequence that needs a lasting contact
@@ -87,7 +88,8 @@ class RetroactiveRun {
 };
 
 double RetroactiveRun::next_target() const {
-  double target = std::min(static_cast<double>(grid_index_ + 1) * step_, duration_);
+  double target = static_cast<double>(grid_index_ + 1) * step_;
+  if (target > duration_ - kNoStep * step_) target = duration_;   // no step of a rounding's length at the end
   target = std::min(target, next_look_);
   const auto next = switch_times_.upper_bound(moving_.time());
   if (next != switch_times_.end()) target = std::min(target, *next);
