@@ -302,11 +302,11 @@ std::optional<double> LastingContacts::stop_of_sliding(const ContactProblem& pro
       const Vector3d& n = c.normal_b_to_a_world;
       const auto velocity = [&](int body) -> Vector3d {
         const Body b = moving_.body_at_impact(body);
-        const Vector3d arm = c.point_world - b.com_world;
+        const Vector3d arm = point_of(pair, touches[i].point) - b.com_world;
         if (!moving_.world().bodies[body].immovable()) speed = std::max(speed, b.velocity_world.norm() + b.omega_world.norm() * arm.norm());
         return b.velocity_world + b.omega_world.cross(arm);
       };
-      const Vector3d va = velocity(pair.first), vb = velocity(pair.second), relative = va - vb;
+      const Vector3d va = velocity(pair.first), vb = velocity(pair.second), relative = va - vb;   // at the step's start, where it touched then
       if (const Vector3d slides = relative - relative.dot(n) * n; slides.norm() > slip) {
         slips = slides;
         slip = slides.norm();
@@ -523,8 +523,8 @@ std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidat
     if (rules_.plastic_impacts == scene::PlasticImpacts::kLocated && turn > 2 * kMostTurn && h > kShortest * step_) return moving_.time() + h * kMostTurn / turn;
     if (!landing && turn > kTurns) {
       std::vector<RigidBodyState> middle = moving_.states();
-      touches = touches_midway(group, touches, ends, middle);
-      problem = problem_of(group, touches, middle, h);
+      const std::vector<Touch> midway = touches_midway(group, touches, ends, middle);
+      problem = problem_of(group, midway, middle, h);
       solution = solve(group, problem, h);
       landing = lands(touches, solution);
     }

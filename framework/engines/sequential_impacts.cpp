@@ -5,6 +5,8 @@
 #include <limits>
 #include <set>
 
+#include "framework/dynamics/contact_problem.h"
+
 namespace tumble::engines {
 namespace {
 
@@ -36,23 +38,31 @@ Approach fastest_approach(const Laws& laws, const TouchingPair& pair, const Body
   return fastest;
 }
 
-// Not by the law that is being judged: a record of what the impulse did.
-double normal_velocity(const Contact& contact, const Body& a, const Body& b) {
-  const auto of_point = [&](const Body& body) -> Vector3d { return body.velocity_world + body.omega_world.cross(contact.point_world - body.com_world); };
-  return contact.normal_b_to_a_world.dot(of_point(a) - of_point(b));
-}
 
 double speed_at(const Body& body, const Vector3d& point_world) {
   return body.velocity_world.norm() + body.omega_world.norm() * (point_world - body.com_world).norm();
 }
 
-// By how much a unit impulse at the contact changes the relative normal velocity. [1/kg]
-double compliance(const Contact& contact, const Body& body) {
-  const Vector3d arm = contact.point_world - body.com_world;
+// By how much a unit impulse at the point changes the velocity of the point along a direction. [1/kg]
+double compliance(const Vector3d& point_world, const Vector3d& direction_world, const Body& body) {
+  const Vector3d arm = point_world - body.com_world;
   const Matrix3d R = body.world_from_body.toRotationMatrix();
-  const Vector3d turn_body = R.transpose() * arm.cross(contact.normal_b_to_a_world);
+  const Vector3d turn_body = R.transpose() * arm.cross(direction_world);
   return body.inertia.inverse_mass + turn_body.dot(body.inertia.inverse_inertia_body * turn_body);
 }
+
+Vector3d relative_velocity(const Vector3d& point_world, const Body& a, const Body& b) {
+  const auto of_point = [&](const Body& body) -> Vector3d { return body.velocity_world + body.omega_world.cross(point_world - body.com_world); };
+  return of_point(a) - of_point(b);
+}
+
+// Not by the law that is being judged: a record of what the impulse did.
+double normal_velocity(const Contact& contact, const Body& a, const Body& b) {
+  return contact.normal_b_to_a_world.dot(relative_velocity(contact.point_world, a, b));
+}
+
+double restitution_of(const World& world, const TouchingPair& pair) { return std::min(world.bodies[pair.a].restitution, world.bodies[pair.b].restitution); }
+double friction_of(const World& world, const TouchingPair& pair) { return std::min(world.bodies[pair.a].friction, world.bodies[pair.b].friction); }
 
 }  // namespace
 
@@ -67,13 +77,13 @@ struct SequentialImpacts::Work {
     return found != bodies.end() ? found->second : bodies.emplace(index, moving.body_at_impact(index)).first->second;
   }
 
-  // `impulse` along the normal on A, its opposite on B.
-  void push(const Laws& laws, const TouchingPair& pair, const Contact& contact, double impulse) {
+  // `impulse` along the direction on A, its opposite on B.
+  void push(const Laws& laws, const TouchingPair& pair, const Vector3d& point_world, const Vector3d& direction_world, double impulse) {
     for (const auto& [index, size] : {std::pair{pair.a, impulse}, std::pair{pair.b, -impulse}}) {
       Body& pushed = body(index);
       if (pushed.inertia.inverse_mass == 0.0) continue;
       if (moving.resting(index)) moving.wake(index);   // its mass was part of the impulse: it takes its share
-      const Velocity after = laws.apply_impulse(pushed, size * contact.normal_b_to_a_world, contact.point_world);
+      const Velocity after = laws.apply_impulse(pushed, size * direction_world, point_world);
       pushed.velocity_world = after.linear_world;
       pushed.omega_world = after.angular_world;
       changed.insert(index);
@@ -92,7 +102,7 @@ struct SequentialImpacts::Work {
 };
 
 bool SequentialImpacts::stays(const World& world, const TouchingPair& pair, double approach_speed) const {
-  const double restitution = std::min(world.bodies[pair.a].restitution, world.bodies[pair.b].restitution);
+  const double restitution = restitution_of(world, pair);
   return contact_rest_speed_ && laws_.ends_in_contact(approach_speed, restitution, *contact_rest_speed_);
 }
 
@@ -102,22 +112,90 @@ bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double thr
   const auto [approach, point_world] = fastest_approach(laws_, pair, a, b, threshold);
   if (!(approach < -threshold)) return false;
   const Contact contact = contact_of(pair, point_world);
-  double restitution = std::min(work.moving.world().bodies[pair.a].restitution, work.moving.world().bodies[pair.b].restitution);
+  double restitution = restitution_of(work.moving.world(), pair);
   if (stays(work.moving.world(), pair, -approach)) restitution = 0.0;
   const double impulse = laws_.collision_impulse(contact, a, b, restitution);
-  work.push(laws_, pair, contact, impulse);
+  work.push(laws_, pair, contact.point_world, contact.normal_b_to_a_world, impulse);
+  if (contact_rest_speed_) rub(work, pair, contact, impulse);
   ++counters_.impulses;
   work.result.events.push_back({work.moving.time(), EventKind::kCollision, pair.a, pair.b, contact.point_world,
                                 contact.normal_b_to_a_world, impulse, approach, normal_velocity(contact, a, b)});
   return true;
 }
 
+// Friction of an impact: against the sliding, at most what friction allows and at most what ends the sliding along its direction. It takes
+// energy, never gives any: w p^2 / 2 - |slip| p <= 0 for 0 <= p <= |slip| / w.
+void SequentialImpacts::rub(Work& work, const TouchingPair& pair, const Contact& contact, double impulse) {
+  const double friction = friction_of(work.moving.world(), pair);
+  if (!(friction > 0)) return;
+  ++counters_.friction_points;
+  const Vector3d relative = relative_velocity(contact.point_world, work.body(pair.a), work.body(pair.b)), &n = contact.normal_b_to_a_world;
+  const Vector3d slip = relative - relative.dot(n) * n;
+  const double speed = slip.norm();
+  if (!(speed > 0)) return;
+  const Vector3d along = slip / speed;
+  const double yielding = compliance(contact.point_world, along, work.body(pair.a)) + compliance(contact.point_world, along, work.body(pair.b));
+  work.push(laws_, pair, contact.point_world, along, -std::min(friction * impulse, speed / yielding));
+}
+
+// Newton's law of restitution for all pairs at once: v_n' >= -e v_n where they approach, v_n' >= 0 elsewhere, with friction.
+void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingPair>& pairs, double threshold) {
+  ContactProblem problem;
+  std::map<int, int> places;
+  const auto place = [&](int index) {
+    const auto [found, is_new] = places.try_emplace(index, static_cast<int>(problem.bodies.size()));
+    if (!is_new) return found->second;
+    if (work.moving.resting(index)) work.moving.wake(index);
+    const Body& body = work.body(index);
+    const Matrix3d R = body.world_from_body.toRotationMatrix();
+    problem.bodies.push_back({body.inertia.inverse_mass, R * body.inertia.inverse_inertia_body * R.transpose(), body.com_world, body.velocity_world, body.omega_world});
+    return found->second;
+  };
+  struct Met {
+    const TouchingPair* pair;
+    double approach;
+  };
+  std::vector<Met> met;
+  bool any = false;
+  for (const TouchingPair& pair : pairs) {
+    const std::size_t first = pair.points_world.size() > 1 ? 1 : 0;   // corners carry; the middle lies between them
+    for (std::size_t k = first; k < pair.points_world.size(); ++k) {
+      const double approach = laws_.relative_normal_velocity(contact_of(pair, pair.points_world[k]), work.body(pair.a), work.body(pair.b));
+      const double restitution = stays(work.moving.world(), pair, -approach) ? 0.0 : restitution_of(work.moving.world(), pair);
+      any = any || approach < -threshold;
+      problem.contacts.push_back({place(pair.a), place(pair.b), pair.points_world[k], pair.gap.normal_b_to_a_world, friction_of(work.moving.world(), pair),
+                                  approach < 0 ? -restitution * approach : 0.0, Vector3d::Zero()});
+      met.push_back({&pair, approach});
+    }
+  }
+  if (!any) return;
+  const ContactSolution solution = solve_contacts(problem);
+  ++counters_.contact_solves;
+  for (const auto& [index, at] : places) {
+    Body& body = work.body(index);
+    if (body.inertia.inverse_mass == 0.0) continue;
+    body.velocity_world = solution.velocities[at].linear_world;
+    body.omega_world = solution.velocities[at].angular_world;
+    work.changed.insert(index);
+  }
+  for (std::size_t i = 0; i < met.size(); ++i) {
+    const TouchingPair& pair = *met[i].pair;
+    const double impulse = solution.impulses_world[i].dot(pair.gap.normal_b_to_a_world);
+    if (!(impulse > 0)) continue;
+    ++counters_.impulses;
+    const Contact contact = contact_of(pair, problem.contacts[i].point_world);
+    work.result.events.push_back({work.moving.time(), EventKind::kCollision, pair.a, pair.b, contact.point_world, contact.normal_b_to_a_world, impulse, met[i].approach,
+                                  normal_velocity(contact, work.body(pair.a), work.body(pair.b))});
+  }
+}
+
 bool SequentialImpacts::push_pair_apart(Work& work, const TouchingPair& pair) {
   const auto [rate, point_world] = fastest_approach(laws_, pair, work.body(pair.a), work.body(pair.b), rules_.rest_speed);
   if (rate >= kFastEnough * rules_.rest_speed) return false;
   const Contact contact = contact_of(pair, point_world);
-  const double yielding = compliance(contact, work.body(pair.a)) + compliance(contact, work.body(pair.b));
-  work.push(laws_, pair, contact, (rules_.rest_speed - rate) / yielding);
+  const double yielding = compliance(contact.point_world, contact.normal_b_to_a_world, work.body(pair.a)) +
+                          compliance(contact.point_world, contact.normal_b_to_a_world, work.body(pair.b));
+  work.push(laws_, pair, contact.point_world, contact.normal_b_to_a_world, (rules_.rest_speed - rate) / yielding);
   ++counters_.micro_impacts;
   return true;
 }
@@ -147,8 +225,9 @@ Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<Tou
     }
   const double threshold = std::max(kRoundOffOfSpeed * fastest, kRoundOffOfSliding * sliding);
 
-  bool again = true;
+  bool again = law_ == scene::ImpactLaw::kSequential;
   int rounds = 0;
+  if (!again) collide_together(work, pairs, threshold);
   while (again && ++rounds < kMostRounds) {
     again = false;
     for (const TouchingPair& pair : pairs) again = collide(work, pair, threshold) || again;

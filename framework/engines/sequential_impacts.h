@@ -41,7 +41,13 @@ class SequentialImpacts {
   SequentialImpacts(const Laws& laws, ImpactRules rules, RunCounters& counters) : laws_(laws), rules_(rules), counters_(counters) {}
 
   /// Impacts that would rebound more slowly than the rest speed (laws' ends_in_contact) do not rebound: they begin a lasting contact.
-  void use_contact_rules(double rest_speed) { contact_rest_speed_ = rest_speed; }
+  /// Pairs with friction slide less after an impact: Coulomb's law for the impulse. With the simultaneous law all touching pairs are
+  /// solved together (Newton's law of restitution as complementarity): a row of equal balls hit by one then leaves with
+  /// (-3/5, 2/5, 2/5, 2/5, 2/5) of its speed, not as Newton's cradle does.
+  void use_contact_rules(double rest_speed, scene::ImpactLaw law) {
+    contact_rest_speed_ = rest_speed;
+    law_ = law;
+  }
   /// Whether an impact of the pair at this speed begins a lasting contact.
   bool stays(const World& world, const TouchingPair& pair, double approach_speed) const;
 
@@ -60,12 +66,15 @@ class SequentialImpacts {
   struct Work;
   bool push_pair_apart(Work& work, const TouchingPair& pair);
   bool collide(Work& work, const TouchingPair& pair, double threshold);
+  void rub(Work& work, const TouchingPair& pair, const Contact& contact, double impulse);
+  void collide_together(Work& work, const std::vector<TouchingPair>& pairs, double threshold);
 
   const Laws& laws_;
   ImpactRules rules_;
   RunCounters& counters_;
   std::map<std::pair<int, int>, double> last_meeting_;
   std::optional<double> contact_rest_speed_;   // [m/s]
+  scene::ImpactLaw law_ = scene::ImpactLaw::kSequential;
 };
 
 }  // namespace tumble::engines

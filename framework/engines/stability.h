@@ -1,0 +1,27 @@
+/// Whether a step is within the range in which the laws' method can follow a world's springs.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "framework/dynamics/laws.h"
+#include "framework/dynamics/world.h"
+
+namespace tumble::engines {
+
+/// By how much a step of the method lengthens the swing of  y'' = -w^2 y - c y'  (spectral radius of the step's matrix, 1: not at all),
+/// found by asking the method itself. Source: E. Hairer, G. Wanner, "Solving ODEs II", IV.2.
+double amplification(const Laws& laws, double angular_frequency, double damping, double step);
+
+struct SpringStability {
+  std::string spring;              // the one that takes most part in the fastest swing
+  double angular_frequency;        // of that swing where the run starts [rad/s]
+  double amplification;            // a step
+  double largest_step;             // that does not lengthen it [s]; 0 where none does not
+};
+
+/// The fastest swing of the springs of a world where it starts (along the springs; the eigenvalues of J M^-1 J^T K).
+/// @return nothing for a world without springs
+std::optional<SpringStability> judge_springs(const World& world, const Laws& laws, double step);
+
+}  // namespace tumble::engines
