@@ -3,8 +3,9 @@
 /// A pair becomes a lasting contact where a collision would rebound more slowly than the rest speed (laws' ends_in_contact), or, with
 /// `"plastic_impacts": "in_step"`, as soon as two bodies without restitution come together. Every step the bodies first go where they
 /// would without each other (the laws' method, links included); then contact impulses, spread evenly over the step, keep what touches from
-/// approaching: v' = v_free + M^-1 J^T p, x' = x_free + h/2 M^-1 J^T p, which is exact for constant forces. Where a body only comes down
-/// within the step the impulse acts from its beginning (x' = x + h v'). Frictionless groups ask the laws' contact_forces; friction, links
+/// approaching: v' = v_free + M^-1 J^T p, x' = x_free + h/2 M^-1 J^T p, which is exact for constant forces. Bodies that turn meet their
+/// contacts at the middle of the step, and fit the surfaces at its end. Where a body only comes down within the step, x' = x + h v'.
+/// A pair that stops sliding ends the step there. Frictionless groups ask the laws' contact_forces; friction, links
 /// inside a group, and large groups the framework's solve_contacts. What turning leaves of an overlap is taken back by the smallest shift
 /// of the group. A lasting contact does not bounce; it ends when the bodies come apart.
 ///
@@ -14,6 +15,7 @@
 
 #include <map>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -68,6 +70,9 @@ class LastingContacts {
     bool lands;                  // apart at the start of the step
   };
 
+  // Of the longest step: ends of sliding that come sooner are taken with it.
+  static constexpr double kShortest = 1e-6;
+
   struct Locating {
     Pair pair;
     double start, duration, impulse;
@@ -101,7 +106,7 @@ class LastingContacts {
   double rest_speed_, step_ = 0.0;               // [m/s], the longest step so far [s]
   RunCounters& counters_;
   TrajectorySink& sink_;
-  std::map<Pair, bool> lasting_;                 // value: whether it slid in the last step
+  std::set<Pair> lasting_;
   std::map<Pair, Points> points_;                // of the step that has begun
   std::map<Pair, std::vector<Warm>> warm_;
   std::vector<Group> groups_;                    // of the step

@@ -9,7 +9,6 @@
 
 #include "framework/collision/contact_patch.h"
 #include "framework/core/error.h"
-#include "framework/dynamics/anchors.h"
 #include "framework/engines/guarded_laws.h"
 #include "framework/engines/lasting_contacts.h"
 #include "framework/engines/recorder.h"
@@ -26,9 +25,6 @@ constexpr double kTouching = 64 * kEpsilon;
 constexpr double kSamePatch = 1e-9;
 // A support that leans by less [rad] counts as level: in 100 s a ball would slide 5e-8 m.
 constexpr double kLevel = 1e-12;
-constexpr double kRuin = 1e3;            // factor over a run by which a method may lengthen a swing: more is refused
-constexpr double kSeen = 1.1;            // more is told
-constexpr double kRunaway = 10.0;        // times all the energy there was to begin with: more has run away
 constexpr double kNoStep = 1e-9;         // of the step: a shorter last one is taken with the one before
 constexpr int kMostPassings = 100;        // of a blow to and fro between bodies that touch and bodies that are joined
 constexpr int kMostIdleSteps = 1000;      // in a row without progress of time
@@ -75,8 +71,6 @@ class RetroactiveRun {
   void begin_contacts(const std::vector<TouchingPair>& touching, const std::vector<Event>& events);
   void settle(const std::vector<TouchingPair>& touching, const std::vector<Event>& events);
   void watch_for_trouble();
-  void watch_energy();
-  void refuse_unstable_step();
   std::string name(int body) const { return "'" + moving_.world().bodies[body].name + "'"; }
 
   const scene::Scene& scene_;
@@ -92,7 +86,7 @@ class RetroactiveRun {
   std::set<double> switch_times_;
   double next_look_ = std::numeric_limits<double>::infinity();   // of a control law
   std::string stopped_by_;
-  double first_energy_ = kUnset, energy_scale_ = 0.0, first_potential_ = 0.0, lowest_potential_ = 0.0;   // [J]
+  EnergyWatch energy_watch_;
 };
 
 double RetroactiveRun::next_target() const {
@@ -385,58 +379,9 @@ void RetroactiveRun::advance_to(double target) {
   }
 }
 
-// A step that the method cannot follow the springs with lengthens their swing a little more each time. [kRuin, kSeen]: over the whole run.
-void RetroactiveRun::refuse_unstable_step() {
-  const auto springs = judge_springs(moving_.world(), laws_, step_);
-  if (!springs || !(springs->amplification > 1.0)) return;
-  const double swings = std::log(springs->amplification) * duration_ / step_;
-  const std::string what = fmt::format("a step of {:.3g} s of {} lengthens the swing of spring '{}' ({:.4g} rad/s where the run starts) by a factor {:.6g} each time",
-                                       step_, laws_.integrator_source, springs->spring, springs->angular_frequency, springs->amplification);
-  if (swings > std::log(kRuin))
-    throw UserError(scene_.file.empty() ? scene_.name : scene_.file.string(), what + fmt::format(", 10^{:.0f} times over the run", swings / std::log(10.0)),
-                    springs->largest_step > 0 ? fmt::format("take a step of at most {:.4g} s (\"step_s\"), a softer spring or more damping", springs->largest_step)
-                                              : "this method lengthens it at every step size: take another method (a2's rk4_step), or damp the spring");
-  if (swings > std::log(kSeen)) counters_.notices.push_back(what);
-}
-
-// Energy that nothing can have brought in is the method's: the run stops before its numbers mean nothing.
-void RetroactiveRun::watch_energy() {
-  const World& world = moving_.world();
-  const auto driven = [](const WorldBody& b) { return b.immovable() && !(b.motion.velocity_m_s.isZero(0.0) && b.motion.amplitude_m.isZero(0.0)); };
-  if (!world.point_forces.empty() || !world.motors.empty() || std::any_of(world.bodies.begin(), world.bodies.end(), driven)) return;
-  const Invariants sums = invariants_of(world, moving_.states());
-  const double energy = sums.kinetic_energy + sums.potential_energy;
-  if (std::isnan(first_energy_)) {
-    first_energy_ = energy;
-    lowest_potential_ = first_potential_ = sums.potential_energy;
-    energy_scale_ = sums.kinetic_energy;
-    for (const SpringLink& link : world.springs) {
-      const double stretch = (anchor_point(link.a, moving_.states()) - anchor_point(link.b, moving_.states())).norm() - link.spring.rest_length;
-      energy_scale_ += 0.5 * link.spring.stiffness * stretch * stretch;
-    }
-  }
-  lowest_potential_ = std::min(lowest_potential_, sums.potential_energy);
-  const double scale = energy_scale_ + (first_potential_ - lowest_potential_);
-  // (At rest there is no scale but the rounding of the energies themselves.)
-  if (energy - first_energy_ <= kRunaway * scale + 1e-6 * (std::abs(first_energy_) + sums.kinetic_energy * 1e-6)) return;
-  int fastest = 0;
-  double most = -1.0;
-  for (int i = 0; i < moving_.size(); ++i) {
-    if (world.bodies[i].immovable()) continue;
-    const double kinetic = kinetic_energy(moving_.state(i), world.bodies[i].inertia);
-    if (kinetic > most) {
-      most = kinetic;
-      fastest = i;
-    }
-  }
-  stopped_by_ = fmt::format("at t = {:.6f} s, body {}: runaway energy: the world has {:.4g} J, it began with {:.4g} J and nothing brings energy in (integrator: {}; impulses: {}; "
-                            "springs, rods, contacts: {}); a shorter step or another method is needed, or one of these is wrong",
-                            moving_.time(), name(fastest), energy, first_energy_, laws_.integrator_source, laws_.impulse_source, laws_.constraint_source);
-}
-
 void RetroactiveRun::run() {
   refuse_overlap();
-  refuse_unstable_step();
+  refuse_unstable_springs(moving_.world(), laws_, {step_, duration_}, scene_.file.empty() ? scene_.name : scene_.file.string(), counters_.notices);
   for (const PointForce& force : moving_.world().point_forces) {
     switch_times_.insert(force.start);
     switch_times_.insert(force.end);
@@ -465,7 +410,10 @@ void RetroactiveRun::run_to_the_end() {
     if (!stopped_by_.empty()) break;
     if (target >= static_cast<double>(grid_index_ + 1) * step_) ++grid_index_;
     switch_forces();
-    watch_energy();
+    if (const auto runaway = energy_watch_.look(moving_.world(), moving_.states())) {
+      stopped_by_ = fmt::format("at t = {:.6f} s, {} (integrator: {}; impulses: {}; springs, rods, contacts: {}); a shorter step or another method is needed, or one of "
+                                "these is wrong", moving_.time(), *runaway, laws_.integrator_source, laws_.impulse_source, laws_.constraint_source);
+    }
     recorder_.record_committed(moving_);
   }
 }

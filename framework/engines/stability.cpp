@@ -1,9 +1,12 @@
 #include "framework/engines/stability.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Eigenvalues>
+#include <fmt/format.h>
 
+#include "framework/core/error.h"
 #include "framework/dynamics/anchors.h"
 
 namespace tumble::engines {
@@ -11,6 +14,10 @@ namespace {
 
 // What rounding leaves of an amplification of exactly 1.
 constexpr double kNotAtAll = 1e-9;
+constexpr double kRuin = 1e3;            // factor over a run by which a method may lengthen a swing: more is refused
+constexpr double kSeen = 1.1;            // more is told
+constexpr double kRunaway = 10.0;        // times all the energy there was to begin with: more has run away
+constexpr double kRoundingOfRest = 1e-6; // of the energy a world at rest has by its height: what steps may leave of it
 // More springs than this are judged by the largest row sum (Gershgorin), an upper bound at most some times too large.
 constexpr Eigen::Index kMostSprings = 400;
 
@@ -93,6 +100,50 @@ std::optional<SpringStability> judge_springs(const World& world, const Laws& law
   const Spring& spring = world.springs[most].spring;
   const double frequency = std::sqrt(squared), damping = spring.stiffness > 0 ? squared * spring.damping / spring.stiffness : 0.0;
   return SpringStability{world.springs[most].name, frequency, amplification(laws, frequency, damping, step), largest_stable_step(laws, frequency, damping, step)};
+}
+
+void refuse_unstable_springs(const World& world, const Laws& laws, const StepsOfARun& steps, const std::string& where, std::vector<std::string>& notices) {
+  const auto springs = judge_springs(world, laws, steps.step);
+  if (!springs || !(springs->amplification > 1.0)) return;
+  const double over_the_run = std::log(springs->amplification) * steps.duration / steps.step;
+  const std::string what = fmt::format("a step of {:.3g} s of {} lengthens the swing of spring '{}' ({:.4g} rad/s where the run starts) by a factor {:.6g} each time",
+                                       steps.step, laws.integrator_source, springs->spring, springs->angular_frequency, springs->amplification);
+  if (over_the_run > std::log(kRuin))
+    throw UserError(where, what + fmt::format(", 10^{:.0f} times over the run", over_the_run / std::log(10.0)),
+                    springs->largest_step > 0 ? fmt::format("take a step of at most {:.4g} s (\"step_s\"), a softer spring or more damping", springs->largest_step)
+                                              : "this method lengthens it at every step size: take another method (a2's rk4_step), or damp the spring");
+  if (over_the_run > std::log(kSeen)) notices.push_back(what);
+}
+
+std::optional<std::string> EnergyWatch::look(const World& world, const std::vector<RigidBodyState>& states) {
+  const auto driven = [](const WorldBody& b) { return b.immovable() && !(b.motion.velocity_m_s.isZero(0.0) && b.motion.amplitude_m.isZero(0.0)); };
+  if (!world.point_forces.empty() || !world.motors.empty() || std::any_of(world.bodies.begin(), world.bodies.end(), driven)) return std::nullopt;
+  const Invariants sums = invariants_of(world, states);
+  const double energy = sums.kinetic_energy + sums.potential_energy;
+  if (std::isnan(first_energy_)) {
+    first_energy_ = energy;
+    lowest_potential_ = first_potential_ = sums.potential_energy;
+    scale_ = sums.kinetic_energy;
+    for (const SpringLink& link : world.springs) {
+      const double stretch = (anchor_point(link.a, states) - anchor_point(link.b, states)).norm() - link.spring.rest_length;
+      scale_ += 0.5 * link.spring.stiffness * stretch * stretch;
+    }
+  }
+  lowest_potential_ = std::min(lowest_potential_, sums.potential_energy);
+  const double available = scale_ + (first_potential_ - lowest_potential_);
+  if (energy - first_energy_ <= kRunaway * available + kRoundingOfRest * std::abs(first_energy_)) return std::nullopt;
+  if (available == 0.0 && first_energy_ == 0.0 && !(sums.kinetic_energy > 0)) return std::nullopt;
+  std::size_t fastest = 0;
+  double most = -1.0;
+  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+    if (world.bodies[i].immovable()) continue;
+    const double kinetic = kinetic_energy(states[i], world.bodies[i].inertia);
+    if (kinetic > most) {
+      most = kinetic;
+      fastest = i;
+    }
+  }
+  return fmt::format("body '{}': runaway energy: the world has {:.4g} J, it began with {:.4g} J and nothing brings energy in", world.bodies[fastest].name, energy, first_energy_);
 }
 
 }  // namespace tumble::engines

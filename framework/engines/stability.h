@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "framework/dynamics/laws.h"
 #include "framework/dynamics/world.h"
@@ -23,5 +24,24 @@ struct SpringStability {
 /// The fastest swing of the springs of a world where it starts (along the springs; the eigenvalues of J M^-1 J^T K).
 /// @return nothing for a world without springs
 std::optional<SpringStability> judge_springs(const World& world, const Laws& laws, double step);
+
+struct StepsOfARun {
+  double step, duration;           // [s]
+};
+
+/// Refuses a run in which the method would lengthen a swing of the springs a thousand times; tells of one where it can be seen.
+/// @throws UserError naming the spring, what happens to it and the largest step that does not do it
+void refuse_unstable_springs(const World& world, const Laws& laws, const StepsOfARun& steps, const std::string& where, std::vector<std::string>& notices);
+
+/// Looks on while a world moves: energy that nothing can have brought in is the method's, or a wrong law's.
+class EnergyWatch {
+ public:
+  /// @return what has run away, in words, with the body that has most of it; nothing while all is well, and for worlds that are driven
+  ///         (point forces, motors, moving walls)
+  std::optional<std::string> look(const World& world, const std::vector<RigidBodyState>& states);
+
+ private:
+  double first_energy_ = kUnset, scale_ = 0.0, first_potential_ = 0.0, lowest_potential_ = 0.0;   // [J]
+};
 
 }  // namespace tumble::engines

@@ -1,0 +1,379 @@
+// One step of a group in contact: the impulses, where they lead, and the shifts that take back what is left of overlaps. Part of
+// LastingContacts.
+#include <algorithm>
+#include <cmath>
+
+#include "framework/engines/guarded_laws.h"
+#include "framework/engines/lasting_contacts.h"
+
+namespace tumble::engines {
+namespace {
+
+constexpr double kEnough = 1e-8;          // of the group's speed: what is left of approach and slip; problems at rest come out to rounding
+// A heap that is asked for in steps, not in instants, gets answers of that kind.
+constexpr std::size_t kPile = 60;         // contacts of a group
+constexpr double kEnoughOfAPile = 1e-5;
+constexpr int kSweepsOfAPile = 120;
+constexpr double kMidway = 0.3;           // of the smaller body: how far from each other points of one contact may lie at the middle of a step
+constexpr int kMostShifts = 8;            // rounds of taking back overlaps
+constexpr int kMostOfStudents = 64;       // contacts of a group that the laws' contact_forces is asked for: it is given a dense matrix
+constexpr int kMostLocated = 12;          // contacts of a group whose end of sliding is located in time
+constexpr int kMostSearches = 16;         // for ends of sliding within a step: bodies that chatter stop with the step
+constexpr double kSlides = 1e-9;          // of the group's speed: slower than this nothing slides
+
+Vector3d velocity_at(const PushedBody& body, const Vector3d& velocity, const Vector3d& omega, const Vector3d& point) {
+  return velocity + omega.cross(point - body.com_world);
+}
+
+Matrix3d inverse_inertia_world(const WorldBody& body, const Quaterniond& q) {
+  const Matrix3d R = q.normalized().toRotationMatrix();
+  return R * body.inertia.inverse_inertia_body * R.transpose();
+}
+
+Quaterniond turned(const Quaterniond& q, const Vector3d& turn) {
+  const double angle = turn.norm();
+  return angle > 0 ? (Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * q).normalized() : q;
+}
+
+}  // namespace
+
+// Puts a body into the problem. With `velocities`: those of a state; without: none, as for shifts.
+int LastingContacts::place(int body, double t, std::map<int, int>& places, const std::vector<RigidBodyState>& states, const RigidBodyState* velocities,
+                           ContactProblem& problem) const {
+  const auto [found, is_new] = places.try_emplace(body, static_cast<int>(problem.bodies.size()));
+  if (!is_new) return found->second;
+  const WorldBody& b = moving_.world().bodies[body];
+  PushedBody pushed;
+  pushed.com_world = states[body].com_world;
+  pushed.velocity_world = pushed.omega_world = Vector3d::Zero();
+  if (b.immovable()) {
+    if (velocities) pushed.velocity_world = prescribed_velocity(b, t);
+  } else {
+    pushed.inverse_mass = b.inertia.inverse_mass;
+    pushed.inverse_inertia_world = inverse_inertia_world(b, states[body].world_from_body);
+    if (velocities) {
+      pushed.velocity_world = b.inertia.inverse_mass * velocities->momentum_world;
+      pushed.omega_world = omega_of(*velocities, b.inertia);
+    }
+  }
+  problem.bodies.push_back(pushed);
+  return found->second;
+}
+
+// Rods and joints of the group. Velocities: what the free step has made of them stays. Places: their errors go.
+void LastingContacts::add_rows(const Group& group, const std::vector<RigidBodyState>& states, double t, const std::map<int, int>& places, bool of_places,
+                               ContactProblem& problem) {
+  std::vector<double> targets;
+  int fixed = -1;
+  for (const int index : group.linked) {
+    LinkedBodies& linked = moving_.linked_groups()[index];
+    for (Constraint row : linked.constraint_rows(states, t)) {
+      const auto place_of = [&](int local) {
+        if (local < linked.fixed_end()) return places.at(linked.bodies()[local]);
+        if (fixed < 0) {
+          fixed = static_cast<int>(problem.bodies.size());
+          problem.bodies.push_back({0.0, Matrix3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()});
+        }
+        return fixed;
+      };
+      row.body_a = place_of(row.body_a);
+      row.body_b = place_of(row.body_b);
+      const auto rate = [&](int body, const Vector6d& jacobian) {
+        return jacobian.head<3>().dot(problem.bodies[body].velocity_world) + jacobian.tail<3>().dot(problem.bodies[body].omega_world);
+      };
+      targets.push_back(of_places ? -row.row.value : rate(row.body_a, row.row.jacobian_a) + rate(row.body_b, row.row.jacobian_b));
+      problem.rows.push_back(row);
+    }
+  }
+  problem.row_targets = Eigen::Map<const VectorXd>(targets.data(), static_cast<Eigen::Index>(targets.size()));
+}
+
+ContactProblem LastingContacts::problem_of(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& states, double h) {
+  ContactProblem problem;
+  std::map<int, int> places;
+  for (const int body : group.bodies) place(body, moving_.target(), places, states, &moving_.path_end(body), problem);
+  for (const Touch& touch : touches) {
+    PushingContact contact;
+    contact.body_a = place(touch.pair.first, moving_.target(), places, states, &states[touch.pair.first], problem);
+    contact.body_b = place(touch.pair.second, moving_.target(), places, states, &states[touch.pair.second], problem);
+    contact.point_world = point_of(touch.pair, touch.point);
+    contact.normal_b_to_a_world = touch.point.normal_b_to_a_world;
+    contact.friction = friction(touch.pair);
+    contact.target = touch.target;
+    if (const auto warm = warm_.find(touch.pair); warm != warm_.end()) {
+      const Vector3d point_body_a = states[touch.pair.first].world_from_body.conjugate() * (contact.point_world - states[touch.pair.first].com_world);
+      double nearest = 1e-2 * std::min(moving_.shape(touch.pair.first).bounding_radius(), moving_.shape(touch.pair.second).bounding_radius());
+      for (const Warm& known : warm->second) {
+        const double distance = (known.point_body_a - point_body_a).norm();
+        if (distance >= nearest) continue;
+        nearest = distance;
+        contact.guess_world = h * known.force_world;
+      }
+    }
+    problem.contacts.push_back(contact);
+  }
+  add_rows(group, moving_.states(), moving_.time(), places, false, problem);
+  return problem;
+}
+
+ContactSolution LastingContacts::solve(const Group& group, const ContactProblem& problem, double h) {
+  ++counters_.contact_solves;
+  counters_.contact_points += problem.contacts.size();
+  const auto smooth = [](const PushingContact& c) { return c.friction == 0.0; };
+  const bool frictionless = std::all_of(problem.contacts.begin(), problem.contacts.end(), smooth);
+  if (!frictionless) counters_.friction_points += static_cast<std::uint64_t>(std::count_if(problem.contacts.begin(), problem.contacts.end(), [&](const auto& c) { return !smooth(c); }));
+  if (!frictionless || !problem.rows.empty() || static_cast<int>(problem.contacts.size()) > kMostOfStudents) {
+    ContactOptions options;
+    if (static_cast<int>(problem.contacts.size()) > kMostLocated) options.tolerance = kEnough;
+    if (rules_.plastic_impacts == scene::PlasticImpacts::kInStep && problem.contacts.size() > kPile) {
+      options.tolerance = kEnoughOfAPile;
+      options.largest_direct = 0;
+      options.most_sweeps_alone = kSweepsOfAPile;
+    }
+    const ContactSolution solution = solve_contacts(problem, options);
+    counters_.contact_sweeps += static_cast<std::uint64_t>(solution.sweeps);
+    counters_.contact_factorisations += static_cast<std::uint64_t>(solution.factorisations);
+    if (!solution.converged) ++counters_.contact_unsolved;
+    return solution;
+  }
+  // The laws' part: A f + b are accelerations, f forces.
+  const Eigen::Index m = static_cast<Eigen::Index>(problem.contacts.size()), n = 6 * static_cast<Eigen::Index>(problem.bodies.size());
+  MatrixXd J = MatrixXd::Zero(m, n), MJ = MatrixXd::Zero(n, m);
+  VectorXd b(m);
+  for (Eigen::Index i = 0; i < m; ++i) {
+    const PushingContact& c = problem.contacts[i];
+    double rate = 0.0;
+    for (const auto& [index, sign] : {std::pair{c.body_a, 1.0}, std::pair{c.body_b, -1.0}}) {
+      const PushedBody& body = problem.bodies[index];
+      const Vector3d push = sign * c.normal_b_to_a_world, turn = (c.point_world - body.com_world).cross(push);
+      J.block<1, 3>(i, 6 * index) = push.transpose();
+      J.block<1, 3>(i, 6 * index + 3) = turn.transpose();
+      MJ.block<3, 1>(6 * index, i) = body.inverse_mass * push;
+      MJ.block<3, 1>(6 * index + 3, i) = body.inverse_inertia_world * turn;
+      rate += push.dot(velocity_at(body, body.velocity_world, body.omega_world, c.point_world));
+    }
+    b[i] = (rate - c.target) / h;
+  }
+  const VectorXd f = naming("body '" + moving_.world().bodies[group.bodies.front()].name + "' and what it touches", [&] { return laws_.contact_forces(J * MJ, b); });
+  if (f.size() != m) throw StoppedRun("lasting contact (contact_forces of " + laws_.constraint_source + ") returned " + std::to_string(f.size()) + " forces for " + std::to_string(m) + " points");
+  const VectorXd change = MJ * (h * f);
+  ContactSolution solution;
+  for (Eigen::Index i = 0; i < m; ++i) {
+    solution.impulses_world.push_back(h * f[i] * problem.contacts[i].normal_b_to_a_world);
+    solution.modes.push_back(f[i] > 0 ? ContactMode::kSlide : ContactMode::kOpen);
+  }
+  for (std::size_t k = 0; k < problem.bodies.size(); ++k)
+    solution.velocities.push_back({problem.bodies[k].velocity_world + change.segment<3>(6 * static_cast<Eigen::Index>(k)),
+                                   problem.bodies[k].omega_world + change.segment<3>(6 * static_cast<Eigen::Index>(k) + 3)});
+  solution.converged = true;
+  return solution;
+}
+
+// Where a pair that slid and would stick at the end of the step stops sliding: when the friction that stops it is all there can be. What
+// stops the slip is A + F s, with F the steady forces along it, the friction at hand M s; two steps of different lengths tell A and F.
+std::optional<double> LastingContacts::stop_of_sliding(const ContactProblem& problem, const std::vector<Touch>& touches, const ContactSolution& solution, double h) {
+  if (static_cast<int>(touches.size()) > kMostLocated) return std::nullopt;
+  const Pair* stopping = nullptr;
+  double least = 1.0, stopping_impulse = 0.0, at_hand = 0.0;
+  for (std::size_t i = 0; i < touches.size();) {
+    const Pair& pair = touches[i].pair;
+    Vector3d along = Vector3d::Zero();
+    Vector3d slips = Vector3d::Zero();   // of the point that slides fastest
+    double limit = 0.0, slip = 0.0, speed = 0.0;
+    bool sticks = true;
+    for (; i < touches.size() && touches[i].pair == pair; ++i) {
+      const PushingContact& c = problem.contacts[i];
+      const Vector3d& n = c.normal_b_to_a_world;
+      const auto velocity = [&](int body) -> Vector3d {
+        const Body b = moving_.body_at_impact(body);
+        const Vector3d arm = point_of(pair, touches[i].point) - b.com_world;
+        if (!moving_.world().bodies[body].immovable()) speed = std::max(speed, b.velocity_world.norm() + b.omega_world.norm() * arm.norm());
+        return b.velocity_world + b.omega_world.cross(arm);
+      };
+      const Vector3d va = velocity(pair.first), vb = velocity(pair.second), relative = va - vb;   // at the step's start, where it touched then
+      if (const Vector3d slides = relative - relative.dot(n) * n; slides.norm() > slip) {
+        slips = slides;
+        slip = slides.norm();
+      }
+      speed = std::max({speed, va.norm(), vb.norm()});
+      const double normal = solution.impulses_world[i].dot(n);
+      along += solution.impulses_world[i] - normal * n;
+      limit += c.friction * normal;
+      sticks = sticks && (solution.modes[i] == ContactMode::kStick || (solution.modes[i] == ContactMode::kOpen && normal == 0.0));
+    }
+    // What friction stops within a billionth of the step has stopped.
+    const double within_step = limit * (moving_.world().bodies[pair.first].inertia.inverse_mass + moving_.world().bodies[pair.second].inertia.inverse_mass);
+    if (!sticks || !(limit > 0) || slip <= kSlides * (speed + within_step)) continue;
+    if (along.norm() >= least * limit) continue;
+    least = along.norm() / limit;
+    stopping = &pair;
+    stopping_impulse = -along.dot(slips) / slip;   // signed: on a slope gravity may do more than stop it, and friction holds it then
+    at_hand = limit;
+  }
+  if (!stopping) return std::nullopt;
+  if (!(moving_.time() < searched_from_ + step_)) {
+    searched_from_ = moving_.time();
+    searches_ = 0;
+  }
+  if (++searches_ > kMostSearches) return std::nullopt;
+  if (locating_ && locating_->pair == *stopping && locating_->start == moving_.time()) {
+    if (locating_->found) return std::nullopt;
+    const double F = (locating_->impulse - stopping_impulse) / (locating_->duration - h), A = stopping_impulse - F * h, M = at_hand / h;
+    const double stop = A / (M - F);
+    if (!(stop > kShortest * step_) || !(stop < locating_->duration)) return std::nullopt;
+    locating_->found = true;
+    return moving_.time() + stop;
+  }
+  if (least >= 1 - 1e-12 || h <= kShortest * step_) return std::nullopt;
+  locating_ = Locating{*stopping, moving_.time(), h, stopping_impulse, false};
+  return moving_.time() + h * std::max(least, 1e-3);
+}
+
+// Does anything come down in this step that did not touch before?
+bool LastingContacts::lands(const std::vector<Touch>& touches, const ContactSolution& solution) {
+  for (std::size_t i = 0; i < touches.size(); ++i)
+    if (touches[i].lands && solution.impulses_world[i].squaredNorm() > 0.0) return true;
+  return false;
+}
+
+// Where the group's bodies come out with these impulses.
+std::vector<RigidBodyState> LastingContacts::ends_of(const Group& group, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing) const {
+  std::vector<RigidBodyState> ends = moving_.states();
+  for (std::size_t k = 0; k < group.bodies.size(); ++k) {   // the problem's first bodies are the group's
+    const int body = group.bodies[k];
+    const Inertia& inertia = moving_.world().bodies[body].inertia;
+    const Velocity& after = solution.velocities[k];
+    RigidBodyState& end = ends[body];
+    if (landing) {
+      end.com_world += h * after.linear_world;
+      end.world_from_body = turned(end.world_from_body, h * after.angular_world);
+    } else {
+      end = moving_.path_end(body);
+      end.com_world += 0.5 * h * (after.linear_world - problem.bodies[k].velocity_world);
+      end.world_from_body = turned(end.world_from_body, 0.5 * h * (after.angular_world - problem.bodies[k].omega_world));
+    }
+    end.momentum_world = inertia.mass * after.linear_world;
+    end.angular_momentum_world = angular_momentum_of(after.angular_world, end.world_from_body, inertia);
+  }
+  return ends;
+}
+
+// The angle that the fastest of the group's bodies turns in the step; a ball looks the same however it turns.
+double LastingContacts::largest_turn(const Group& group, const std::vector<RigidBodyState>& ends, double h) const {
+  double turn = 0.0;
+  for (const int body : group.bodies)
+    if (!moving_.shape(body).is_ball()) turn = std::max(turn, omega_of(ends[body], moving_.world().bodies[body].inertia).norm() * h);
+  return turn;
+}
+
+// Contacts of a group that turns: at the middle of the step, where their forces act evenly, with targets that make the velocities at the
+// step's end fit the surfaces there: J_middle v' = target - (J_end - J_middle) v'. Without that a body that tips over its edge gains or
+// loses energy in proportion to the step.
+std::vector<LastingContacts::Touch> LastingContacts::touches_midway(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& ends,
+                                                                    std::vector<RigidBodyState>& middle) const {
+  const std::vector<RigidBodyState>& starts = moving_.states();
+  for (const int body : group.bodies) {
+    middle[body].com_world = 0.5 * (starts[body].com_world + ends[body].com_world);
+    middle[body].world_from_body = starts[body].world_from_body.slerp(0.5, ends[body].world_from_body);
+  }
+  const auto rate = [&](Pair pair, const std::vector<RigidBodyState>& at, const collision::NearPoint& p) {
+    const Vector3d point = point_of(pair, p);
+    const auto velocity = [&](int body) -> Vector3d {
+      const WorldBody& b = moving_.world().bodies[body];
+      if (b.immovable()) return prescribed_velocity(b, moving_.target());
+      return b.inertia.inverse_mass * ends[body].momentum_world + omega_of(ends[body], b.inertia).cross(point - at[body].com_world);
+    };
+    return p.normal_b_to_a_world.dot(velocity(pair.first) - velocity(pair.second));
+  };
+  std::vector<Touch> result;
+  std::size_t from = 0;
+  for (const Pair& pair : group.pairs) {
+    std::size_t to = from;
+    while (to < touches.size() && touches[to].pair == pair) ++to;
+    const double near = kMidway * std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius());
+    const Points at_middle = points_at(pair, middle, near), at_end = points_at(pair, ends, near);
+    // The same point at another time: fixed in one of the two bodies.
+    const auto between = [&](const collision::NearPoint& p, const std::vector<RigidBodyState>& p_at, const collision::NearPoint& q, const std::vector<RigidBodyState>& q_at) {
+      const auto in = [](const RigidBodyState& s, const Vector3d& x) -> Vector3d { return s.world_from_body.conjugate() * (x - s.com_world); };
+      return std::min((in(p_at[pair.first], p.point_a_world) - in(q_at[pair.first], q.point_a_world)).norm(),
+                      (in(p_at[pair.second], p.point_b_world) - in(q_at[pair.second], q.point_b_world)).norm());
+    };
+    const auto nearest = [&](const Points& points, const std::vector<RigidBodyState>& at, const collision::NearPoint& p, const std::vector<RigidBodyState>& p_at) {
+      const collision::NearPoint* best = nullptr;
+      double distance = near;
+      for (const collision::NearPoint& q : points)
+        if (const double d = between(p, p_at, q, at); d < distance) {
+          distance = d;
+          best = &q;
+        }
+      return best;
+    };
+    for (std::size_t i = from; i < to; ++i) {
+      Touch touch = touches[i];
+      const collision::NearPoint* mid = nearest(at_middle, middle, touch.point, starts);
+      const collision::NearPoint* end = mid ? nearest(at_end, ends, *mid, middle) : nullptr;
+      if (mid && end) {
+        touch.point = *mid;
+        touch.target -= rate(pair, ends, *end) - rate(pair, middle, *mid);
+      }
+      result.push_back(touch);
+    }
+    from = to;
+  }
+  return result;
+}
+
+void LastingContacts::give_paths(const Group& group, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing) {
+  std::vector<RigidBodyState> ends = ends_of(group, problem, solution, h, landing);
+  keep_apart(group, ends, moving_.target());
+  for (const int body : group.bodies) moving_.set_path(body, moving_.state(body), ends[body]);
+}
+
+// The smallest shift (in the measure of the masses) that leaves no gap of the group below its shell, and no rod or joint open.
+void LastingContacts::keep_apart(const Group& group, std::vector<RigidBodyState>& states, double t) {
+  for (int i = 0; i < moving_.size(); ++i)
+    if (moving_.world().bodies[i].immovable()) states[i].com_world = prescribed_position(moving_.world().bodies[i], t);
+  for (int round = 0; round < kMostShifts; ++round) {
+    ContactProblem problem;
+    std::map<int, int> places;
+    for (const int body : group.bodies) place(body, t, places, states, nullptr, problem);
+    bool overlap = false;
+    for (const Pair& pair : group.near) {
+      const double room = shell(pair), near = 1e3 * room;
+      for (const collision::NearPoint& point : points_at(pair, states, near)) {
+        overlap = overlap || point.gap < 0.5 * room;
+        PushingContact contact;
+        contact.body_a = place(pair.first, t, places, states, nullptr, problem);
+        contact.body_b = place(pair.second, t, places, states, nullptr, problem);
+        for (const int index : {contact.body_a, contact.body_b})   // bodies of other groups stay where they are
+          if (index >= static_cast<int>(group.bodies.size())) {
+            problem.bodies[index].inverse_mass = 0.0;
+            problem.bodies[index].inverse_inertia_world.setZero();
+          }
+        contact.point_world = point_of(pair, point);
+        contact.normal_b_to_a_world = point.normal_b_to_a_world;
+        contact.target = room - point.gap;
+        problem.contacts.push_back(contact);
+      }
+    }
+    add_rows(group, states, t, places, true, problem);
+    double size = 0.0;
+    for (const int body : group.bodies) size = std::max(size, states[body].com_world.cwiseAbs().maxCoeff());
+    const bool open = problem.row_targets.size() > 0 && problem.row_targets.cwiseAbs().maxCoeff() > 1e-13 * size;
+    if (!overlap && !open) return;
+    ++counters_.nudges;
+    ContactOptions options;
+    options.tolerance = 1e-6;   // of what is missing: the next round takes the rest
+    const ContactSolution shift = solve_contacts(problem, options);
+    for (std::size_t k = 0; k < group.bodies.size(); ++k) {
+      RigidBodyState& state = states[group.bodies[k]];
+      const Inertia& inertia = moving_.world().bodies[group.bodies[k]].inertia;
+      const Vector3d omega = omega_of(state, inertia);
+      state.com_world += shift.velocities[k].linear_world;
+      state.world_from_body = turned(state.world_from_body, shift.velocities[k].angular_world);
+      state.angular_momentum_world = angular_momentum_of(omega, state.world_from_body, inertia);
+    }
+  }
+}
+
+}  // namespace tumble::engines
