@@ -41,6 +41,8 @@ class RetroactiveRun {
       : scene_(scene), laws_(guarded(laws)), sink_(sink), step_(options.step_s.value_or(scene.step_s)),
         duration_(options.duration_s.value_or(scene.duration_s)), moving_(build_world(scene), laws_, counters_),
         impacts_(laws_, {scene.rest_speed_m_s, step_ / 100}, counters_), recorder_(options.frame_rate_hz, duration_, sink) {
+    for (int i = 0; i < moving_.size(); ++i)
+      if (moving_.world().bodies[i].collides) colliding_.push_back(i);
     if (!moving_.world().contact) return;
     contacts_.emplace(moving_, laws_, *moving_.world().contact, scene.rest_speed_m_s, counters_, sink);
     impacts_.use_contact_rules(scene.rest_speed_m_s, moving_.world().contact->impact_law);
@@ -84,6 +86,7 @@ class RetroactiveRun {
   std::optional<LastingContacts> contacts_;   // where the scene asks for them
   long grid_index_ = 0;
   std::set<double> switch_times_;
+  std::vector<int> colliding_;   // bodies that may touch others, ascending
   double next_look_ = std::numeric_limits<double>::infinity();   // of a control law
   std::string stopped_by_;
   EnergyWatch energy_watch_;
@@ -143,10 +146,16 @@ bool RetroactiveRun::may_meet(int a, int b) {
 }
 
 std::vector<std::pair<int, int>> RetroactiveRun::candidates() {
+  if (colliding_.size() < 2) return {};
   const StageTimer timer(counters_.collision_seconds);
   std::vector<collision::SweptBox> boxes;
-  for (int i = 0; i < moving_.size(); ++i) boxes.push_back(moving_.swept_box(i));
+  boxes.reserve(colliding_.size());
+  for (const int body : colliding_) boxes.push_back(moving_.swept_box(body));
   auto pairs = collision::overlapping_pairs(boxes);
+  for (auto& [a, b] : pairs) {
+    a = colliding_[a];
+    b = colliding_[b];
+  }
   std::erase_if(pairs, [&](const std::pair<int, int>& pair) { return !moving_.may_collide(pair.first, pair.second) || !may_meet(pair.first, pair.second); });
   counters_.candidate_pairs += pairs.size();
   return pairs;
