@@ -1,8 +1,10 @@
 // Every demo scene, run by right laws, is judged right at every frame; run by wrong ones, it is judged wrong.
 #include <gtest/gtest.h>
 
+#include "assignments/a3_constraints/a3_binding.h"
 #include "framework/engines/judge.h"
 #include "framework/engines/run.h"
+#include "framework/modules/load.h"
 #include "framework/scene/load_scene.h"
 #include "tests/support/test_laws.h"
 
@@ -25,6 +27,16 @@ scene::Scene demo_scene(const std::string& name) {
   throw std::runtime_error("no demo scene " + name);
 }
 
+/// Right laws of all assignments: impulses and motion in other words than any solution, springs, rods and contacts the reference's.
+Laws right_laws() {
+  modules::Registry registry;
+  register_assignments(registry);
+  Laws laws = test_laws();
+  const auto file = fs::path(TUMBLE_BINARY_DIR) / "modules" / "a3_reference.so";
+  a3::bind(*std::static_pointer_cast<const a3::Module>(modules::load_module(registry.find("a3"), file)), laws);
+  return laws;
+}
+
 Trajectory run(const scene::Scene& scene, const Laws& laws) {
   TrajectoryRecorder recorder;
   engines::run_scene(scene, laws, {}, recorder);
@@ -45,7 +57,7 @@ bool fails(const scene::Scene& scene, const Laws& laws) {
 }
 
 Laws with_euler() {
-  Laws laws = test_laws();
+  Laws laws = right_laws();
   laws.integrate_step = [](const OdeFunction& f, double t, const VectorXd& y, double h) -> VectorXd { return y + h * f(t, y); };
   return laws;
 }
@@ -54,7 +66,7 @@ TEST(DemoScenes, AreJudgedRightAndNeverOverlap) {
   for (const auto& file : demo_scenes()) {
     SCOPED_TRACE(file.stem().string());
     const scene::Scene scene = scene::load_scene(file);
-    const Trajectory result = run(scene, test_laws());
+    const Trajectory result = run(scene, right_laws());
     EXPECT_EQ(result.stopped_by, "");
     EXPECT_EQ(failures(scene, result), std::vector<std::string>{});
     EXPECT_NEAR(result.frames.back().time, scene.duration_s, 1e-9);
@@ -63,7 +75,8 @@ TEST(DemoScenes, AreJudgedRightAndNeverOverlap) {
 }
 
 TEST(DemoScenes, EulersMethodIsJudgedWrongWhereBodiesTumble) {
-  for (const std::string name : {"t_handle", "poked_box", "poked_pawn"}) EXPECT_TRUE(fails(demo_scene(name), with_euler())) << name;
+  for (const std::string name : {"t_handle", "poked_box", "poked_pawn", "hung_by_rod", "double_pendulum", "chain_8", "heavy_bob", "four_bar", "two_joined_by_springs"})
+    EXPECT_TRUE(fails(demo_scene(name), with_euler())) << name;
 }
 
 TEST(DemoScenes, AnImpulseOfTheWrongSignIsJudgedWrong) {
@@ -93,6 +106,39 @@ TEST(DemoScenes, AForgottenArmIsJudgedWrong) {
   scene.checks.push_back(check);
   EXPECT_FALSE(fails(scene, test_laws()));
   EXPECT_TRUE(fails(scene, laws));
+}
+
+TEST(DemoScenes, ASpringThatPushesWhereItShouldPullIsJudgedWrong) {
+  Laws laws = right_laws();
+  laws.spring_force = [right = laws.spring_force](const Spring& spring, const AnchorState& a, const AnchorState& b) { return Vector3d(-right(spring, a, b)); };
+  for (const std::string name : {"hung_by_spring", "two_joined_by_springs"}) EXPECT_TRUE(fails(demo_scene(name), laws)) << name;
+}
+
+TEST(DemoScenes, AForgottenRestLengthIsJudgedWrong) {
+  Laws laws = right_laws();
+  laws.spring_force = [right = laws.spring_force](Spring spring, const AnchorState& a, const AnchorState& b) {
+    spring.rest_length = 0.0;
+    return right(spring, a, b);
+  };
+  EXPECT_TRUE(fails(demo_scene("hung_by_spring"), laws));
+}
+
+TEST(DemoScenes, ARodWithoutItsVelocityProductIsJudgedWrong) {
+  Laws laws = right_laws();
+  laws.rod_row = [right = laws.rod_row](const Body& a, const Vector3d& point_a, const Body& b, const Vector3d& point_b, double length) {
+    ConstraintRow row = right(a, point_a, b, point_b, length);
+    row.velocity_product = 0.0;
+    return row;
+  };
+  for (const std::string name : {"hung_by_rod", "double_pendulum", "chain_8"}) EXPECT_TRUE(fails(demo_scene(name), laws)) << name;
+}
+
+TEST(DemoScenes, ASolverThatIsOffByAMillionthIsJudgedWrong) {
+  Laws laws = right_laws();
+  laws.constraint_multipliers = [right = laws.constraint_multipliers](const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies, const VectorXd& wanted) {
+    return VectorXd((1 + 1e-6) * right(rows, bodies, wanted));
+  };
+  for (const std::string name : {"chain_100", "heavy_bob"}) EXPECT_TRUE(fails(demo_scene(name), laws)) << name;
 }
 
 }  // namespace
