@@ -14,6 +14,7 @@ constexpr double kEnough = 1e-8;          // of the group's speed: what is left 
 constexpr std::size_t kPile = 60;         // contacts of a group
 constexpr double kEnoughOfAPile = 1e-5;
 constexpr int kSweepsOfAPile = 120;
+constexpr double kFarOff = 1e-3;          // of the group's speed: an answer this wrong is not taken without another attempt
 constexpr double kMidway = 0.3;           // of the smaller body: how far from each other points of one contact may lie at the middle of a step
 constexpr int kMostShifts = 8;            // rounds of taking back overlaps
 constexpr int kMostOfStudents = 64;       // contacts of a group that the laws' contact_forces is asked for: it is given a dense matrix
@@ -107,7 +108,8 @@ ContactProblem LastingContacts::problem_of(const Group& group, const std::vector
         const double distance = (known.point_body_a - point_body_a).norm();
         if (distance >= nearest) continue;
         nearest = distance;
-        contact.guess_world = h * known.force_world;
+        // A longer step needs more where the force lasts, no more where it was a blow.
+        contact.guess_world = std::min(1.0, h / known.duration) * known.impulse_world;
       }
     }
     problem.contacts.push_back(contact);
@@ -130,7 +132,17 @@ ContactSolution LastingContacts::solve(const Group& group, const ContactProblem&
       options.largest_direct = 0;
       options.most_sweeps_alone = kSweepsOfAPile;
     }
-    const ContactSolution solution = solve_contacts(problem, options);
+    ContactSolution solution = solve_contacts(problem, options);
+    if (!solution.converged && solution.residual > kFarOff) {   // a guess can lead astray: once more from nothing, with every means
+      ContactProblem afresh = problem;
+      for (PushingContact& contact : afresh.contacts) contact.guess_world.setZero();
+      ContactOptions every;
+      every.tolerance = options.tolerance;
+      ContactSolution again = solve_contacts(afresh, every);
+      again.sweeps += solution.sweeps;
+      again.factorisations += solution.factorisations;
+      if (again.residual < solution.residual) solution = std::move(again);
+    }
     counters_.contact_sweeps += static_cast<std::uint64_t>(solution.sweeps);
     counters_.contact_factorisations += static_cast<std::uint64_t>(solution.factorisations);
     if (!solution.converged) ++counters_.contact_unsolved;

@@ -170,7 +170,7 @@ std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidat
     for (std::size_t i = 0; i < touches.size(); ++i) {
       const RigidBodyState& a = moving_.state(touches[i].pair.first);
       const Vector3d force = solution.impulses_world[i] / h, point = problem.contacts[i].point_world;
-        if (force.allFinite()) warm[touches[i].pair].push_back({a.world_from_body.conjugate() * (point - a.com_world), force});
+      warm[touches[i].pair].push_back({a.world_from_body.conjugate() * (point - a.com_world), solution.impulses_world[i], h});
       if (!force.isZero(0.0)) forces_.push_back({touches[i].pair.first, touches[i].pair.second, point, touches[i].point.normal_b_to_a_world, force});
     }
   }

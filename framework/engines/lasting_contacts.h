@@ -55,7 +55,8 @@ class LastingContacts {
  private:
   using Points = std::vector<collision::NearPoint>;
   struct Warm {
-    Vector3d point_body_a, force_world;
+    Vector3d point_body_a, impulse_world;
+    double duration;             // of the step it was spread over [s]
   };
   struct Group {
     std::vector<int> bodies;     // that can move, ascending

@@ -14,6 +14,7 @@ namespace {
 // the speeds along the surface that cancel in it (a ball sliding in a groove).
 constexpr double kRoundOffOfSpeed = 1e-13;
 constexpr double kRoundOffOfSliding = 64 * std::numeric_limits<double>::epsilon();
+constexpr int kRoundsAmongContacts = 60;   // bodies in lasting contact pass a blow on in ever smaller parts
 constexpr int kMostRounds = 10000;  // restitution 0.99 in a row of 50 balls takes some hundred
 
 // Of the rest speed: pushes of touching pairs approach it together, each round by a part of what is missing.
@@ -139,7 +140,7 @@ void SequentialImpacts::rub(Work& work, const TouchingPair& pair, const Contact&
 }
 
 // Newton's law of restitution for all pairs at once: v_n' >= -e v_n where they approach, v_n' >= 0 elsewhere, with friction.
-void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingPair>& pairs, double threshold) {
+void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingPair>& pairs, double threshold, bool rebounds) {
   ContactProblem problem;
   std::map<int, int> places;
   const auto place = [&](int index) {
@@ -161,7 +162,7 @@ void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingP
     const std::size_t first = pair.points_world.size() > 1 ? 1 : 0;   // corners carry; the middle lies between them
     for (std::size_t k = first; k < pair.points_world.size(); ++k) {
       const double approach = laws_.relative_normal_velocity(contact_of(pair, pair.points_world[k]), work.body(pair.a), work.body(pair.b));
-      const double restitution = stays(work.moving.world(), pair, -approach) ? 0.0 : restitution_of(work.moving.world(), pair);
+      const double restitution = !rebounds || stays(work.moving.world(), pair, -approach) ? 0.0 : restitution_of(work.moving.world(), pair);
       any = any || approach < -threshold;
       problem.contacts.push_back({place(pair.a), place(pair.b), pair.points_world[k], pair.gap.normal_b_to_a_world, friction_of(work.moving.world(), pair),
                                   approach < 0 ? -restitution * approach : 0.0, Vector3d::Zero()});
@@ -227,10 +228,14 @@ Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<Tou
 
   bool again = law_ == scene::ImpactLaw::kSequential;
   int rounds = 0;
-  if (!again) collide_together(work, pairs, threshold);
-  while (again && ++rounds < kMostRounds) {
+  if (!again) collide_together(work, pairs, threshold, true);
+  while (again && ++rounds < (contact_rest_speed_ ? kRoundsAmongContacts : kMostRounds)) {
     again = false;
     for (const TouchingPair& pair : pairs) again = collide(work, pair, threshold) || again;
+  }
+  if (again && contact_rest_speed_) {   // what is left of a blow that many bodies in contact hand to and fro is taken from all at once
+    collide_together(work, pairs, threshold, false);
+    again = false;
   }
   work.result.settled = !again;
 

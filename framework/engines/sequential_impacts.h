@@ -67,7 +67,7 @@ class SequentialImpacts {
   bool push_pair_apart(Work& work, const TouchingPair& pair);
   bool collide(Work& work, const TouchingPair& pair, double threshold);
   void rub(Work& work, const TouchingPair& pair, const Contact& contact, double impulse);
-  void collide_together(Work& work, const std::vector<TouchingPair>& pairs, double threshold);
+  void collide_together(Work& work, const std::vector<TouchingPair>& pairs, double threshold, bool rebounds);
 
   const Laws& laws_;
   ImpactRules rules_;
