@@ -61,8 +61,15 @@ VectorXd constraint_multipliers(const std::vector<Constraint>& rows, const std::
   return A.lu().solve(rhs - J * free);
 }
 
-VectorXd constraint_correction(const std::vector<Constraint>&, const std::vector<ConstrainedBody>&, const VectorXd&) {
-  throw NotImplemented("constraint_correction", "handouts/a3_constraints.md#hint-correction");
+VectorXd constraint_correction(const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies, const VectorXd& error) {
+  long m = static_cast<long>(rows.size()), n = static_cast<long>(bodies.size());
+  MatrixXd J = MatrixXd::Zero(m, 6 * n);
+  for (long i = 0; i < m; ++i) {
+    const Constraint& c = rows[static_cast<std::size_t>(i)];
+    if (bodies[static_cast<std::size_t>(c.body_a)].inverse_mass > 0) J.block<1, 6>(i, 6 * c.body_a) = c.row.jacobian_a.transpose();
+    if (bodies[static_cast<std::size_t>(c.body_b)].inverse_mass > 0) J.block<1, 6>(i, 6 * c.body_b) = c.row.jacobian_b.transpose();
+  }
+  return -J.transpose() * (J * J.transpose()).lu().solve(error);
 }
 
 VectorXd contact_forces(const MatrixXd& A, const VectorXd& b) {
