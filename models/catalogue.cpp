@@ -48,6 +48,24 @@ TriangleMesh wedge() {
   return turned(extrude({{0, 0}, {1, 0}, {0, 0.5}}, {{0, 1, 2}}, -0.4, 0.4), Quaterniond(std::sqrt(0.5), std::sqrt(0.5), 0, 0));
 }
 
+/// An outline in the xz plane, counter-clockwise seen from -y, of a solid that reaches `half_width` to both sides.
+TriangleMesh upright(const std::vector<Vector2d>& outline, double half_width) {
+  return turned(extrude(outline, {{0, 1, 2}, {0, 2, 3}}, -half_width, half_width), Quaterniond(std::sqrt(0.5), std::sqrt(0.5), 0, 0));
+}
+
+/// A stone of a semicircular arch of 25, thickness 0.12 of its middle radius of 1 m; the arch's centre is the origin.
+TriangleMesh arch_stone() {
+  constexpr double kHalfAngle = kPi / 50, kInner = 0.94, kOuter = 1.06;
+  const double s = std::sin(kHalfAngle), c = std::cos(kHalfAngle);
+  return upright({{-kInner * s, kInner * c}, {kInner * s, kInner * c}, {kOuter * s, kOuter * c}, {-kOuter * s, kOuter * c}}, 0.2);
+}
+
+/// A playing card to lean on another at 25 degrees: its top is cut so that the cut is upright when the card leans.
+TriangleMesh card() {
+  constexpr double kThickness = 0.02, kLean = 25.0 / 180.0 * kPi;
+  return upright({{-kThickness, 0}, {0, 0}, {0, 1}, {-kThickness, 1 + kThickness / std::tan(kLean)}}, 0.36);
+}
+
 /// Hull of points scattered about an ellipsoid: a stone as it comes off a beach.
 TriangleMesh rock(std::uint64_t seed, int points, const Vector3d& half_axes) {
   Random random(seed);
@@ -152,6 +170,8 @@ std::vector<Model> catalogue() {
       {"t_handle.3ds", {{"t_handle", t_handle()}}},
       {"rod.3ds", {{"rod", rod()}}},
       {"wedge.3ds", {{"wedge", wedge()}}},
+      {"arch_stone.3ds", {{"arch_stone", arch_stone()}}},
+      {"card.3ds", {{"card", card()}}},
       {"rock_1.3ds", {{"rock_1", rock(1, 36, {0.5, 0.42, 0.33})}}},
       {"rock_2.3ds", {{"rock_2", rock(2, 24, {0.45, 0.45, 0.4})}}},
       {"rock_3.3ds", {{"rock_3", rock(3, 48, {0.6, 0.35, 0.25})}}},
