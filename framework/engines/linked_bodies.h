@@ -30,6 +30,10 @@ class LinkedBodies {
   LinkedBodies(const World& world, const Laws& laws, RunCounters& counters, OuterWrench outer_wrench, std::vector<int> bodies);
 
   const std::vector<int>& bodies() const { return bodies_; }
+  /// Immovable bodies that a link of the group ends at; -1: the world.
+  const std::vector<int>& fixed_ends() const { return fixed_; }
+  /// What its motors hold until they look again, by motor. [N m]
+  const std::vector<double>& torques() const { return torques_; }
   bool has_constraints() const { return !rods_.empty() || !joints_.empty(); }
 
   /// Control laws whose time has come look and set their torques. @return the next time at which one looks; infinite without

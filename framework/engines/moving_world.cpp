@@ -32,7 +32,7 @@ double measure_path_bend(const Laws& laws) {
 }  // namespace
 
 MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters)
-    : world_(std::move(world)), laws_(laws), counters_(counters), rests_(world_.bodies.size()), force_points_body_(world_.point_forces.size()),
+    : world_(std::move(world)), laws_(laws), counters_(counters), rests_(world_.bodies.size()), asleep_(world_.bodies.size(), false), force_points_body_(world_.point_forces.size()),
       paths_(world_.bodies.size()), told_of_shortening_(world_.bodies.size(), false),
       told_of_aliasing_(world_.bodies.size(), false) {
   for (const WorldBody& body : world_.bodies) {
@@ -52,6 +52,11 @@ bool MovingWorld::may_collide(int a, int b) const {
   const WorldBody &first = world_.bodies[a], &second = world_.bodies[b];
   if ((first.immovable() && second.immovable()) || !first.collides || !second.collides) return false;
   return world_.apart.empty() || !std::binary_search(world_.apart.begin(), world_.apart.end(), std::pair(std::min(a, b), std::max(a, b)));
+}
+
+bool MovingWorld::is_driven(int body) const {
+  const scene::PrescribedMotion& m = world_.bodies[body].motion;
+  return !m.velocity_m_s.isZero(0.0) || (m.angular_frequency_rad_s != 0.0 && !m.amplitude_m.isZero(0.0));
 }
 
 double MovingWorld::look() {
@@ -90,9 +95,17 @@ void MovingWorld::put_to_rest(int body, int support) {
   ++counters_.bodies_put_to_rest;
 }
 
+void MovingWorld::put_to_sleep(int body) {
+  states_[body].momentum_world.setZero();
+  states_[body].angular_momentum_world.setZero();
+  asleep_[body] = true;
+  ++counters_.bodies_put_to_sleep;
+}
+
 void MovingWorld::wake(int body) {
   states_[body] = still_state(body, time_);
   rests_[body].reset();
+  asleep_[body] = false;
   ++counters_.bodies_woken;
 }
 
@@ -115,6 +128,7 @@ RigidBodyState MovingWorld::still_state(int body, double t) const {
     state.com_world = prescribed_position(b, t);
     return state;
   }
+  if (asleep_[body]) return state;
   const WorldBody& support = world_.bodies[rests_[body]->support];
   state.com_world = prescribed_position(support, t) + rests_[body]->offset_from_support_world;
   state.momentum_world = b.inertia.mass * prescribed_velocity(support, t);
@@ -128,6 +142,7 @@ RigidBodyState MovingWorld::still_state(int body, double t) const {
 Vector3d MovingWorld::velocity_of(int body, double t) const {
   const WorldBody& b = world_.bodies[body];
   if (b.immovable()) return prescribed_velocity(b, t);
+  if (asleep_[body]) return Vector3d::Zero();
   if (rests_[body]) return prescribed_velocity(world_.bodies[rests_[body]->support], t);
   return b.inertia.inverse_mass * states_[body].momentum_world;
 }
@@ -189,6 +204,7 @@ void MovingWorld::begin_step(double target) {
     path.end = integrate(i, target - time_, time_, path.start);
   }
   for (LinkedBodies& group : linked_) {
+    if (asleep_[group.bodies().front()]) continue;   // they sleep together
     const std::vector<RigidBodyState> ends = group.advance(states_, time_, target - time_);
     for (std::size_t i = 0; i < ends.size(); ++i) set_path(group.bodies()[i], states_[group.bodies()[i]], ends[i]);
     integrations_in_step_ += ends.size();
@@ -232,6 +248,7 @@ collision::MotionState MovingWorld::motion_at(int body, double t) {
 collision::MotionBounds MovingWorld::work_out_bounds(int body) {
   collision::MotionBounds bounds;
   const WorldBody& b = world_.bodies[body];
+  if (asleep_[body]) return bounds;
   if (!can_move(body)) {
     const scene::PrescribedMotion& m = b.immovable() ? b.motion : world_.bodies[rests_[body]->support].motion;
     bounds.acceleration_deviation = m.amplitude_m.norm() * m.angular_frequency_rad_s * m.angular_frequency_rad_s;
@@ -269,7 +286,7 @@ collision::SweptBox MovingWorld::swept_box(int body) {
   const double shell = world_.contact && std::isfinite(radius) ? kContactMargin * radius : 0.0;
   const Vector3d margin =
       bulge + Vector3d::Constant(radius + shell) + kRounding * (start.cwiseAbs() + end.cwiseAbs() + Vector3d::Constant(std::isfinite(radius) ? radius : 0.0));
-  return {start.cwiseMin(end) - margin, start.cwiseMax(end) + margin, can_move(body)};
+  return {start.cwiseMin(end) - margin, start.cwiseMax(end) + margin, can_move(body) || is_driven(body)};
 }
 
 void MovingWorld::commit(double t) {

@@ -41,9 +41,15 @@ class MovingWorld {
   void set_state(int body, const RigidBodyState& state) { states_[body] = state; }
   /// Whether the two may collide at all: one can move, both collide, and the scene does not keep them apart.
   bool may_collide(int a, int b) const;
-  bool can_move(int body) const { return !world_.bodies[body].immovable() && !rests_[body]; }
+  bool can_move(int body) const { return !world_.bodies[body].immovable() && !rests_[body] && !asleep_[body]; }
+  /// Whether an immovable body moves by a law of its own.
+  bool is_driven(int body) const;
   bool resting(int body) const { return rests_[body].has_value(); }
   void put_to_rest(int body, int support);
+  /// Stops a body where it is: from here on it keeps its place to the last bit, and no law is asked about it (sleeping.h).
+  void put_to_sleep(int body);
+  bool asleep(int body) const { return asleep_[body]; }
+  /// Ends rest or sleep of a body.
   void wake(int body);
   const std::vector<int>& active_forces() const { return active_forces_; }
   void switch_force(int index, bool on);
@@ -65,13 +71,15 @@ class MovingWorld {
 
   /// Begins a step from the committed time: works out the motion's bounds and where all come out.
   void begin_step(double target);
+  /// What the step under way has computed was in vain: it will be begun again.
+  void give_up_step() { counters_.undone_integrations += integrations_in_step_; }
   double target() const { return target_; }
   /// Begins the step again with an earlier target, if one of the bodies of these pairs turns too far in it for a bound on its turning to
   /// hold: collisions of these pairs would be missed. Balls for collision never ask for that.
   /// @return whether the target was moved
   /// @throws StoppedRun where a step would have to be cut into more than 1e5 parts
   bool shorten_step(const std::vector<std::pair<int, int>>& pairs);
-  /// Where a body's path is at time t in [time(), target()]; any t for immovable and resting ones.
+  /// Where a body's path is at time t in [time(), target()]; any t for immovable, resting and sleeping ones.
   RigidBodyState path(int body, double t);
   collision::MotionState motion_at(int body, double t);
   collision::Motion motion(int body);
@@ -111,6 +119,7 @@ class MovingWorld {
   std::vector<collision::CollisionShape> shapes_;
   std::vector<RigidBodyState> states_;
   std::vector<std::optional<Rest>> rests_;
+  std::vector<bool> asleep_;
   std::vector<int> active_forces_;               // indices into world_.point_forces
   std::vector<Vector3d> force_points_body_;      // by force, from when it is switched on
   std::vector<Path> paths_;

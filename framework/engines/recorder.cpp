@@ -2,7 +2,7 @@
 
 #include <limits>
 
-#include "framework/engines/lasting_contacts.h"
+#include "framework/engines/sleeping.h"
 
 namespace tumble::engines {
 
@@ -48,6 +48,7 @@ void FrameRecorder::push(MovingWorld& moving, double t) {
   frame.rod_tensions = std::move(forces.rods);
   frame.joint_forces = std::move(forces.joints);
   if (contacts_) frame.contacts = contacts_->forces();
+  if (sleepers_) sleepers_->append_forces(frame.contacts);
   sink_.frame(frame);
 }
 

@@ -6,6 +6,7 @@
 namespace tumble::engines {
 
 class LastingContacts;
+class Sleepers;
 
 class FrameRecorder {
  public:
@@ -13,6 +14,7 @@ class FrameRecorder {
 
   /// Frames hold the forces of these contacts.
   void record_contacts_of(const LastingContacts& contacts) { contacts_ = &contacts; }
+  void record_contacts_of(const Sleepers& sleepers) { sleepers_ = &sleepers; }
 
   /// Pushes the frames that lie before `t`, from the paths of the step under way.
   void record_before(MovingWorld& moving, double t);
@@ -26,6 +28,7 @@ class FrameRecorder {
   double rate_, duration_;
   TrajectorySink& sink_;
   const LastingContacts* contacts_ = nullptr;
+  const Sleepers* sleepers_ = nullptr;
   long next_ = 0;
 };
 

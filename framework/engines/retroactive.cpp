@@ -13,6 +13,7 @@
 #include "framework/engines/lasting_contacts.h"
 #include "framework/engines/recorder.h"
 #include "framework/engines/sequential_impacts.h"
+#include "framework/engines/sleeping.h"
 #include "framework/engines/stability.h"
 
 namespace tumble::engines {
@@ -47,6 +48,10 @@ class RetroactiveRun {
     contacts_.emplace(moving_, laws_, *moving_.world().contact, scene.rest_speed_m_s, counters_, sink);
     impacts_.use_contact_rules(scene.rest_speed_m_s, moving_.world().contact->impact_law);
     recorder_.record_contacts_of(*contacts_);
+    if (std::any_of(moving_.world().bodies.begin(), moving_.world().bodies.end(), [](const WorldBody& body) { return body.friction > 0.0; })) modes_.emplace(*contacts_, sink);
+    if (!moving_.world().contact->sleep) return;
+    sleepers_.emplace(moving_, *contacts_, modes_ ? &*modes_ : nullptr, scene.rest_speed_m_s, counters_, sink);
+    recorder_.record_contacts_of(*sleepers_);
   }
 
   void run();
@@ -71,6 +76,8 @@ class RetroactiveRun {
   bool stays_on(const TouchingPair& pair, int body, const Vector3d& up) const;
   std::vector<std::pair<int, int>> keep_contacts(std::vector<std::pair<int, int>> pairs);
   void begin_contacts(const std::vector<TouchingPair>& touching, const std::vector<Event>& events);
+  void note_touching(const std::vector<std::pair<int, int>>& near);
+  void begin_again();
   void settle(const std::vector<TouchingPair>& touching, const std::vector<Event>& events);
   void watch_for_trouble();
   std::string name(int body) const { return "'" + moving_.world().bodies[body].name + "'"; }
@@ -84,6 +91,9 @@ class RetroactiveRun {
   SequentialImpacts impacts_;
   FrameRecorder recorder_;
   std::optional<LastingContacts> contacts_;   // where the scene asks for them
+  std::optional<ContactModes> modes_;         // where contacts may have friction
+  std::optional<Sleepers> sleepers_;          // where the scene asks for sleep
+  std::vector<std::pair<int, int>> touching_; // pairs in contact in the step that was committed last
   long grid_index_ = 0;
   std::set<double> switch_times_;
   std::vector<int> colliding_;   // bodies that may touch others, ascending
@@ -124,6 +134,7 @@ void RetroactiveRun::switch_forces() {
     const bool is_on = std::find(active.begin(), active.end(), k) != active.end();
     const bool should_be_on = moving_.time() >= forces[k].start && moving_.time() < forces[k].end;
     if (is_on == should_be_on) continue;
+    if (sleepers_) sleepers_->wake(forces[k].body, -1);
     moving_.switch_force(k, should_be_on);
     const double size = forces[k].force_world.norm();
     sink_.event({moving_.time(), should_be_on ? EventKind::kForceOn : EventKind::kForceOff, forces[k].body, -1, forces[k].point_world,
@@ -146,7 +157,7 @@ bool RetroactiveRun::may_meet(int a, int b) {
 }
 
 std::vector<std::pair<int, int>> RetroactiveRun::candidates() {
-  if (colliding_.size() < 2) return {};
+  if (colliding_.size() < 2 || std::none_of(colliding_.begin(), colliding_.end(), [&](int body) { return moving_.can_move(body) || moving_.is_driven(body); })) return {};
   const StageTimer timer(counters_.collision_seconds);
   std::vector<collision::SweptBox> boxes;
   boxes.reserve(colliding_.size());
@@ -260,6 +271,7 @@ void RetroactiveRun::resolve_at(const std::vector<std::pair<int, int>>& pairs, s
     if (pair != trigger && !lasting && !(gap.distance <= touching_distance(pair))) continue;
     if (pair == trigger) trigger_index = touching.size();
     touching.push_back({pair.first, pair.second, gap, touching_points(pair, gap)});
+    if (sleepers_) sleepers_->wake(pair);
   }
   const std::string subject = fmt::format("bodies {} and {}", name(trigger.first), name(trigger.second));
   Resolution resolution = naming(subject, [&] { return impacts_.resolve(moving_, touching, trigger_index); });
@@ -353,6 +365,17 @@ std::vector<std::pair<int, int>> RetroactiveRun::keep_contacts(std::vector<std::
   return pairs;
 }
 
+void RetroactiveRun::note_touching(const std::vector<std::pair<int, int>>& near) {
+  touching_.clear();
+  std::copy_if(near.begin(), near.end(), std::back_inserter(touching_), [&](const auto& pair) { return contacts_->keeps(pair); });
+}
+
+// A sleeper is met in the step under way: it takes it awake.
+void RetroactiveRun::begin_again() {
+  moving_.give_up_step();
+  ++counters_.rollbacks;
+}
+
 void RetroactiveRun::advance_to(double target) {
   int idle = 0, impacts = 0;
   while (stopped_by_.empty() && moving_.time() < target) {
@@ -360,6 +383,10 @@ void RetroactiveRun::advance_to(double target) {
     ++counters_.steps;
     std::vector<std::pair<int, int>> pairs = candidates();
     if (moving_.shorten_step(pairs)) pairs = candidates();
+    if (sleepers_ && sleepers_->wake_met(pairs)) {
+      begin_again();
+      continue;
+    }
     if (contacts_) pairs = keep_contacts(std::move(pairs));
     const std::vector<std::pair<int, int>> near = contacts_ && !contacts_->empty() ? candidates() : std::vector<std::pair<int, int>>{};
     std::optional<Earliest> earliest;
@@ -368,6 +395,11 @@ void RetroactiveRun::advance_to(double target) {
       earliest = find_earliest(pairs);
       if (!earliest) earliest = find_missed(pairs, moving_.target());
     }
+    if (sleepers_ && earliest && sleepers_->wake(pairs[earliest->pair])) {
+      begin_again();
+      continue;
+    }
+    if (modes_) modes_->look(moving_.time());
     const double before = moving_.time(), reached = earliest ? earliest->time : moving_.target();
     recorder_.record_before(moving_, reached);
     moving_.commit(reached);
@@ -376,6 +408,7 @@ void RetroactiveRun::advance_to(double target) {
     separate(pairs);
     if (contacts_) contacts_->commit();
     if (contacts_ && !contacts_->empty()) separate(near);
+    if (sleepers_) note_touching(near);
     if (!earliest) continue;
     ++counters_.rollbacks;
     resolve_at(near.empty() ? pairs : near, pairs[earliest->pair]);
@@ -414,6 +447,7 @@ void RetroactiveRun::run_to_the_end() {
   recorder_.record_committed(moving_);
   while (stopped_by_.empty() && moving_.time() < duration_) {
     next_look_ = moving_.look();
+    if (sleepers_) sleepers_->wake_where_control_changes();
     const double target = next_target();
     advance_to(target);
     if (!stopped_by_.empty()) break;
@@ -424,6 +458,7 @@ void RetroactiveRun::run_to_the_end() {
                                 "these is wrong", moving_.time(), *runaway, laws_.integrator_source, laws_.impulse_source, laws_.constraint_source);
     }
     recorder_.record_committed(moving_);
+    if (sleepers_) sleepers_->look(touching_);
   }
 }
 

@@ -35,8 +35,10 @@ Counters RunCounters::named() const {
                   {"contact_unsolved", contact_unsolved},
                   {"contacts_begun", contacts_begun},
                   {"contacts_ended", contacts_ended},
+                  {"contact_landings", contact_landings},
                   {"friction_points", friction_points},
-                  {"bodies_put_to_sleep", bodies_put_to_sleep}};
+                  {"bodies_put_to_sleep", bodies_put_to_sleep},
+                  {"body_steps_asleep", body_steps_asleep}};
   named.stage_seconds = {{"integration", integration_seconds},
                          {"collision", collision_seconds},
                          {"impacts", impact_seconds},
