@@ -76,7 +76,7 @@ TEST(DemoScenes, AreJudgedRightAndNeverOverlap) {
 
 TEST(DemoScenes, EulersMethodIsJudgedWrongWhereTruncationShows) {
   for (const std::string name : {"t_handle", "poked_box", "poked_pawn", "hung_by_rod", "double_pendulum", "chain_8", "heavy_bob", "four_bar",
-                                 "two_joined_by_springs", "blocks_on_an_incline", "sliding_to_rolling", "drop_a_box"})
+                                 "two_joined_by_springs", "blocks_on_an_incline", "sliding_to_rolling", "drop_a_box", "newtons_cradle_2", "newtons_cradle_springs", "wedge", "bounce_to_rolling"})
     EXPECT_TRUE(fails(demo_scene(name), with_euler())) << name;
 }
 
@@ -89,7 +89,7 @@ TEST(DemoScenes, AnImpulseOfTheWrongSignIsJudgedWrong) {
 TEST(DemoScenes, AForgottenRestitutionIsJudgedWrong) {
   Laws laws = right_laws();
   laws.collision_impulse = [right = laws.collision_impulse](const Contact& contact, const Body& a, const Body& b, double) { return right(contact, a, b, 0.0); };
-  for (const std::string name : {"ball_against_wall", "collide_off_centre_e05", "collide_off_centre_e1", "bouncing_ball", "newtons_cradle"})
+  for (const std::string name : {"ball_against_wall", "collide_off_centre_e05", "collide_off_centre_e1", "bouncing_ball", "newtons_cradle", "newtons_cradle_3", "newtons_cradle_springs", "bounce_to_rolling"})
     EXPECT_TRUE(fails(demo_scene(name), laws)) << name;
 }
 
@@ -97,6 +97,20 @@ TEST(DemoScenes, ContactForcesThatAreNotThereAreJudgedWrong) {
   Laws laws = right_laws();
   laws.contact_forces = [](const MatrixXd&, const VectorXd& b) { return VectorXd(VectorXd::Zero(b.size())); };
   for (const std::string name : {"stack_of_10", "beam_on_two_supports"}) EXPECT_TRUE(fails(demo_scene(name), laws)) << name;
+}
+
+TEST(DemoScenes, AForceThatCountsTwiceIsJudgedWrongWhereAllStandsStill) {
+  Laws laws = right_laws();
+  laws.state_derivative = [right = laws.state_derivative](const RigidBodyState& state, const Inertia& inertia, const Wrench& wrench) {
+    return right(state, inertia, {2.0 * wrench.force_world, wrench.torque_world});
+  };
+  for (const std::string name : {"stack_of_50", "arch", "wedge"}) EXPECT_TRUE(fails(demo_scene(name), laws)) << name;
+}
+
+TEST(DemoScenes, AnEndOfBouncingThatForgetsTheRestitutionIsJudgedWrong) {
+  Laws laws = right_laws();
+  laws.ends_in_contact = [](double approach_speed, double, double rest_speed) { return approach_speed <= rest_speed; };
+  EXPECT_TRUE(fails(demo_scene("bounce_to_rolling"), laws));
 }
 
 TEST(DemoScenes, AForgottenArmIsJudgedWrong) {
@@ -119,7 +133,7 @@ TEST(DemoScenes, AForgottenArmIsJudgedWrong) {
 TEST(DemoScenes, ASpringThatPushesWhereItShouldPullIsJudgedWrong) {
   Laws laws = right_laws();
   laws.spring_force = [right = laws.spring_force](const Spring& spring, const AnchorState& a, const AnchorState& b) { return Vector3d(-right(spring, a, b)); };
-  for (const std::string name : {"hung_by_spring", "two_joined_by_springs", "dropped_on_a_hung_block"}) EXPECT_TRUE(fails(demo_scene(name), laws)) << name;
+  for (const std::string name : {"hung_by_spring", "two_joined_by_springs", "dropped_on_a_hung_block", "newtons_cradle_springs"}) EXPECT_TRUE(fails(demo_scene(name), laws)) << name;
 }
 
 TEST(DemoScenes, AForgottenRestLengthIsJudgedWrong) {
@@ -128,7 +142,7 @@ TEST(DemoScenes, AForgottenRestLengthIsJudgedWrong) {
     spring.rest_length = 0.0;
     return right(spring, a, b);
   };
-  EXPECT_TRUE(fails(demo_scene("hung_by_spring"), laws));
+  for (const std::string name : {"hung_by_spring", "newtons_cradle_springs"}) EXPECT_TRUE(fails(demo_scene(name), laws)) << name;
 }
 
 TEST(DemoScenes, ARodWithoutItsVelocityProductIsJudgedWrong) {
@@ -138,7 +152,7 @@ TEST(DemoScenes, ARodWithoutItsVelocityProductIsJudgedWrong) {
     row.velocity_product = 0.0;
     return row;
   };
-  for (const std::string name : {"hung_by_rod", "double_pendulum", "chain_8"}) EXPECT_TRUE(fails(demo_scene(name), laws)) << name;
+  for (const std::string name : {"hung_by_rod", "double_pendulum", "chain_8", "newtons_cradle_2"}) EXPECT_TRUE(fails(demo_scene(name), laws)) << name;
 }
 
 TEST(DemoScenes, ASolverThatIsOffByAMillionthIsJudgedWrong) {
@@ -146,7 +160,7 @@ TEST(DemoScenes, ASolverThatIsOffByAMillionthIsJudgedWrong) {
   laws.constraint_multipliers = [right = laws.constraint_multipliers](const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies, const VectorXd& wanted) {
     return VectorXd((1 + 1e-6) * right(rows, bodies, wanted));
   };
-  for (const std::string name : {"chain_100", "heavy_bob"}) EXPECT_TRUE(fails(demo_scene(name), laws)) << name;
+  for (const std::string name : {"chain_100", "chain_1000", "heavy_bob", "robot_arm"}) EXPECT_TRUE(fails(demo_scene(name), laws)) << name;
 }
 
 }  // namespace
