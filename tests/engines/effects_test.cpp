@@ -20,6 +20,16 @@ const std::map<std::string, std::vector<std::string>> kCountersOf = {
     {"friction", {"friction_points"}},
     {"point force", {"point_force_calls"}},
     {"collision", {"impacts", "impulses"}},
+    {"sleep", {"bodies_put_to_sleep", "body_steps_asleep"}},
+};
+
+/// By effect: the events that tell of it.
+const std::map<std::string, std::vector<EventKind>> kEventsOf = {
+    {"friction", {EventKind::kSlide}},
+    {"contact", {EventKind::kContact}},
+    {"point force", {EventKind::kForceOn, EventKind::kForceOff}},
+    {"collision", {EventKind::kCollision}},
+    {"sleep", {EventKind::kSleep}},
 };
 
 using Adds = void (*)(scene::Scene&);
@@ -71,12 +81,18 @@ const std::map<std::string, Adds> kEffects = {
      [](scene::Scene& s) {
        s.bodies[0].velocity_m_s = {5, 0, 0};
      }},
+    {"sleep",
+     [](scene::Scene& s) {
+       kEffects.at("contact")(s);
+       s.contact->sleep = true;
+       s.duration_s = 0.7;
+     }},
 };
 
 TEST(Effects, OnlyWhatASceneAsksForRuns) {
   const Laws laws = reference_laws();
   // Effects that stand on others.
-  const std::map<std::string, std::vector<std::string>> brings = {{"motor", {"joint"}}, {"contact", {"gravity"}}, {"friction", {"contact", "gravity"}}};
+  const std::map<std::string, std::vector<std::string>> brings = {{"motor", {"joint"}}, {"contact", {"gravity"}}, {"friction", {"contact", "gravity"}}, {"sleep", {"contact", "gravity"}}};
   for (const auto& [effect, add] : kEffects) {
     scene::Scene scene = bare();
     add(scene);
@@ -91,8 +107,40 @@ TEST(Effects, OnlyWhatASceneAsksForRuns) {
         if (asked) EXPECT_GT(count, 0u) << counter << " in a scene with " << effect;
         else EXPECT_EQ(count, 0u) << counter << " in a scene with " << effect;
       }
+      if (!kEventsOf.contains(other)) continue;
+      for (const EventKind kind : kEventsOf.at(other)) {
+        const bool told = std::any_of(result.events.begin(), result.events.end(), [&](const Event& event) { return event.kind == kind; });
+        EXPECT_EQ(told, asked) << "events of " << other << " in a scene with " << effect;
+      }
     }
   }
+}
+
+/// A stack of five at rest, 20 balls that fall a kilometre above it, or both.
+scene::Scene stack_and_balls(bool stack, bool balls) {
+  std::vector<scene::BodySpec> bodies{plane("floor", Vector3d::Zero(), Vector3d::UnitZ())};
+  for (int i = 0; i < 5 && stack; ++i) bodies.push_back(box("box " + std::to_string(i), {0.5, 0.5, 0.5}, 1.0, {0, 0, 0.5 + i}, Vector3d::Zero()));
+  for (int i = 0; i < 20 && balls; ++i) bodies.push_back(ball("ball " + std::to_string(i), 0.1, 1.0, {3.0 * i, 0, 1000}, {0, 1, 0}));
+  for (scene::BodySpec& body : bodies) {
+    body.restitution = 0.0;
+    body.friction = 0.5;
+  }
+  scene::Scene scene = scene_of(bodies, 1.0, Vector3d(0, 0, -9.81));
+  scene.contact.emplace();
+  return scene;
+}
+
+TEST(Effects, BodiesInFlightPayNothingForAStackAndItNothingForThem) {
+  const Laws laws = reference_laws();
+  const auto counts = [&](bool stack, bool balls) { return run(stack_and_balls(stack, balls), laws).counters.counts; };
+  const auto alone = counts(true, false), flying = counts(false, true), both = counts(true, true);
+  for (const char* counter : {"candidate_pairs", "gap_evaluations", "root_findings", "contact_solves", "contact_points", "friction_points", "contact_sweeps", "contact_factorisations", "nudges"}) {
+    EXPECT_EQ(flying.at(counter), 0u) << counter;
+    EXPECT_EQ(both.at(counter), alone.at(counter)) << counter;
+  }
+  for (const char* counter : {"integrations", "undone_integrations", "derivative_evaluations", "gravity_calls"}) EXPECT_EQ(both.at(counter), alone.at(counter) + flying.at(counter)) << counter;
+  EXPECT_GT(alone.at("contact_solves"), 0u);
+  EXPECT_EQ(both.at("steps"), alone.at("steps"));
 }
 
 // Bodies that may not meet are not looked at by collision finding.

@@ -232,6 +232,31 @@ TEST(Sleeping, ABodyThatHangsStillSleepsUntilItIsHit) {
   EXPECT_LT(farthest_apart(slept.frames.back(), awake.frames.back()), 1e-9);
 }
 
+TEST(Sleeping, WhatHangsCostsNothingAsleep) {
+  const auto counts = [](double duration) {
+    scene::Scene scene = sleepy({rough(ball("bob", 0.1, 1.0, {0, 0, 1}, Vector3d::Zero()))}, duration);
+    scene.rods.push_back({"rod", {"", {0, 0, 2}}, {"bob", Vector3d::Zero()}, 1.0});
+    scene.stabilisation.emplace();
+    return run_it(scene).counters.counts;
+  };
+  const auto a_while = counts(1.0), longer = counts(3.0);
+  for (const char* counter : {"integrations", "derivative_evaluations", "constraint_corrections"}) EXPECT_EQ(a_while.at(counter), longer.at(counter)) << counter;
+}
+
+// With plastic impacts taken with their steps nobody looks for the instant at which the ball comes down.
+TEST(Sleeping, WhatLandsWithinAStepWakesToo) {
+  scene::Scene scene = block_on_floor(2.5);
+  scene.contact->plastic_impacts = scene::PlasticImpacts::kInStep;
+  scene.bodies.push_back(rough(ball("ball", 1.0, 0.5, {0, 0, 2.0 + 0.5 * kG * 0.64}, Vector3d::Zero())));   // falls for 0.8 s, and is large against its way in a step
+  const Trajectory result = run_it(scene);
+  ASSERT_FALSE(times_of(result, EventKind::kWake, 0).empty());
+  EXPECT_NEAR(times_of(result, EventKind::kWake, 0).front(), 0.8, 2.0 / 60);
+  double carried = 0.0;
+  for (const ContactPoint& contact : result.frames.back().contacts)
+    if (contact.body_b == 1) carried += contact.force_on_a_world.z();
+  EXPECT_NEAR(carried, 1.5 * kG, 1e-6 * 1.5 * kG);   // the floor carries both, and what they carried asleep is told
+}
+
 // A ball that rests without lasting contact is hit, too, by what moves by its own law.
 TEST(Resting, AMovingWallMeetsABallAtRest) {
   auto wall = box("wall", {0.1, 1, 1}, 1.0, {-1.2, 0, 1.001}, Vector3d::Zero()), resting = ball("ball", 0.1, 1.0, {0, 0, 0.1}, Vector3d::Zero()), floor = plane("floor", Vector3d::Zero(), Vector3d::UnitZ());
