@@ -7,10 +7,8 @@
 
 #include <fmt/format.h>
 
-#include "framework/collision/contact_patch.h"
-#include "framework/core/error.h"
 #include "framework/engines/guarded_laws.h"
-#include "framework/engines/lasting_contacts.h"
+#include "framework/engines/meetings.h"
 #include "framework/engines/recorder.h"
 #include "framework/engines/sequential_impacts.h"
 #include "framework/engines/sleeping.h"
@@ -19,11 +17,6 @@
 namespace tumble::engines {
 namespace {
 
-constexpr double kEpsilon = 2.220446049250313e-16;
-// Contacts closer than this many roundings of their coordinates touch at one instant.
-constexpr double kTouching = 64 * kEpsilon;
-// Corners of two solids that touch belong to the touch within this part of the size: a face that leans by 1e-9 rad lies flat.
-constexpr double kSamePatch = 1e-9;
 // A support that leans by less [rad] counts as level: in 100 s a ball would slide 5e-8 m.
 constexpr double kLevel = 1e-12;
 constexpr double kNoStep = 1e-9;         // of the step: a shorter last one is taken with the one before
@@ -31,19 +24,12 @@ constexpr int kMostPassings = 100;        // of a blow to and fro between bodies
 constexpr int kMostIdleSteps = 1000;      // in a row without progress of time
 constexpr int kMostImpactsAStep = 20000;  // of one pair: a Zeno sequence that needs a lasting contact
 
-struct Earliest {
-  double time;
-  std::size_t pair;
-};
-
 class RetroactiveRun {
  public:
   RetroactiveRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink)
       : scene_(scene), laws_(guarded(laws)), sink_(sink), step_(options.step_s.value_or(scene.step_s)),
-        duration_(options.duration_s.value_or(scene.duration_s)), moving_(build_world(scene), laws_, counters_),
+        duration_(options.duration_s.value_or(scene.duration_s)), moving_(build_world(scene), laws_, counters_), meetings_(moving_, laws_, counters_),
         impacts_(laws_, {scene.rest_speed_m_s, step_ / 100}, counters_), recorder_(options.frame_rate_hz, duration_, sink) {
-    for (int i = 0; i < moving_.size(); ++i)
-      if (moving_.world().bodies[i].collides) colliding_.push_back(i);
     if (!moving_.world().contact) return;
     contacts_.emplace(moving_, laws_, *moving_.world().contact, scene.rest_speed_m_s, counters_, sink);
     impacts_.use_contact_rules(scene.rest_speed_m_s, moving_.world().contact->impact_law);
@@ -58,20 +44,9 @@ class RetroactiveRun {
 
  private:
   void run_to_the_end();
-  void refuse_overlap();
   double next_target() const;
   void switch_forces();
   void advance_to(double target);
-  std::vector<std::pair<int, int>> candidates();
-  bool may_meet(int a, int b);
-  std::optional<Earliest> find_earliest(const std::vector<std::pair<int, int>>& pairs);
-  std::optional<Earliest> find_missed(const std::vector<std::pair<int, int>>& pairs, double target);
-  double gap_on_path(std::pair<int, int> pair, double t);
-  collision::Gap committed_gap(std::pair<int, int> pair) const;
-  double touching_distance(std::pair<int, int> pair) const;
-  std::vector<Vector3d> touching_points(std::pair<int, int> pair, const collision::Gap& gap) const;
-  collision::Pose pose_of(int body) const { return {moving_.state(body).com_world, moving_.state(body).world_from_body}; }
-  void separate(const std::vector<std::pair<int, int>>& pairs);
   void resolve_at(const std::vector<std::pair<int, int>>& pairs, std::pair<int, int> trigger);
   bool stays_on(const TouchingPair& pair, int body, const Vector3d& up) const;
   std::vector<std::pair<int, int>> keep_contacts(std::vector<std::pair<int, int>> pairs);
@@ -88,6 +63,7 @@ class RetroactiveRun {
   double step_, duration_;
   RunCounters counters_;
   MovingWorld moving_;
+  Meetings meetings_;
   SequentialImpacts impacts_;
   FrameRecorder recorder_;
   std::optional<LastingContacts> contacts_;   // where the scene asks for them
@@ -96,7 +72,6 @@ class RetroactiveRun {
   std::vector<std::pair<int, int>> touching_; // pairs in contact in the step that was committed last
   long grid_index_ = 0;
   std::set<double> switch_times_;
-  std::vector<int> colliding_;   // bodies that may touch others, ascending
   double next_look_ = std::numeric_limits<double>::infinity();   // of a control law
   std::string stopped_by_;
   EnergyWatch energy_watch_;
@@ -109,22 +84,6 @@ double RetroactiveRun::next_target() const {
   const auto next = switch_times_.upper_bound(moving_.time());
   if (next != switch_times_.end()) target = std::min(target, *next);
   return target;
-}
-
-void RetroactiveRun::refuse_overlap() {
-  for (int i = 0; i < moving_.size(); ++i) {
-    for (int j = i + 1; j < moving_.size(); ++j) {
-      if (!moving_.may_collide(i, j)) continue;
-      const auto pose = [&](int k) { return moving_.motion_at(k, 0.0).pose; };
-      const double allowance = kTouching * collision::gap_scale(moving_.shape(i), pose(i), moving_.shape(j), pose(j));
-      if (!collision::overlapping(moving_.shape(i), pose(i), moving_.shape(j), pose(j), allowance)) continue;
-      const double depth = -collision::compute_gap(moving_.shape(i), pose(i), moving_.shape(j), pose(j)).distance;
-      throw UserError(scene_.file.empty() ? scene_.name : scene_.file.string(),
-                      depth > 0 ? fmt::format("bodies {} and {} overlap at the start, by about {:.3g} m", name(i), name(j), depth)
-                                : fmt::format("at the start one of the bodies {} and {} is inside the other", name(i), name(j)),
-                      "move one of them away (\"position_m\") until they are apart or just touch");
-    }
-  }
 }
 
 void RetroactiveRun::switch_forces() {
@@ -142,123 +101,6 @@ void RetroactiveRun::switch_forces() {
   }
 }
 
-// Planes without end are in every box: whether the ball around a body reaches one is asked directly.
-bool RetroactiveRun::may_meet(int a, int b) {
-  if (moving_.shape(a).is_half_space()) std::swap(a, b);
-  if (!moving_.shape(b).is_half_space()) return true;
-  const collision::SweptBox box = moving_.swept_box(a);
-  const collision::Pose start = moving_.motion_at(b, moving_.time()).pose, end = moving_.motion_at(b, moving_.target()).pose;
-  const Vector3d n = start.world_from_body.toRotationMatrix().col(2);
-  const Vector3d middle = 0.5 * (box.low + box.high), half = 0.5 * (box.high - box.low);
-  const double lowest = n.dot(middle) - n.cwiseAbs().dot(half);
-  const scene::PrescribedMotion& m = moving_.world().bodies[b].motion;
-  const double shake = m.amplitude_m.norm() * std::min(2.0, std::pow(m.angular_frequency_rad_s * (moving_.target() - moving_.time()), 2));
-  return lowest <= std::max(n.dot(start.com_world), n.dot(end.com_world)) + shake;
-}
-
-std::vector<std::pair<int, int>> RetroactiveRun::candidates() {
-  if (colliding_.size() < 2 || std::none_of(colliding_.begin(), colliding_.end(), [&](int body) { return moving_.can_move(body) || moving_.is_driven(body); })) return {};
-  const StageTimer timer(counters_.collision_seconds);
-  std::vector<collision::SweptBox> boxes;
-  boxes.reserve(colliding_.size());
-  for (const int body : colliding_) boxes.push_back(moving_.swept_box(body));
-  auto pairs = collision::overlapping_pairs(boxes);
-  for (auto& [a, b] : pairs) {
-    a = colliding_[a];
-    b = colliding_[b];
-  }
-  std::erase_if(pairs, [&](const std::pair<int, int>& pair) { return !moving_.may_collide(pair.first, pair.second) || !may_meet(pair.first, pair.second); });
-  counters_.candidate_pairs += pairs.size();
-  return pairs;
-}
-
-std::optional<Earliest> RetroactiveRun::find_earliest(const std::vector<std::pair<int, int>>& pairs) {
-  const collision::ImpactOptions options{laws_.find_impact_time};
-  std::optional<Earliest> earliest;
-  double until = moving_.target();
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const auto [a, b] = pairs[k];
-    const auto impact = collision::first_impact(moving_.shape(a), moving_.motion(a), moving_.shape(b), moving_.motion(b), moving_.time(),
-                                                until, options, &counters_.collision);
-    if (!impact || (earliest && impact->time >= earliest->time)) continue;
-    earliest = Earliest{impact->time, k};
-    until = impact->time;
-    if (until <= moving_.time()) break;
-  }
-  return earliest;
-}
-
-double RetroactiveRun::gap_on_path(std::pair<int, int> pair, double t) {
-  ++counters_.collision.gap_evaluations;
-  return collision::compute_gap(moving_.shape(pair.first), moving_.motion_at(pair.first, t).pose, moving_.shape(pair.second),
-                                moving_.motion_at(pair.second, t).pose).distance;
-}
-
-collision::Gap RetroactiveRun::committed_gap(std::pair<int, int> pair) const {
-  return collision::compute_gap(moving_.shape(pair.first), pose_of(pair.first), moving_.shape(pair.second), pose_of(pair.second));
-}
-
-double RetroactiveRun::touching_distance(std::pair<int, int> pair) const {
-  // Times are doubles too: within one spacing of the time a pair moves by its speed times that.
-  const double speed = moving_.velocity_of(pair.first, moving_.time()).norm() + moving_.velocity_of(pair.second, moving_.time()).norm();
-  return kTouching * (collision::gap_scale(moving_.shape(pair.first), pose_of(pair.first), moving_.shape(pair.second), pose_of(pair.second))) +
-         4 * kEpsilon * moving_.time() * speed;
-}
-
-std::vector<Vector3d> RetroactiveRun::touching_points(std::pair<int, int> pair, const collision::Gap& gap) const {
-  const collision::CollisionShape &a = moving_.shape(pair.first), &b = moving_.shape(pair.second);
-  const Vector3d point_world = 0.5 * (gap.point_a_world + gap.point_b_world);
-  if (a.is_ball() || b.is_ball()) return {point_world};
-  double size = 0.0;
-  for (const collision::CollisionShape* shape : {&a, &b})
-    if (!shape->is_half_space()) size += shape->bounding_radius();
-  // Sizes say what lies flat; how far from the world's origin the two are only adds what their places are rounded by.
-  const collision::FlatHull patch =
-      collision::contact_patch(a, pose_of(pair.first), b, pose_of(pair.second), gap, kSamePatch * size + touching_distance(pair));
-  if (patch.corners.size() < 2) return {point_world};
-  std::vector<Vector3d> points{patch.middle};
-  points.insert(points.end(), patch.corners.begin(), patch.corners.end());
-  return points;
-}
-
-// The last guard: bounds hold for every method of integration that moves bodies smoothly, but what a student wrote may not. An
-// overlap at the end that is deeper than round-off is traced back to where it began.
-std::optional<Earliest> RetroactiveRun::find_missed(const std::vector<std::pair<int, int>>& pairs, double target) {
-  std::optional<Earliest> earliest;
-  for (std::size_t k = 0; k < pairs.size(); ++k) {
-    double low = moving_.time(), high = target;
-    if (gap_on_path(pairs[k], high) >= -touching_distance(pairs[k])) continue;
-    for (double middle = 0.5 * (low + high); middle > low && middle < high; middle = 0.5 * (low + high))
-      (gap_on_path(pairs[k], middle) < 0 ? high : low) = middle;
-    if (!earliest || low < earliest->time) earliest = Earliest{low, k};
-  }
-  return earliest;
-}
-
-// What rounding leaves of an overlap is taken back by moving the lighter body along the normal; a few roundings at most.
-void RetroactiveRun::separate(const std::vector<std::pair<int, int>>& pairs) {
-  for (int round = 0; round < 20; ++round) {
-    bool clean = true;
-    for (const auto& pair : pairs) {
-      const collision::Gap gap = committed_gap(pair);
-      if (gap.distance >= 0) continue;
-      clean = false;
-      const double mass_a = moving_.can_move(pair.first) ? moving_.world().bodies[pair.first].inertia.inverse_mass : 0.0;
-      const double mass_b = moving_.can_move(pair.second) ? moving_.world().bodies[pair.second].inertia.inverse_mass : 0.0;
-      // The other one in every second round: a body between two others is not moved to and fro.
-      const bool swap = round % 2 == 1 && mass_a > 0 && mass_b > 0;
-      const int mover = (mass_a >= mass_b) != swap ? pair.first : pair.second;
-      RigidBodyState state = moving_.state(mover);
-      const double spacing = kEpsilon * state.com_world.cwiseAbs().maxCoeff();
-      const double way = -gap.distance + spacing * round;
-      state.com_world += (mover == pair.first ? way : -way) * gap.normal_b_to_a_world;
-      moving_.set_state(mover, state);
-      ++counters_.nudges;
-    }
-    if (clean) return;
-  }
-}
-
 void RetroactiveRun::resolve_at(const std::vector<std::pair<int, int>>& pairs, std::pair<int, int> trigger) {
   const StageTimer timer(counters_.impact_seconds);
   for (const int body : {trigger.first, trigger.second})
@@ -266,11 +108,11 @@ void RetroactiveRun::resolve_at(const std::vector<std::pair<int, int>>& pairs, s
   std::vector<TouchingPair> touching;
   std::size_t trigger_index = 0;
   for (const auto& pair : pairs) {
-    const collision::Gap gap = committed_gap(pair);
+    const collision::Gap gap = meetings_.gap(pair);
     const bool lasting = contacts_ && contacts_->lasts(pair) && contacts_->keeps(pair);
-    if (pair != trigger && !lasting && !(gap.distance <= touching_distance(pair))) continue;
+    if (pair != trigger && !lasting && !(gap.distance <= meetings_.touching_distance(pair))) continue;
     if (pair == trigger) trigger_index = touching.size();
-    touching.push_back({pair.first, pair.second, gap, touching_points(pair, gap)});
+    touching.push_back({pair.first, pair.second, gap, meetings_.touching_points(pair, gap)});
     if (sleepers_) sleepers_->wake(pair);
   }
   const std::string subject = fmt::format("bodies {} and {}", name(trigger.first), name(trigger.second));
@@ -308,13 +150,13 @@ void RetroactiveRun::begin_contacts(const std::vector<TouchingPair>& touching, c
 // nothing), no hand pushes, and the ball spins evenly if it spins.
 bool RetroactiveRun::stays_on(const TouchingPair& pair, int body, const Vector3d& up) const {
   const Vector3d& gravity = *moving_.world().gravity_world;
-  const double radius = moving_.shape(body).bounding_radius(), rounding = touching_distance({pair.a, pair.b});
+  const double radius = moving_.shape(body).bounding_radius(), rounding = meetings_.touching_distance({pair.a, pair.b});
   const double level = std::max(kLevel, radius > rounding ? rounding / radius : 0.0);   // the normal's own rounding
   if (!(gravity.dot(up) < 0) || (gravity - gravity.dot(up) * up).norm() > level * gravity.norm()) return false;
   for (const int index : moving_.active_forces())
     if (moving_.world().point_forces[index].body == body) return false;
   const Matrix3d& inertia = moving_.world().bodies[body].inertia.inertia_body;
-  return moving_.state(body).angular_momentum_world.isZero(0.0) || (inertia - inertia(0, 0) * Matrix3d::Identity()).norm() <= kEpsilon * 64 * inertia.norm();
+  return moving_.state(body).angular_momentum_world.isZero(0.0) || (inertia - inertia(0, 0) * Matrix3d::Identity()).norm() <= kTouching * inertia.norm();
 }
 
 // Rest: a ball that met an immovable support, which gravity presses it against, more slowly than the rest speed (or that does not
@@ -357,10 +199,10 @@ void RetroactiveRun::watch_for_trouble() {
 std::vector<std::pair<int, int>> RetroactiveRun::keep_contacts(std::vector<std::pair<int, int>> pairs) {
   while (const auto earlier = contacts_->advance(pairs)) {
     moving_.begin_step(*earlier);
-    pairs = candidates();
+    pairs = meetings_.candidates();
   }
   if (contacts_->empty()) return pairs;
-  pairs = candidates();   // the paths are others now
+  pairs = meetings_.candidates();   // the paths are others now
   std::erase_if(pairs, [&](const auto& pair) { return contacts_->keeps(pair); });
   return pairs;
 }
@@ -381,20 +223,15 @@ void RetroactiveRun::advance_to(double target) {
   while (stopped_by_.empty() && moving_.time() < target) {
     moving_.begin_step(target);
     ++counters_.steps;
-    std::vector<std::pair<int, int>> pairs = candidates();
-    if (moving_.shorten_step(pairs)) pairs = candidates();
+    std::vector<std::pair<int, int>> pairs = meetings_.candidates();
+    if (moving_.shorten_step(pairs)) pairs = meetings_.candidates();
     if (sleepers_ && sleepers_->wake_met(pairs)) {
       begin_again();
       continue;
     }
     if (contacts_) pairs = keep_contacts(std::move(pairs));
-    const std::vector<std::pair<int, int>> near = contacts_ && !contacts_->empty() ? candidates() : std::vector<std::pair<int, int>>{};
-    std::optional<Earliest> earliest;
-    {
-      const StageTimer timer(counters_.collision_seconds);
-      earliest = find_earliest(pairs);
-      if (!earliest) earliest = find_missed(pairs, moving_.target());
-    }
+    const std::vector<std::pair<int, int>> near = contacts_ && !contacts_->empty() ? meetings_.candidates() : std::vector<std::pair<int, int>>{};
+    const std::optional<Earliest> earliest = meetings_.earliest(pairs);
     if (sleepers_ && earliest && sleepers_->wake(pairs[earliest->pair])) {
       begin_again();
       continue;
@@ -405,9 +242,9 @@ void RetroactiveRun::advance_to(double target) {
     moving_.commit(reached);
     watch_for_trouble();
     if (!stopped_by_.empty()) return;
-    separate(pairs);
+    meetings_.separate(pairs);
     if (contacts_) contacts_->commit();
-    if (contacts_ && !contacts_->empty()) separate(near);
+    if (contacts_ && !contacts_->empty()) meetings_.separate(near);
     if (sleepers_) note_touching(near);
     if (!earliest) continue;
     ++counters_.rollbacks;
@@ -422,8 +259,9 @@ void RetroactiveRun::advance_to(double target) {
 }
 
 void RetroactiveRun::run() {
-  refuse_overlap();
-  refuse_unstable_springs(moving_.world(), laws_, {step_, duration_}, scene_.file.empty() ? scene_.name : scene_.file.string(), counters_.notices);
+  const std::string where = scene_.file.empty() ? scene_.name : scene_.file.string();
+  meetings_.refuse_overlap(where);
+  refuse_unstable_springs(moving_.world(), laws_, {step_, duration_}, where, counters_.notices);
   for (const PointForce& force : moving_.world().point_forces) {
     switch_times_.insert(force.start);
     switch_times_.insert(force.end);
@@ -442,7 +280,7 @@ void RetroactiveRun::run_to_the_end() {
   for (int i = 0; i < moving_.size(); ++i)
     for (int j = i + 1; j < moving_.size(); ++j)
       if (moving_.may_collide(i, j)) all.emplace_back(i, j);
-  separate(all);
+  meetings_.separate(all);
   if (contacts_) contacts_->begin_where_touching(all);
   recorder_.record_committed(moving_);
   while (stopped_by_.empty() && moving_.time() < duration_) {
