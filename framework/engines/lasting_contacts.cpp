@@ -50,6 +50,7 @@ Vector3d LastingContacts::point_of(Pair pair, const collision::NearPoint& p) con
 }
 
 double LastingContacts::friction(Pair pair) const {
+  if (!built::kFriction) return 0.0;
   return std::min(moving_.world().bodies[pair.first].friction, moving_.world().bodies[pair.second].friction);
 }
 

@@ -129,6 +129,13 @@ std::vector<Body> LinkedBodies::place_bodies(const std::vector<RigidBodyState>& 
 std::vector<Wrench> LinkedBodies::forces(const std::vector<RigidBodyState>& local, const std::vector<Body>& bodies) {
   std::vector<Wrench> wrenches(bodies.size(), {Vector3d::Zero(), Vector3d::Zero()});
   for (std::size_t i = 0; i < bodies_.size(); ++i) wrenches[i] = outer_wrench_(bodies_[i], local[i]);
+  if (built::kSpring) add_springs(bodies, wrenches);
+  if (built::kDrag) add_drags(bodies, wrenches);
+  if (built::kMotor) add_motors(bodies, wrenches);
+  return wrenches;
+}
+
+void LinkedBodies::add_springs(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches) {
   for (const Link& link : springs_) {
     ++counters_.spring_calls;
     const AnchorState a = anchor_of(bodies[link.a.place], link.a.point_body), b = anchor_of(bodies[link.b.place], link.b.point_body);
@@ -136,6 +143,9 @@ std::vector<Wrench> LinkedBodies::forces(const std::vector<RigidBodyState>& loca
     add_force(bodies[link.a.place], force, a.point_world, wrenches[link.a.place]);
     add_force(bodies[link.b.place], -force, b.point_world, wrenches[link.b.place]);
   }
+}
+
+void LinkedBodies::add_drags(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches) {
   for (const int index : drags_) {
     ++counters_.drag_calls;
     const Drag& drag = world_.drags[index];
@@ -143,6 +153,9 @@ std::vector<Wrench> LinkedBodies::forces(const std::vector<RigidBodyState>& loca
     wrenches[place].force_world -= drag.linear * bodies[place].velocity_world;
     wrenches[place].torque_world -= drag.angular * bodies[place].omega_world;
   }
+}
+
+void LinkedBodies::add_motors(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches) const {
   for (std::size_t k = 0; k < motors_.size(); ++k) {
     const int joint = world_.motors[motors_[k]].joint;
     const auto link = std::find_if(joints_.begin(), joints_.end(), [&](const Link& l) { return l.index == joint; });
@@ -150,12 +163,11 @@ std::vector<Wrench> LinkedBodies::forces(const std::vector<RigidBodyState>& loca
     wrenches[link->b.place].torque_world += torques_[k] * hinge.axis_world;
     wrenches[link->a.place].torque_world -= torques_[k] * hinge.axis_world;
   }
-  return wrenches;
 }
 
 double LinkedBodies::look(double time, const std::vector<RigidBodyState>& states) {
   double next = std::numeric_limits<double>::infinity();
-  if (motors_.empty()) return next;
+  if (!built::kMotor || motors_.empty()) return next;
   const StageTimer timer(counters_.control_seconds);
   const std::vector<Body> bodies = place_bodies(take(states), time);
   for (std::size_t k = 0; k < motors_.size(); ++k) {
@@ -177,15 +189,23 @@ double LinkedBodies::look(double time, const std::vector<RigidBodyState>& states
 
 std::vector<Constraint> LinkedBodies::rows(const std::vector<Body>& bodies) {
   std::vector<Constraint> rows;
+  if (built::kRod) append_rods(bodies, rows);
+  if (built::kJoint) append_joints(bodies, rows);
+  return rows;
+}
+
+void LinkedBodies::append_rods(const std::vector<Body>& bodies, std::vector<Constraint>& rows) {
   for (const Link& link : rods_) {
     ++counters_.rod_calls;
     rows.push_back({link.a.place, link.b.place, laws_.rod_row(bodies[link.a.place], link.a.point_body, bodies[link.b.place], link.b.point_body, world_.rods[link.index].length)});
   }
+}
+
+void LinkedBodies::append_joints(const std::vector<Body>& bodies, std::vector<Constraint>& rows) {
   for (const Link& link : joints_) {
     ++counters_.joint_calls;
     append_joint_rows(world_.joints[link.index], bodies[link.a.place], link.a.place, bodies[link.b.place], link.b.place, rows);
   }
-  return rows;
 }
 
 std::vector<Constraint> LinkedBodies::constraint_rows(const std::vector<RigidBodyState>& states, double t) {
@@ -327,20 +347,26 @@ void LinkedBodies::measure(const std::vector<RigidBodyState>& states, double t, 
   const std::vector<RigidBodyState> local = take(states);
   time_of_stage_ = t;
   const std::vector<Body> bodies = place_bodies(local, t);
-  for (const Link& link : springs_) {
-    const AnchorState a = anchor_of(bodies[link.a.place], link.a.point_body), b = anchor_of(bodies[link.b.place], link.b.point_body);
-    const Vector3d force = laws_.spring_force(world_.springs[link.index].spring, a, b), way = b.point_world - a.point_world;
-    measured.springs[link.index] = force.dot(way) < 0 ? -force.norm() : force.norm();
-  }
+  if (built::kSpring) measure_springs(bodies, measured);
   if (!has_constraints()) return;
   std::vector<Wrench> wrenches = forces(local, bodies);
   const VectorXd multipliers = add_constraint_forces(bodies, local, wrenches);
   Eigen::Index at = 0;
   // A rod's multiplier pushes A along the growing length: away from B.
-  for (const Link& link : rods_) measured.rods[link.index] = -multipliers[at++];
-  for (const Link& link : joints_) {
-    measured.joints[link.index] = multipliers.segment<3>(at).norm();
-    at += row_count(world_.joints[link.index].kind);
+  if (built::kRod)
+    for (const Link& link : rods_) measured.rods[link.index] = -multipliers[at++];
+  if (built::kJoint)
+    for (const Link& link : joints_) {
+      measured.joints[link.index] = multipliers.segment<3>(at).norm();
+      at += row_count(world_.joints[link.index].kind);
+    }
+}
+
+void LinkedBodies::measure_springs(const std::vector<Body>& bodies, LinkForces& measured) {
+  for (const Link& link : springs_) {
+    const AnchorState a = anchor_of(bodies[link.a.place], link.a.point_body), b = anchor_of(bodies[link.b.place], link.b.point_body);
+    const Vector3d force = laws_.spring_force(world_.springs[link.index].spring, a, b), way = b.point_world - a.point_world;
+    measured.springs[link.index] = force.dot(way) < 0 ? -force.norm() : force.norm();
   }
 }
 

@@ -12,6 +12,7 @@
 
 #include "framework/dynamics/laws.h"
 #include "framework/dynamics/world.h"
+#include "framework/engines/effects_built.h"
 #include "framework/engines/run_counters.h"
 
 namespace tumble::engines {
@@ -34,7 +35,7 @@ class LinkedBodies {
   const std::vector<int>& fixed_ends() const { return fixed_; }
   /// What its motors hold until they look again, by motor. [N m]
   const std::vector<double>& torques() const { return torques_; }
-  bool has_constraints() const { return !rods_.empty() || !joints_.empty(); }
+  bool has_constraints() const { return (built::kRod && !rods_.empty()) || (built::kJoint && !joints_.empty()); }
 
   /// Control laws whose time has come look and set their torques. @return the next time at which one looks; infinite without
   double look(double time, const std::vector<RigidBodyState>& states);
@@ -67,7 +68,13 @@ class LinkedBodies {
   End end_of(const Anchor& anchor);
   std::vector<Body> place_bodies(const std::vector<RigidBodyState>& local, double t) const;
   std::vector<Wrench> forces(const std::vector<RigidBodyState>& local, const std::vector<Body>& bodies);
+  void add_springs(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches);
+  void add_drags(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches);
+  void add_motors(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches) const;
   std::vector<Constraint> rows(const std::vector<Body>& bodies);
+  void append_rods(const std::vector<Body>& bodies, std::vector<Constraint>& rows);
+  void append_joints(const std::vector<Body>& bodies, std::vector<Constraint>& rows);
+  void measure_springs(const std::vector<Body>& bodies, LinkForces& measured);
   VectorXd add_constraint_forces(const std::vector<Body>& bodies, const std::vector<RigidBodyState>& local, std::vector<Wrench>& wrenches);
   VectorXd derivative(double t, const VectorXd& y);
   void project_local(std::vector<RigidBodyState>& local, double t, bool places);

@@ -32,7 +32,7 @@ double measure_path_bend(const Laws& laws) {
 }  // namespace
 
 MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters)
-    : world_(std::move(world)), laws_(laws), counters_(counters), rests_(world_.bodies.size()), asleep_(world_.bodies.size(), false), force_points_body_(world_.point_forces.size()),
+    : world_(std::move(world)), laws_(laws), counters_(counters), rests_(world_.bodies.size()), asleep_(world_.bodies.size(), 0), force_points_body_(world_.point_forces.size()),
       paths_(world_.bodies.size()), told_of_shortening_(world_.bodies.size(), false),
       told_of_aliasing_(world_.bodies.size(), false) {
   for (const WorldBody& body : world_.bodies) {
@@ -98,14 +98,14 @@ void MovingWorld::put_to_rest(int body, int support) {
 void MovingWorld::put_to_sleep(int body) {
   states_[body].momentum_world.setZero();
   states_[body].angular_momentum_world.setZero();
-  asleep_[body] = true;
+  asleep_[body] = 1;
   ++counters_.bodies_put_to_sleep;
 }
 
 void MovingWorld::wake(int body) {
   states_[body] = still_state(body, time_);
   rests_[body].reset();
-  asleep_[body] = false;
+  asleep_[body] = 0;
   ++counters_.bodies_woken;
 }
 
@@ -128,7 +128,7 @@ RigidBodyState MovingWorld::still_state(int body, double t) const {
     state.com_world = prescribed_position(b, t);
     return state;
   }
-  if (asleep_[body]) return state;
+  if (asleep(body)) return state;
   const WorldBody& support = world_.bodies[rests_[body]->support];
   state.com_world = prescribed_position(support, t) + rests_[body]->offset_from_support_world;
   state.momentum_world = b.inertia.mass * prescribed_velocity(support, t);
@@ -142,17 +142,22 @@ RigidBodyState MovingWorld::still_state(int body, double t) const {
 Vector3d MovingWorld::velocity_of(int body, double t) const {
   const WorldBody& b = world_.bodies[body];
   if (b.immovable()) return prescribed_velocity(b, t);
-  if (asleep_[body]) return Vector3d::Zero();
+  if (asleep(body)) return Vector3d::Zero();
   if (rests_[body]) return prescribed_velocity(world_.bodies[rests_[body]->support], t);
   return b.inertia.inverse_mass * states_[body].momentum_world;
 }
 
 Wrench MovingWorld::wrench_on(int body, const RigidBodyState& state) {
   Wrench sum{Vector3d::Zero(), Vector3d::Zero()};
-  if (world_.gravity_world) {
+  if (built::kGravity && world_.gravity_world) {
     ++counters_.gravity_calls;
     sum.force_world += world_.bodies[body].inertia.mass * *world_.gravity_world;
   }
+  if (built::kPointForce && !active_forces_.empty()) add_point_forces(body, state, sum);
+  return sum;
+}
+
+void MovingWorld::add_point_forces(int body, const RigidBodyState& state, Wrench& sum) {
   for (const int index : active_forces_) {
     const PointForce& force = world_.point_forces[index];
     if (force.body != body) continue;
@@ -162,7 +167,6 @@ Wrench MovingWorld::wrench_on(int body, const RigidBodyState& state) {
     sum.force_world += wrench.force_world;
     sum.torque_world += wrench.torque_world;
   }
-  return sum;
 }
 
 RigidBodyState MovingWorld::integrate(int body, double duration, double start_time, const VectorXd& start) {
@@ -195,16 +199,16 @@ void MovingWorld::begin_step(double target) {
     path.smooth.reset();
     if (!can_move(i) || group_of_[i] >= 0) continue;
     path.start = pack(states_[i]);
-    Vector3d force = Vector3d::Zero();
-    for (const int index : active_forces_)
-      if (world_.point_forces[index].body == i) force += world_.point_forces[index].force_world;
-    path.acceleration_world = force * world_.bodies[i].inertia.inverse_mass;
-    if (world_.gravity_world) path.acceleration_world += *world_.gravity_world;
+    path.acceleration_world.setZero();
+    if (built::kPointForce)
+      for (const int index : active_forces_)
+        if (world_.point_forces[index].body == i) path.acceleration_world += world_.bodies[i].inertia.inverse_mass * world_.point_forces[index].force_world;
+    if (built::kGravity && world_.gravity_world) path.acceleration_world += *world_.gravity_world;
     path.acceleration_world *= path_bend_;
     path.end = integrate(i, target - time_, time_, path.start);
   }
   for (LinkedBodies& group : linked_) {
-    if (asleep_[group.bodies().front()]) continue;   // they sleep together
+    if (asleep(group.bodies().front())) continue;   // they sleep together
     const std::vector<RigidBodyState> ends = group.advance(states_, time_, target - time_);
     for (std::size_t i = 0; i < ends.size(); ++i) set_path(group.bodies()[i], states_[group.bodies()[i]], ends[i]);
     integrations_in_step_ += ends.size();
@@ -248,7 +252,7 @@ collision::MotionState MovingWorld::motion_at(int body, double t) {
 collision::MotionBounds MovingWorld::work_out_bounds(int body) {
   collision::MotionBounds bounds;
   const WorldBody& b = world_.bodies[body];
-  if (asleep_[body]) return bounds;
+  if (asleep(body)) return bounds;
   if (!can_move(body)) {
     const scene::PrescribedMotion& m = b.immovable() ? b.motion : world_.bodies[rests_[body]->support].motion;
     bounds.acceleration_deviation = m.amplitude_m.norm() * m.angular_frequency_rad_s * m.angular_frequency_rad_s;
@@ -283,7 +287,7 @@ collision::SweptBox MovingWorld::swept_box(int body) {
     bulge = m.amplitude_m.cwiseAbs() * std::min(1.0, std::pow(m.angular_frequency_rad_s * h, 2) / 8);
   }
   constexpr double kRounding = 1e-14;  // of coordinates, so that bodies that just touch stay candidates
-  const double shell = world_.contact && std::isfinite(radius) ? kContactMargin * radius : 0.0;
+  const double shell = built::kContact && world_.contact && std::isfinite(radius) ? kContactMargin * radius : 0.0;
   const Vector3d margin =
       bulge + Vector3d::Constant(radius + shell) + kRounding * (start.cwiseAbs() + end.cwiseAbs() + Vector3d::Constant(std::isfinite(radius) ? radius : 0.0));
   return {start.cwiseMin(end) - margin, start.cwiseMax(end) + margin, can_move(body) || is_driven(body)};

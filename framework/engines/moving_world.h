@@ -12,6 +12,7 @@
 #include "framework/collision/sweep.h"
 #include "framework/dynamics/laws.h"
 #include "framework/dynamics/world.h"
+#include "framework/engines/effects_built.h"
 #include "framework/engines/linked_bodies.h"
 #include "framework/engines/run_counters.h"
 #include "framework/engines/smooth_path.h"
@@ -41,14 +42,14 @@ class MovingWorld {
   void set_state(int body, const RigidBodyState& state) { states_[body] = state; }
   /// Whether the two may collide at all: one can move, both collide, and the scene does not keep them apart.
   bool may_collide(int a, int b) const;
-  bool can_move(int body) const { return !world_.bodies[body].immovable() && !rests_[body] && !asleep_[body]; }
+  bool can_move(int body) const { return !world_.bodies[body].immovable() && !rests_[body] && !asleep(body); }
   /// Whether an immovable body moves by a law of its own.
   bool is_driven(int body) const;
   bool resting(int body) const { return rests_[body].has_value(); }
   void put_to_rest(int body, int support);
   /// Stops a body where it is: from here on it keeps its place to the last bit, and no law is asked about it (sleeping.h).
   void put_to_sleep(int body);
-  bool asleep(int body) const { return asleep_[body]; }
+  bool asleep(int body) const { return built::kSleep && asleep_[body]; }
   /// Ends rest or sleep of a body.
   void wake(int body);
   const std::vector<int>& active_forces() const { return active_forces_; }
@@ -105,6 +106,7 @@ class MovingWorld {
 
   RigidBodyState integrate(int body, double duration, double start_time, const VectorXd& start);
   Wrench wrench_on(int body, const RigidBodyState& state);
+  void add_point_forces(int body, const RigidBodyState& state, Wrench& sum);
   double torque_bound(int body) const;
   double turning_error(int body, double duration);
   bool bound_turning(int body, double duration, collision::MotionBounds& bounds);
@@ -119,7 +121,7 @@ class MovingWorld {
   std::vector<collision::CollisionShape> shapes_;
   std::vector<RigidBodyState> states_;
   std::vector<std::optional<Rest>> rests_;
-  std::vector<bool> asleep_;
+  std::vector<char> asleep_;                     // asked for often: a byte each is read faster than a bit
   std::vector<int> active_forces_;               // indices into world_.point_forces
   std::vector<Vector3d> force_points_body_;      // by force, from when it is switched on
   std::vector<Path> paths_;

@@ -47,8 +47,8 @@ void FrameRecorder::push(MovingWorld& moving, double t) {
   frame.spring_forces = std::move(forces.springs);
   frame.rod_tensions = std::move(forces.rods);
   frame.joint_forces = std::move(forces.joints);
-  if (contacts_) frame.contacts = contacts_->forces();
-  if (sleepers_) sleepers_->append_forces(frame.contacts);
+  if (built::kContact && contacts_) frame.contacts = contacts_->forces();
+  if (built::kSleep && sleepers_) sleepers_->append_forces(frame.contacts);
   sink_.frame(frame);
 }
 

@@ -30,12 +30,12 @@ class RetroactiveRun {
       : scene_(scene), laws_(guarded(laws)), sink_(sink), step_(options.step_s.value_or(scene.step_s)),
         duration_(options.duration_s.value_or(scene.duration_s)), moving_(build_world(scene), laws_, counters_), meetings_(moving_, laws_, counters_),
         impacts_(laws_, {scene.rest_speed_m_s, step_ / 100}, counters_), recorder_(options.frame_rate_hz, duration_, sink) {
-    if (!moving_.world().contact) return;
+    if (!built::kContact || !moving_.world().contact) return;
     contacts_.emplace(moving_, laws_, *moving_.world().contact, scene.rest_speed_m_s, counters_, sink);
     impacts_.use_contact_rules(scene.rest_speed_m_s, moving_.world().contact->impact_law);
     recorder_.record_contacts_of(*contacts_);
-    if (std::any_of(moving_.world().bodies.begin(), moving_.world().bodies.end(), [](const WorldBody& body) { return body.friction > 0.0; })) modes_.emplace(*contacts_, sink);
-    if (!moving_.world().contact->sleep) return;
+    if (built::kFriction && std::any_of(moving_.world().bodies.begin(), moving_.world().bodies.end(), [](const WorldBody& body) { return body.friction > 0.0; })) modes_.emplace(*contacts_, sink);
+    if (!built::kSleep || !moving_.world().contact->sleep) return;
     sleepers_.emplace(moving_, *contacts_, modes_ ? &*modes_ : nullptr, scene.rest_speed_m_s, counters_, sink);
     recorder_.record_contacts_of(*sleepers_);
   }
@@ -43,6 +43,11 @@ class RetroactiveRun {
   void run();
 
  private:
+  // What the scene does not ask for is asked for by none of these.
+  bool has_contacts() const { return built::kContact && contacts_.has_value(); }
+  bool has_modes() const { return built::kFriction && built::kContact && modes_.has_value(); }
+  bool has_sleepers() const { return built::kSleep && built::kContact && sleepers_.has_value(); }
+
   void run_to_the_end();
   double next_target() const;
   void switch_forces();
@@ -87,13 +92,14 @@ double RetroactiveRun::next_target() const {
 }
 
 void RetroactiveRun::switch_forces() {
+  if (!built::kPointForce) return;
   const auto& forces = moving_.world().point_forces;
   for (int k = 0; k < static_cast<int>(forces.size()); ++k) {
     const auto& active = moving_.active_forces();
     const bool is_on = std::find(active.begin(), active.end(), k) != active.end();
     const bool should_be_on = moving_.time() >= forces[k].start && moving_.time() < forces[k].end;
     if (is_on == should_be_on) continue;
-    if (sleepers_) sleepers_->wake(forces[k].body, -1);
+    if (has_sleepers()) sleepers_->wake(forces[k].body, -1);
     moving_.switch_force(k, should_be_on);
     const double size = forces[k].force_world.norm();
     sink_.event({moving_.time(), should_be_on ? EventKind::kForceOn : EventKind::kForceOff, forces[k].body, -1, forces[k].point_world,
@@ -109,11 +115,11 @@ void RetroactiveRun::resolve_at(const std::vector<std::pair<int, int>>& pairs, s
   std::size_t trigger_index = 0;
   for (const auto& pair : pairs) {
     const collision::Gap gap = meetings_.gap(pair);
-    const bool lasting = contacts_ && contacts_->lasts(pair) && contacts_->keeps(pair);
+    const bool lasting = has_contacts() && contacts_->lasts(pair) && contacts_->keeps(pair);
     if (pair != trigger && !lasting && !(gap.distance <= meetings_.touching_distance(pair))) continue;
     if (pair == trigger) trigger_index = touching.size();
     touching.push_back({pair.first, pair.second, gap, meetings_.touching_points(pair, gap)});
-    if (sleepers_) sleepers_->wake(pair);
+    if (has_sleepers()) sleepers_->wake(pair);
   }
   const std::string subject = fmt::format("bodies {} and {}", name(trigger.first), name(trigger.second));
   Resolution resolution = naming(subject, [&] { return impacts_.resolve(moving_, touching, trigger_index); });
@@ -128,7 +134,7 @@ void RetroactiveRun::resolve_at(const std::vector<std::pair<int, int>>& pairs, s
   if (!resolution.settled)
     stopped_by_ = fmt::format("at t = {:.6f} s, {}: collision (collision_impulse, apply_impulse of {}) left them approaching, however often it was "
                               "applied: the impulse has no effect, the wrong sign or too little size, or a lasting contact is needed there", moving_.time(), subject, laws_.impulse_source);
-  if (contacts_) return begin_contacts(touching, resolution.events);
+  if (has_contacts()) return begin_contacts(touching, resolution.events);
   settle(touching, resolution.events);
   std::vector<TouchingPair> awake;
   for (const TouchingPair& pair : touching)
@@ -225,27 +231,27 @@ void RetroactiveRun::advance_to(double target) {
     ++counters_.steps;
     std::vector<std::pair<int, int>> pairs = meetings_.candidates();
     if (moving_.shorten_step(pairs)) pairs = meetings_.candidates();
-    if (sleepers_ && sleepers_->wake_met(pairs)) {
+    if (has_sleepers() && sleepers_->wake_met(pairs)) {
       begin_again();
       continue;
     }
-    if (contacts_) pairs = keep_contacts(std::move(pairs));
-    const std::vector<std::pair<int, int>> near = contacts_ && !contacts_->empty() ? meetings_.candidates() : std::vector<std::pair<int, int>>{};
+    if (has_contacts()) pairs = keep_contacts(std::move(pairs));
+    const std::vector<std::pair<int, int>> near = has_contacts() && !contacts_->empty() ? meetings_.candidates() : std::vector<std::pair<int, int>>{};
     const std::optional<Earliest> earliest = meetings_.earliest(pairs);
-    if (sleepers_ && earliest && sleepers_->wake(pairs[earliest->pair])) {
+    if (has_sleepers() && earliest && sleepers_->wake(pairs[earliest->pair])) {
       begin_again();
       continue;
     }
-    if (modes_) modes_->look(moving_.time());
+    if (has_modes()) modes_->look(moving_.time());
     const double before = moving_.time(), reached = earliest ? earliest->time : moving_.target();
     recorder_.record_before(moving_, reached);
     moving_.commit(reached);
     watch_for_trouble();
     if (!stopped_by_.empty()) return;
     meetings_.separate(pairs);
-    if (contacts_) contacts_->commit();
-    if (contacts_ && !contacts_->empty()) meetings_.separate(near);
-    if (sleepers_) note_touching(near);
+    if (has_contacts()) contacts_->commit();
+    if (has_contacts() && !contacts_->empty()) meetings_.separate(near);
+    if (has_sleepers()) note_touching(near);
     if (!earliest) continue;
     ++counters_.rollbacks;
     resolve_at(near.empty() ? pairs : near, pairs[earliest->pair]);
@@ -281,11 +287,11 @@ void RetroactiveRun::run_to_the_end() {
     for (int j = i + 1; j < moving_.size(); ++j)
       if (moving_.may_collide(i, j)) all.emplace_back(i, j);
   meetings_.separate(all);
-  if (contacts_) contacts_->begin_where_touching(all);
+  if (has_contacts()) contacts_->begin_where_touching(all);
   recorder_.record_committed(moving_);
   while (stopped_by_.empty() && moving_.time() < duration_) {
     next_look_ = moving_.look();
-    if (sleepers_) sleepers_->wake_where_control_changes();
+    if (has_sleepers()) sleepers_->wake_where_control_changes();
     const double target = next_target();
     advance_to(target);
     if (!stopped_by_.empty()) break;
@@ -296,7 +302,7 @@ void RetroactiveRun::run_to_the_end() {
                                 "these is wrong", moving_.time(), *runaway, laws_.integrator_source, laws_.impulse_source, laws_.constraint_source);
     }
     recorder_.record_committed(moving_);
-    if (sleepers_) sleepers_->look(touching_);
+    if (has_sleepers()) sleepers_->look(touching_);
   }
 }
 

@@ -63,7 +63,7 @@ double normal_velocity(const Contact& contact, const Body& a, const Body& b) {
 }
 
 double restitution_of(const World& world, const TouchingPair& pair) { return std::min(world.bodies[pair.a].restitution, world.bodies[pair.b].restitution); }
-double friction_of(const World& world, const TouchingPair& pair) { return std::min(world.bodies[pair.a].friction, world.bodies[pair.b].friction); }
+double friction_of(const World& world, const TouchingPair& pair) { return !built::kFriction ? 0.0 : std::min(world.bodies[pair.a].friction, world.bodies[pair.b].friction); }
 
 }  // namespace
 
@@ -117,7 +117,7 @@ bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double thr
   if (stays(work.moving.world(), pair, -approach)) restitution = 0.0;
   const double impulse = laws_.collision_impulse(contact, a, b, restitution);
   work.push(laws_, pair, contact.point_world, contact.normal_b_to_a_world, impulse);
-  if (contact_rest_speed_) rub(work, pair, contact, impulse);
+  if (built::kFriction && contact_rest_speed_) rub(work, pair, contact, impulse);
   ++counters_.impulses;
   work.result.events.push_back({work.moving.time(), EventKind::kCollision, pair.a, pair.b, contact.point_world,
                                 contact.normal_b_to_a_world, impulse, approach, normal_velocity(contact, a, b)});

@@ -1,27 +1,14 @@
 // Only the effects that a scene calls for are simulated: counters of every other effect stay at 0.
+#include <algorithm>
 #include <map>
 
 #include <gtest/gtest.h>
 
+#include "tests/engines/effect_scenes.h"
 #include "tests/engines/reference_laws.h"
 
 namespace tumble::testing {
 namespace {
-
-// By effect: what it counts.
-const std::map<std::string, std::vector<std::string>> kCountersOf = {
-    {"gravity", {"gravity_calls"}},
-    {"spring", {"spring_calls"}},
-    {"rod", {"rod_calls"}},
-    {"joint", {"joint_calls"}},
-    {"drag", {"drag_calls"}},
-    {"motor", {"motor_calls"}},
-    {"contact", {"contact_solves", "contact_points", "contacts_begun"}},
-    {"friction", {"friction_points"}},
-    {"point force", {"point_force_calls"}},
-    {"collision", {"impacts", "impulses"}},
-    {"sleep", {"bodies_put_to_sleep", "body_steps_asleep"}},
-};
 
 /// By effect: the events that tell of it.
 const std::map<std::string, std::vector<EventKind>> kEventsOf = {
@@ -30,63 +17,6 @@ const std::map<std::string, std::vector<EventKind>> kEventsOf = {
     {"point force", {EventKind::kForceOn, EventKind::kForceOff}},
     {"collision", {EventKind::kCollision}},
     {"sleep", {EventKind::kSleep}},
-};
-
-using Adds = void (*)(scene::Scene&);
-
-/// Two bodies that fly; each effect adds what calls for it.
-scene::Scene bare() {
-  auto a = ball("a", 0.1, 1.0, {0, 0, 1}, {0.1, 0, 0}), b = box("b", {0.1, 0.1, 0.1}, 1.0, {1, 0, 1}, Vector3d::Zero());
-  scene::Scene scene = scene_of({a, b}, 0.5);
-  scene.rest_speed_m_s = 1e-3;
-  return scene;
-}
-
-const std::map<std::string, Adds> kEffects = {
-    {"gravity", [](scene::Scene& s) { s.gravity_m_s2 = Vector3d(0, 0, -1); }},
-    {"spring", [](scene::Scene& s) { s.springs.push_back({"s", {"", {0, 0, 2}}, {"a", Vector3d::Zero()}, 10.0, 0.1, 1.0}); }},
-    {"rod",
-     [](scene::Scene& s) {
-       s.rods.push_back({"r", {"", {0, 0, 2}}, {"a", Vector3d::Zero()}, 1.0});
-       s.stabilisation.emplace();
-     }},
-    {"joint",
-     [](scene::Scene& s) {
-       s.joints.push_back({"j", scene::JointKind::kHinge, "b", "", {1, 0, 2}, Vector3d::UnitY()});
-       s.stabilisation.emplace();
-     }},
-    {"drag", [](scene::Scene& s) { s.drags.push_back({"a", 0.1, 0.1}); }},
-    {"motor",
-     [](scene::Scene& s) {
-       kEffects.at("joint")(s);
-       scene::MotorSpec motor;
-       motor.joint = "j";
-       motor.stiffness_n_m_rad = motor.offset_rad = 1.0;
-       s.motors.push_back(motor);
-     }},
-    {"contact",
-     [](scene::Scene& s) {
-       kEffects.at("gravity")(s);
-       s.bodies.push_back(plane("floor", {0, 0, 0.9}, Vector3d::UnitZ()));
-       for (scene::BodySpec& body : s.bodies) body.restitution = 0.0;
-       s.contact.emplace();
-     }},
-    {"friction",
-     [](scene::Scene& s) {
-       kEffects.at("contact")(s);
-       for (scene::BodySpec& body : s.bodies) body.friction = 0.5;
-     }},
-    {"point force", [](scene::Scene& s) { s.point_forces.push_back({"a", {1, 0, 0}, {0, 0, 1}, 0.0, 0.1}); }},
-    {"collision",
-     [](scene::Scene& s) {
-       s.bodies[0].velocity_m_s = {5, 0, 0};
-     }},
-    {"sleep",
-     [](scene::Scene& s) {
-       kEffects.at("contact")(s);
-       s.contact->sleep = true;
-       s.duration_s = 0.7;
-     }},
 };
 
 TEST(Effects, OnlyWhatASceneAsksForRuns) {

@@ -1,0 +1,26 @@
+/// Which effects the engines are built with: all of them, except where tests/bench/absent_effects.sh leaves one out (-DTUMBLE_WITHOUT="spring")
+/// to show that an effect that a scene does not ask for costs what an effect that is not there costs: nothing.
+#pragma once
+
+#include <string_view>
+
+#ifndef TUMBLE_WITHOUT
+#define TUMBLE_WITHOUT ""
+#endif
+
+namespace tumble::engines::built {
+
+constexpr std::string_view kWithout = TUMBLE_WITHOUT;
+
+constexpr bool kGravity = kWithout != "gravity";
+constexpr bool kPointForce = kWithout != "point_force";
+constexpr bool kSpring = kWithout != "spring";
+constexpr bool kDrag = kWithout != "drag";
+constexpr bool kRod = kWithout != "rod";
+constexpr bool kJoint = kWithout != "joint";
+constexpr bool kMotor = kWithout != "motor";
+constexpr bool kContact = kWithout != "contact";
+constexpr bool kFriction = kWithout != "friction";
+constexpr bool kSleep = kWithout != "sleep";
+
+}  // namespace tumble::engines::built

@@ -1,0 +1,28 @@
+# One program a left-out effect, and one with all of them: for absent_effects.sh (ninja bench_absent_effects).
+# Of the engines only the files that know the effect are compiled again; the linker takes these before the library's.
+set(engine_files ${CMAKE_SOURCE_DIR}/framework/engines)
+set(gravity_files moving_world retroactive)
+set(point_force_files moving_world path_turning retroactive)
+foreach(link spring drag rod joint motor)
+  set(${link}_files linked_bodies)
+endforeach()
+set(contact_files moving_world retroactive recorder)
+set(friction_files lasting_contacts sequential_impacts retroactive)
+set(sleep_files moving_world path_turning retroactive meetings recorder lasting_contacts contact_steps contact_modes sequential_impacts sleeping)
+
+function(absent_effect_program name)
+  add_executable(${name} EXCLUDE_FROM_ALL absent_effects.cpp ${ARGN})
+  target_include_directories(${name} PRIVATE ${CMAKE_SOURCE_DIR})
+  target_compile_definitions(${name} PRIVATE TUMBLE_BINARY_DIR="${CMAKE_BINARY_DIR}")
+  target_link_libraries(${name} PRIVATE tumble::assignments tumble::engines tumble::test_laws fmt::fmt)
+  add_dependencies(${name} a1_reference a2_reference a3_reference)
+  add_dependencies(bench_absent_effects ${name})
+endfunction()
+
+add_custom_target(bench_absent_effects)
+absent_effect_program(bench_all_effects)
+foreach(effect gravity point_force spring drag rod joint motor contact friction sleep)
+  list(TRANSFORM ${effect}_files REPLACE "(.+)" "${engine_files}/\\1.cpp" OUTPUT_VARIABLE files)
+  absent_effect_program(bench_without_${effect} ${files})
+  target_compile_definitions(bench_without_${effect} PRIVATE TUMBLE_WITHOUT="${effect}")
+endforeach()

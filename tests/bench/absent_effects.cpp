@@ -1,0 +1,86 @@
+// What an effect costs that a scene does not ask for. Run by absent_effects.sh under callgrind, once as it is and once built without the effect.
+//
+//   bench_... cost EFFECT     runs a scene without the effect in which its absence is asked about often
+//   bench_... calls EFFECT    runs a scene that asks for the effect, and prints how often its code was called
+#include <cstdio>
+#include <iostream>
+
+#include "tests/engines/effect_scenes.h"
+#include "tests/engines/reference_laws.h"
+
+namespace tumble::testing {
+namespace {
+
+/// Twelve bodies in two rows; they fly apart and touch nobody.
+scene::Scene flying(double duration) {
+  std::vector<scene::BodySpec> bodies;
+  for (int i = 0; i < 6; ++i) {
+    bodies.push_back(ball("ball " + std::to_string(i), 0.1, 1.0, {1.0 * i, 0, 0}, {0, 0, 0.1 * i}));
+    bodies.push_back(box("box " + std::to_string(i), {0.1, 0.2, 0.3}, 1.0, {1.0 * i, 2, 0}, {0, 0.1 * i, 0}));
+    bodies.back().omega_world_rad_s = {0.1, 0.2, 0.3};
+  }
+  return scene_of(bodies, duration);
+}
+
+/// The same, tied in pairs by one kind of link.
+scene::Scene tied(double duration, const std::string& link) {
+  scene::Scene scene = flying(duration);
+  for (int i = 0; i < 6; ++i) {
+    const std::string a = "ball " + std::to_string(i), b = "box " + std::to_string(i), name = "link " + std::to_string(i);
+    if (link == "spring") scene.springs.push_back({name, {a, Vector3d::Zero()}, {b, Vector3d::Zero()}, 10.0, 0.1, 2.0});
+    if (link == "drag") scene.drags.push_back({a, 0.1, 0.1});
+    if (link == "rod") scene.rods.push_back({name, {a, Vector3d::Zero()}, {b, Vector3d::Zero()}, 2.0});
+    if (link == "joint") scene.joints.push_back({name, scene::JointKind::kHinge, a, b, {1.0 * i, 1, 0}, Vector3d::UnitZ()});
+  }
+  if (link == "rod" || link == "joint") scene.stabilisation.emplace();
+  return scene;
+}
+
+/// Three boxes on one another; loose ones bounce on the floor instead.
+scene::Scene stack(double duration, double friction, bool lasting) {
+  scene::Scene scene = scene_of({plane("floor", Vector3d::Zero(), Vector3d::UnitZ())}, duration, Vector3d(0, 0, -9.81));
+  for (int i = 0; i < 3; ++i) {
+    if (lasting) scene.bodies.push_back(box("box " + std::to_string(i), {0.5, 0.5, 0.5}, 1.0, {0, 0, 0.5 + i}, Vector3d::Zero()));
+    else scene.bodies.push_back(ball("ball " + std::to_string(i), 0.2, 1.0, {1.0 * i, 0, 1.0 + i}, Vector3d::Zero()));
+  }
+  for (scene::BodySpec& body : scene.bodies) {
+    body.friction = friction;
+    body.restitution = lasting ? 0.0 : 0.9;
+  }
+  if (lasting) scene.contact.emplace();
+  return scene;
+}
+
+scene::Scene scene_without(const std::string& effect) {
+  if (effect == "gravity" || effect == "point_force") return flying(10.0);
+  if (effect == "spring") return tied(4.0, "drag");
+  if (effect == "drag") return tied(4.0, "spring");
+  if (effect == "rod" || effect == "motor") return tied(2.0, "joint");
+  if (effect == "joint") return tied(2.0, "rod");
+  if (effect == "contact") return stack(5.0, 0.0, false);
+  if (effect == "friction") return stack(1.0, 0.0, true);
+  if (effect == "sleep") return stack(1.0, 0.5, true);
+  throw std::invalid_argument("no effect '" + effect + "'");
+}
+
+std::uint64_t calls_of(std::string effect) {
+  std::replace(effect.begin(), effect.end(), '_', ' ');
+  scene::Scene scene = bare();
+  kEffects.at(effect)(scene);
+  const Trajectory result = run(scene, reference_laws());
+  std::uint64_t calls = 0;
+  for (const std::string& counter : kCountersOf.at(effect)) calls += result.counters.counts.at(counter);
+  return calls;
+}
+
+}  // namespace
+}  // namespace tumble::testing
+
+int main(int count, char** words) {
+  using namespace tumble::testing;
+  if (count != 3) return 2;
+  const std::string what = words[1], effect = words[2];
+  if (what == "calls") std::printf("%llu\n", static_cast<unsigned long long>(calls_of(effect)));
+  else std::printf("%zu frames\n", run(scene_without(effect), reference_laws()).frames.size());
+  return 0;
+}
