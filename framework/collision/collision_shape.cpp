@@ -33,6 +33,9 @@ Polytope box_polytope(const Vector3d& h) {
     box.face_normals.push_back(Vector3d::Unit(axis));
     box.face_normals.push_back(-Vector3d::Unit(axis));
   }
+  for (int i = 0; i < 8; ++i)
+    for (const int bit : {1, 2, 4})
+      if (!(i & bit)) box.edges.emplace_back(i, i | bit);
   return box;
 }
 
@@ -55,6 +58,7 @@ Polytope hull_polytope(const TriangleMesh& mesh) {
     const auto other = normal_beside.find({edge.second, edge.first});
     // The diagonal of a flat face is no edge of the solid.
     if (other != normal_beside.end() && (other->second - n).norm() < kSameDirection) continue;
+    hull.edges.push_back(edge);
     add_direction(hull.edge_directions, mesh.vertices[edge.second] - mesh.vertices[edge.first], true);
   }
   return hull;
@@ -69,6 +73,7 @@ Polytope triangle_polytope(const TriangleMesh& mesh, const Face& face) {
   for (int i = 0; i < 3; ++i) {
     const Vector3d edge = piece.vertices[(i + 1) % 3] - piece.vertices[i];
     add_direction(piece.edge_directions, edge, true);
+    piece.edges.emplace_back(i, (i + 1) % 3);
     if (flat) add_direction(piece.face_normals, edge.cross(n), false);  // the rim, seen in the triangle's own plane
   }
   return piece;
@@ -95,9 +100,12 @@ CollisionShape::CollisionShape(const Shape& shape) {
     bounding_radius_ = std::numeric_limits<double>::infinity();
     return;
   }
+  for (Polytope& piece : pieces_) piece.prepare();
   if (vertices_.empty()) vertices_ = pieces_[0].vertices;
   for (const Vector3d& v : vertices_) bounding_radius_ = std::max(bounding_radius_, v.norm());
   bounding_radius_ += radius_;
+  corners_.vertices = vertices_;
+  corners_.prepare();
   std::vector<int> order(pieces_.size());
   std::iota(order.begin(), order.end(), 0);
   build_node(order, 0, static_cast<int>(order.size()));

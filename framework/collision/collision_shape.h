@@ -41,6 +41,8 @@ class CollisionShape {
   const std::vector<Polytope>& pieces() const { return pieces_; }
   const std::vector<BallNode>& nodes() const { return nodes_; }   // the first is the root
   const std::vector<Vector3d>& vertices() const { return vertices_; }
+  /// All vertices as one polytope without faces: what meets a half-space.
+  const Polytope& corners() const { return corners_; }
   /// Faces of a solid made of flat pieces, for the question whether a point is inside.
   bool holds_point(const Vector3d& point_body) const;
 
@@ -50,6 +52,7 @@ class CollisionShape {
   std::vector<Polytope> pieces_;
   std::vector<BallNode> nodes_;
   std::vector<Vector3d> vertices_;
+  Polytope corners_;
   double radius_ = 0.0;
   double bounding_radius_ = 0.0;
 };

@@ -1,6 +1,7 @@
 #include "framework/collision/contact_patch.h"
 
 #include "framework/collision/piece_pairs.h"
+#include "framework/collision/polytope_gap.h"
 
 namespace tumble::collision {
 namespace {
@@ -31,14 +32,12 @@ FlatHull contact_patch(const CollisionShape& a, const Pose& pose_a, const Collis
   } else if (!a.is_ball() && !b.is_ball()) {
     const Query query(a, pose_a, b, pose_b);
     const double reach = std::max(gap.distance, 0.0) + tolerance;
-    PlacedPolytope placed_a, placed_b;
-    visit_piece_pairs(
+      visit_piece_pairs(
         query, [&](double bound) { return bound > reach; },
         [&](int i, int j) {
-          placed_a.place(a.pieces()[i], query.rotation_a, query.offset);
-          placed_b.place(b.pieces()[j], query.rotation_b, Vector3d::Zero());
-          const PolytopeGap found = polytope_gap(placed_a, placed_b, query.size);
-          if (found.distance > reach || (found.normal_b_to_a - n).norm() > kSameNormal) return;
+          const PlacedPolytope placed_a = query.piece_of_a(i), placed_b = query.piece_of_b(j);
+            const PolytopeGap found = polytope_gap(placed_a, placed_b, query.size, reach);
+          if (found.beyond || found.distance > reach || (found.normal_b_to_a - n).norm() > kSameNormal) return;
           for (const Vector3d& p : facing_region(placed_a, placed_b, n, tolerance)) points.push_back(pose_b.com_world + p);
         });
   }

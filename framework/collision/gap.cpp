@@ -1,9 +1,11 @@
 #include "framework/collision/gap.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "framework/collision/piece_pairs.h"
+#include "framework/collision/polytope_gap.h"
 
 namespace tumble::collision {
 namespace {
@@ -21,16 +23,9 @@ Gap gap_to_half_space(const CollisionShape& a, const Pose& pose_a, const Pose& p
   const Matrix3d rotation = pose_a.world_from_body.toRotationMatrix();
   const Vector3d n = plane.world_from_body.toRotationMatrix().col(2);
   const Vector3d offset = pose_a.com_world - plane.com_world;
-  double lowest = kInfinity;
-  Vector3d arm = Vector3d::Zero();
-  for (const Vector3d& v : a.vertices()) {
-    const Vector3d turned = rotation * v;
-    const double height = n.dot(turned);
-    if (height < lowest) {
-      lowest = height;
-      arm = turned;
-    }
-  }
+  double lowest;
+  const int nearest = a.corners().lowest(rotation.transpose() * n, lowest);
+  const Vector3d arm = rotation * a.vertices()[nearest];
   Gap gap;
   gap.distance = (n.dot(offset) + lowest) - a.radius();
   gap.normal_b_to_a_world = n;
@@ -52,14 +47,12 @@ Gap gap_of_balls(const CollisionShape& a, const Pose& pose_a, const CollisionSha
 
 Gap gap_of_pieces(const CollisionShape& a, const CollisionShape& b, const Query& query, const Vector3d& com_b_world) {
   PolytopeGap best{kInfinity, Vector3d::Zero(), Vector3d::Zero(), Vector3d::UnitZ()};
-  PlacedPolytope placed_a, placed_b;
   visit_piece_pairs(
       query, [&](double bound) { return bound > best.distance; },
       [&](int i, int j) {
-        placed_a.place(a.pieces()[i], query.rotation_a, query.offset);
-        placed_b.place(b.pieces()[j], query.rotation_b, Vector3d::Zero());
-        const PolytopeGap found = polytope_gap(placed_a, placed_b, query.size);
-        if (found.distance < best.distance) best = found;
+        const PlacedPolytope placed_a = query.piece_of_a(i), placed_b = query.piece_of_b(j);
+        const PolytopeGap found = polytope_gap(placed_a, placed_b, query.size, std::max(best.distance, 0.0));
+        if (!found.beyond && found.distance < best.distance) best = found;
       });
   Gap gap;
   gap.distance = best.distance - (a.radius() + b.radius());

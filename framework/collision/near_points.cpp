@@ -5,6 +5,7 @@
 
 #include "framework/collision/patch.h"
 #include "framework/collision/piece_pairs.h"
+#include "framework/collision/polytope_gap.h"
 
 namespace tumble::collision {
 namespace {
@@ -21,21 +22,20 @@ constexpr double kSteep = 0.05;
 // Height along n of the foremost surface of a convex piece over a point, `side` +1: the lowest of A, -1: the highest of B. The
 // vertices bound it where no face looks that way (an edge, a corner).
 double height_of(const PlacedPolytope& piece, const Vector3d& n, double side, const Vector3d& over) {
-  double foremost = kInfinity;
-  for (const Vector3d& v : piece.vertices) foremost = std::min(foremost, side * n.dot(v));
+  const Polytope& p = *piece.polytope;
+  const Vector3d d = piece.in_body(side * n), over_body = piece.in_body(over - piece.translation);
+  double foremost;
+  p.lowest(d, foremost);
+  const double base = d.dot(over_body);
   double height = foremost;
-  const double base = n.dot(over);
-  for (const Vector3d& body_normal : piece.polytope->face_normals) {
-    const Vector3d m = piece.query_from_body * body_normal;
-    const double lean = side * n.dot(m);
+  for (std::size_t f = 0; f < p.face_normals.size(); ++f) {
+    const Vector3d& m = p.face_normals[f];
+    const double lean = d.dot(m);
     if (lean > -kSteep) continue;
-    double offset = -kInfinity;
-    for (const Vector3d& v : piece.vertices) offset = std::max(offset, m.dot(v));
-    // m . (over + s n) = offset at the face
-    const double s = (offset - m.dot(over)) / n.dot(m);
-    height = std::max(height, side * (base + s));
+    // m . (over + s d) = offset at the face
+    height = std::max(height, base + (p.face_offsets[f] - m.dot(over_body)) / lean);
   }
-  return side * height;
+  return side * height + n.dot(piece.translation);
 }
 
 std::vector<NearPoint> above_half_space(const CollisionShape& a, const Pose& pose_a, const Pose& plane, double reach) {
@@ -81,14 +81,81 @@ NearPoint flipped(const NearPoint& p) { return {p.point_b_world, p.point_a_world
 
 struct Region {
   Vector3d normal;
-  std::vector<NearPoint> points;
+  InlineVector<NearPoint, 8> points;
 };
 
-bool of_a_face(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& n) {
-  const auto faces = [&](const PlacedPolytope& piece, const Vector3d& direction) {
-    return !piece.polytope->face_normals.empty() && (piece.query_from_body * piece.polytope->face_normals.front() - direction).norm() < kOfAFace;
+// A flat piece's own normal is its first: the other side and the rims are no part of a solid's surface.
+bool of_a_face(const PlacedPolytope& a, bool a_is_flat, const PlacedPolytope& b, bool b_is_flat, const Vector3d& n) {
+  const auto faces = [](const PlacedPolytope& piece, bool is_flat, const Vector3d& direction) {
+    const auto& normals = piece.polytope->face_normals;
+    const Vector3d d = piece.in_body(direction);
+    const auto end = is_flat && !normals.empty() ? normals.begin() + 1 : normals.end();
+    return std::any_of(normals.begin(), end, [&](const Vector3d& m) { return (m - d).norm() < kOfAFace; });
   };
-  return faces(b, n) || faces(a, -n);
+  return faces(b, b_is_flat, n) || faces(a, a_is_flat, -n);
+}
+
+struct NearPair {
+  int i, j;
+  PolytopeGap gap;
+};
+
+// Points over the corners of the region that two pieces share.
+void add_points(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& n, double reach, const Vector3d& com_b_world, Region& region) {
+  for (const Vector3d& corner : facing_region(a, b, n, reach)) {
+    const double low = height_of(a, n, 1.0, corner), high = height_of(b, n, -1.0, corner);
+    if (low - high > reach) continue;
+    const Vector3d flat = corner - n.dot(corner) * n;
+    region.points.push_back({com_b_world + flat + low * n, com_b_world + flat + high * n, n, low - high});
+  }
+}
+
+// Only the corners of a region carry: other points lie between.
+void append_corners(const Region& region, std::vector<NearPoint>& points) {
+  if (region.points.size() == 1) return points.push_back(region.points[0]);
+  Corners all;
+  for (const NearPoint& p : region.points) all.push_back(p.point_a_world);
+  for (const int corner : hull_corners(all, region.normal)) points.push_back(region.points[corner]);
+}
+
+std::vector<NearPoint> between_convex(const Query& query, const Vector3d& com_b_world, double reach) {
+  const PlacedPolytope placed_a = query.piece_of_a(0), placed_b = query.piece_of_b(0);
+  const PolytopeGap found = polytope_gap(placed_a, placed_b, query.size, reach);
+  if (found.beyond || found.distance > reach) return {};
+  Region region{found.normal_b_to_a, {}};
+  add_points(placed_a, placed_b, region.normal, reach, com_b_world, region);
+  std::vector<NearPoint> points;
+  append_corners(region, points);
+  return points;
+}
+
+std::vector<NearPoint> between_surfaces(const Query& query, const Vector3d& com_b_world, double reach) {
+  double nearest = kInfinity;
+  Vector3d main_normal = Vector3d::UnitZ();
+  std::vector<NearPair> pairs;
+  visit_piece_pairs(
+      query, [&](double bound) { return bound > reach; },
+      [&](int i, int j) {
+        const PolytopeGap found = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size, reach);
+        if (found.beyond || found.distance > reach) return;
+        pairs.push_back({i, j, found});
+        if (found.distance < nearest) {
+          nearest = found.distance;
+          main_normal = found.normal_b_to_a;
+        }
+      });
+  std::vector<Region> regions;
+  for (const NearPair& pair : pairs) {
+    const PlacedPolytope placed_a = query.piece_of_a(pair.i), placed_b = query.piece_of_b(pair.j);
+    const Vector3d& n = pair.gap.normal_b_to_a;
+    if ((n - main_normal).norm() > kSameNormal && !of_a_face(placed_a, query.a.is_closed_surface(), placed_b, query.b.is_closed_surface(), n)) continue;
+    auto region = std::find_if(regions.begin(), regions.end(), [&](const Region& r) { return (r.normal - n).norm() <= kSameNormal; });
+    if (region == regions.end()) region = regions.insert(regions.end(), {n, {}});
+    add_points(placed_a, placed_b, n, reach, com_b_world, *region);
+  }
+  std::vector<NearPoint> points;
+  for (const Region& region : regions) append_corners(region, points);
+  return points;
 }
 
 }  // namespace
@@ -107,63 +174,7 @@ std::vector<NearPoint> near_points(const CollisionShape& a, const Pose& pose_a, 
   }
   const Query query(a, pose_a, b, pose_b);
   const bool convex = !a.is_closed_surface() && !b.is_closed_surface();
-  std::vector<Region> regions;
-  double nearest = kInfinity;
-  Vector3d main_normal = Vector3d::UnitZ();
-  PlacedPolytope placed_a, placed_b;
-  struct Pair { int i, j; PolytopeGap gap; };
-  std::vector<Pair> pairs;
-  visit_piece_pairs(
-      query, [&](double bound) { return bound > reach; },
-      [&](int i, int j) {
-        placed_a.place(a.pieces()[i], query.rotation_a, query.offset);
-        placed_b.place(b.pieces()[j], query.rotation_b, Vector3d::Zero());
-        const PolytopeGap found = polytope_gap(placed_a, placed_b, query.size);
-        if (found.distance > reach) return;
-        pairs.push_back({i, j, found});
-        if (found.distance < nearest) {
-          nearest = found.distance;
-          main_normal = found.normal_b_to_a;
-        }
-      });
-  for (const Pair& pair : pairs) {
-    placed_a.place(a.pieces()[pair.i], query.rotation_a, query.offset);
-    placed_b.place(b.pieces()[pair.j], query.rotation_b, Vector3d::Zero());
-    const Vector3d& n = pair.gap.normal_b_to_a;
-    if (!convex && (n - main_normal).norm() > kSameNormal && !of_a_face(placed_a, placed_b, n)) continue;
-    auto region = std::find_if(regions.begin(), regions.end(), [&](const Region& r) { return (r.normal - n).norm() <= kSameNormal; });
-    if (region == regions.end()) region = regions.insert(regions.end(), {n, {}});
-    for (const Vector3d& corner : facing_region(placed_a, placed_b, n, reach)) {
-      const double low = height_of(placed_a, n, 1.0, corner), high = height_of(placed_b, n, -1.0, corner);
-      const Vector3d flat = corner - n.dot(corner) * n;
-      const NearPoint point{pose_b.com_world + flat + low * n, pose_b.com_world + flat + high * n, n, low - high};
-      if (point.gap <= reach) region->points.push_back(point);
-    }
-  }
-  std::vector<NearPoint> points;
-  for (const Region& region : regions) {
-    if (region.points.size() <= 2) {
-      points.insert(points.end(), region.points.begin(), region.points.end());
-      continue;
-    }
-    std::vector<Vector3d> all;
-    for (const NearPoint& p : region.points) all.push_back(p.point_a_world);
-    for (const Vector3d& corner : flat_hull(all, region.normal).corners) {
-      // flat_hull lifts corners to its first point's height: the point itself has its own.
-      const NearPoint* best = nullptr;
-      double best_distance = kInfinity;
-      for (const NearPoint& p : region.points) {
-        const Vector3d between = corner - p.point_a_world;
-        const double distance = (between - region.normal.dot(between) * region.normal).norm();
-        if (distance < best_distance) {
-          best_distance = distance;
-          best = &p;
-        }
-      }
-      points.push_back(*best);
-    }
-  }
-  return points;
+  return convex ? between_convex(query, pose_b.com_world, reach) : between_surfaces(query, pose_b.com_world, reach);
 }
 
 }  // namespace tumble::collision

@@ -6,7 +6,11 @@
 namespace tumble::collision {
 namespace {
 
-using Polygon = std::vector<Vector2d>;
+struct FlatPoint {
+  Vector2d p;
+  int index;   // in the list that it came from; -1: new
+};
+using Polygon = InlineVector<FlatPoint, 16>;
 
 double cross2(const Vector2d& u, const Vector2d& v) { return u.x() * v.y() - u.y() * v.x(); }
 
@@ -24,112 +28,155 @@ struct PlaneAxes {
 
 // Monotone chain, counter-clockwise; points that coincide to round-off count once.
 Polygon hull_of(Polygon points) {
-  std::sort(points.begin(), points.end(), [](const Vector2d& a, const Vector2d& b) { return a.x() != b.x() ? a.x() < b.x() : a.y() < b.y(); });
+  if (points.size() < 2) return points;
+  std::sort(points.begin(), points.end(), [](const FlatPoint& a, const FlatPoint& b) {
+    if (a.p.x() != b.p.x()) return a.p.x() < b.p.x();
+    return a.p.y() != b.p.y() ? a.p.y() < b.p.y() : a.index < b.index;
+  });
   double size = 0.0;
-  for (const Vector2d& p : points) size = std::max(size, (p - points[0]).norm());
+  for (const FlatPoint& q : points) size = std::max(size, (q.p - points[0].p).norm());
   const double same = 1e-12 * size;
   Polygon distinct;
-  for (const Vector2d& p : points) {
-    const bool known = std::any_of(distinct.begin(), distinct.end(), [&](const Vector2d& q) { return (p - q).norm() <= same; });
-    if (!known) distinct.push_back(p);
+  for (const FlatPoint& q : points) {
+    // Sorted: only those just before can coincide.
+    bool known = false;
+    for (int k = distinct.size() - 1; k >= 0 && q.p.x() - distinct[k].p.x() <= same && !known; --k) known = (q.p - distinct[k].p).norm() <= same;
+    if (!known) distinct.push_back(q);
   }
   if (distinct.size() < 3) return distinct;
   Polygon hull;
-  const auto grow = [&](const Vector2d& p, std::size_t base) {
-    while (hull.size() >= base + 2 && cross2(hull.back() - hull[hull.size() - 2], p - hull.back()) <= same * size) hull.pop_back();
-    hull.push_back(p);
+  const auto grow = [&](const FlatPoint& q, int base) {
+    while (hull.size() >= base + 2 && cross2(hull.back().p - hull[hull.size() - 2].p, q.p - hull.back().p) <= same * size) hull.shrink(hull.size() - 1);
+    hull.push_back(q);
   };
-  for (const Vector2d& p : distinct) grow(p, 0);
-  const std::size_t lower = hull.size() - 1;
-  for (auto p = distinct.rbegin() + 1; p != distinct.rend(); ++p) grow(*p, lower);
-  hull.pop_back();
+  for (const FlatPoint& q : distinct) grow(q, 0);
+  const int lower = hull.size() - 1;
+  for (int k = distinct.size() - 2; k >= 0; --k) grow(distinct[k], lower);
+  hull.shrink(hull.size() - 1);
   return hull;
 }
 
 Polygon crossing_of_segments(const Polygon& a, const Polygon& b) {
-  const Vector2d along_a = a[1] - a[0], along_b = b[1] - b[0];
+  const Vector2d along_a = a[1].p - a[0].p, along_b = b[1].p - b[0].p;
   const double across = cross2(along_a, along_b);
+  Polygon crossing;
   if (std::abs(across) > 1e-9 * along_a.norm() * along_b.norm()) {
-    const double t = std::clamp(cross2(b[0] - a[0], along_b) / across, 0.0, 1.0);
-    return {a[0] + t * along_a};
+    const double t = std::clamp(cross2(b[0].p - a[0].p, along_b) / across, 0.0, 1.0);
+    crossing.push_back({a[0].p + t * along_a, -1});
+    return crossing;
   }
   // Side by side: the stretch that both cover.
   const double length = along_a.squaredNorm();
-  const double first = along_a.dot(b[0] - a[0]) / length, second = along_a.dot(b[1] - a[0]) / length;
+  const double first = along_a.dot(b[0].p - a[0].p) / length, second = along_a.dot(b[1].p - a[0].p) / length;
   const double low = std::clamp(std::min(first, second), 0.0, 1.0), high = std::clamp(std::max(first, second), 0.0, 1.0);
-  return {a[0] + low * along_a, a[0] + high * along_a};
+  crossing.push_back({a[0].p + low * along_a, -1});
+  crossing.push_back({a[0].p + high * along_a, -1});
+  return crossing;
 }
 
 // I. Sutherland, G. Hodgman, Reentrant polygon clipping, CACM 17 (1974) 32.
-Polygon clip(Polygon subject, const Polygon& window) {
-  for (std::size_t i = 0; i < window.size() && !subject.empty(); ++i) {
-    const Vector2d& p = window[i];
-    const Vector2d edge = window[(i + 1) % window.size()] - p;
-    const auto side = [&](const Vector2d& q) { return cross2(edge, q - p); };
-    Polygon kept;
-    for (std::size_t k = 0; k < subject.size(); ++k) {
-      const Vector2d &q = subject[k], &next = subject[(k + 1) % subject.size()];
+Polygon clip(const Polygon& cut, const Polygon& window) {
+  Polygon subject = cut, kept;
+  for (int i = 0; i < window.size() && !subject.empty(); ++i) {
+    const Vector2d& p = window[i].p;
+    const Vector2d edge = window[(i + 1) % window.size()].p - p;
+    const auto side = [&](const FlatPoint& q) { return cross2(edge, q.p - p); };
+    kept.clear();
+    for (int k = 0; k < subject.size(); ++k) {
+      const FlatPoint &q = subject[k], &next = subject[(k + 1) % subject.size()];
       const double s = side(q), s_next = side(next);
       if (s >= 0) kept.push_back(q);
-      if ((s > 0 && s_next < 0) || (s < 0 && s_next > 0)) kept.push_back(q + (s / (s - s_next)) * (next - q));
+      if ((s > 0 && s_next < 0) || (s < 0 && s_next > 0)) kept.push_back({q.p + (s / (s - s_next)) * (next.p - q.p), -1});
     }
-    subject = std::move(kept);
+    std::swap(subject, kept);
   }
   return subject;
 }
 
-Polygon shared_region(Polygon a, Polygon b) {
-  if (a.size() > b.size()) std::swap(a, b);
+// The smaller of the two is `a`.
+Polygon shared_region(const Polygon& a, const Polygon& b) {
   if (a.size() == 1) return a;
   if (b.size() == 2) return crossing_of_segments(a, b);
-  const Polygon region = clip(a, b);
+  Polygon region = clip(a, b);
   if (!region.empty()) return region;
   Vector2d middle = Vector2d::Zero();  // they only touch at a rim, and rounding parts them
-  for (const Vector2d& p : a) middle += p / static_cast<double>(a.size());
-  return {middle};
+  for (const FlatPoint& q : a) middle += q.p / static_cast<double>(a.size());
+  region.push_back({middle, -1});
+  return region;
+}
+
+// The part of a piece that faces the other one: its hull seen along n. `side` is +1 for A, whose lowest vertices face B.
+Polygon facing(const PlacedPolytope& piece, const PlaneAxes& axes, const Vector3d& n, double side, double tolerance, double& height) {
+  const Vector3d d = piece.in_body(side * n);
+  double lowest;
+  const int foremost = piece.polytope->lowest(d, lowest);
+  const auto& vertices = piece.polytope->vertices;
+  Polygon points;
+  for (int i = 0; i < piece.size(); ++i)
+    if (i == foremost || d.dot(vertices[i]) <= lowest + tolerance) points.push_back({axes.flatten(piece.vertex(i)), -1});
+  height = side * lowest + n.dot(piece.translation);
+  return hull_of(points);
+}
+
+Polygon region_of(const PlacedPolytope& a, const PlacedPolytope& b, const PlaneAxes& axes, const Vector3d& n, double tolerance, double& height) {
+  double height_b;
+  const Polygon of_a = facing(a, axes, n, 1.0, tolerance, height);
+  if (of_a.size() == 1) return of_a;
+  const Polygon of_b = facing(b, axes, n, -1.0, tolerance, height_b);
+  return of_a.size() <= of_b.size() ? shared_region(of_a, of_b) : shared_region(of_b, of_a);
+}
+
+Vector2d middle_of(const Polygon& hull) {
+  Vector2d middle = Vector2d::Zero();
+  double area = 0.0;
+  const Vector2d& start = hull[0].p;
+  for (int i = 1; i + 1 < hull.size(); ++i) {
+    const Vector2d p = hull[i].p - start, q = hull[i + 1].p - start;
+    area += cross2(p, q);
+    middle += cross2(p, q) * (p + q) / 3.0;
+  }
+  if (hull.size() >= 3 && area > 0) return start + middle / area;
+  middle.setZero();
+  for (const FlatPoint& q : hull) middle += q.p / static_cast<double>(hull.size());
+  return middle;
 }
 
 }  // namespace
 
-std::vector<Vector3d> facing_region(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& n, double tolerance) {
+Corners facing_region(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& n, double tolerance) {
   const PlaneAxes axes(n);
-  const auto facing = [&](const std::vector<Vector3d>& vertices, double side) {
-    double foremost = side * n.dot(vertices[0]);
-    for (const Vector3d& v : vertices) foremost = std::min(foremost, side * n.dot(v));
-    Polygon points;
-    for (const Vector3d& v : vertices)
-      if (side * n.dot(v) <= foremost + tolerance) points.push_back(axes.flatten(v));
-    return std::pair(hull_of(std::move(points)), side * foremost);
-  };
-  const auto [facing_a, height] = facing(a.vertices, 1.0);
-  std::vector<Vector3d> corners;
-  for (const Vector2d& p : shared_region(facing_a, facing(b.vertices, -1.0).first)) corners.push_back(p.x() * axes.u + p.y() * axes.v + height * n);
+  double height;
+  Corners corners;
+  for (const FlatPoint& q : region_of(a, b, axes, n, tolerance, height)) corners.push_back(q.p.x() * axes.u + q.p.y() * axes.v + height * n);
   return corners;
+}
+
+Vector3d middle_of_facing_region(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& n, double tolerance) {
+  const PlaneAxes axes(n);
+  double height;
+  const Vector2d middle = middle_of(hull_of(region_of(a, b, axes, n, tolerance, height)));
+  return middle.x() * axes.u + middle.y() * axes.v + height * n;
 }
 
 FlatHull flat_hull(const std::vector<Vector3d>& points, const Vector3d& n) {
   const PlaneAxes axes(n);
   Polygon flat;
-  for (const Vector3d& p : points) flat.push_back(axes.flatten(p - points[0]));
-  const Polygon hull = hull_of(std::move(flat));
+  for (const Vector3d& p : points) flat.push_back({axes.flatten(p - points[0]), -1});
+  const Polygon hull = hull_of(flat);
   const auto lift = [&](const Vector2d& p) -> Vector3d { return points[0] + p.x() * axes.u + p.y() * axes.v; };
   FlatHull result;
-  Vector2d middle = Vector2d::Zero();
-  double area = 0.0;
-  for (std::size_t i = 0; i < hull.size(); ++i) {
-    result.corners.push_back(lift(hull[i]));
-    const Vector2d &p = hull[i], &q = hull[(i + 1) % hull.size()];
-    area += cross2(p, q);
-    middle += cross2(p, q) * (p + q) / 3.0;
-  }
-  if (hull.size() >= 3 && area > 0) {
-    middle /= area;
-  } else {
-    middle.setZero();
-    for (const Vector2d& p : hull) middle += p / static_cast<double>(hull.size());
-  }
-  result.middle = lift(middle);
+  for (const FlatPoint& q : hull) result.corners.push_back(lift(q.p));
+  result.middle = lift(middle_of(hull));
   return result;
+}
+
+InlineVector<int, 16> hull_corners(const Corners& points, const Vector3d& n) {
+  const PlaneAxes axes(n);
+  Polygon flat;
+  for (int i = 0; i < points.size(); ++i) flat.push_back({axes.flatten(points[i] - points[0]), i});
+  InlineVector<int, 16> corners;
+  for (const FlatPoint& q : hull_of(flat)) corners.push_back(q.index);
+  return corners;
 }
 
 }  // namespace tumble::collision

@@ -3,13 +3,19 @@
 
 #include <vector>
 
+#include "framework/collision/inline_vector.h"
 #include "framework/collision/polytope.h"
 
 namespace tumble::collision {
 
+using Corners = InlineVector<Vector3d, 16>;
+
 /// Corners of the region that the parts of A and B facing each other along `n` share, seen along `n`, on A's side. At least one.
 /// @param tolerance  how far behind the foremost vertex another still belongs to the facing part [m]
-std::vector<Vector3d> facing_region(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& normal_b_to_a, double tolerance);
+Corners facing_region(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& normal_b_to_a, double tolerance);
+
+/// The middle of that region.
+Vector3d middle_of_facing_region(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& normal_b_to_a, double tolerance);
 
 /// Corners of the convex hull of points in a plane, and the middle of that hull: of its area, its length, or the point itself.
 struct FlatHull {
@@ -17,5 +23,8 @@ struct FlatHull {
   Vector3d middle;
 };
 FlatHull flat_hull(const std::vector<Vector3d>& points, const Vector3d& normal);
+
+/// Which of the points are corners of their hull seen along `normal`, counter-clockwise; of points that coincide, the first.
+InlineVector<int, 16> hull_corners(const Corners& points, const Vector3d& normal);
 
 }  // namespace tumble::collision

@@ -21,6 +21,9 @@ struct Query {
       : a(shape_a), b(shape_b), rotation_a(pose_a.world_from_body.toRotationMatrix()),
         rotation_b(pose_b.world_from_body.toRotationMatrix()), offset(pose_a.com_world - pose_b.com_world),
         size(offset.norm() + (a.is_half_space() ? 0.0 : a.bounding_radius()) + (b.is_half_space() ? 0.0 : b.bounding_radius())) {}
+
+  PlacedPolytope piece_of_a(int i) const { return {&a.pieces()[i], rotation_a, offset}; }
+  PlacedPolytope piece_of_b(int j) const { return {&b.pieces()[j], rotation_b, Vector3d::Zero()}; }
 };
 
 /// Calls visit(piece_a, piece_b) for every pair of pieces that skip(lower bound of their cores' distance) does not rule out.

@@ -1,10 +1,8 @@
-/// Distance between two convex polytopes, signed where they touch or overlap. Knows points only: no poses, no radii.
-///
-/// Apart: the algorithm of Gilbert, Johnson and Keerthi on the Minkowski difference A - B. In touch or overlapping: the
-/// largest separation over the axes that can separate two polytopes (face normals, cross products of edges), which is
-/// smooth through zero, so that a root finder sees a sign change. No absolute tolerance anywhere: all scale with the sizes.
+/// A convex polytope prepared once for questions about it, and where it stands now. Knows points only: no radii.
 #pragma once
 
+#include <array>
+#include <utility>
 #include <vector>
 
 #include "framework/core/math.h"
@@ -16,28 +14,42 @@ struct Polytope {
   std::vector<Vector3d> vertices;          // at least one [m]
   std::vector<Vector3d> face_normals;      // unit, outward; a flat triangle has both sides and its three rims
   std::vector<Vector3d> edge_directions;   // unit, each direction once
+  std::vector<std::pair<int, int>> edges;  // of vertices, each once
+
+  // Worked out from these by `prepare`.
+  using Lanes = double __attribute__((vector_size(16)));
+  using Columns = std::array<Lanes, 3>;     // x, y and z of two vertices: one instruction works on both
+  std::vector<Columns> columns;            // the last vertex again where their number is odd
+  std::vector<double> arms;                // distance of each vertex from the origin [m]
+  std::vector<double> face_offsets;        // largest normal . vertex [m]
+  std::vector<int> first_neighbour;        // neighbours of vertex i: from first_neighbour[i] to first_neighbour[i + 1]
+  std::vector<int> neighbours;
+
+  void prepare();
+  /// The vertex that lies lowest along a direction, of equal ones the first. @param height  where it lies [m]
+  int lowest(const Vector3d& direction, double& height) const;
 };
 
-/// A polytope where it stands now: vertices in the frame of the query, directions turned into it.
+/// A polytope where it stands now, in the frame of a query.
 struct PlacedPolytope {
-  const Polytope* polytope = nullptr;
+  const Polytope* polytope;
   Matrix3d query_from_body;
-  std::vector<Vector3d> vertices;
+  Vector3d translation;
 
-  void place(const Polytope& shape, const Matrix3d& rotation, const Vector3d& translation);
+  Vector3d vertex(int i) const { return query_from_body * polytope->vertices[i] + translation; }
+  int size() const { return static_cast<int>(polytope->vertices.size()); }
+  Vector3d in_body(const Vector3d& direction) const { return query_from_body.transpose() * direction; }
+  /// Index of the vertex that lies lowest along a direction.
+  int lowest(const Vector3d& direction) const {
+    double height;
+    return polytope->lowest(in_body(direction), height);
+  }
+  double lowest_height(const Vector3d& direction) const {
+    double height;
+    polytope->lowest(in_body(direction), height);
+    return height + direction.dot(translation);
+  }
 };
-
-/// How two polytopes lie to each other.
-struct PolytopeGap {
-  double distance;        // > 0 apart; <= 0: largest separation over all axes, minus the depth of overlap [m]
-  Vector3d point_a, point_b;
-  Vector3d normal_b_to_a; // unit
-};
-
-/// @param size  a length to scale round-off by: how far the points lie from the origin of the query [m]
-/// Source: G. van den Bergen, Collision Detection in Interactive 3D Environments, 2003, ch. 4; S. Gottschalk, M. Lin,
-/// D. Manocha, OBBTree, SIGGRAPH 1996 (separating axes). Error: a few roundings of `size`.
-PolytopeGap polytope_gap(const PlacedPolytope& a, const PlacedPolytope& b, double size);
 
 /// min over A of n.a minus max over B of n.b: how far the two lie apart along `n`. [m]
 double separation_along(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& normal_b_to_a);

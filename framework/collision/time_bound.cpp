@@ -4,7 +4,9 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/collision/inline_vector.h"
 #include "framework/collision/piece_pairs.h"
+#include "framework/collision/polytope_gap.h"
 
 namespace tumble::collision {
 namespace {
@@ -17,24 +19,21 @@ struct VertexLine {
   double at(double t) const { return height + (rate - bend * t) * t; }
 };
 
-// Lines of all vertices of a placed piece. `side` is +1 for A (heights along n) and -1 for B (heights along -n).
-void collect_lines(const PlacedPolytope& piece, const Vector3d& center, const MotionState& state, const MotionBounds& bounds,
-                   const Vector3d& n, double side, std::vector<VertexLine>& lines) {
+using VertexLines = InlineVector<VertexLine, 32>;
+
+// Lines of all vertices of a piece of a body. `side` is +1 for A (heights along n) and -1 for B (heights along -n).
+void collect_lines(const PlacedPolytope& piece, const MotionState& state, const MotionBounds& bounds, const Vector3d& n, double side, VertexLines& lines) {
   lines.clear();
+  const Polytope& p = *piece.polytope;
   const double bend_of_arm = 0.5 * (bounds.angular_acceleration + bounds.angular_speed * (bounds.angular_speed + bounds.angular_velocity_error));
-  const Vector3d turn = n.cross(state.omega_world);  // n . (w x r) = (n x w) . r
-  double lowest = kInfinity;
-  for (const Vector3d& v : piece.vertices) {
-    const Vector3d arm = v - center;
-    const double length = arm.norm();
-    const double height = side * n.dot(v);
-    lowest = std::min(lowest, height);
-    lines.push_back({height, side * turn.dot(arm) - bounds.angular_velocity_error * length, bend_of_arm * length});
-  }
-  for (VertexLine& line : lines) line.height -= lowest;
+  const Vector3d up = piece.in_body(side * n), turn = piece.in_body(side * n.cross(state.omega_world));  // n . (w x r) = (n x w) . r
+  double lowest;
+  p.lowest(up, lowest);
+  for (int i = 0; i < piece.size(); ++i)
+    lines.push_back({up.dot(p.vertices[i]) - lowest, turn.dot(p.vertices[i]) - bounds.angular_velocity_error * p.arms[i], bend_of_arm * p.arms[i]});
 }
 
-double lowest_at(const std::vector<VertexLine>& lines, double t, const VertexLine*& line) {
+double lowest_at(const VertexLines& lines, double t, const VertexLine*& line) {
   double lowest = kInfinity;
   for (const VertexLine& candidate : lines) {
     const double value = candidate.at(t);
@@ -48,8 +47,8 @@ double lowest_at(const std::vector<VertexLine>& lines, double t, const VertexLin
 
 // Largest t up to `horizon` with (E.1) holding on [0, t]: from the right, always to the first root of the pair that is lowest.
 // Every pair's curve must bend down or be straight, so that one above zero at t was never below it before.
-double duration_of_lines(double gap, double rate, double half_acceleration, const std::vector<VertexLine>& a,
-                         const std::vector<VertexLine>& b, double horizon) {
+double duration_of_lines(double gap, double rate, double half_acceleration, const VertexLines& a,
+                         const VertexLines& b, double horizon) {
   if (a.size() == 1 && b.size() == 1) {
     return std::min(horizon, first_root_of_quadratic(gap, rate + a[0].rate + b[0].rate, half_acceleration - a[0].bend - b[0].bend));
   }
@@ -109,10 +108,8 @@ TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a, 
   Relative relative{state_a.velocity_world - state_b.velocity_world, bounds_a.acceleration_world - bounds_b.acceleration_world,
                     bounds_a.acceleration_deviation + bounds_b.acceleration_deviation, 0.0};
   TimeBound bound{horizon, kInfinity};
-  const std::vector<VertexLine> nothing_turns{{0.0, 0.0, 0.0}};
-  std::vector<VertexLine> lines_a, lines_b;
-  PlacedPolytope placed_a, placed_b;
-  const auto along = [&](double gap, const Vector3d& n, const std::vector<VertexLine>& of_b) {
+  VertexLines lines_a, lines_b;
+  const auto along = [&](double gap, const Vector3d& n, const VertexLines& of_b) {
     const double half_acceleration = 0.5 * (n.dot(relative.acceleration) - relative.deviation);
     const double duration =
         duration_of_lines(std::max(gap, 0.0), n.dot(relative.velocity), half_acceleration, lines_a, of_b, bound.duration);
@@ -122,11 +119,9 @@ TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a, 
 
   if (b.is_half_space()) {
     const Vector3d n = query.rotation_b.col(2);
-    Polytope all;
-    all.vertices = a.vertices();
-    placed_a.place(all, query.rotation_a, query.offset);
-    collect_lines(placed_a, query.offset, state_a, bounds_a, n, 1.0, lines_a);
-    along(compute_gap(a, state_a.pose, b, state_b.pose).distance, n, nothing_turns);
+    collect_lines({&a.corners(), query.rotation_a, query.offset}, state_a, bounds_a, n, 1.0, lines_a);
+    lines_b.push_back({0.0, 0.0, 0.0});   // nothing turns
+    along(compute_gap(a, state_a.pose, b, state_b.pose).distance, n, lines_b);
     return bound;
   }
   const double turning = 1.0 + 1e-12;  // the bounding radii are rounded
@@ -135,11 +130,15 @@ TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a, 
   visit_piece_pairs(
       query, [&](double core_bound) { return core_bound - radius > relative.reach(bound.duration); },
       [&](int i, int j) {
-        placed_a.place(a.pieces()[i], query.rotation_a, query.offset);
-        placed_b.place(b.pieces()[j], query.rotation_b, Vector3d::Zero());
-        const PolytopeGap found = polytope_gap(placed_a, placed_b, query.size);
-        collect_lines(placed_a, query.offset, state_a, bounds_a, found.normal_b_to_a, 1.0, lines_a);
-        collect_lines(placed_b, Vector3d::Zero(), state_b, bounds_b, found.normal_b_to_a, -1.0, lines_b);
+        const PlacedPolytope placed_a = query.piece_of_a(i), placed_b = query.piece_of_b(j);
+        const double limit = relative.reach(bound.duration);
+        const PolytopeGap found = polytope_gap(placed_a, placed_b, query.size, limit + radius);
+        if (found.beyond) {
+          bound.gap = std::min(bound.gap, found.distance - radius);
+          return;
+        }
+        collect_lines(placed_a, state_a, bounds_a, found.normal_b_to_a, 1.0, lines_a);
+        collect_lines(placed_b, state_b, bounds_b, found.normal_b_to_a, -1.0, lines_b);
         along(found.distance - radius, found.normal_b_to_a, lines_b);
       });
   return bound;

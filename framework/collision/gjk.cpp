@@ -1,0 +1,77 @@
+#include "framework/collision/gjk.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace tumble::collision {
+namespace {
+
+constexpr double kRoundOff = 2.220446049250313e-16;
+// The plane of a triangle with a smaller sine between its sides is known no better than the nearest point.
+constexpr double kSliver = 1e-6;
+constexpr int kMostRounds = 200;   // polytopes of a thousand vertices take about thirty
+
+bool holds(const Simplex& simplex, const DifferencePoint& point) {
+  for (int i = 0; i < simplex.size; ++i)
+    if (simplex.points[i].vertex_a == point.vertex_a && simplex.points[i].vertex_b == point.vertex_b) return true;
+  return false;
+}
+
+// Direction and distance of the nearest point. Where it lies on a face, the face's plane gives both with all their digits, which the
+// difference of two near points cannot: a direction that is off by rounding over distance would find the wrong corner next.
+void settle(const Vector3d& nearest, GjkResult& result) {
+  const Simplex& s = result.simplex;
+  result.distance = nearest.norm();
+  result.normal = result.distance > 0 ? Vector3d(nearest / result.distance) : Vector3d::UnitZ();
+  if (s.size < 3) return;
+  const Vector3d u = s.points[1].difference - s.points[0].difference, v = s.points[2].difference - s.points[0].difference;
+  const Vector3d across = u.cross(v);
+  const double area = across.norm();
+  if (!(area > kSliver * u.norm() * v.norm())) return;
+  const Vector3d n = across / area;
+  const double height = n.dot(s.points[0].difference);
+  result.normal = height < 0 ? Vector3d(-n) : n;
+  result.distance = std::abs(height);
+}
+
+}  // namespace
+
+DifferencePoint lowest_difference(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& direction) {
+  const int i = a.lowest(direction), j = b.lowest(-direction);
+  return {a.vertex(i) - b.vertex(j), i, j};
+}
+
+GjkResult gjk(const PlacedPolytope& a, const PlacedPolytope& b, double size, double limit) {
+  GjkResult result;
+  Simplex& simplex = result.simplex;
+  simplex.points[0] = lowest_difference(a, b, a.translation - b.translation);
+  simplex.size = 1;
+  settle(reduce_to_nearest(simplex), result);
+  const double touching = 8 * kRoundOff * size;
+  for (int round = 0; round < kMostRounds && result.distance > touching; ++round) {
+    const DifferencePoint next = lowest_difference(a, b, result.normal);
+    // The plane through `next` bounds the distance from below: where it meets the nearest point, that is the answer.
+    result.lower_bound = std::max(result.lower_bound, result.normal.dot(next.difference));
+    if (result.lower_bound > limit) {
+      result.verdict = Apartness::kBeyond;
+      return result;
+    }
+    if (result.distance - result.lower_bound <= kRoundOff * size) break;
+    if (holds(simplex, next)) break;
+    GjkResult grown = result;
+    grown.simplex.points[grown.simplex.size++] = next;
+    const Vector3d nearest = reduce_to_nearest(grown.simplex);
+    if (grown.simplex.size == 4) {
+      simplex = grown.simplex;
+      result.verdict = Apartness::kEnclosed;
+      return result;
+    }
+    settle(nearest, grown);
+    if (!(grown.distance < result.distance)) break;  // round-off ends the descent
+    result = grown;
+  }
+  result.verdict = result.distance > touching ? Apartness::kApart : Apartness::kTouching;
+  return result;
+}
+
+}  // namespace tumble::collision

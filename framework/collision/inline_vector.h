@@ -1,0 +1,47 @@
+/// A list whose first N items need no memory from the heap: what hot loops collect a few things in. Internal to collision.
+#pragma once
+
+#include <array>
+#include <vector>
+
+namespace tumble::collision {
+
+template <class T, int N>
+class InlineVector {
+ public:
+  void push_back(const T& item) {
+    if (size_ < N) {
+      few_[size_] = item;
+    } else {
+      if (size_ == N) many_.assign(few_.begin(), few_.end());
+      many_.push_back(item);
+    }
+    ++size_;
+  }
+  void clear() {
+    size_ = 0;
+    many_.clear();
+  }
+  /// Keeps the first n items.
+  void shrink(int n) {
+    if (size_ > N && n <= N) std::copy(many_.begin(), many_.begin() + n, few_.begin());
+    if (n > N) many_.resize(static_cast<std::size_t>(n));
+    size_ = n;
+  }
+  bool empty() const { return size_ == 0; }
+  int size() const { return size_; }
+  T* begin() { return size_ > N ? many_.data() : few_.data(); }
+  T* end() { return begin() + size_; }
+  const T* begin() const { return size_ > N ? many_.data() : few_.data(); }
+  const T* end() const { return begin() + size_; }
+  T& operator[](int i) { return begin()[i]; }
+  const T& operator[](int i) const { return begin()[i]; }
+  T& back() { return begin()[size_ - 1]; }
+
+ private:
+  int size_ = 0;
+  std::array<T, N> few_;
+  std::vector<T> many_;
+};
+
+}  // namespace tumble::collision

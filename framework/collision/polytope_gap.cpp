@@ -1,0 +1,86 @@
+#include "framework/collision/polytope_gap.h"
+
+#include <cmath>
+
+#include "framework/collision/axes.h"
+#include "framework/collision/expanding.h"
+#include "framework/collision/gjk.h"
+#include "framework/collision/patch.h"
+
+namespace tumble::collision {
+namespace {
+
+constexpr double kRoundOff = 2.220446049250313e-16;
+// Below this part of the size, the direction between the nearest points carries fewer than ten digits: axes take over.
+constexpr double kNearZone = 1e-6;
+// Vertices within this part of the size of the foremost face the other body together: a face that leans by 1e-9 lies flat.
+constexpr double kFacing = 1e-9;
+// Of the size: nearer than this, nearest points tell nothing that an axis does not tell better.
+constexpr double kTrusted = 1e-13;
+// As many pairs of edges are tried faster than they are chosen from: boxes and triangles.
+constexpr std::size_t kFewPairs = 32;
+// Angles (rad) within which the axis lies whose direction the expanding polytope gave: as a rule; where its facets were slivers.
+constexpr double kLooks[] = {1e-7, 1e-3};
+
+PolytopeGap from_simplex(const PlacedPolytope& a, const PlacedPolytope& b, const GjkResult& found) {
+  PolytopeGap gap;
+  const Simplex& s = found.simplex;
+  gap.distance = found.distance;
+  gap.normal_b_to_a = found.normal;
+  gap.point_a = gap.point_b = Vector3d::Zero();
+  for (int i = 0; i < s.size; ++i) {
+    gap.point_a += s.weights[i] * a.vertex(s.points[i].vertex_a);
+    gap.point_b += s.weights[i] * b.vertex(s.points[i].vertex_b);
+  }
+  return gap;
+}
+
+PolytopeGap from_axis(const PlacedPolytope& a, const PlacedPolytope& b, const Axis& axis, double size) {
+  PolytopeGap gap;
+  gap.distance = axis.separation;
+  gap.normal_b_to_a = axis.normal_b_to_a;
+  gap.point_a = middle_of_facing_region(a, b, axis.normal_b_to_a, kFacing * size);
+  gap.point_b = gap.point_a - axis.separation * axis.normal_b_to_a;
+  return gap;
+}
+
+bool has_few_axes(const PlacedPolytope& a, const PlacedPolytope& b) {
+  return a.polytope->edge_directions.size() * b.polytope->edge_directions.size() <= kFewPairs;
+}
+
+// For two that touch or overlap: bounded from above by the face of their difference that is least deep.
+Axis axis_of_overlap(const PlacedPolytope& a, const PlacedPolytope& b, const Simplex& simplex, double size) {
+  if (has_few_axes(a, b)) return best_axis(a, b, size);
+  if (const auto bound = expand(a, b, simplex, size)) {
+    for (const double look : kLooks) {
+      const Axis axis = best_axis_near(a, b, bound->normal_b_to_a, look, size);
+      if (axis.separation >= bound->separation - 32 * kRoundOff * size) return axis;
+    }
+  }
+  return best_axis(a, b, size);
+}
+
+}  // namespace
+
+PolytopeGap polytope_gap(const PlacedPolytope& a, const PlacedPolytope& b, double size, double limit) {
+  const GjkResult found = gjk(a, b, size, limit);
+  if (found.verdict == Apartness::kBeyond) return {found.lower_bound, Vector3d::Zero(), Vector3d::Zero(), found.normal, true};
+  if (found.verdict == Apartness::kApart) {
+    const PolytopeGap gap = from_simplex(a, b, found);
+    if (gap.distance > kNearZone * size) return gap;
+    // What rounding has made of the direction between the nearest points.
+    const double angle = std::min(1e-2, std::max(1e-7, 16 * kRoundOff * size / gap.distance));
+    const Axis axis = has_few_axes(a, b) ? best_axis(a, b, size) : best_axis_near(a, b, gap.normal_b_to_a, angle, size);
+    if (axis.separation * (1 + 1e-9) + 16 * kRoundOff * size >= gap.distance) return from_axis(a, b, axis, size);
+    // Corner against corner, or corner against edge: no axis of faces and edges measures their distance, the algorithm does.
+    if (gap.distance > kTrusted * size) return gap;
+  }
+  const Axis axis = axis_of_overlap(a, b, found.simplex, size);
+  if (!std::isfinite(axis.separation)) {  // two points
+    if (found.verdict == Apartness::kApart) return from_simplex(a, b, found);
+    return {0.0, a.vertex(0), b.vertex(0), Vector3d::UnitZ()};
+  }
+  return from_axis(a, b, axis, size);
+}
+
+}  // namespace tumble::collision
