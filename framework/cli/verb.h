@@ -25,6 +25,7 @@ struct Context {
 void add_verbs(CLI::App& app, Context& context);
 
 void add_audit(CLI::App& app, Context& context);
+void add_battery(CLI::App& app, Context& context);
 void add_check(CLI::App& app, Context& context);
 void add_demo(CLI::App& app, Context& context);
 void add_explain(CLI::App& app, Context& context);

@@ -15,6 +15,7 @@ void add_verbs(CLI::App& app, Context& context) {
   add_inspect(app, context);
   add_release(app, context);
   add_truths(app, context);
+  add_battery(app, context);
 }
 
 }  // namespace tumble::cli

@@ -36,6 +36,8 @@ figure { margin: 0; flex: 1 1 20rem; max-width: 100%; } figure img, figure video
 figure .label { font-weight: 600; margin: 0 0 .3rem; } figcaption { color: var(--soft); font-size: .88rem; margin-top: .35rem; }
 .tiles { display: flex; flex-wrap: wrap; gap: 1rem; } .tile { border: 1px solid var(--line); border-top: 4px solid var(--ink); padding: .6rem 1.1rem; min-width: 8rem; }
 .tile b { display: block; font-size: 1.5rem; font-variant-numeric: tabular-nums; } .tile span { color: var(--soft); font-size: .86rem; }
+.plot-figure { max-width: 46rem; margin: .8rem 0 1.4rem; } svg.plot { width: 100%; height: auto; display: block; font: 11.5px "DejaVu Sans", Arial, sans-serif; fill: var(--ink); }
+svg.plot .grid { stroke: #d9e0e6; stroke-width: .8; } svg.plot .halo { paint-order: stroke; stroke: #fff; stroke-width: 3px; }
 footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--soft); font-size: .8rem; overflow-wrap: anywhere; }
 @media print { body { padding: 0; max-width: none; font-size: 11pt; } a { color: inherit; text-decoration: none; }
   tr, figure, .tile { break-inside: avoid; } h2, h3 { break-after: avoid; } nav { display: none; } details > * { display: block; } }
@@ -128,6 +130,12 @@ void Page::figures(const std::vector<Figure>& figures) {
   body_ += "<div class=\"figures\">\n";
   for (const Figure& figure : figures) body_ += figure_html(figure);
   body_ += "</div>\n";
+}
+
+void Page::plot(const Plot& plot) {
+  body_ += "<figure class=\"plot-figure\">" + svg_of(plot);
+  if (!plot.caption.empty()) body_ += "<figcaption>" + html_escape(plot.caption) + "</figcaption>";
+  body_ += "</figure>\n";
 }
 
 void Page::tiles(const std::vector<std::pair<std::string, Cell>>& tiles) {

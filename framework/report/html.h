@@ -16,6 +16,8 @@
 #include <utility>
 #include <vector>
 
+#include "framework/report/plot.h"
+
 namespace tumble::report {
 
 /// Text as HTML shows it: markup escaped; terminal colour codes, control characters and characters that reverse the
@@ -71,6 +73,8 @@ class Page {
   void table(const Table& table);
   /// Side by side while the page is wide enough.
   void figures(const std::vector<Figure>& figures);
+  /// Drawn in the page itself, with its caption.
+  void plot(const Plot& plot);
   /// A large number with a name: scores at the head of a page.
   void tiles(const std::vector<std::pair<std::string, Cell>>& tiles);
   /// Last line of the page: command, version, hash.

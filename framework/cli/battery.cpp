@@ -1,0 +1,129 @@
+// tumble battery: every case that is known to break simulations, against thresholds derived beforehand, on one page.
+#include "framework/cli/battery.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "framework/cli/module_choice.h"
+#include "framework/cli/read_truth.h"
+#include "framework/cli/verb.h"
+#include "framework/report/battery_page.h"
+
+namespace tumble::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using report::BatteryRow;
+using report::Measure;
+using report::Outcome;
+
+struct Options {
+  bool is_long = false, each = false;
+  std::vector<std::string> only;
+  std::string out = "out", modules;
+};
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+bool is_wanted(const battery::Case& a_case, const std::vector<std::string>& only) {
+  return only.empty() || std::any_of(only.begin(), only.end(), [&](const std::string& word) {
+           return word == std::to_string(a_case.row) || (!std::isdigit(static_cast<unsigned char>(word[0])) && lower(a_case.name).find(lower(word)) != std::string::npos);
+         });
+}
+
+/// Fills in laws and modules: by the word given, else the reference's, where this tree has one.
+void provide(const Context& context, const std::string& word, battery::Given& given) {
+  given.laws = library_laws();
+  for (const modules::ModuleKind* kind : context.registry.all()) {
+    const bool has_reference = fs::exists(context.build / "modules" / (kind->id + "_reference.so"));
+    if (word.empty() && !has_reference) continue;
+    const std::string chosen = word.empty() ? "reference" : word;
+    const modules::AnyModule module = load_word(context, *kind, chosen);
+    given.modules[kind->id] = module;
+    kind->bind(module, given.laws);
+    Laws alone;   // shows which laws this module is about
+    kind->bind(module, alone);
+    if (alone.collision_impulse) given.laws.impulse_source = kind->id + ' ' + chosen;
+    if (alone.integrate_step) given.laws.integrator_source = kind->id + ' ' + chosen;
+    if (alone.constraint_multipliers) given.laws.constraint_source = kind->id + ' ' + chosen;
+  }
+}
+
+// Cut in the middle, where names say least.
+std::string fit(const std::string& text, std::size_t width) {
+  if (text.size() <= width) return text;
+  const std::size_t head = (width - 2) / 2;
+  return text.substr(0, head) + ".." + text.substr(text.size() - (width - 2 - head));
+}
+
+void print_measure(const std::string& name, const Measure& m) {
+  const bool has_value = m.not_run.empty() && m.error.empty();
+  fmt::print("{:<24} {:<50} {:>15} {:>15} {:>9}  {}\n", fit(name, 24), fit(m.what, 50), has_value ? report::shown(m.value, m.unit) : "-",
+             m.not_run.empty() ? report::shown_threshold(m) : "-", report::shown_margin(m), report::word_of(report::outcome_of(m)));
+  const std::string note = !m.error.empty() ? m.error : !m.not_run.empty() ? m.not_run : report::outcome_of(m) == Outcome::kShort ? m.shortfall : "";
+  if (!note.empty()) fmt::print("{:<24}   {}\n", "", note);
+}
+
+// One line a case, and one for whatever is not as it should be; methods that must fail are always shown.
+void print_row(const BatteryRow& row, bool each) {
+  const std::string name = fmt::format("{:>2} {}", row.row, row.name);
+  const Measure* worst = report::tightest(row);
+  if (worst == nullptr) {
+    fmt::print("{:<24} not part of the battery yet: {}\n", fit(name, 24), row.not_part);
+  } else {
+    print_measure(name, *worst);
+    for (const Measure& m : row.measures)
+      if (&m != worst && (each || report::outcome_of(m) != Outcome::kHolds)) print_measure("", m);
+  }
+  std::fflush(stdout);
+}
+
+void run_battery(Context& context, const Options& options) {
+  const fs::path truths = context.root / "tests" / "truths";
+  battery::Given given;
+  provide(context, options.modules, given);
+  given.is_long = options.is_long;
+  given.truth = [truths](const std::string& id) {
+    std::string name = id;
+    if (const auto slash = name.find('/'); slash != std::string::npos) name.replace(slash, 1, "__");
+    return read_truth(truths / (name + ".json"));
+  };
+  std::vector<BatteryRow> rows;
+  fmt::print("{:<24} {:<50} {:>15} {:>15} {:>9}  {}\n", "case", "closest to its threshold; methods that must fail", "value", "threshold", "margin", "verdict");
+  for (const battery::Case& a_case : battery::cases()) {
+    if (!is_wanted(a_case, options.only)) continue;
+    fmt::print(stderr, "tumble: {} {}\n", a_case.row, a_case.name);
+    rows.push_back(battery::run(a_case, given));
+    print_row(rows.back(), options.each);
+  }
+  if (rows.empty()) throw UserError("--only", "no case has that number or that word in its name", "Run without --only to see all of them.");
+  const report::BatteryCount count = report::count_of(rows);
+  const fs::path page = fs::path(options.out) / "battery.html";
+  report::write_battery_page(rows, std::string(options.is_long ? "long runs" : "short runs (--long: the whole lengths)") + "; integration: " + given.laws.integrator_source +
+                                       ", impulses: " + given.laws.impulse_source + ", constraints: " + given.laws.constraint_source,
+                             context.command_line, page);
+  fmt::print("\n{}\n{}\n", report::sentence_of(count), page.string());
+  if (!count.good()) context.exit = ExitCode::kCheckFailed;
+}
+
+}  // namespace
+
+void add_battery(CLI::App& app, Context& context) {
+  auto options = std::make_shared<Options>();
+  CLI::App* verb = app.add_subcommand("battery", "Run the cases that are known to break simulations, against thresholds derived beforehand");
+  verb->add_flag("--long", options->is_long, "Whole lengths: stacks of 60 s, a million steps (some minutes)");
+  verb->add_option("--only", options->only, "Cases by number, or by a word of the name");
+  verb->add_flag("--each", options->each, "Show every measure, not only the one closest to its threshold");
+  verb->add_option("--out", options->out, "Folder of the page battery.html")->capture_default_str();
+  verb->add_option("--modules", options->modules, "student, reference, PATH.cpp or PATH.so")->default_str("reference, where this tree has one");
+  verb->callback([&context, options] { run_battery(context, *options); });
+}
+
+}  // namespace tumble::cli

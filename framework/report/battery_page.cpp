@@ -1,0 +1,96 @@
+#include "framework/report/battery_page.h"
+
+#include <fmt/format.h>
+
+#include "framework/report/html.h"
+
+namespace tumble::report {
+namespace {
+
+constexpr const char* kHowToRead =
+    "Each row is a case that is known to break simulations. A value stands against a threshold that was derived beforehand; the margin says how many times better it is "
+    "than it need be. Methods that cannot hold are run too, and must be seen failing: a battery that cannot fail is no battery. What is not reached is marked SHORT, with the reason.";
+
+Look look_of(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kHolds: return Look::kGood;
+    case Outcome::kFailsAsItMust: return Look::kWarning;
+    case Outcome::kNotRun: return Look::kMuted;
+    default: return Look::kBad;
+  }
+}
+
+// With a sign of its own, for those who do not see the colour.
+std::string marked(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::kHolds: return "\u2713 " + word_of(outcome);
+    case Outcome::kFailsAsItMust: return "\u2717 " + word_of(outcome);
+    case Outcome::kNotRun: return "\u2013 " + word_of(outcome);
+    default: return "\u25a0 " + word_of(outcome);
+  }
+}
+
+std::string anchor_of(const BatteryRow& row) { return "case-" + std::to_string(row.row); }
+
+void add_overview(const std::vector<BatteryRow>& rows, Page& page) {
+  Table table;
+  table.columns = {{"#", true}, {"Case"}, {"Closest to its threshold"}, {"Value", true}, {"Threshold", true}, {"Margin", true}, {"Verdict"}, {"Must fail"}};
+  for (const BatteryRow& row : rows) {
+    const Outcome outcome = outcome_of(row);
+    const Measure* worst = tightest(row);
+    std::vector<Cell> cells{{std::to_string(row.row)}, {row.name, "#" + anchor_of(row)}};
+    if (worst == nullptr) {
+      cells.insert(cells.end(), {{row.not_part.empty() ? "" : "not part of the battery yet", "", Look::kMuted}, {}, {}, {}, {marked(Outcome::kNotRun), "", Look::kMuted}, {}});
+    } else {
+      const bool has_value = worst->not_run.empty() && worst->error.empty();
+      int failing = 0, meant = 0;
+      for (const Measure& m : row.measures) {
+        meant += m.must_fail && m.not_run.empty() ? 1 : 0;
+        failing += outcome_of(m) == Outcome::kFailsAsItMust ? 1 : 0;
+      }
+      cells.insert(cells.end(), {{worst->what}, {has_value ? shown(worst->value, worst->unit) : "-"}, {shown_threshold(*worst)}, {shown_margin(*worst)}, {marked(outcome), "", look_of(outcome)},
+                                 {meant == 0 ? "" : fmt::format("{} of {} fail", failing, meant), "", failing == meant ? Look::kPlain : Look::kBad}});
+    }
+    table.rows.push_back(std::move(cells));
+  }
+  page.table(table);
+}
+
+void add_case(const BatteryRow& row, Page& page) {
+  page.heading(fmt::format("{}. {}", row.row, row.name), 2, anchor_of(row));
+  page.paragraph(row.about);
+  if (!row.not_part.empty()) page.paragraph("Not part of the battery yet: " + row.not_part, Look::kMuted);
+  if (row.measures.empty()) return;
+  Table table;
+  table.columns = {{"Measured"}, {"Value", true}, {"Threshold", true}, {"Margin", true}, {"Verdict"}, {"Why this threshold"}};
+  for (const Measure& m : row.measures) {
+    const Outcome outcome = outcome_of(m);
+    std::string why = m.why;
+    if (!m.not_run.empty()) why = "Not run: " + m.not_run;
+    if (!m.error.empty()) why += (why.empty() ? "" : ". ") + std::string("What happened: ") + m.error;
+    if (outcome == Outcome::kShort) why += (why.empty() ? "" : ". ") + std::string("Known shortfall: ") + m.shortfall;
+    const bool has_value = m.not_run.empty() && m.error.empty();
+    table.rows.push_back({{m.what}, {has_value ? shown(m.value, m.unit) : "-"}, {m.not_run.empty() ? shown_threshold(m) : "-"}, {shown_margin(m)}, {marked(outcome), "", look_of(outcome)}, {why}});
+  }
+  page.table(table);
+  for (const Plot& plot : row.plots) page.plot(plot);
+}
+
+}  // namespace
+
+void write_battery_page(const std::vector<BatteryRow>& rows, const std::string& subtitle, const std::string& record, const std::filesystem::path& file) {
+  const BatteryCount count = count_of(rows);
+  Page page("The stability battery", subtitle);
+  page.tiles({{"measures hold", {std::to_string(count.holds), "", Look::kGood}},
+              {"fail, as they must", {std::to_string(count.fails_as_it_must), "", Look::kWarning}},
+              {"known shortfalls", {std::to_string(count.shortfalls), "", count.shortfalls > 0 ? Look::kBad : Look::kPlain}},
+              {"broken", {std::to_string(count.broken + count.too_good), "", count.good() ? Look::kPlain : Look::kBad}},
+              {"not run", {std::to_string(count.not_run), "", Look::kMuted}}});
+  page.paragraph(kHowToRead);
+  add_overview(rows, page);
+  for (const BatteryRow& row : rows) add_case(row, page);
+  page.record(record);
+  page.write(file);
+}
+
+}  // namespace tumble::report

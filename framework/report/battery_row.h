@@ -1,0 +1,75 @@
+/// What the stability battery found, as plain data: a row a hard case, measured numbers against thresholds, plots.
+///
+/// A battery that cannot fail is no battery: of methods known not to hold it is measured that they do not. What the project does not
+/// reach yet is a known shortfall: it stays red in the table with its value and its reason, and is counted.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/report/plot.h"
+
+namespace tumble::report {
+
+enum class Outcome {
+  kHolds,
+  kFailsAsItMust,   // a method known not to hold, seen failing
+  kNotRun,          // says why
+  kShort,           // does not hold, and stands in the list of shortfalls
+  kTooGood,         // a method known not to hold, and it held: the measurement cannot tell right from wrong
+  kBroken,          // does not hold
+};
+
+/// One number against its threshold.
+struct Measure {
+  std::string what;               // quantity and method
+  double value = 0.0, threshold = 0.0;
+  std::string unit;               // empty: none
+  std::string why;                // the threshold's reason
+  bool at_least = false;          // holds when value >= threshold instead of <=
+  bool must_fail = false;         // of a method known not to hold
+  std::string shortfall{};        // why it is known not to be reached; empty: it must be
+  std::string not_run{};          // why there is no value; empty: there is one
+  std::string error{};            // what stopped it, where something did
+};
+
+/// One hard case.
+struct BatteryRow {
+  int row = 0;                    // of the table of hard cases
+  std::string name;
+  std::string about;              // what it is, what goes wrong in it, in two or three sentences
+  std::vector<Measure> measures;
+  std::vector<Plot> plots;
+  std::string not_part{};         // why the battery does not hold this row yet; empty: it does
+};
+
+/// Whether value and threshold stand as `at_least` says. NaN never does.
+bool within(const Measure& measure);
+Outcome outcome_of(const Measure& measure);
+/// How many times better than the threshold; below 1: worse. Infinite for an error of exactly 0; NaN without a value.
+double margin_of(const Measure& measure);
+/// The worst of its measures; kNotRun without any.
+Outcome outcome_of(const BatteryRow& row);
+/// The measure that decides a row: the worst outcome, and of those the smallest margin. Null without measures.
+const Measure* tightest(const BatteryRow& row);
+
+/// "holds", "fails, as it must", "short", ...
+std::string word_of(Outcome outcome);
+/// "3.1e-12 m", "12", "none".
+std::string shown(double value, const std::string& unit);
+/// "x 32", "exact".
+std::string shown_margin(const Measure& measure);
+/// "<= 1e-8 m".
+std::string shown_threshold(const Measure& measure);
+
+struct BatteryCount {
+  int rows = 0, not_part = 0;                                                              // hard cases, and those not part yet
+  int holds = 0, fails_as_it_must = 0, not_run = 0, shortfalls = 0, too_good = 0, broken = 0;   // measures
+  int reached_now = 0;                                                                     // listed as shortfalls, and they hold
+  bool good() const { return too_good == 0 && broken == 0; }
+};
+BatteryCount count_of(const std::vector<BatteryRow>& rows);
+/// One sentence, for the last line.
+std::string sentence_of(const BatteryCount& count);
+
+}  // namespace tumble::report

@@ -1,0 +1,202 @@
+#include "framework/report/plot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "framework/core/error.h"
+#include "framework/report/html.h"
+
+namespace tumble::report {
+namespace {
+
+// Units of the drawing. The frame leaves room for numbers at the left and names below.
+constexpr double kWidth = 640, kHeight = 360, kLeft = 78, kRight = 622, kTop = 34, kBottom = 306;
+constexpr std::size_t kMostPoints = 2000, kParts = 1000;
+constexpr double kTextHeight = 17;
+constexpr double kMostDecades = 40.0;   // on a logarithmic axis: what lies deeper is rounding, and drawn at the edge
+
+// From dark to light for print, told apart by the colour-blind (after M. Okabe, K. Ito, "Color universal design", 2008).
+struct Style {
+  const char *colour, *dashes;
+};
+constexpr Style kStyles[] = {{"#00446b", ""}, {"#c14d00", "7 3"}, {"#007a57", "2 2.5"}, {"#9a4f86", "9 3 2 3"}, {"#3d8fc4", "4 2"}, {"#8a6d00", "1.5 4"}};
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
+  void hold(double v) {
+    low = std::min(low, v);
+    high = std::max(high, v);
+  }
+};
+
+bool drawable(double v, Scale scale) { return std::isfinite(v) && (scale == Scale::kLinear || v > 0); }
+
+// Room around what is drawn, so that no curve runs along the frame.
+Range widened(Range range, Scale scale) {
+  if (!(range.low <= range.high)) return scale == Scale::kLog ? Range{0.1, 1.0} : Range{0.0, 1.0};
+  if (scale == Scale::kLog) {
+    range.low = std::max(range.low, range.high * std::pow(10.0, -kMostDecades));
+    const double decades = std::max(std::log10(range.high / range.low), 0.5), room = std::pow(10.0, 0.06 * decades);
+    return {range.low / room, range.high * room};
+  }
+  const double size = std::max(range.high - range.low, 1e-12 * std::max(std::abs(range.low), std::abs(range.high)));
+  const double room = size > 0 ? 0.06 * size : 1.0;
+  return {range.low - room, range.high + room};
+}
+
+struct Scaled {
+  Scale scale;
+  double low, high, from, to;   // values, and where they are drawn
+  double operator()(double v) const {
+    const double part = scale == Scale::kLog ? std::log(std::max(v, low) / low) / std::log(high / low) : (v - low) / (high - low);
+    return from + part * (to - from);
+  }
+};
+
+std::string text(double x, double y, const std::string& words, const char* anchor, const std::string& more = "") {
+  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor, more, html_escape(words));
+}
+
+std::string line(double x1, double y1, double x2, double y2, const std::string& stroke) {
+  return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" {}/>\n", x1, y1, x2, y2, stroke);
+}
+
+std::string words_of(const Axis& axis) { return axis.unit.empty() ? axis.name : axis.name + " [" + axis.unit + "]"; }
+
+std::string grid(const Axis& axis, const Scaled& at, bool across) {
+  std::string svg;
+  const std::vector<double> ticks = ticks_of(at.low, at.high, axis.scale);
+  const double spacing = ticks.size() > 1 ? ticks[1] - ticks[0] : 1.0;
+  for (double tick : ticks) {
+    if (axis.scale == Scale::kLinear && std::abs(tick) < 1e-9 * spacing) tick = 0.0;
+    const double p = at(tick);
+    const std::string number = axis.scale == Scale::kLog && (tick < 1e-3 || tick > 9999) ? fmt::format("1e{:.0f}", std::log10(tick)) : fmt::format("{:.6g}", tick);
+    svg += across ? line(kLeft, p, kRight, p, "class=\"grid\"") + text(kLeft - 7, p + 4, number, "end")
+                  : line(p, kTop, p, kBottom, "class=\"grid\"") + text(p, kBottom + 17, number, "middle");
+  }
+  return svg;
+}
+
+// The least and the largest of each part, in their order: what a thousand columns of a screen can show.
+Curve thinned(const Curve& curve) {
+  if (curve.x.size() <= kMostPoints) return curve;
+  Curve thin{curve.name, {}, {}, curve.marks};
+  for (std::size_t part = 0; part < kParts; ++part) {
+    const std::size_t begin = part * curve.x.size() / kParts, end = (part + 1) * curve.x.size() / kParts;
+    std::size_t least = begin, largest = begin;
+    for (std::size_t i = begin; i < end; ++i) {
+      if (curve.y[i] < curve.y[least]) least = i;
+      if (curve.y[i] > curve.y[largest]) largest = i;
+    }
+    for (const std::size_t i : {std::min(least, largest), std::max(least, largest)}) {
+      thin.x.push_back(curve.x[i]);
+      thin.y.push_back(curve.y[i]);
+    }
+  }
+  return thin;
+}
+
+std::string mark(double x, double y, std::size_t style, const char* colour) {
+  constexpr double r = 3.2;
+  switch (style % 3) {
+    case 0: return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>", x, y, r, colour);
+    case 1: return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>", x - r, y - r, 2 * r, 2 * r, colour);
+    default: return fmt::format("<path d=\"M{:.1f} {:.1f}l{} {}h{}z\" fill=\"{}\"/>", x, y - 1.3 * r, 1.2 * r, 2.2 * r, -2.4 * r, colour);
+  }
+}
+
+std::string draw(const Curve& curve, std::size_t place, const Plot& plot, const Scaled& x, const Scaled& y) {
+  const Style& style = kStyles[place % std::size(kStyles)];
+  std::string path, marks;
+  bool pen_down = false;
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    if (!drawable(curve.x[i], plot.x.scale) || !drawable(curve.y[i], plot.y.scale)) {
+      pen_down = false;
+      continue;
+    }
+    path += fmt::format("{}{:.1f} {:.1f}", pen_down ? 'L' : 'M', x(curve.x[i]), y(curve.y[i]));
+    pen_down = true;
+    if (curve.marks) marks += mark(x(curve.x[i]), y(curve.y[i]), place, style.colour);
+  }
+  const std::string dashes = *style.dashes == '\0' ? "" : fmt::format(" stroke-dasharray=\"{}\"", style.dashes);
+  return fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.8\" stroke-linejoin=\"round\"{}/>\n{}", path, style.colour, dashes, marks);
+}
+
+// Below the names of the axis, in rows.
+std::string legend(const Plot& plot, double& bottom) {
+  std::string svg;
+  double x = kLeft, y = kBottom + 58;
+  for (std::size_t i = 0; i < plot.curves.size(); ++i) {
+    if (plot.curves[i].name.empty()) continue;
+    const Style& style = kStyles[i % std::size(kStyles)];
+    const double width = 44 + 6.6 * static_cast<double>(plot.curves[i].name.size());
+    if (x > kLeft && x + width > kRight) {
+      x = kLeft;
+      y += kTextHeight;
+    }
+    const std::string dashes = *style.dashes == '\0' ? "" : fmt::format(" stroke-dasharray=\"{}\"", style.dashes);
+    svg += line(x, y - 4, x + 28, y - 4, fmt::format("stroke=\"{}\" stroke-width=\"2.4\"{}", style.colour, dashes));
+    if (plot.curves[i].marks) svg += mark(x + 14, y - 4, i, style.colour);
+    svg += text(x + 34, y, plot.curves[i].name, "start");
+    x += width;
+  }
+  bottom = y + 10;
+  return svg;
+}
+
+}  // namespace
+
+std::vector<double> ticks_of(double low, double high, Scale scale) {
+  require(low < high && std::isfinite(low) && std::isfinite(high) && (scale == Scale::kLinear || low > 0), "report: a plot's axis needs low < high");
+  std::vector<double> ticks;
+  if (scale == Scale::kLog && high / low >= 20) {
+    const int first = static_cast<int>(std::ceil(std::log10(low) - 1e-9)), last = static_cast<int>(std::floor(std::log10(high) + 1e-9));
+    const int stride = std::max(1, (last - first + 6) / 7);
+    for (int power = first; power <= last; power += stride) ticks.push_back(std::pow(10.0, power));
+    return ticks;
+  }
+  const double rough = (high - low) / 6, power = std::pow(10.0, std::floor(std::log10(rough)));
+  const double part = rough / power, spacing = (part > 5 ? 10 : part > 2 ? 5 : part > 1 ? 2 : 1) * power;
+  for (double tick = std::ceil(low / spacing - 1e-9) * spacing; tick <= high + 1e-9 * spacing; tick += spacing) ticks.push_back(tick);
+  return ticks;
+}
+
+std::string svg_of(const Plot& plot) {
+  Range xs, ys;
+  for (const Curve& curve : plot.curves) {
+    require(curve.x.size() == curve.y.size(), "report: a curve needs as many x as y");
+    for (std::size_t i = 0; i < curve.x.size(); ++i) {
+      if (!drawable(curve.x[i], plot.x.scale) || !drawable(curve.y[i], plot.y.scale)) continue;
+      xs.hold(curve.x[i]);
+      ys.hold(curve.y[i]);
+    }
+  }
+  const bool empty = !(xs.low <= xs.high);
+  for (const Limit& limit : plot.limits)
+    if (drawable(limit.y, plot.y.scale)) ys.hold(limit.y);
+  const Range across = widened(xs, plot.x.scale), up = widened(ys, plot.y.scale);
+  const Scaled x{plot.x.scale, across.low, across.high, kLeft, kRight}, y{plot.y.scale, up.low, up.high, kBottom, kTop};
+
+  std::string body = text(kLeft, 20, plot.title, "start", " font-weight=\"bold\" font-size=\"13.5\"");
+  body += grid(plot.y, y, true) + grid(plot.x, x, false);
+  body += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#5b6875\"/>\n", kLeft, kTop, kRight - kLeft, kBottom - kTop);
+  for (const Limit& limit : plot.limits) {
+    if (!drawable(limit.y, plot.y.scale)) continue;
+    const double at = y(limit.y);
+    body += line(kLeft, at, kRight, at, "stroke=\"#a82c00\" stroke-width=\"1.4\" stroke-dasharray=\"12 4\"");
+    body += text(kRight - 5, at > kTop + 20 ? at - 5 : at + 14, limit.name, "end", " fill=\"#a82c00\" class=\"halo\"");
+  }
+  for (std::size_t i = 0; i < plot.curves.size(); ++i) body += draw(thinned(plot.curves[i]), i, plot, x, y);
+  if (empty) body += text(0.5 * (kLeft + kRight), 0.5 * (kTop + kBottom), "nothing to draw", "middle");
+  body += text(0.5 * (kLeft + kRight), kBottom + 36, words_of(plot.x), "middle");
+  body += text(0, 0, words_of(plot.y), "middle", fmt::format(" transform=\"translate(15 {}) rotate(-90)\"", 0.5 * (kTop + kBottom)));
+  double bottom = kHeight;
+  body += legend(plot, bottom);
+  return fmt::format("<svg class=\"plot\" viewBox=\"0 0 {} {:.0f}\" role=\"img\" aria-label=\"{}\">\n{}</svg>\n", kWidth, std::max(bottom, kBottom + 46.0),
+                     html_escape(plot.title), body);
+}
+
+}  // namespace tumble::report

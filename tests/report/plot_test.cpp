@@ -1,0 +1,76 @@
+// Plots: ticks are round numbers, what cannot be drawn breaks a line, words are escaped, thresholds are drawn.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "framework/core/error.h"
+#include "framework/report/html.h"
+#include "framework/report/plot.h"
+
+namespace tumble::testing {
+namespace {
+
+using namespace report;
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++n;
+  return n;
+}
+
+TEST(Ticks, AreRoundNumbersWithinTheAxis) {
+  EXPECT_EQ(ticks_of(0.0, 10.0, Scale::kLinear), (std::vector<double>{0, 2, 4, 6, 8, 10}));
+  EXPECT_EQ(ticks_of(1.0, 1e6, Scale::kLog), (std::vector<double>{1, 10, 100, 1e3, 1e4, 1e5, 1e6}));
+  for (const double size : {1e-9, 0.3, 7.0, 1e12})
+    for (const double low : {-0.7, 0.0, 3.0}) {
+      const auto ticks = ticks_of(low * size, (low + 1) * size, Scale::kLinear);
+      EXPECT_GE(ticks.size(), 4u) << size;
+      EXPECT_LE(ticks.size(), 9u) << size;
+      EXPECT_GE(ticks.front(), (low - 1e-6) * size);
+      EXPECT_LE(ticks.back(), (low + 1 + 1e-6) * size);
+    }
+  EXPECT_LE(ticks_of(1e-17, 1e3, Scale::kLog).size(), 8u);
+}
+
+TEST(Ticks, OfAnAxisWithoutLengthAreABugOfTheCaller) {
+  EXPECT_THROW(ticks_of(1.0, 1.0, Scale::kLinear), PreconditionError);
+  EXPECT_THROW(ticks_of(0.0, 1.0, Scale::kLog), PreconditionError);
+}
+
+TEST(Plots, BreakALineWhereThereIsNothingToDraw) {
+  Plot plot{"t", {"x"}, {"y", "m", Scale::kLog}, {{"curve", {1, 2, 3, 4, 5}, {1.0, 2.0, std::nan(""), 0.0, 3.0}}}, {}};
+  const std::string svg = svg_of(plot);
+  const std::string path = svg.substr(svg.find("<path d=\"M"));
+  EXPECT_EQ(count(path.substr(0, path.find("fill")), "M"), 2u);   // two pieces
+  EXPECT_EQ(svg.find("nan"), std::string::npos);
+  EXPECT_EQ(svg.find("inf"), std::string::npos);
+}
+
+TEST(Plots, OfNothingSaySo) {
+  EXPECT_NE(svg_of({"t", {"x"}, {"y"}, {}, {}}).find("nothing to draw"), std::string::npos);
+  EXPECT_NE(svg_of({"t", {"x"}, {"y"}, {{"c", {1.0}, {std::nan("")}}}, {}}).find("nothing to draw"), std::string::npos);
+  EXPECT_EQ(svg_of({"t", {"x"}, {"y"}, {{"c", {1.0, 2.0}, {5.0, 5.0}}}, {}}).find("nothing to draw"), std::string::npos);   // a level line is something
+}
+
+TEST(Plots, EscapeWhatTheyAreTold) {
+  const std::string svg = svg_of({"<script>", {"<a>", "<b>"}, {"y"}, {{"<c>", {1, 2}, {1, 2}}}, {{1.5, "<d>"}}});
+  for (const char* bad : {"<script>", "<a>", "<b>", "<c>", "<d>"}) EXPECT_EQ(svg.find(bad), std::string::npos) << bad;
+}
+
+TEST(Plots, KeepTheExtremesOfLongCurves) {
+  Curve curve{"long", {}, {}};
+  for (int i = 0; i < 100000; ++i) curve.x.push_back(i), curve.y.push_back(i == 54321 ? 100.0 : 0.0);
+  const std::string svg = svg_of({"t", {"x"}, {"y"}, {curve}, {}});
+  EXPECT_LT(svg.size(), 60000u);
+  EXPECT_NE(svg.find(" 48.6"), std::string::npos);   // the peak, 6 of 112 parts of 272 units below the top at 34
+}
+
+TEST(Plots, StandInAPageWithTheirCaption) {
+  Page page("t");
+  page.plot({"title", {"x"}, {"y"}, {{"c", {1, 2}, {1, 2}}}, {}, "what to see"});
+  EXPECT_EQ(count(page.html(), "<svg"), 1u);
+  EXPECT_NE(page.html().find("<figcaption>what to see</figcaption>"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tumble::testing

@@ -1,0 +1,82 @@
+// What runs a case, and the list of all of them.
+#include <algorithm>
+
+#include "framework/core/error.h"
+#include "framework/core/not_implemented.h"
+#include "tests/stability/cases.h"
+
+namespace tumble::battery {
+namespace {
+
+report::Measure measure(const std::string& what, double value, double threshold, const std::string& unit, const std::string& why) {
+  report::Measure m;
+  m.what = what;
+  m.value = value;
+  m.threshold = threshold;
+  m.unit = unit;
+  m.why = why;
+  return m;
+}
+
+// What a case needs beside integration; empty: all is there.
+std::string missing(const std::string& needs, const Laws& laws) {
+  std::string words;
+  const auto need = [&](const char* id, bool there) {
+    if (needs.find(id) == std::string::npos || there) return;
+    words += (words.empty() ? "needs the laws of " : " and ") + std::string(id);
+  };
+  need("a1", static_cast<bool>(laws.collision_impulse));
+  need("a3", static_cast<bool>(laws.constraint_multipliers));
+  return words.empty() ? "" : words + ", which nobody provides here";
+}
+
+}  // namespace
+
+void Findings::at_most(const std::string& what, double value, double threshold, const std::string& unit, const std::string& why) {
+  row_.measures.push_back(measure(what, value, threshold, unit, why));
+}
+
+void Findings::at_least(const std::string& what, double value, double threshold, const std::string& unit, const std::string& why) {
+  row_.measures.push_back(measure(what, value, threshold, unit, why));
+  row_.measures.back().at_least = true;
+}
+
+void Findings::must_fail(const std::string& what, double value, double threshold, const std::string& unit, const std::string& why) {
+  row_.measures.push_back(measure(what, value, threshold, unit, why));
+  row_.measures.back().must_fail = true;
+}
+
+void Findings::not_run(const std::string& what, const std::string& reason) {
+  row_.measures.push_back(measure(what, kUnset, kUnset, "", ""));
+  row_.measures.back().not_run = reason;
+}
+
+void Findings::part(const std::string& what, const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const NotImplemented& stub) {
+    not_run(what, stub.what());
+  } catch (const std::exception& error) {
+    row_.measures.push_back(measure(what, kUnset, kUnset, "", ""));
+    row_.measures.back().error = error.what();
+  }
+}
+
+std::vector<Case> cases() {
+  std::vector<Case> all;
+  for (const auto add : {add_springs, add_chains, add_loops, add_tops, add_meshes, add_impacts, add_sweeps, add_scales, add_rotation}) add(all);
+  std::stable_sort(all.begin(), all.end(), [](const Case& a, const Case& b) { return a.row < b.row; });
+  return all;
+}
+
+report::BatteryRow run(const Case& the_case, const Given& given) {
+  report::BatteryRow row{the_case.row, the_case.name, the_case.about, {}, {}, the_case.not_part};
+  if (!the_case.run) return row;
+  Findings findings(row);
+  if (const std::string lack = missing(the_case.needs, given.laws); !lack.empty()) findings.not_run("all", lack);
+  else findings.part("all", [&] { the_case.run(given, findings); });
+  for (report::Measure& m : row.measures) m.shortfall = known_shortfall(row.row, m.what, given.is_long);
+  return row;
+}
+
+}  // namespace tumble::battery

@@ -1,0 +1,21 @@
+/// The themes of the battery: each file adds its rows of the table of hard cases.
+#pragma once
+
+#include "framework/cli/battery.h"
+
+namespace tumble::battery {
+
+void add_springs(std::vector<Case>& cases);
+void add_chains(std::vector<Case>& cases);
+void add_tops(std::vector<Case>& cases);
+void add_rotation(std::vector<Case>& cases);
+void add_meshes(std::vector<Case>& cases);
+void add_impacts(std::vector<Case>& cases);
+void add_sweeps(std::vector<Case>& cases);
+void add_scales(std::vector<Case>& cases);
+void add_loops(std::vector<Case>& cases);
+
+/// Why a measure of a row is known not to be reached; empty: it must be. The one list of shortfalls (shortfalls.cpp).
+std::string known_shortfall(int row, const std::string& what, bool is_long);
+
+}  // namespace tumble::battery

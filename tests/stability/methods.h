@@ -1,0 +1,28 @@
+/// Methods to compare with, as laws of the engine: some that hold where others do not, and some that are known not to hold.
+#pragma once
+
+#include "framework/dynamics/laws.h"
+
+namespace tumble::battery {
+
+/// The same laws with another method of integration.
+Laws with_method(Laws laws, const std::string& name, std::function<VectorXd(const OdeFunction&, double t, const VectorXd& y, double h)> step);
+
+// All take packed states (13 numbers a body), or (place, velocity) of a swing.
+VectorXd explicit_euler(const OdeFunction& f, double t, const VectorXd& y, double h);
+/// Momenta first, then places with the new momenta.
+VectorXd symplectic_euler(const OdeFunction& f, double t, const VectorXd& y, double h);
+/// Half a step of momenta, a step of places, half a step of momenta (Stoermer, Verlet).
+VectorXd verlet(const OdeFunction& f, double t, const VectorXd& y, double h);
+/// y1 = y0 + h f((y0 + y1) / 2), by fixed-point iteration to rounding: for w h below 2.
+VectorXd implicit_midpoint(const OdeFunction& f, double t, const VectorXd& y, double h);
+VectorXd rk4(const OdeFunction& f, double t, const VectorXd& y, double h);
+/// Dormand and Prince's pair of orders 5 and 4 with step control (Boost.Odeint), as many steps as the tolerance asks for.
+std::function<VectorXd(const OdeFunction&, double, const VectorXd&, double)> dormand_prince(double tolerance);
+
+/// Multipliers by so many sweeps of Gauss and Seidel from a cold start: what engines for games do.
+Laws with_gauss_seidel(Laws laws, int sweeps);
+/// Multipliers by the inverse of a matrix that is expected to have one.
+Laws with_explicit_inverse(Laws laws);
+
+}  // namespace tumble::battery

@@ -1,0 +1,199 @@
+// Rows 1 and 24: a stiff spring, and energy over a million steps.
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "framework/core/error.h"
+#include "framework/engines/stability.h"
+#include "tests/stability/cases.h"
+#include "tests/stability/methods.h"
+#include "tests/stability/support.h"
+
+namespace tumble::battery {
+namespace {
+
+using truths::run_in_steps;
+
+/// One kilogram on a spring of length 0 at the origin, let go at 0.1 m: x'' = -w^2 x.
+scene::Scene swing(double w) {
+  scene::Scene scene = truths::empty_scene("swing", 1.0, 1e-9);
+  scene.bodies = {truths::point_mass("bob", 1.0, Vector3d(0.1, 0, 0), Vector3d::Zero())};
+  scene.springs = {{"spring", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, w * w, 0.0, 0.0}};
+  return scene;
+}
+
+/// Energy over the energy at the start, frame by frame, over the number of the step.
+report::Curve energies(const std::string& name, const Trajectory& run, double h) {
+  report::Curve curve = curve_of(name, run, [&](const Frame& frame) { return energy_of(frame) / energy_of(run.frames.front()); });
+  for (double& t : curve.x) t /= h;
+  return curve;
+}
+
+// ---- Row 1 -----------------------------------------------------------------------------------------------------------
+
+constexpr double kStiff = 1000.0;   // rad/s: k = 1e6 N/m on 1 kg
+
+void band_of_symplectic_euler(const Given& given, Findings& findings, report::Plot& plot) {
+  const long steps = given.is_long ? 1000000 : 20000;
+  for (const double h : {1.0e-3, 1.9e-3}) {
+    const Trajectory run = run_in_steps(swing(kStiff), with_method(given.laws, "symplectic Euler", symplectic_euler), static_cast<double>(steps) * h, steps, 10000);
+    report::Curve curve = energies(fmt::format("symplectic Euler, w h = {:g}", kStiff * h), run, h);
+    const auto [low, high] = std::minmax_element(curve.y.begin(), curve.y.end());
+    const double a = 0.5 * kStiff * h, band = (1 + a) / (1 - a);
+    findings.at_most(fmt::format("symplectic Euler, w h = {:g}, {} steps: largest over smallest energy", kStiff * h, steps), *high / *low, band * (1 + 1e-9), "",
+                     "p^2 + w^2 q^2 - h w^2 p q is an exact invariant of the method: H stays within (1 + a)/(1 - a), a = w h / 2");
+    for (auto* v : {&curve.x, &curve.y}) v->resize(std::min<std::size_t>(v->size(), 300));
+    plot.curves.push_back(std::move(curve));
+  }
+}
+
+void growth_of_explicit_euler(const Given& given, Findings& findings, report::Plot& plot) {
+  const double h = 1e-4;
+  const long steps = 200;   // after some more the engine stops it
+  const Laws euler = with_method(given.laws, "explicit Euler", explicit_euler);
+  const Trajectory run = run_in_steps(swing(kStiff), euler, static_cast<double>(steps) * h, steps, steps);
+  report::Curve curve = energies("explicit Euler, w h = 0.1", run, h);
+  const double a = 0.5 * kStiff * h;
+  findings.must_fail("explicit Euler, w h = 0.1, 200 steps: energy over the start's", curve.y.back(), (1 + a) / (1 - a), "",
+                     "it grows as (1 + (w h)^2)^n, here 7.3 times: outside of any band");
+  plot.curves.push_back(std::move(curve));
+  double stopped = 0.0;
+  try {
+    run_in_steps(swing(kStiff), euler, 600 * h, 600, 600);
+  } catch (const std::runtime_error& error) {
+    const std::string words = error.what();
+    stopped = words.find("runaway energy") != std::string::npos && words.find("'bob'") != std::string::npos ? 1.0 : 0.0;
+  }
+  findings.at_least("explicit Euler, 600 steps: stopped, the body named (1: yes)", stopped, 1.0, "", "energy that nothing brought in ends a run with body, time and effect named");
+  double refused = 0.0;
+  try {
+    run_in_steps(swing(kStiff), euler, 1e4 * h, 10000, 1);
+  } catch (const UserError&) {
+    refused = 1.0;
+  }
+  findings.at_least("explicit Euler, 10^4 steps: refused at start-up (1: yes)", refused, 1.0, "", "a step outside the method's range is reported with the largest stable one, not left to blow up");
+}
+
+void limit_of_rk4(const Given& given, Findings& findings) {
+  const auto judged = engines::judge_springs(build_world(swing(kStiff)), with_method(given.laws, "RK4", rk4), 0.01);
+  findings.at_most("RK4: largest stable step told at start-up, |w h - 2 sqrt(2)|", std::abs(judged->largest_step * kStiff - 2 * std::sqrt(2.0)), 1e-6, "",
+                   "|1 + z + z^2/2 + z^3/6 + z^4/24| <= 1 on the imaginary axis up to 2.828");
+  for (const double part : {0.99, 1.01}) {
+    const double h = part * 2 * std::sqrt(2.0) / kStiff;
+    double refused = 0.0;
+    try {
+      run_in_steps(swing(kStiff), with_method(given.laws, "RK4", rk4), 20000 * h, 20000, 1);
+    } catch (const UserError&) {
+      refused = 1.0;
+    }
+    if (part < 1) findings.at_most("RK4 at 0.99 of that step: refused (0: no)", refused, 0.0, "", "inside the range nothing is refused");
+    else findings.at_least("RK4 at 1.01 of that step: refused (1: yes)", refused, 1.0, "", "outside of it the swing would grow without bound");
+  }
+}
+
+void error_of_dormand_prince(const Given& given, Findings& findings) {
+  constexpr double kTolerance = 1e-10, kTau = 6.283185307179586;
+  const double t = 100 * kTau / kStiff;
+  const Trajectory run = run_in_steps(swing(kStiff), with_method(given.laws, "Dormand-Prince", dormand_prince(kTolerance)), t, 400, 400);
+  double worst = 0.0;
+  for (const Frame& frame : run.frames)
+    worst = std::max({worst, std::abs(frame.poses[0].com_world.x() - 0.1 * std::cos(kStiff * frame.time)), std::abs(frame.poses[0].velocity_world.x() / kStiff + 0.1 * std::sin(kStiff * frame.time))});
+  findings.at_most("Dormand-Prince, tolerance 1e-10, 100 periods: error of the phase", worst / 0.1, 1e3 * kTolerance, "rad", "global error <= 1e3 times the local tolerance over 100 periods");
+}
+
+void stiff_spring(const Given& given, Findings& findings) {
+  report::Plot plot{"Energy of a spring of 10^6 N/m on 1 kg", {"step"}, {"energy / energy at the start", "", report::Scale::kLog}, {}, {}, "The symplectic method keeps its band for ever, at steps up to w h = 2; the explicit one leaves it at every step size."};
+  findings.part("symplectic Euler", [&] { band_of_symplectic_euler(given, findings, plot); });
+  findings.part("explicit Euler", [&] { growth_of_explicit_euler(given, findings, plot); });
+  findings.part("RK4", [&] { limit_of_rk4(given, findings); });
+  findings.part("Dormand-Prince", [&] { error_of_dormand_prince(given, findings); });
+  for (const char* id : {"spring_mass/undamped_stiff_k1e6", "spring_mass/damped_stiff_k1e6_c20", "elastic_pendulum/stiff_1e5", "two_body_spring/stiff_k1e4"}) compare_with_truth(given, findings, id);
+  plot.limits.push_back({(1 + 0.95) / (1 - 0.95), "band at w h = 1.9"});
+  findings.plot(std::move(plot));
+}
+
+// ---- Row 24 ----------------------------------------------------------------------------------------------------------
+
+// Slope of E/E0 a step by least squares.
+double slope_of(const report::Curve& curve) {
+  const auto n = static_cast<double>(curve.x.size());
+  double sx = 0, sy = 0, sxx = 0, sxy = 0;
+  for (std::size_t i = 0; i < curve.x.size(); ++i) {
+    sx += curve.x[i];
+    sy += curve.y[i];
+    sxx += curve.x[i] * curve.x[i];
+    sxy += curve.x[i] * curve.y[i];
+  }
+  return (n * sxy - sx * sy) / (n * sxx - sx * sx);
+}
+
+struct Method {
+  const char* name;
+  VectorXd (*step)(const OdeFunction&, double, const VectorXd&, double);
+};
+constexpr Method kSymplectic[] = {{"symplectic Euler", symplectic_euler}, {"Verlet", verlet}, {"implicit midpoint", implicit_midpoint}};
+
+void oscillator_over_many_steps(const Given& given, Findings& findings, report::Plot& plot) {
+  const double w = 10.0, h = 0.01, z = w * h;   // w h = 0.1
+  const long steps = given.is_long ? 1000000 : 30000;
+  // An energy that swings by a part z in every period has a slope of its own where the run ends within a period: of order 1 / steps^2.
+  const double mark = 1e-12 + 10 / std::pow(static_cast<double>(steps), 2);
+  for (const Method& method : kSymplectic) {
+    const Trajectory run = run_in_steps(swing(w), with_method(given.laws, method.name, method.step), static_cast<double>(steps) * h, steps, steps / 10);
+    report::Curve curve = energies(method.name, run, h);
+    findings.at_most(fmt::format("{}, {} steps: slope of E/E0", method.name, steps), std::abs(slope_of(curve)), mark, "a step", "no secular trend: 1e-12 a step, and what a part of a period at the end of the run makes of a swinging energy");
+    for (double& y : curve.y) y = std::abs(y - 1);
+    plot.curves.push_back(std::move(curve));
+  }
+  for (const Method& method : {Method{"RK4", rk4}, Method{"explicit Euler", explicit_euler}}) {
+    const bool is_rk4 = method.step == rk4;
+    const long count = is_rk4 ? steps : 200;   // more of it is stopped
+    const Trajectory run = run_in_steps(swing(w), with_method(given.laws, method.name, method.step), static_cast<double>(count) * h, count, count / 10);
+    report::Curve curve = energies(method.name, run, h);
+    if (is_rk4) {
+      const double expected = std::expm1(static_cast<double>(count) * std::log1p(-std::pow(z, 6) / 72 + std::pow(z, 8) / 576)), found = curve.y.back() - 1;
+      findings.at_most(fmt::format("RK4, {} steps: loss of energy against (w h)^6/72 a step", count), std::abs(found / expected - 1), 0.1, "", "1.4 % after 10^6 steps at w h = 0.1, measured = predicted within 10 %");
+      findings.must_fail("RK4: slope of E/E0", std::abs(slope_of(curve)), 1e-12, "a step", "it is not symplectic: (w h)^6/72 = 1.4e-8 a step");
+    } else {
+      findings.must_fail("explicit Euler: slope of E/E0", std::abs(slope_of(curve)), 1e-12, "a step", "energy grows by (w h)^2 a step");
+    }
+    for (double& y : curve.y) y = std::abs(y - 1);
+    plot.curves.push_back(std::move(curve));
+  }
+}
+
+void pendulum_over_many_steps(const Given& given, Findings& findings) {
+  const long steps = given.is_long ? 1000000 : 10000;
+  const double h = 0.01;
+  scene::Scene scene = chain({1.0}, 1.0, Vector3d(1, 0, 0));
+  const Trajectory run = run_in_steps(scene, given.laws, static_cast<double>(steps) * h, steps, steps / 10);
+  // RK4 on the projected circle: what order 4 says of an amplitude of 90 degrees, w h = 0.031 to 0.044; (w h)^5 a step, with a factor 1.
+  const double mark = static_cast<double>(steps) * std::pow(4.43 * h, 5);
+  findings.at_most(fmt::format("planar pendulum on a rod, RK4 with projection, {} steps: energy", steps), energy_drift(run, kG), mark, "m g L", "order 4: an error of at most (w h)^5 a step at the fastest, w = 4.43 rad/s");
+  double length = 0.0;
+  for (const Frame& frame : run.frames) length = std::max(length, std::abs(frame.poses[0].com_world.norm() - 1.0));
+  findings.at_most("planar pendulum: length of the rod", length, 1e-12, "m", "projected at every step's end: a few roundings, whatever the number of steps");
+}
+
+void energy_over_a_million_steps(const Given& given, Findings& findings) {
+  report::Plot plot{"Error of the energy of an oscillator, w h = 0.1", {"step"}, {"|E / E0 - 1|", "", report::Scale::kLog}, {}, {}, "Symplectic methods swing within a band; RK4 loses (w h)^6/72 a step, exactly as predicted; explicit Euler explodes."};
+  findings.part("oscillator", [&] { oscillator_over_many_steps(given, findings, plot); });
+  findings.plot(std::move(plot));
+  findings.part("pendulum", [&] { pendulum_over_many_steps(given, findings); });
+}
+
+}  // namespace
+
+void add_springs(std::vector<Case>& cases) {
+  cases.push_back({1, "stiff spring",
+                   "A spring of 10^6 N/m on one kilogram swings at 1000 rad/s. Explicit Euler blows up at every step size; symplectic Euler holds up to w h = 2, RK4 up to 2.83. "
+                   "Steps outside a method's range are refused at start-up with the largest step that holds.",
+                   "a3", stiff_spring});
+  cases.push_back({24, "energy over 10^6 steps",
+                   "A swing of a million steps. Symplectic methods keep the energy within a band for ever; others gain or lose a little at every step, which adds up: RK4 by an amount that is known beforehand.",
+                   "a3", energy_over_a_million_steps});
+}
+
+}  // namespace tumble::battery

@@ -1,0 +1,129 @@
+#include "tests/stability/support.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/core/error.h"
+#include "framework/core/not_implemented.h"
+#include "framework/engines/truths/families.h"
+
+namespace tumble::battery {
+
+scene::BodySpec box(const std::string& name, const Vector3d& half_extents, double mass, const Vector3d& position) {
+  scene::BodySpec body = truths::ball(name, mass, 1.0, position, Vector3d::Zero(), 0.0);
+  body.shape = scene::BoxSpec{half_extents};
+  return body;
+}
+
+scene::BodySpec rough(scene::BodySpec body, double friction, double restitution) {
+  body.friction = friction;
+  body.restitution = restitution;
+  return body;
+}
+
+scene::BodySpec floor_of(double friction) { return rough(truths::wall("floor", Vector3d::Zero(), Vector3d::UnitZ(), 0.0), friction); }
+
+scene::BodySpec turned(scene::BodySpec body, double angle, const Vector3d& axis) {
+  body.world_from_body = Quaterniond(Eigen::AngleAxisd(angle, axis)) * body.world_from_body;
+  return body;
+}
+
+scene::Scene with_contact(const std::string& name, std::vector<scene::BodySpec> bodies) {
+  scene::Scene scene = truths::empty_scene(name, 1.0, 1e-3);
+  scene.gravity_m_s2 = kDown;
+  scene.bodies = std::move(bodies);
+  scene.contact.emplace();
+  return scene;
+}
+
+scene::Scene chain(const std::vector<double>& masses, double length, const Vector3d& direction) {
+  scene::Scene scene = truths::empty_scene("chain", 1.0, 1e-9);
+  scene.gravity_m_s2 = kDown;
+  scene.stabilisation = scene::StabilisationSpec{};
+  std::string above;
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    const std::string bob = "bob" + std::to_string(i);
+    scene.bodies.push_back(truths::point_mass(bob, masses[i], length * static_cast<double>(i + 1) * direction, Vector3d::Zero()));
+    scene.rods.push_back({"rod" + std::to_string(i), {above, Vector3d::Zero()}, {bob, Vector3d::Zero()}, length});
+    above = bob;
+  }
+  return scene;
+}
+
+Trajectory run_by_steps(const scene::Scene& scene, const Laws& laws, double duration, double h, long frames) {
+  const long about = std::max(1L, std::lround(duration / h)), stride = std::max(1L, about / std::max(1L, frames)), steps = std::max(1L, about / stride) * stride;
+  return truths::run_in_steps(scene, laws, static_cast<double>(steps) * h, steps, steps / stride);
+}
+
+double energy_of(const Frame& frame) { return frame.kinetic_energy + frame.potential_energy; }
+
+double energy_drift(const Trajectory& run, double scale) {
+  double worst = 0.0;
+  for (const Frame& frame : run.frames) worst = std::max(worst, std::abs(energy_of(frame) - energy_of(run.frames.front())) / scale);
+  return worst;
+}
+
+double drift_of(const Trajectory& run, std::size_t body) {
+  double worst = 0.0;
+  for (const Frame& frame : run.frames) worst = std::max(worst, (frame.poses[body].com_world - run.frames.front().poses[body].com_world).norm());
+  return worst;
+}
+
+double tilt_of(const Trajectory& run, std::size_t body) {
+  double worst = 0.0;
+  for (const Frame& frame : run.frames) worst = std::max(worst, angle_between(frame.poses[body].world_from_body, run.frames.front().poses[body].world_from_body));
+  return worst;
+}
+
+double smallest_gap(const Trajectory& run) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (const Frame& frame : run.frames) smallest = std::min(smallest, frame.smallest_gap);
+  return smallest;
+}
+
+double push_up(const Frame& frame, int on, int by) {
+  double push = 0.0;
+  for (const ContactPoint& contact : frame.contacts) {
+    if (contact.body_a == on && contact.body_b == by) push += contact.force_on_a_world.z();
+    if (contact.body_a == by && contact.body_b == on) push -= contact.force_on_a_world.z();
+  }
+  return push;
+}
+
+double angle_between(const Quaterniond& a, const Quaterniond& b) {
+  const Quaterniond turn = a.conjugate() * b;
+  return 2 * std::atan2(turn.vec().norm(), std::abs(turn.w()));
+}
+
+report::Curve curve_of(const std::string& name, const Trajectory& run, const std::function<double(const Frame&)>& value) {
+  report::Curve curve{name, {}, {}};
+  for (const Frame& frame : run.frames) {
+    curve.x.push_back(frame.time);
+    curve.y.push_back(value(frame));
+  }
+  return curve;
+}
+
+void compare_with_truth(const Given& given, Findings& findings, const std::string& id, bool exact_only) {
+  findings.part("truth " + id, [&] {
+    const truths::Case truth = given.truth(id);
+    Laws laws = given.laws;
+    if (exact_only) laws.state_derivative = [](const RigidBodyState&, const Inertia&, const Wrench&) -> VectorXd { throw NotImplemented("state_derivative", "left out"); };
+    truths::Comparison comparison;
+    truths::framework_families().at(truth.family)(truth, laws, comparison);
+    const truths::Line* worst = nullptr;
+    const auto ratio = [](const truths::Line& line) { return line.error / line.pass_mark; };
+    for (const truths::Line& line : comparison.lines()) {
+      if (exact_only && line.output.starts_with("rk4.")) continue;
+      if (line.verdict == truths::Verdict::kNotAttempted) return findings.not_run("truth " + id, line.note);
+      if (line.verdict == truths::Verdict::kWrong && !(ratio(line) > 1.0)) throw std::runtime_error(line.output + ": " + line.note);   // without a number
+      if (line.verdict == truths::Verdict::kNotCompared || !(ratio(line) >= 0.0)) continue;
+      if (worst == nullptr || ratio(line) > ratio(*worst)) worst = &line;
+    }
+    require(worst != nullptr, "no output of truth " + id + " was compared");
+    findings.at_most("truth " + id + ": " + worst->output, worst->error, worst->pass_mark, "",
+                     worst->note.empty() ? "100 times what rounding of the inputs forces, or the error that the method's order predicts; of all outputs the one closest to its mark" : worst->note);
+  });
+}
+
+}  // namespace tumble::battery
