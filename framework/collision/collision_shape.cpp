@@ -120,6 +120,7 @@ int CollisionShape::build_node(std::vector<int>& order, int begin, int end) {
     }
   BallNode node;
   node.center_body = 0.5 * (low + high);
+  node.half_extents_body = 0.5 * (high - low);
   node.radius = 0.0;
   for (int i = begin; i < end; ++i)
     for (const Vector3d& v : pieces_[order[i]].vertices) node.radius = std::max(node.radius, (v - node.center_body).norm());

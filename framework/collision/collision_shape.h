@@ -1,4 +1,4 @@
-/// A solid prepared once for collision: convex pieces with a rounding radius, and a tree of balls over them.
+/// A solid prepared once for collision: convex pieces with a rounding radius, and a tree of balls and boxes over them.
 ///
 /// Sphere: one point and its radius. Box and convex model: one polytope. Other models: one flat piece a face, so that a
 /// pair of solids is a set of pairs of convex pieces, for which bounds on the time of impact exist. A half-space has no
@@ -18,10 +18,11 @@ struct Pose {
   Quaterniond world_from_body = Quaterniond::Identity(); // unit
 };
 
-/// A ball around a part of the pieces.
+/// A ball and a box around a part of the pieces, with one middle.
 struct BallNode {
   Vector3d center_body;
   double radius;
+  Vector3d half_extents_body = Vector3d::Zero();   // of the box, edges along the body's axes [m]
   int first_child = -1;   // the second stands behind it; -1: a leaf
   int second_child = -1;
   int piece = -1;

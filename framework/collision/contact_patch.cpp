@@ -1,7 +1,6 @@
 #include "framework/collision/contact_patch.h"
 
 #include "framework/collision/piece_pairs.h"
-#include "framework/collision/polytope_gap.h"
 
 namespace tumble::collision {
 namespace {
@@ -32,14 +31,12 @@ FlatHull contact_patch(const CollisionShape& a, const Pose& pose_a, const Collis
   } else if (!a.is_ball() && !b.is_ball()) {
     const Query query(a, pose_a, b, pose_b);
     const double reach = std::max(gap.distance, 0.0) + tolerance;
-      visit_piece_pairs(
-        query, [&](double bound) { return bound > reach; },
-        [&](int i, int j) {
-          const PlacedPolytope placed_a = query.piece_of_a(i), placed_b = query.piece_of_b(j);
-            const PolytopeGap found = polytope_gap(placed_a, placed_b, query.size, reach);
-          if (found.beyond || found.distance > reach || (found.normal_b_to_a - n).norm() > kSameNormal) return;
-          for (const Vector3d& p : facing_region(placed_a, placed_b, n, tolerance)) points.push_back(pose_b.com_world + p);
-        });
+      for (const auto& [i, j] : pieces_within(query, reach, nullptr)) {
+      const PlacedPolytope placed_a = query.piece_of_a(i), placed_b = query.piece_of_b(j);
+      const PolytopeGap found = polytope_gap(placed_a, placed_b, query.size, reach);
+      if (found.beyond || found.distance > reach || (found.normal_b_to_a - n).norm() > kSameNormal) continue;
+      for (const Vector3d& p : facing_region(placed_a, placed_b, n, tolerance)) points.push_back(pose_b.com_world + p);
+    }
   }
   if (points.empty()) points.push_back(gap.point_a_world);
   return flat_hull(points, n);

@@ -27,19 +27,20 @@ struct Search {
   const Motion& motion_b;
   const ImpactOptions& options;
   ImpactCost& cost;
+  PairCache* cache;
 
   double gap_at(double t) const {
     ++cost.gap_evaluations;
-    return compute_gap(a, motion_a.at(t).pose, b, motion_b.at(t).pose).distance;
+    return compute_gap(a, motion_a.at(t).pose, b, motion_b.at(t).pose, cache).distance;
   }
   double rate_at(double t) const {
     const MotionState sa = motion_a.at(t), sb = motion_b.at(t);
     ++cost.gap_evaluations;
-    return gap_rate(compute_gap(a, sa.pose, b, sb.pose), sa, sb);
+    return gap_rate(compute_gap(a, sa.pose, b, sb.pose, cache), sa, sb);
   }
   Impact impact_at(double t) const {
     const MotionState sa = motion_a.at(t), sb = motion_b.at(t);
-    const Gap gap = compute_gap(a, sa.pose, b, sb.pose);
+    const Gap gap = compute_gap(a, sa.pose, b, sb.pose, cache);
     return {t, gap, gap_rate(gap, sa, sb)};
   }
 };
@@ -125,7 +126,7 @@ bool one_entry(const Search& search, const MotionState& sa, const MotionState& s
 // Where the gap closes almost linearly, a time just behind the root; nothing where it bends too much to tell.
 std::optional<double> behind_the_root(const Search& search, double t, double t1) {
   const MotionState sa = search.motion_a.at(t), sb = search.motion_b.at(t);
-  const Gap gap = compute_gap(search.a, sa.pose, search.b, sb.pose);
+  const Gap gap = compute_gap(search.a, sa.pose, search.b, sb.pose, search.cache);
   const double rate = gap_rate(gap, sa, sb);
   if (!(rate < 0) || gap.distance < 0) return std::nullopt;
   const double wait = gap.distance / -rate;
@@ -146,14 +147,15 @@ double gap_rate(const Gap& gap, const MotionState& a, const MotionState& b) {
 std::optional<Impact> first_impact(const CollisionShape& a, const Motion& motion_a, const CollisionShape& b, const Motion& motion_b,
                                    double t0, double t1, const ImpactOptions& options, ImpactCost* cost) {
   ImpactCost unasked;
-  const Search search{a, b, motion_a, motion_b, options, cost ? *cost : unasked};
+  PairCache own;
+  const Search search{a, b, motion_a, motion_b, options, cost ? *cost : unasked, options.cache ? options.cache : &own};
   double least = kLeastAdvance * (t1 - t0);
   const double most_least = std::sqrt(8.0 * kShallow * smaller_size(search) / most_bend(search));   // infinite for straight paths
   double t = t0, t_apart = t0;
   for (int round = 0;; ++round) {
     ++search.cost.gap_evaluations;
     const TimeBound bound =
-        bound_time_apart(a, motion_a.at(t), motion_a.bounds, b, motion_b.at(t), motion_b.bounds, t1 - t);
+        bound_time_apart(a, motion_a.at(t), motion_a.bounds, b, motion_b.at(t), motion_b.bounds, t1 - t, search.cache);
     if (bound.gap < 0) return t > t_apart ? refine(search, shorten(search, t_apart, t), t) : search.impact_at(t);
     if (bound.duration >= t1 - t) return std::nullopt;
     t_apart = t;

@@ -16,6 +16,7 @@ using RootFinder =
 
 struct ImpactOptions {
   RootFinder root_finder;               // empty: bisection
+  PairCache* cache = nullptr;           // of this pair, kept by the caller; see pair_cache.h
 };
 
 /// What the search cost.

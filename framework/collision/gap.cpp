@@ -1,11 +1,9 @@
 #include "framework/collision/gap.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "framework/collision/piece_pairs.h"
-#include "framework/collision/polytope_gap.h"
 
 namespace tumble::collision {
 namespace {
@@ -45,15 +43,8 @@ Gap gap_of_balls(const CollisionShape& a, const Pose& pose_a, const CollisionSha
   return gap;
 }
 
-Gap gap_of_pieces(const CollisionShape& a, const CollisionShape& b, const Query& query, const Vector3d& com_b_world) {
-  PolytopeGap best{kInfinity, Vector3d::Zero(), Vector3d::Zero(), Vector3d::UnitZ()};
-  visit_piece_pairs(
-      query, [&](double bound) { return bound > best.distance; },
-      [&](int i, int j) {
-        const PlacedPolytope placed_a = query.piece_of_a(i), placed_b = query.piece_of_b(j);
-        const PolytopeGap found = polytope_gap(placed_a, placed_b, query.size, std::max(best.distance, 0.0));
-        if (!found.beyond && found.distance < best.distance) best = found;
-      });
+Gap gap_of_pieces(const CollisionShape& a, const CollisionShape& b, const Query& query, const Vector3d& com_b_world, PairCache* cache) {
+  const PolytopeGap best = nearest_pieces(query, kInfinity, cache).gap;
   Gap gap;
   gap.distance = best.distance - (a.radius() + b.radius());
   gap.normal_b_to_a_world = best.normal_b_to_a;
@@ -70,12 +61,12 @@ bool holds_some_point_of(const CollisionShape& outer, const Pose& outer_pose, co
 
 }  // namespace
 
-Gap compute_gap(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b) {
+Gap compute_gap(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, PairCache* cache) {
   if (a.is_half_space() && b.is_half_space()) return {kInfinity, Vector3d::Zero(), Vector3d::Zero(), Vector3d::UnitZ()};
   if (b.is_half_space()) return gap_to_half_space(a, pose_a, pose_b);
   if (a.is_half_space()) return flipped(gap_to_half_space(b, pose_b, pose_a));
   if (a.is_ball() && b.is_ball()) return gap_of_balls(a, pose_a, b, pose_b);
-  return gap_of_pieces(a, b, Query(a, pose_a, b, pose_b), pose_b.com_world);
+  return gap_of_pieces(a, b, Query(a, pose_a, b, pose_b), pose_b.com_world, cache);
 }
 
 bool overlapping(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double allowance) {

@@ -5,7 +5,6 @@
 
 #include "framework/collision/patch.h"
 #include "framework/collision/piece_pairs.h"
-#include "framework/collision/polytope_gap.h"
 
 namespace tumble::collision {
 namespace {
@@ -129,21 +128,19 @@ std::vector<NearPoint> between_convex(const Query& query, const Vector3d& com_b_
   return points;
 }
 
-std::vector<NearPoint> between_surfaces(const Query& query, const Vector3d& com_b_world, double reach) {
+std::vector<NearPoint> between_surfaces(const Query& query, const Vector3d& com_b_world, double reach, PairCache* cache) {
   double nearest = kInfinity;
   Vector3d main_normal = Vector3d::UnitZ();
   std::vector<NearPair> pairs;
-  visit_piece_pairs(
-      query, [&](double bound) { return bound > reach; },
-      [&](int i, int j) {
-        const PolytopeGap found = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size, reach);
-        if (found.beyond || found.distance > reach) return;
-        pairs.push_back({i, j, found});
-        if (found.distance < nearest) {
-          nearest = found.distance;
-          main_normal = found.normal_b_to_a;
-        }
-      });
+  for (const auto& [i, j] : pieces_within(query, reach, cache)) {
+    const PolytopeGap found = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size, reach);
+    if (found.beyond || found.distance > reach) continue;
+    pairs.push_back({i, j, found});
+    if (found.distance < nearest) {
+      nearest = found.distance;
+      main_normal = found.normal_b_to_a;
+    }
+  }
   std::vector<Region> regions;
   for (const NearPair& pair : pairs) {
     const PlacedPolytope placed_a = query.piece_of_a(pair.i), placed_b = query.piece_of_b(pair.j);
@@ -160,7 +157,7 @@ std::vector<NearPoint> between_surfaces(const Query& query, const Vector3d& com_
 
 }  // namespace
 
-std::vector<NearPoint> near_points(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double reach) {
+std::vector<NearPoint> near_points(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double reach, PairCache* cache) {
   if (b.is_half_space()) return a.is_half_space() ? std::vector<NearPoint>{} : above_half_space(a, pose_a, pose_b, reach);
   if (a.is_half_space()) {
     std::vector<NearPoint> points = above_half_space(b, pose_b, pose_a, reach);
@@ -168,13 +165,13 @@ std::vector<NearPoint> near_points(const CollisionShape& a, const Pose& pose_a, 
     return points;
   }
   if (a.is_ball() || b.is_ball()) {
-    const Gap gap = compute_gap(a, pose_a, b, pose_b);
+    const Gap gap = compute_gap(a, pose_a, b, pose_b, cache);
     if (gap.distance > reach) return {};
     return {{gap.point_a_world, gap.point_b_world, gap.normal_b_to_a_world, gap.distance}};
   }
   const Query query(a, pose_a, b, pose_b);
   const bool convex = !a.is_closed_surface() && !b.is_closed_surface();
-  return convex ? between_convex(query, pose_b.com_world, reach) : between_surfaces(query, pose_b.com_world, reach);
+  return convex ? between_convex(query, pose_b.com_world, reach) : between_surfaces(query, pose_b.com_world, reach, cache);
 }
 
 }  // namespace tumble::collision

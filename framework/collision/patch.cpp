@@ -26,33 +26,49 @@ struct PlaneAxes {
   Vector2d flatten(const Vector3d& p) const { return {u.dot(p), v.dot(p)}; }
 };
 
-// Monotone chain, counter-clockwise; points that coincide to round-off count once.
-Polygon hull_of(Polygon points) {
-  if (points.size() < 2) return points;
-  std::sort(points.begin(), points.end(), [](const FlatPoint& a, const FlatPoint& b) {
-    if (a.p.x() != b.p.x()) return a.p.x() < b.p.x();
-    return a.p.y() != b.p.y() ? a.p.y() < b.p.y() : a.index < b.index;
-  });
-  double size = 0.0;
-  for (const FlatPoint& q : points) size = std::max(size, (q.p - points[0].p).norm());
-  const double same = 1e-12 * size;
+bool comes_before(const FlatPoint& a, const FlatPoint& b) {
+  if (a.p.x() != b.p.x()) return a.p.x() < b.p.x();
+  return a.p.y() != b.p.y() ? a.p.y() < b.p.y() : a.index < b.index;
+}
+
+// Points that coincide to round-off count once.
+Polygon distinct_of(const Polygon& sorted, double same) {
   Polygon distinct;
-  for (const FlatPoint& q : points) {
-    // Sorted: only those just before can coincide.
+  for (const FlatPoint& q : sorted) {
     bool known = false;
     for (int k = distinct.size() - 1; k >= 0 && q.p.x() - distinct[k].p.x() <= same && !known; --k) known = (q.p - distinct[k].p).norm() <= same;
     if (!known) distinct.push_back(q);
   }
+  return distinct;
+}
+
+// Monotone chain, counter-clockwise.
+Polygon hull_of(Polygon points) {
+  if (points.size() < 2) return points;
+  std::sort(points.begin(), points.end(), comes_before);
+  double size = 0.0;
+  for (const FlatPoint& q : points) size = std::max(size, (q.p - points[0].p).norm());
+  const double same = 1e-12 * size;
+  const Polygon distinct = distinct_of(points, same);
   if (distinct.size() < 3) return distinct;
+  // On an edge across the order, rounding would decide which comes first, and the edge's end could be lost for a point on it.
+  Polygon ordered;
+  double column = distinct[0].p.x();
+  for (int i = 0; i < distinct.size(); ++i) {
+    if (distinct[i].p.x() - column > same) column = distinct[i].p.x();
+    ordered.push_back({{column, distinct[i].p.y()}, i});
+  }
+  std::sort(ordered.begin(), ordered.end(), comes_before);
   Polygon hull;
   const auto grow = [&](const FlatPoint& q, int base) {
     while (hull.size() >= base + 2 && cross2(hull.back().p - hull[hull.size() - 2].p, q.p - hull.back().p) <= same * size) hull.shrink(hull.size() - 1);
     hull.push_back(q);
   };
-  for (const FlatPoint& q : distinct) grow(q, 0);
+  for (const FlatPoint& q : ordered) grow(q, 0);
   const int lower = hull.size() - 1;
-  for (int k = distinct.size() - 2; k >= 0; --k) grow(distinct[k], lower);
+  for (int k = ordered.size() - 2; k >= 0; --k) grow(ordered[k], lower);
   hull.shrink(hull.size() - 1);
+  for (FlatPoint& q : hull) q = distinct[q.index];
   return hull;
 }
 

@@ -1,10 +1,13 @@
-/// Walks the pairs of convex pieces of two solids, nearest balls first. Internal to collision.
+/// Finds the pairs of convex pieces of two solids that are near each other. Internal to collision.
 #pragma once
 
-#include <algorithm>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "framework/collision/gap.h"
+#include "framework/collision/pair_cache.h"
+#include "framework/collision/polytope_gap.h"
 
 namespace tumble::collision {
 
@@ -26,36 +29,16 @@ struct Query {
   PlacedPolytope piece_of_b(int j) const { return {&b.pieces()[j], rotation_b, Vector3d::Zero()}; }
 };
 
-/// Calls visit(piece_a, piece_b) for every pair of pieces that skip(lower bound of their cores' distance) does not rule out.
-/// @pre neither solid is a half-space
-template <class Skip, class Visit>
-void visit_piece_pairs(const Query& query, Skip&& skip, Visit&& visit) {
-  struct Entry { double bound; int node_a, node_b; };
-  const auto& nodes_a = query.a.nodes();
-  const auto& nodes_b = query.b.nodes();
-  const auto entry = [&](int i, int j) {
-    const Vector3d between = query.offset + query.rotation_a * nodes_a[i].center_body - query.rotation_b * nodes_b[j].center_body;
-    return Entry{between.norm() - nodes_a[i].radius - nodes_b[j].radius, i, j};
-  };
-  std::vector<Entry> stack{entry(0, 0)};
-  while (!stack.empty()) {
-    const Entry top = stack.back();
-    stack.pop_back();
-    if (skip(top.bound)) continue;
-    const BallNode& a = nodes_a[top.node_a];
-    const BallNode& b = nodes_b[top.node_b];
-    if (a.piece >= 0 && b.piece >= 0) {
-      visit(a.piece, b.piece);
-      continue;
-    }
-    // The larger ball is opened; the nearer of its two children is looked at first.
-    const bool open_a = b.piece >= 0 || (a.piece < 0 && a.radius >= b.radius);
-    Entry first = open_a ? entry(a.first_child, top.node_b) : entry(top.node_a, b.first_child);
-    Entry second = open_a ? entry(a.second_child, top.node_b) : entry(top.node_a, b.second_child);
-    if (second.bound < first.bound) std::swap(first, second);
-    stack.push_back(second);
-    stack.push_back(first);
-  }
-}
+/// The pair of pieces that are nearest to each other; of equals, the first. @pre neither solid is a half-space
+struct NearestPieces {
+  int piece_a = -1, piece_b = -1;   // -1: all are farther than the limit
+  PolytopeGap gap{std::numeric_limits<double>::infinity(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::UnitZ()};
+};
+/// @param limit  farther pairs are of no interest [m]
+/// @param cache  may be null
+NearestPieces nearest_pieces(const Query& query, double limit, PairCache* cache);
+
+/// Pairs of pieces that may be within `reach` of each other, sorted: all that are, and some that are not.
+std::vector<std::pair<int, int>> pieces_within(const Query& query, double reach, PairCache* cache);
 
 }  // namespace tumble::collision

@@ -1,52 +1,145 @@
 #include "framework/collision/sweep.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace tumble::collision {
 namespace {
 
-// The axis along which the centres vary most separates most pairs.
-int widest_axis(const std::vector<SweptBox>& boxes) {
-  Vector3d sum = Vector3d::Zero(), squares = Vector3d::Zero();
-  int counted = 0;
-  for (const SweptBox& box : boxes) {
-    const Vector3d middle = 0.5 * (box.low + box.high);
-    if (!middle.allFinite()) continue;
-    sum += middle;
-    squares += middle.cwiseAbs2();
-    ++counted;
-  }
-  if (counted == 0) return 0;
-  int axis = 0;
-  (squares - sum.cwiseAbs2() / counted).maxCoeff(&axis);
-  return axis;
+constexpr int kLeaf = 4;   // boxes in a leaf: as many are tried faster than they are divided
+
+struct Leaf {
+  Vector3d low, high;
+  int index;
+  bool can_move;
+};
+
+bool share_a_point(const Vector3d& low_a, const Vector3d& high_a, const Vector3d& low_b, const Vector3d& high_b) {
+  // All six without a branch: which of them tells two boxes apart cannot be foreseen.
+  return (low_a.x() <= high_b.x()) & (low_b.x() <= high_a.x()) & (low_a.y() <= high_b.y()) & (low_b.y() <= high_a.y()) & (low_a.z() <= high_b.z()) & (low_b.z() <= high_a.z());
 }
 
-bool share_a_point(const SweptBox& a, const SweptBox& b) {
-  return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
+// A tree of boxes around boxes, built anew for each question: halves along the axis on which the middles are spread most.
+class BoxTree {
+ public:
+  BoxTree(std::vector<Leaf>& leaves, std::vector<std::pair<int, int>>& pairs) : leaves_(leaves), pairs_(pairs) {
+    if (leaves.empty()) return;
+    nodes_.reserve(leaves.size());
+    build(0, static_cast<int>(leaves.size()));
+    within(0);
+  }
+
+ private:
+  struct Node {
+    Vector3d low, high;
+    int begin, end;
+    int second_child;   // the first stands behind its parent; 0: a leaf
+    bool can_move;
+  };
+
+  int build(int begin, int end) {
+    Node node{leaves_[begin].low, leaves_[begin].high, begin, end, 0, false};
+    Vector3d first = node.low + node.high, last = first;   // twice the middles
+    for (int k = begin; k < end; ++k) {
+      const Leaf& leaf = leaves_[k];
+      node.low = node.low.cwiseMin(leaf.low);
+      node.high = node.high.cwiseMax(leaf.high);
+      node.can_move = node.can_move || leaf.can_move;
+      const Vector3d middle = leaf.low + leaf.high;
+      first = first.cwiseMin(middle);
+      last = last.cwiseMax(middle);
+    }
+    const int at = static_cast<int>(nodes_.size());
+    nodes_.push_back(node);
+    if (end - begin <= kLeaf) return at;
+    int axis = 0;
+    (last - first).maxCoeff(&axis);
+    const int half = (begin + end) / 2;
+    std::nth_element(leaves_.begin() + begin, leaves_.begin() + half, leaves_.begin() + end,
+                     [axis](const Leaf& a, const Leaf& b) { return a.low[axis] + a.high[axis] < b.low[axis] + b.high[axis]; });
+    build(begin, half);
+    nodes_[at].second_child = build(half, end);
+    return at;
+  }
+
+  void offer(const Leaf& a, const Leaf& b) {
+    if ((a.can_move || b.can_move) && share_a_point(a.low, a.high, b.low, b.high)) pairs_.emplace_back(std::min(a.index, b.index), std::max(a.index, b.index));
+  }
+
+  void within(int n) {
+    const Node& node = nodes_[n];
+    if (!node.can_move) return;
+    if (node.second_child == 0) {
+      for (int i = node.begin; i < node.end; ++i)
+        for (int j = i + 1; j < node.end; ++j) offer(leaves_[i], leaves_[j]);
+      return;
+    }
+    within(n + 1);
+    within(node.second_child);
+    between(n + 1, node.second_child);
+  }
+
+  void between(int m, int n) {
+    const Node &a = nodes_[m], &b = nodes_[n];
+    if (!(a.can_move || b.can_move) || !share_a_point(a.low, a.high, b.low, b.high)) return;
+    if (a.second_child == 0 && b.second_child == 0) {
+      for (int i = a.begin; i < a.end; ++i) {
+        if (!share_a_point(leaves_[i].low, leaves_[i].high, b.low, b.high)) continue;
+        for (int j = b.begin; j < b.end; ++j) offer(leaves_[i], leaves_[j]);
+      }
+    } else if (b.second_child == 0 || (a.second_child != 0 && a.end - a.begin >= b.end - b.begin)) {
+      between(m + 1, n);
+      between(a.second_child, n);
+    } else {
+      between(m, n + 1);
+      between(m, b.second_child);
+    }
+  }
+
+  std::vector<Leaf>& leaves_;
+  std::vector<std::pair<int, int>>& pairs_;
+  std::vector<Node> nodes_;
+};
+
+// By the first index by counting, by the second within it: the pairs of one box are few.
+std::vector<std::pair<int, int>> sorted(const std::vector<std::pair<int, int>>& pairs, std::size_t n) {
+  std::vector<int> place(n + 1, 0);
+  for (const auto& pair : pairs) ++place[pair.first + 1];
+  for (std::size_t i = 0; i < n; ++i) place[i + 1] += place[i];
+  std::vector<std::pair<int, int>> result(pairs.size());
+  for (const auto& pair : pairs) result[place[pair.first]++] = pair;
+  for (std::size_t begin = 0; begin < result.size();) {
+    std::size_t end = begin + 1;
+    while (end < result.size() && result[end].first == result[begin].first) ++end;
+    std::sort(result.begin() + static_cast<std::ptrdiff_t>(begin), result.begin() + static_cast<std::ptrdiff_t>(end));
+    begin = end;
+  }
+  return result;
 }
+
+// Boxes without end would make every box around them endless.
+bool has_an_end(const SweptBox& box) { return std::isfinite((box.high - box.low).sum()); }
 
 }  // namespace
 
 std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<SweptBox>& boxes) {
-  const int axis = widest_axis(boxes);
-  std::vector<int> order(boxes.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::sort(order.begin(), order.end(), [&](int i, int j) {
-    return boxes[i].low[axis] != boxes[j].low[axis] ? boxes[i].low[axis] < boxes[j].low[axis] : i < j;
-  });
   std::vector<std::pair<int, int>> pairs;
-  for (std::size_t k = 0; k < order.size(); ++k) {
-    const SweptBox& box = boxes[order[k]];
-    for (std::size_t m = k + 1; m < order.size() && boxes[order[m]].low[axis] <= box.high[axis]; ++m) {
-      const SweptBox& other = boxes[order[m]];
-      if ((box.can_move || other.can_move) && share_a_point(box, other))
-        pairs.emplace_back(std::min(order[k], order[m]), std::max(order[k], order[m]));
-    }
+  std::vector<Leaf> leaves;
+  std::vector<int> endless;
+  leaves.reserve(boxes.size());
+  for (int i = 0; i < static_cast<int>(boxes.size()); ++i) {
+    if (has_an_end(boxes[i])) leaves.push_back({boxes[i].low, boxes[i].high, i, boxes[i].can_move});
+    else endless.push_back(i);
   }
-  std::sort(pairs.begin(), pairs.end());
-  return pairs;
+  for (const int i : endless)
+    for (int j = 0; j < static_cast<int>(boxes.size()); ++j) {
+      const SweptBox &a = boxes[i], &b = boxes[j];
+      if (j == i || (j < i && !has_an_end(b)) || !(a.can_move || b.can_move)) continue;
+      if (share_a_point(a.low, a.high, b.low, b.high)) pairs.emplace_back(std::min(i, j), std::max(i, j));
+    }
+  BoxTree(leaves, pairs);
+  return sorted(pairs, boxes.size());
 }
 
 }  // namespace tumble::collision

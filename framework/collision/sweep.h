@@ -15,7 +15,7 @@ struct SweptBox {
 };
 
 /// Pairs (i, j), i < j, of boxes that share a point, at least one of which can move; sorted.
-/// Cost: O(n log n) and the pairs that overlap along the axis on which the boxes are spread most.
+/// Cost: O(n log n + pairs) where boxes are of similar size or few are large; boxes without end are tried with every other.
 std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<SweptBox>& boxes);
 
 }  // namespace tumble::collision

@@ -6,7 +6,6 @@
 
 #include "framework/collision/inline_vector.h"
 #include "framework/collision/piece_pairs.h"
-#include "framework/collision/polytope_gap.h"
 
 namespace tumble::collision {
 namespace {
@@ -94,8 +93,8 @@ double first_root_of_quadratic(double g, double c, double q) {
 }
 
 TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a, const MotionBounds& bounds_a, const CollisionShape& b,
-                           const MotionState& state_b, const MotionBounds& bounds_b, double horizon) {
-  if (a.is_half_space()) return bound_time_apart(b, state_b, bounds_b, a, state_a, bounds_a, horizon);
+                           const MotionState& state_b, const MotionBounds& bounds_b, double horizon, PairCache* cache) {
+  if (a.is_half_space()) return bound_time_apart(b, state_b, bounds_b, a, state_a, bounds_a, horizon, cache);
   const double radius = a.radius() + b.radius();
   if (a.is_ball() && b.is_ball() && bounds_a.acceleration_world == bounds_b.acceleration_world &&
       bounds_a.acceleration_deviation + bounds_b.acceleration_deviation == 0.0) {
@@ -127,20 +126,22 @@ TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a, 
   const double turning = 1.0 + 1e-12;  // the bounding radii are rounded
   relative.turning_reach = turning * ((a.bounding_radius() - a.radius()) * (bounds_a.angular_speed + bounds_a.angular_velocity_error) +
                                       (b.bounding_radius() - b.radius()) * (bounds_b.angular_speed + bounds_b.angular_velocity_error));
-  visit_piece_pairs(
-      query, [&](double core_bound) { return core_bound - radius > relative.reach(bound.duration); },
-      [&](int i, int j) {
-        const PlacedPolytope placed_a = query.piece_of_a(i), placed_b = query.piece_of_b(j);
-        const double limit = relative.reach(bound.duration);
-        const PolytopeGap found = polytope_gap(placed_a, placed_b, query.size, limit + radius);
-        if (found.beyond) {
-          bound.gap = std::min(bound.gap, found.distance - radius);
-          return;
-        }
-        collect_lines(placed_a, state_a, bounds_a, found.normal_b_to_a, 1.0, lines_a);
-        collect_lines(placed_b, state_b, bounds_b, found.normal_b_to_a, -1.0, lines_b);
-        along(found.distance - radius, found.normal_b_to_a, lines_b);
-      });
+  const auto look_at = [&](int i, int j, const PolytopeGap& found) {
+    collect_lines(query.piece_of_a(i), state_a, bounds_a, found.normal_b_to_a, 1.0, lines_a);
+    collect_lines(query.piece_of_b(j), state_b, bounds_b, found.normal_b_to_a, -1.0, lines_b);
+    along(found.distance - radius, found.normal_b_to_a, lines_b);
+  };
+  // The nearest pair first: the sooner it may touch, the fewer others can touch before.
+  const NearestPieces nearest = nearest_pieces(query, relative.reach(horizon) + radius, cache);
+  if (nearest.piece_a < 0) return bound;
+  look_at(nearest.piece_a, nearest.piece_b, nearest.gap);
+  if (!a.is_closed_surface() && !b.is_closed_surface()) return bound;
+  for (const auto& [i, j] : pieces_within(query, relative.reach(bound.duration) + radius, cache)) {
+    if (i == nearest.piece_a && j == nearest.piece_b) continue;
+    const double limit = relative.reach(bound.duration) + radius;
+    const PolytopeGap found = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size, limit);
+    if (!found.beyond && found.distance <= limit) look_at(i, j, found);
+  }
   return bound;
 }
 

@@ -19,12 +19,13 @@ namespace tumble::collision {
 
 struct TimeBound {
   double duration;   // [s], in [0, horizon]: no contact before; exactly the horizon where none can happen in it
-  double gap;        // [m]: of the nearest pieces looked at; only a lower bound of the distance where all were far
+  double gap;        // [m]: of the nearest pieces; infinite where all are too far to touch before the horizon
 };
 
 /// @param horizon  [s], >= 0: how far ahead to look; the motion bounds must hold that long
+/// @param cache    of this pair, may be null
 TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a, const MotionBounds& bounds_a, const CollisionShape& b,
-                           const MotionState& state_b, const MotionBounds& bounds_b, double horizon);
+                           const MotionState& state_b, const MotionBounds& bounds_b, double horizon, PairCache* cache = nullptr);
 
 /// First t >= 0 at which g + c t + q t^2 falls below zero, given g >= 0; infinite where it never does.
 double first_root_of_quadratic(double g, double c, double q);

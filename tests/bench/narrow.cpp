@@ -25,7 +25,7 @@ using collision::Motion;
 using collision::MotionState;
 using collision::Pose;
 
-constexpr int kPlaces = 24;   // each figure is a mean over as many ways to lie
+constexpr std::size_t kPlaces = 24;   // each figure is a mean over as many ways to lie
 constexpr double kStep = 1.0 / 240, kEndless = std::numeric_limits<double>::infinity();
 
 double cpu_seconds() {
@@ -35,7 +35,7 @@ double cpu_seconds() {
 }
 
 /// CPU time of one call, the least of several batches: the best is what a neighbour's work did not touch. [us]
-double microseconds(int calls_a_round, const std::function<void()>& round) {
+double microseconds(std::size_t calls_a_round, const std::function<void()>& round) {
   round();
   double least = 1e9;
   for (int batch = 0; batch < 7; ++batch) {
@@ -45,7 +45,7 @@ double microseconds(int calls_a_round, const std::function<void()>& round) {
       round();
       ++rounds;
     } while (cpu_seconds() - begin < 0.01);
-    least = std::min(least, (cpu_seconds() - begin) / rounds / calls_a_round);
+    least = std::min(least, (cpu_seconds() - begin) / rounds / static_cast<double>(calls_a_round));
   }
   return 1e6 * least;
 }
@@ -67,7 +67,7 @@ class Bench {
     const CollisionShape a(shape_a), b(shape_b);
     Places places{a, b, {}, std::min(a.bounding_radius(), b.bounding_radius())};
     std::mt19937_64 random(7);
-    for (int k = 0; k < kPlaces; ++k) places.poses.push_back(arrange(a, b, random));
+    for (std::size_t k = 0; k < kPlaces; ++k) places.poses.push_back(arrange(a, b, random));
     time(name, places);
   }
 
@@ -101,6 +101,14 @@ class Bench {
     const double reach = 1e-2 * size;
     const double near = ask(places, [&](const Pose& p, const Pose& q) { collision::near_points(a, p, b, q, reach); });
     for (const auto& [p, q] : poses) found += collision::near_points(a, p, b, q, reach).size();
+    // Asked again with what was kept of the pair, as lasting contacts are.
+    std::vector<collision::PairCache> caches(kPlaces);
+    const double kept = microseconds(kPlaces, [&] {
+      for (std::size_t k = 0; k < kPlaces; ++k) collision::near_points(a, poses[k].first, b, poses[k].second, reach, &caches[k]);
+    });
+    const double kept_gap = microseconds(kPlaces, [&] {
+      for (std::size_t k = 0; k < kPlaces; ++k) collision::compute_gap(a, poses[k].first, b, poses[k].second, &caches[k]);
+    });
     const double tight = ask(places, [&](const Pose& p, const Pose& q) { collision::near_points(a, p, b, q, 1e-7 * size); });
     // Falls towards the other and turns, by 1e-2 of its size in the step; the other stays.
     int hits = 0;
@@ -117,7 +125,7 @@ class Bench {
     };
     const double first = ask(places, impact);
     for (const auto& [p, q] : poses) hits += impact(p, q);
-    std::printf("%-34s gap %8.2f   near %8.2f (%4.1f points)   near 1e-7 %8.2f   impact %8.2f (%2d hit)  us\n", name.c_str(), gap, near,
+    std::printf("%-34s gap %8.2f kept %7.2f   near %8.2f kept %7.2f (%4.1f points)   near 1e-7 %8.2f   impact %8.2f (%2d hit)  us\n", name.c_str(), gap, kept_gap, near, kept,
                 static_cast<double>(found) / kPlaces, tight, first, hits);
     std::fflush(stdout);
   }

@@ -1,0 +1,26 @@
+/// What a caller may keep about a pair of solids between questions, to be answered sooner. Answers are the same without it, bit for bit.
+///
+/// Keep one object a pair of solids (the same two, in the same order) and hand its address to every question about them; forget it
+/// when the pair is forgotten. It helps where one of the two is not convex: of thousands of pairs of faces only those near each other
+/// are looked at, as long as the two have not moved far. Not to be shared between threads. Nothing in it concerns the caller.
+#pragma once
+
+#include <vector>
+
+#include "framework/core/math.h"
+
+namespace tumble::collision {
+
+struct PairCache {
+  struct Near {
+    int piece_a, piece_b;
+    double distance;   // then [m]
+  };
+  std::vector<Near> near;                      // all pairs of pieces nearer than `reach` then, sorted
+  double reach = -1.0;                         // [m]; negative: empty
+  Matrix3d a_from_b = Matrix3d::Identity();    // where the two were then
+  Vector3d b_in_a = Vector3d::Zero(), a_in_b = Vector3d::Zero();   // [m]
+  int served = 0, unused = 0;                  // questions answered from it; to pass until it is filled again
+};
+
+}  // namespace tumble::collision

@@ -1,0 +1,194 @@
+#include "framework/collision/piece_pairs.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/collision/inline_vector.h"
+
+namespace tumble::collision {
+namespace {
+
+constexpr double kRoundOff = 2.220446049250313e-16;
+// Bounds are rounded too. With as much room a pair is never passed over that another order of looking would have found.
+constexpr double kRoundings = 64;
+// Of the smaller solid: how much farther than asked the cache looks, so that it serves while the two move as far.
+constexpr double kSkin = 0.02;
+// Questions for which a cache is left alone that was filled in vain, its solids moving fast.
+constexpr int kPause = 8;
+
+double rounding(const Query& query) { return kRoundings * kRoundOff * query.size; }
+
+// Bounds from below how far nodes of the two trees are apart: by their balls, and by their boxes along the axes of either.
+class NodeDistance {
+ public:
+  explicit NodeDistance(const Query& query)
+      : nodes_a_(query.a.nodes()), nodes_b_(query.b.nodes()), a_from_b_(query.rotation_a.transpose() * query.rotation_b),
+        absolute_(a_from_b_.cwiseAbs()), offset_a_(query.rotation_a.transpose() * query.offset) {}
+
+  double operator()(int i, int j, double enough) const {
+    const BallNode &a = nodes_a_[i], &b = nodes_b_[j];
+    const Vector3d between = offset_a_ + a.center_body - a_from_b_ * b.center_body;   // axes of A
+    const double balls = between.norm() - a.radius - b.radius;
+    if (balls > enough) return balls;
+    // To the box with A's axes around B's box, and the other way round.
+    const Vector3d out_a = (between.cwiseAbs() - a.half_extents_body - absolute_ * b.half_extents_body).cwiseMax(0.0);
+    const Vector3d out_b = ((a_from_b_.transpose() * between).cwiseAbs() - b.half_extents_body - absolute_.transpose() * a.half_extents_body).cwiseMax(0.0);
+    return std::max(balls, std::sqrt(std::max(out_a.squaredNorm(), out_b.squaredNorm())));
+  }
+
+ private:
+  const std::vector<BallNode>& nodes_a_;
+  const std::vector<BallNode>& nodes_b_;
+  Matrix3d a_from_b_, absolute_;
+  Vector3d offset_a_;
+};
+
+// Calls visit(piece_a, piece_b) for every pair whose bound is within reach(), which may shrink between calls; near ones first.
+template <class Reach, class Visit>
+void visit(const Query& query, Reach&& reach, Visit&& visit_pair) {
+  struct Entry {
+    double bound;
+    int node_a, node_b;
+  };
+  const auto &nodes_a = query.a.nodes(), &nodes_b = query.b.nodes();
+  const NodeDistance distance(query);
+  InlineVector<Entry, 128> stack;
+  stack.push_back({distance(0, 0, reach()), 0, 0});
+  while (!stack.empty()) {
+    const Entry top = stack.back();
+    stack.shrink(stack.size() - 1);
+    const double enough = reach();
+    if (top.bound > enough) continue;
+    const BallNode &a = nodes_a[top.node_a], &b = nodes_b[top.node_b];
+    if (a.piece >= 0 && b.piece >= 0) {
+      visit_pair(a.piece, b.piece);
+      continue;
+    }
+    // The larger ball is opened; the nearer of its two children is looked at first.
+    const bool open_a = b.piece >= 0 || (a.piece < 0 && a.radius >= b.radius);
+    const auto entry = [&](int i, int j) { return Entry{distance(i, j, enough), i, j}; };
+    Entry first = open_a ? entry(a.first_child, top.node_b) : entry(top.node_a, b.first_child);
+    Entry second = open_a ? entry(a.second_child, top.node_b) : entry(top.node_a, b.second_child);
+    if (second.bound < first.bound) std::swap(first, second);
+    if (second.bound <= enough) stack.push_back(second);
+    if (first.bound <= enough) stack.push_back(first);
+  }
+}
+
+// Keeps the nearest of the pairs that it is shown, whatever their order.
+class Nearest {
+ public:
+  Nearest(const Query& query, double limit) : query_(query), limit_(limit), rounding_(rounding(query)) {}
+
+  double reach() const { return std::max(std::min(limit_, best_.gap.distance), 0.0) + rounding_; }
+  void look_at(int i, int j) {
+    const PolytopeGap found = polytope_gap(query_.piece_of_a(i), query_.piece_of_b(j), query_.size, reach());
+    if (found.beyond || found.distance > limit_) return;
+    const bool first = std::pair(i, j) < std::pair(best_.piece_a, best_.piece_b);
+    if (found.distance < best_.gap.distance || (found.distance == best_.gap.distance && first)) best_ = {i, j, found};
+  }
+  const NearestPieces& best() const { return best_; }
+
+ private:
+  const Query& query_;
+  double limit_, rounding_;
+  NearestPieces best_;
+};
+
+// How much nearer any two points of the solids may have come since the cache was filled.
+double moved_since(const Query& query, const PairCache& cache) {
+  const Matrix3d a_from_b = query.rotation_a.transpose() * query.rotation_b;
+  const double turn = (a_from_b - cache.a_from_b).norm() / std::sqrt(2.0);   // largest |(R - R') x| / |x|
+  const double of_b = (query.rotation_a.transpose() * -query.offset - cache.b_in_a).norm() + turn * query.b.bounding_radius();
+  const double of_a = (query.rotation_b.transpose() * query.offset - cache.a_in_b).norm() + turn * query.a.bounding_radius();
+  return std::min(of_a, of_b) + rounding(query);
+}
+
+bool one_pair(const Query& query) { return query.a.pieces().size() == 1 && query.b.pieces().size() == 1; }
+
+// Fills the cache where that promises to pay.
+void fill(const Query& query, double reach, PairCache& cache) {
+  if (cache.unused > 0) {
+    --cache.unused;
+    return;
+  }
+  if (cache.reach >= 0 && cache.served == 0) {
+    cache.reach = -1.0;
+    cache.unused = kPause;
+    return;
+  }
+  const double size = std::min(query.a.bounding_radius(), query.b.bounding_radius());
+  cache.reach = reach + std::max(kSkin * size, 0.5 * reach);
+  cache.served = 0;
+  cache.near.clear();
+  const double looked = cache.reach + rounding(query);
+  visit(query, [&] { return looked; }, [&](int i, int j) {
+    const PolytopeGap gap = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size, looked);
+    if (!gap.beyond && gap.distance <= looked) cache.near.push_back({i, j, gap.distance});
+  });
+  std::sort(cache.near.begin(), cache.near.end(), [](const PairCache::Near& p, const PairCache::Near& q) { return std::pair(p.piece_a, p.piece_b) < std::pair(q.piece_a, q.piece_b); });
+  cache.a_from_b = query.rotation_a.transpose() * query.rotation_b;
+  cache.b_in_a = query.rotation_a.transpose() * -query.offset;
+  cache.a_in_b = query.rotation_b.transpose() * query.offset;
+}
+
+// Shows the pairs of the cache, the nearest of then first. @return whether no other pair is nearer than what was found
+bool look_in_cache(const Query& query, double limit, PairCache& cache, Nearest& nearest) {
+  if (cache.reach < 0) return false;
+  const double moved = moved_since(query, cache), certain = cache.reach - moved;
+  if (certain < 0) return false;
+  const auto first = std::min_element(cache.near.begin(), cache.near.end(), [](const PairCache::Near& p, const PairCache::Near& q) { return p.distance < q.distance; });
+  if (first != cache.near.end()) nearest.look_at(first->piece_a, first->piece_b);
+  for (auto near = cache.near.begin(); near != cache.near.end(); ++near)
+    if (near != first && near->distance - moved <= nearest.reach()) nearest.look_at(near->piece_a, near->piece_b);
+  return std::min(limit, nearest.best().gap.distance) + rounding(query) < certain;
+}
+
+}  // namespace
+
+NearestPieces nearest_pieces(const Query& query, double limit, PairCache* cache) {
+  Nearest nearest(query, limit);
+  if (one_pair(query)) {
+    if (NodeDistance(query)(0, 0, limit) <= limit + rounding(query)) nearest.look_at(0, 0);
+    return nearest.best();
+  }
+  if (cache && look_in_cache(query, limit, *cache, nearest)) {
+    ++cache->served;
+    return nearest.best();
+  }
+  visit(query, [&] { return nearest.reach(); }, [&](int i, int j) { nearest.look_at(i, j); });
+  const double size = std::min(query.a.bounding_radius(), query.b.bounding_radius());
+  if (cache && nearest.best().gap.distance < kSkin * size) fill(query, std::max(nearest.best().gap.distance, 0.0), *cache);
+  return nearest.best();
+}
+
+std::vector<std::pair<int, int>> pieces_within(const Query& query, double reach, PairCache* cache) {
+  std::vector<std::pair<int, int>> pairs;
+  if (one_pair(query)) {
+    pairs.emplace_back(0, 0);
+    return pairs;
+  }
+  const double looked = reach + rounding(query);
+  const auto from_cache = [&] {
+    if (!cache || cache->reach < 0) return false;
+    const double moved = moved_since(query, *cache);
+    if (looked + moved > cache->reach) return false;
+    for (const PairCache::Near& near : cache->near)
+      if (near.distance - moved <= looked) pairs.emplace_back(near.piece_a, near.piece_b);
+    ++cache->served;
+    return true;
+  };
+  if (from_cache()) return pairs;
+  if (cache) {
+    fill(query, reach, *cache);
+    if (from_cache()) {
+      cache->served = 0;   // by the question that filled it
+      return pairs;
+    }
+  }
+  visit(query, [&] { return looked; }, [&](int i, int j) { pairs.emplace_back(i, j); });
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+}  // namespace tumble::collision

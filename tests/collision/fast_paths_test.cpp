@@ -1,0 +1,265 @@
+// What is found fast against what is found slowly: gaps of convex solids with 33 digits, pairs of boxes by trying all, answers that
+// are given from what a caller kept against answers without.
+#include <cstring>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "framework/collision/first_impact.h"
+#include "framework/collision/near_points.h"
+#include "framework/collision/sweep.h"
+#include "framework/geometry/solid.h"
+#include "tests/collision/exhaustive.h"
+#include "tests/collision/hulls.h"
+
+namespace tumble::testing {
+namespace {
+
+using collision::CollisionShape;
+using collision::Gap;
+using collision::Motion;
+using collision::MotionState;
+using collision::NearPoint;
+using collision::PairCache;
+using collision::Pose;
+
+class Chance {
+ public:
+  explicit Chance(unsigned seed) : random_(seed) {}
+  double in(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random_); }
+  int below(int n) { return std::uniform_int_distribution<int>(0, n - 1)(random_); }
+  Vector3d vector() { return {in(-1, 1), in(-1, 1), in(-1, 1)}; }
+  Quaterniond turn() { return Quaterniond(in(-1, 1), in(-1, 1), in(-1, 1), in(-1, 1)).normalized(); }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+TriangleMesh scaled(TriangleMesh mesh, double scale) {
+  for (Vector3d& v : mesh.vertices) v *= scale;
+  return mesh;
+}
+
+Shape model(const std::string& name) { return load_solid(std::string(TUMBLE_SOURCE_DIR) + "/models/" + name + ".3ds").solid; }
+
+struct Convex {
+  std::string name;
+  TriangleMesh mesh;
+  Shape shape;
+};
+
+std::vector<Convex> convex_solids(double scale) {
+  std::vector<Convex> solids;
+  for (const Vector3d& half : {Vector3d(0.5, 0.4, 0.3), Vector3d(0.5, 0.5, 0.5), Vector3d(0.7, 0.5, 0.001)}) {
+    const Box box{scale * half};
+    solids.push_back({"box", surface_of(box), box});
+  }
+  for (const Shape& shape : {random_hull(8, 2), random_hull(14, 1), model("wedge")}) {
+    const TriangleMesh mesh = scaled(surface_of(shape), scale);
+    solids.push_back({"hull", mesh, MeshSolid{mesh, true}});
+  }
+  return solids;
+}
+
+/// Two solids as they meet in heaps and stacks: any way, edges along each other, face to face, nearly so.
+struct Placing {
+  Quaterniond turn_a, turn_b;
+  Vector3d line;
+
+  explicit Placing(Chance& chance) : turn_a(chance.turn()), turn_b(chance.turn()), line(chance.vector().normalized()) {
+    const int kind = chance.below(5);
+    if (kind == 0) return;
+    turn_a = turn_b = Quaterniond::Identity();
+    if (kind == 2) turn_a = Eigen::AngleAxisd(chance.in(0, 6), Vector3d::UnitZ());
+    if (kind >= 3) turn_a = Eigen::AngleAxisd(std::pow(10.0, chance.in(-16, -3)), chance.vector().normalized());
+    const int way = chance.below(3);
+    if (way == 0) line = Vector3d(0.3 * chance.in(-1, 1), 0.2 * chance.in(-1, 1), 1).normalized();
+    if (way == 1) line = Vector3d::Unit(chance.below(3));   // edges and corners exactly over each other
+  }
+};
+
+constexpr double kGaps[] = {0, 1e-15, -1e-15, 1e-13, -1e-13, 1e-12, 1e-10, -1e-10, 1e-8, -1e-8, 1e-6, -1e-6, 1e-4, 1e-2, -1e-2, -0.1, -0.3, 1};
+
+Pose brought_to(double goal, const CollisionShape& a, const CollisionShape& b, const Placing& placing, const Pose& pose_b, double scale) {
+  Pose pose{pose_b.com_world, placing.turn_a};
+  double low = 0.0, high = 4 * scale;
+  for (;;) {
+    const double middle = 0.5 * (low + high);
+    if (!(middle > low && middle < high)) break;
+    pose.com_world = pose_b.com_world + middle * placing.line;
+    (collision::compute_gap(a, pose, b, pose_b).distance < goal ? low : high) = middle;
+  }
+  pose.com_world = pose_b.com_world + high * placing.line;
+  return pose;
+}
+
+// Coordinates up to 2 times the scale, each vertex and each height rounded a few times: 100 roundings are 2e-14. An axis between edges that
+// are parallel to less than 1e-9 rad may be passed over, which costs no more. Nearest points whose direction is rounded are off by up to 1e-8.
+constexpr double kRoundings = 100 * 2.220446049250313e-16;
+
+class ConvexGap : public ::testing::TestWithParam<double> {};
+
+TEST_P(ConvexGap, HasAllItsDigitsHoweverTheSolidsLie) {
+  const double scale = GetParam();
+  const std::vector<Convex> solids = convex_solids(scale);
+  Chance chance(21);
+  for (int k = 0; k < 900; ++k) {
+    const Convex &one = solids[chance.below(static_cast<int>(solids.size()))], &other = solids[chance.below(static_cast<int>(solids.size()))];
+    const CollisionShape a(one.shape), b(other.shape);
+    const Placing placing(chance);
+    const double goal = scale * kGaps[chance.below(static_cast<int>(std::size(kGaps)))];
+    const Pose pose_b{Vector3d::Zero(), placing.turn_b}, pose_a = brought_to(goal, a, b, placing, pose_b, scale);
+    const Gap found = collision::compute_gap(a, pose_a, b, pose_b);
+    const double truth = static_cast<double>(exact_gap(placed_exactly(one.mesh, pose_a, pose_b.com_world), placed_exactly(other.mesh, pose_b, pose_b.com_world)));
+    EXPECT_NEAR(found.distance, truth, kRoundings * scale) << one.name << " and " << other.name << " brought to " << goal << ", try " << k;
+    EXPECT_NEAR(found.normal_b_to_a_world.norm(), 1.0, 1e-14);
+    EXPECT_NEAR((found.point_a_world - found.point_b_world).dot(found.normal_b_to_a_world), found.distance, kRoundings * scale);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Scales, ConvexGap, ::testing::Values(1e-6, 1.0, 1e6), [](const auto& info) { return std::string(info.param < 1 ? "Tiny" : info.param > 1 ? "Huge" : "Metres"); });
+
+TEST(ConvexGaps, FarFromTheOriginAreThoseNearIt) {
+  const std::vector<Convex> solids = convex_solids(1.0);
+  Chance chance(22);
+  const Vector3d far(1048576.0, -524288.0, 262144.0);
+  for (int k = 0; k < 300; ++k) {
+    const CollisionShape a(solids[chance.below(6)].shape), b(solids[chance.below(6)].shape);
+    const Placing placing(chance);
+    Pose pose_b{far + chance.vector(), placing.turn_b};
+    const Pose pose_a = brought_to(kGaps[chance.below(static_cast<int>(std::size(kGaps)))], a, b, placing, pose_b, 1.0);
+    // The difference of two places is exact: what is asked near the origin is the very same question.
+    const Gap there = collision::compute_gap(a, pose_a, b, pose_b);
+    const Gap here = collision::compute_gap(a, {pose_a.com_world - pose_b.com_world, pose_a.world_from_body}, b, {Vector3d::Zero(), pose_b.world_from_body});
+    EXPECT_EQ(there.distance, here.distance);
+    EXPECT_EQ(there.normal_b_to_a_world, here.normal_b_to_a_world);
+  }
+}
+
+TEST(NearPoints, OfBoxesFaceToFaceAreTheirCornersHoweverSmallTheGap) {
+  const CollisionShape a{Box{{0.5, 0.4, 0.3}}}, b{Box{{0.6, 0.6, 0.2}}};
+  Chance chance(23);
+  for (int k = 0; k < 400; ++k) {
+    const double gap = kGaps[chance.below(11)];
+    const Pose pose_a{{0.05 * chance.in(-1, 1), 0.05 * chance.in(-1, 1), 0.5 + gap}, Quaterniond(Eigen::AngleAxisd(chance.in(-0.1, 0.1), Vector3d::UnitZ()))};
+    const double exact = pose_a.com_world.z() - 0.3 - 0.2;
+    const std::vector<NearPoint> points = collision::near_points(a, pose_a, b, {}, 1e-5);
+    ASSERT_EQ(points.size(), 4u) << "gap " << gap;   // the upper box's corners: they are inside the lower one's face
+    for (const NearPoint& p : points) {
+      EXPECT_NEAR(p.gap, exact, 1e-15);
+      EXPECT_NEAR(p.normal_b_to_a_world.z(), 1.0, 1e-15);
+      EXPECT_NEAR((pose_a.world_from_body.conjugate() * (p.point_a_world - pose_a.com_world)).cwiseAbs().x(), 0.5, 1e-14);
+    }
+  }
+}
+
+TEST(NearPoints, OfABoxAgainstAWallAndAFloorOfOneMeshPushBothWays) {
+  // An L of three cubes: its inner corner holds a box by two faces at once.
+  const Shape l_shape = model("l_shape");
+  const CollisionShape l(l_shape), box{Box{{0.2, 0.2, 0.2}}};
+  const TriangleMesh& mesh = std::get<MeshSolid>(l_shape).mesh_body;
+  // The inner edge: the vertices at which a small ball about them is three quarters solid lie in the middle of the two long axes.
+  Vector3d low = mesh.vertices[0], high = low;
+  for (const Vector3d& v : mesh.vertices) {
+    low = low.cwiseMin(v);
+    high = high.cwiseMax(v);
+  }
+  int thin = 0;
+  (high - low).minCoeff(&thin);
+  const int u = (thin + 1) % 3, v = (thin + 2) % 3;
+  for (const double side_u : {-1.0, 1.0})
+    for (const double side_v : {-1.0, 1.0}) {
+      Pose pose;
+      pose.com_world = 0.5 * (low + high);
+      pose.com_world[u] += side_u * (0.2 + 1e-7);
+      pose.com_world[v] += side_v * (0.2 + 1e-7);
+      if (collision::overlapping(box, pose, l, {}, 0.0)) continue;   // the solid quarters
+      const auto points = collision::near_points(box, pose, l, {}, 1e-5);
+      int push_u = 0, push_v = 0;
+      for (const NearPoint& p : points) {
+        if (std::abs(p.normal_b_to_a_world[u] - side_u) < 1e-9) ++push_u;
+        if (std::abs(p.normal_b_to_a_world[v] - side_v) < 1e-9) ++push_v;
+        EXPECT_NEAR(p.gap, 1e-7, 1e-13);
+      }
+      EXPECT_EQ(push_u, 4);
+      EXPECT_EQ(push_v, 4);
+    }
+}
+
+void expect_same_bits(const Gap& a, const Gap& b) {
+  EXPECT_EQ(a.distance, b.distance);
+  EXPECT_EQ(a.normal_b_to_a_world, b.normal_b_to_a_world);
+  EXPECT_EQ(a.point_a_world, b.point_a_world);
+  EXPECT_EQ(a.point_b_world, b.point_b_world);
+}
+
+TEST(PairCache, ChangesNoBitOfAnyAnswer) {
+  Chance chance(24);
+  for (const auto& [name_a, name_b] : {std::pair("t_handle", "l_shape"), std::pair("l_shape", "l_shape"), std::pair("t_handle", "t_handle"), std::pair("torus", "t_handle")}) {
+    const CollisionShape a(model(name_a)), b(model(name_b)), hull(random_hull(14, 3));
+    for (const CollisionShape* first : {&a, &hull}) {
+      PairCache cache;
+      Pose pose_a{0.7 * chance.vector().normalized() * (first->bounding_radius() + b.bounding_radius()), chance.turn()};
+      Pose pose_b{Vector3d::Zero(), chance.turn()};
+      const double size = std::min(first->bounding_radius(), b.bounding_radius());
+      for (int step = 0; step < 60; ++step) {
+        // Mostly as in a heap, seldom far; towards each other until they touch.
+        const double stride = step % 20 == 19 ? 0.5 : std::pow(10.0, chance.in(-9, -1.5));
+        pose_a.com_world += stride * size * chance.vector() - 0.1 * stride * pose_a.com_world;
+        pose_a.world_from_body = (pose_a.world_from_body * Quaterniond(Eigen::AngleAxisd(stride, chance.vector().normalized()))).normalized();
+        const Gap gap = collision::compute_gap(*first, pose_a, b, pose_b);
+        expect_same_bits(gap, collision::compute_gap(*first, pose_a, b, pose_b, &cache));
+        const double reach = size * std::pow(10.0, chance.in(-9, -1));
+        const auto points = collision::near_points(*first, pose_a, b, pose_b, reach), kept = collision::near_points(*first, pose_a, b, pose_b, reach, &cache);
+        ASSERT_EQ(points.size(), kept.size());
+        for (std::size_t i = 0; i < points.size(); ++i) {
+          EXPECT_EQ(points[i].point_a_world, kept[i].point_a_world);
+          EXPECT_EQ(points[i].normal_b_to_a_world, kept[i].normal_b_to_a_world);
+          EXPECT_EQ(points[i].gap, kept[i].gap);
+        }
+        if (step % 4 != 0 || gap.distance < 0) continue;
+        const Vector3d velocity = -3 * size * pose_a.com_world.normalized(), omega = chance.vector();
+        Motion moving{[&](double t) {
+                        return MotionState{{pose_a.com_world + t * velocity, Quaterniond(Eigen::AngleAxisd(omega.norm() * t, omega.normalized())) * pose_a.world_from_body}, velocity, omega};
+                      }, {}};
+        moving.bounds.angular_speed = omega.norm();
+        const Motion still{[&](double) { return MotionState{pose_b, Vector3d::Zero(), Vector3d::Zero()}; }, {}};
+        collision::ImpactOptions options;
+        const auto plain = collision::first_impact(*first, moving, b, still, 0.0, 0.02, options);
+        options.cache = &cache;
+        const auto faster = collision::first_impact(*first, moving, b, still, 0.0, 0.02, options);
+        ASSERT_EQ(plain.has_value(), faster.has_value());
+        if (!plain) continue;
+        EXPECT_EQ(plain->time, faster->time);
+        expect_same_bits(plain->gap, faster->gap);
+      }
+    }
+  }
+}
+
+TEST(BroadPhase, FindsThePairsThatTryingAllFinds) {
+  Chance chance(25);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const int n : {0, 1, 2, 5, 17, 64, 300}) {
+    for (int k = 0; k < 6; ++k) {
+      std::vector<collision::SweptBox> boxes;
+      for (int i = 0; i < n; ++i) {
+        const Vector3d middle = std::round(4 * chance.in(0, 1)) * Vector3d::Ones() + (k % 2 ? 6.0 : 0.0) * chance.vector();
+        const Vector3d half = std::pow(10.0, chance.in(-3, 0.5)) * chance.vector().cwiseAbs();
+        boxes.push_back({middle - half, middle + half, chance.below(3) > 0});
+        if (chance.below(40) == 0) boxes.back() = {Vector3d::Constant(-kInfinity), Vector3d::Constant(kInfinity), chance.below(2) > 0};
+        if (chance.below(40) == 0) boxes.back().high.z() = kInfinity;
+        if (i > 0 && chance.below(10) == 0) boxes.back().low = boxes[static_cast<std::size_t>(chance.below(i))].high.cwiseMin(boxes.back().high);   // that just touch
+      }
+      std::vector<std::pair<int, int>> expected;
+      for (int i = 0; i < n; ++i)
+        for (int j = i + 1; j < n; ++j)
+          if ((boxes[i].can_move || boxes[j].can_move) && (boxes[i].low.array() <= boxes[j].high.array()).all() && (boxes[j].low.array() <= boxes[i].high.array()).all())
+            expected.emplace_back(i, j);
+      EXPECT_EQ(collision::overlapping_pairs(boxes), expected) << n << " boxes";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tumble::testing
