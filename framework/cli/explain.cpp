@@ -34,16 +34,19 @@ bool is_on(const std::vector<Effect>& effects, const std::string& name) {
 }
 
 std::vector<Stage> stages_of(const std::vector<Effect>& effects) {
-  const bool constrained = is_on(effects, "rod") || is_on(effects, "joint"), colliding = is_on(effects, "collision");
+  const bool constrained = is_on(effects, "rod") || is_on(effects, "joint"), colliding = is_on(effects, "collision"), sleeping = is_on(effects, "sleep");
+  const bool forced = constrained || is_on(effects, "spring") || is_on(effects, "drag");
   return {
       {"integration", "moves bodies by their forces, and takes back what went too far", true,
-       {"steps", "shortened_steps", "integrations", "undone_integrations", "derivative_evaluations", "rollbacks", "gravity_calls", "point_force_calls", "spring_calls", "drag_calls"}},
+       {"steps", "shortened_steps", "integrations", "undone_integrations", "derivative_evaluations", "rollbacks", "gravity_calls", "point_force_calls"}},
+      {"forces", "springs, drag and motors, with the gravity of what they hold", forced, {"spring_calls", "drag_calls"}},
       {"constraints", "the forces that hold rods and joints, and bringing them back", constrained, {"rod_calls", "joint_calls", "constraint_solves", "constraint_corrections"}},
       {"control", "motors look and set their torques", is_on(effects, "motor"), {"motor_calls"}},
       {"collision", "which bodies are near, how far apart, when they meet", colliding, {"candidate_pairs", "gap_evaluations", "root_findings"}},
-      {"impacts", "impulses where bodies meet", colliding, {"impacts", "impulses", "micro_impacts", "nudges", "bodies_put_to_rest", "bodies_woken"}},
+      {"impacts", "impulses where bodies meet", colliding, sleeping ? std::vector<std::string>{"impacts", "impulses", "micro_impacts", "nudges"} : std::vector<std::string>{"impacts", "impulses", "micro_impacts", "nudges", "bodies_put_to_rest", "bodies_woken"}},
       {"contacts", "the forces where bodies lie, slide and roll", is_on(effects, "lasting contact"),
-       {"contact_solves", "contact_points", "contact_sweeps", "contact_factorisations", "contacts_begun", "contacts_ended", "friction_points", "bodies_put_to_sleep"}},
+       {"contact_solves", "contact_points", "contact_sweeps", "contact_factorisations", "contact_unsolved", "contacts_begun", "contacts_ended", "friction_points"}},
+      {"sleep", "bodies at rest that are left alone, until something would move them", sleeping, {"bodies_put_to_sleep", "bodies_woken", "body_steps_asleep"}},
       {"recording", "frames and events", true, {}},
   };
 }
@@ -71,33 +74,47 @@ std::string grouped(std::uint64_t value) {
 
 /// The entries that asked, those of one entry (a chain, a lattice) on one line.
 struct AskerLine {
-  std::string pointer, what;
+  std::string pointer, place, what;
   std::size_t count;
 };
-std::vector<AskerLine> lines_of(const Effect& effect) {
+std::vector<AskerLine> lines_of(const Effect& effect, const scene::Scene& scene) {
+  const std::string file = scene.file.filename().string();
   std::vector<AskerLine> lines;
   for (const auto& asker : effect.askers) {
     if (!lines.empty() && lines.back().pointer == asker.pointer && !asker.pointer.empty()) ++lines.back().count;
-    else lines.push_back({asker.pointer, asker.what, 1});
+    else lines.push_back({asker.pointer, asker.line > 0 ? fmt::format("{}:{}: {}", file, asker.line, asker.pointer) : asker.pointer, asker.what, 1});
   }
   for (AskerLine& line : lines)
     if (line.count > 1) line.what += fmt::format(" ... ({} like it)", line.count);
   return lines;
 }
 
-void print_effects(const std::vector<Effect>& effects, const Trajectory* run) {
-  constexpr std::size_t kMostLines = 6;
-  fmt::print("\n  {:<16} {:<24} {}\n", "effects", "asked for by", "that is");
+constexpr std::size_t kMostLines = 6;   // of one effect
+
+/// Of the column that says where the entries stand.
+std::size_t width_of_places(const std::vector<Effect>& effects, const scene::Scene& scene) {
+  constexpr std::size_t kLeast = 20, kMost = 60;
+  std::size_t width = kLeast;
+  for (const Effect& effect : effects) {
+    const auto lines = lines_of(effect, scene);
+    for (std::size_t i = 0; i < std::min(lines.size(), kMostLines); ++i) width = std::max(width, lines[i].place.size());
+  }
+  return std::min(width, kMost);
+}
+
+void print_effects(const scene::Scene& scene, const std::vector<Effect>& effects, const Trajectory* run) {
+  const std::size_t width = width_of_places(effects, scene);
+  fmt::print("\n  {:<16} {:<{}} {}\n", "effects", "asked for by", width, "that is");
   for (const Effect& effect : effects) {
     if (!effect.is_on()) continue;
-    const auto lines = lines_of(effect);
+    const auto lines = lines_of(effect, scene);
     std::string name = effect.name;
     for (std::size_t i = 0; i < std::min(lines.size(), kMostLines); ++i) {
-      fmt::print("  {:<16} {:<24} {}\n", name, lines[i].pointer, lines[i].what);
+      fmt::print("  {:<16} {:<{}} {}\n", name, lines[i].place, width, lines[i].what);
       name.clear();
     }
-    if (lines.size() > kMostLines) fmt::print("  {:<16} {:<24} (--json lists all)\n", "", fmt::format("... and {} more", lines.size() - kMostLines));
-    if (run != nullptr) fmt::print("  {:<16} {:<24} asked {} times ({})\n", "", "", grouped(count_of(*run, effect.counter)), effect.counter);
+    if (lines.size() > kMostLines) fmt::print("  {:<16} {:<{}} (--json lists all)\n", "", fmt::format("... and {} more", lines.size() - kMostLines), width);
+    if (run != nullptr) fmt::print("  {:<16} {:<{}} asked {} times ({})\n", "", "", width, grouped(count_of(*run, effect.counter)), effect.counter);
     if (!effect.note.empty()) fmt::print("  {:<16} note: {}\n", "", effect.note);
   }
   std::string off, notes;
@@ -152,8 +169,8 @@ void print_stages(const std::vector<Stage>& stages, const Trajectory* run) {
     fmt::print("  {:<16}\n", "other counts");
     print_counts(others, *run);
   }
-  fmt::print("\n  A stage's time holds that of the stages it asks: bodies that are tied are moved, constraints and control included, when\n"
-             "  integration or collision first wants to know where they are.\n");
+  fmt::print("\n  A stage's time holds that of the stages it asks: moving bodies that are tied (integration) asks for their forces and constraints.\n"
+             "  Gravity and point forces on free bodies are counted, not timed: a clock would cost more than they do.\n");
 }
 
 std::string bodies_line(const scene::Scene& scene) {
@@ -168,7 +185,7 @@ void print_page(const scene::Scene& scene, const std::vector<Effect>& effects, c
     static const char* const kinds[] = {"nothing", "Baumgarte's term", "projection"};
     fmt::print("  rods and joints are kept together by {}\n", kinds[static_cast<int>(scene.stabilisation->kind)]);
   }
-  print_effects(effects, run);
+  print_effects(scene, effects, run);
   print_stages(stages, run);
   if (run == nullptr) fmt::print("\n  --run runs it and adds what each costs.\n");
   else if (!run->stopped_by.empty()) fmt::print("\n  STOPPED: {}\n", run->stopped_by);
@@ -178,10 +195,11 @@ void print_json(const scene::Scene& scene, const std::vector<Effect>& effects, c
   nlohmann::ordered_json page;
   page["scene"] = scene.name;
   page["title"] = scene.title;
+  page["file"] = scene.file.string();
   page["scene_hash"] = scene.hash;
   for (const Effect& effect : effects) {
     nlohmann::ordered_json entry = {{"name", effect.name}, {"on", effect.is_on()}, {"stage", effect.stage}, {"asked_for_by", nlohmann::json::array()}, {"note", effect.note}};
-    for (const auto& asker : effect.askers) entry["asked_for_by"].push_back({{"pointer", asker.pointer}, {"what", asker.what}});
+    for (const auto& asker : effect.askers) entry["asked_for_by"].push_back({{"pointer", asker.pointer}, {"line", asker.line}, {"what", asker.what}});
     if (run != nullptr) entry["calls"] = count_of(*run, effect.counter);
     page["effects"].push_back(entry);
   }

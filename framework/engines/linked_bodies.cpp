@@ -127,6 +127,7 @@ std::vector<Body> LinkedBodies::place_bodies(const std::vector<RigidBodyState>& 
 
 // Of everything but rods and joints.
 std::vector<Wrench> LinkedBodies::forces(const std::vector<RigidBodyState>& local, const std::vector<Body>& bodies) {
+  const StageTimer timer(counters_.force_seconds);
   std::vector<Wrench> wrenches(bodies.size(), {Vector3d::Zero(), Vector3d::Zero()});
   for (std::size_t i = 0; i < bodies_.size(); ++i) wrenches[i] = outer_wrench_(bodies_[i], local[i]);
   if (built::kSpring) add_springs(bodies, wrenches);

@@ -48,6 +48,11 @@ class RetroactiveRun {
   bool has_modes() const { return built::kFriction && built::kContact && modes_.has_value(); }
   bool has_sleepers() const { return built::kSleep && built::kContact && sleepers_.has_value(); }
 
+  template <class Write>
+  void record(const Write& write) {
+    const StageTimer timer(counters_.record_seconds);
+    write();
+  }
   void run_to_the_end();
   double next_target() const;
   void switch_forces();
@@ -244,7 +249,7 @@ void RetroactiveRun::advance_to(double target) {
     }
     if (has_modes()) modes_->look(moving_.time());
     const double before = moving_.time(), reached = earliest ? earliest->time : moving_.target();
-    recorder_.record_before(moving_, reached);
+    record([&] { recorder_.record_before(moving_, reached); });
     moving_.commit(reached);
     watch_for_trouble();
     if (!stopped_by_.empty()) return;
@@ -288,7 +293,7 @@ void RetroactiveRun::run_to_the_end() {
       if (moving_.may_collide(i, j)) all.emplace_back(i, j);
   meetings_.separate(all);
   if (has_contacts()) contacts_->begin_where_touching(all);
-  recorder_.record_committed(moving_);
+  record([&] { recorder_.record_committed(moving_); });
   while (stopped_by_.empty() && moving_.time() < duration_) {
     next_look_ = moving_.look();
     if (has_sleepers()) sleepers_->wake_where_control_changes();
@@ -301,7 +306,7 @@ void RetroactiveRun::run_to_the_end() {
       stopped_by_ = fmt::format("at t = {:.6f} s, {} (integrator: {}; impulses: {}; springs, rods, contacts: {}); a shorter step or another method is needed, or one of "
                                 "these is wrong", moving_.time(), *runaway, laws_.integrator_source, laws_.impulse_source, laws_.constraint_source);
     }
-    recorder_.record_committed(moving_);
+    record([&] { recorder_.record_committed(moving_); });
     if (has_sleepers()) sleepers_->look(touching_);
   }
 }

@@ -45,6 +45,8 @@ Counters RunCounters::named() const {
                          {"constraints", constraint_seconds},
                          {"contacts", contact_seconds},
                          {"control", control_seconds},
+                         {"forces", force_seconds},
+                         {"sleep", sleep_seconds},
                          {"recording", record_seconds}};
   named.notices = notices;
   return named;

@@ -22,7 +22,7 @@ struct RunCounters {
   collision::ImpactCost collision;
   std::vector<std::string> notices;   // once each
   double integration_seconds = 0.0, collision_seconds = 0.0, impact_seconds = 0.0, record_seconds = 0.0;
-  double constraint_seconds = 0.0, contact_seconds = 0.0, control_seconds = 0.0;
+  double constraint_seconds = 0.0, contact_seconds = 0.0, control_seconds = 0.0, force_seconds = 0.0, sleep_seconds = 0.0;
 
   /// Effects that no entry called for are reported as 0 calls, so that a reader sees that they did not run.
   Counters named() const;

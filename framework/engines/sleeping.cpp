@@ -101,6 +101,7 @@ std::map<int, Sleepers::Group> Sleepers::groups_of(const std::vector<Pair>& touc
 }
 
 void Sleepers::look(const std::vector<Pair>& touching) {
+  const StageTimer timer(counters_.sleep_seconds);
   for (int body = 0; body < moving_.size(); ++body) {
     if (moving_.can_move(body)) watch(body);
     else if (moving_.asleep(body)) ++counters_.body_steps_asleep;

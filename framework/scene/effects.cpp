@@ -10,6 +10,13 @@ namespace {
 std::string ending(const std::string& body) { return body.empty() ? "the world" : body; }
 std::string between(const AnchorSpec& a, const AnchorSpec& b) { return ending(a.body) + " to " + ending(b.body); }
 
+// An entry without a line of its own (a friction that is left out) stands in its parent.
+int line_of(const Scene& scene, std::string pointer) {
+  while (!scene.lines.contains(pointer) && !pointer.empty()) pointer.erase(pointer.rfind('/'));
+  const auto found = scene.lines.find(pointer);
+  return found == scene.lines.end() || pointer.empty() ? 0 : found->second;
+}
+
 Effect gravity(const Scene& scene) {
   Effect effect{"gravity", "integration", "gravity_calls", {}, ""};
   if (!scene.gravity_m_s2) return effect;
@@ -27,14 +34,14 @@ Effect point_force(const Scene& scene) {
 }
 
 Effect spring(const Scene& scene) {
-  Effect effect{"spring", "integration", "spring_calls", {}, ""};
+  Effect effect{"spring", "forces", "spring_calls", {}, ""};
   for (const auto& one : scene.springs)
     effect.askers.push_back({one.pointer, fmt::format("{}: {}, {:g} N/m, {:g} N s/m, {:.4g} m at rest", one.name, between(one.a, one.b), one.stiffness_n_m, one.damping_n_s_m, one.rest_length_m)});
   return effect;
 }
 
 Effect drag(const Scene& scene) {
-  Effect effect{"drag", "integration", "drag_calls", {}, ""};
+  Effect effect{"drag", "forces", "drag_calls", {}, ""};
   for (const auto& one : scene.drags) effect.askers.push_back({one.pointer, fmt::format("{}: {:g} N s/m, {:g} N m s", one.body, one.linear_n_s_m, one.angular_n_m_s)});
   return effect;
 }
@@ -98,7 +105,7 @@ Effect friction(const Scene& scene) {
 }
 
 Effect sleep(const Scene& scene) {
-  Effect effect{"sleep", "contacts", "bodies_put_to_sleep", {}, ""};
+  Effect effect{"sleep", "sleep", "bodies_put_to_sleep", {}, ""};
   if (scene.contact && scene.contact->sleep && !colliding_bodies(scene).empty()) effect.askers.push_back({"/contact/sleep", "bodies at rest are left alone"});
   return effect;
 }
@@ -106,7 +113,10 @@ Effect sleep(const Scene& scene) {
 }  // namespace
 
 std::vector<Effect> effects_of(const Scene& scene) {
-  return {gravity(scene), point_force(scene), spring(scene), drag(scene), rod(scene), joint(scene), motor(scene), collision(scene), contact(scene), friction(scene), sleep(scene)};
+  std::vector<Effect> effects{gravity(scene), point_force(scene), spring(scene), drag(scene), rod(scene), joint(scene), motor(scene), collision(scene), contact(scene), friction(scene), sleep(scene)};
+  for (Effect& effect : effects)
+    for (Asker& asker : effect.askers) asker.line = line_of(scene, asker.pointer);
+  return effects;
 }
 
 }  // namespace tumble::scene

@@ -12,6 +12,7 @@ namespace tumble::scene {
 struct Asker {
   std::string pointer;        // JSON pointer of the entry; empty where the scene was made in memory
   std::string what;           // in words, such as "rod 1: ball_1 to the world, 0.5 m"
+  int line = 0;               // of the scene's file, where the entry begins; 0 where the scene was made in memory
 };
 
 struct Effect {

@@ -101,6 +101,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& file) {
   Scene scene;
   scene.name = file.stem().string();
   scene.file = file;
+  scene.lines = document.lines;
   scene.hash = digest(text);
   scene.title = root.at("title");
   read(root, "about", scene.about);

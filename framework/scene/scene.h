@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -162,6 +163,7 @@ struct Scene {
   std::string title;
   std::string about;                // what a viewer should notice
   std::filesystem::path file;
+  std::map<std::string, int> lines; // by JSON pointer: the line of the file where the value or its key begins; empty: made in memory
   std::string hash;                 // hex digest of the file's bytes, for records
   double duration_s = 0.0;
   double step_s = 1.0 / 60.0;

@@ -46,6 +46,21 @@ TEST(Effects, OnlyWhatASceneAsksForRuns) {
   }
 }
 
+TEST(Effects, AStageIsTimedWhereItIsThere) {
+  const Laws laws = reference_laws();
+  // What every run does, and what an effect adds to it.
+  const std::map<std::string, std::vector<std::string>> stages_of = {
+      {"gravity", {}}, {"spring", {"forces"}}, {"rod", {"forces", "constraints"}}, {"motor", {"forces", "constraints", "control"}}, {"collision", {"impacts"}}, {"sleep", {"contacts", "sleep"}}};
+  for (const auto& [effect, stages] : stages_of) {
+    scene::Scene scene = bare();
+    kEffects.at(effect)(scene);
+    for (const auto& [stage, seconds] : run(scene, laws).counters.stage_seconds) {
+      const bool there = stage == "integration" || stage == "collision" || stage == "recording" || std::find(stages.begin(), stages.end(), stage) != stages.end();
+      EXPECT_EQ(seconds > 0.0, there) << stage << " in a scene with " << effect;
+    }
+  }
+}
+
 /// A stack of five at rest, 20 balls that fall a kilometre above it, or both.
 scene::Scene stack_and_balls(bool stack, bool balls) {
   std::vector<scene::BodySpec> bodies{plane("floor", Vector3d::Zero(), Vector3d::UnitZ())};

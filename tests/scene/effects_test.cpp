@@ -44,6 +44,20 @@ TEST(Effects, AnAskerIsNamedByItsEntry) {
     }
 }
 
+TEST(Effects, AnAskerIsFoundByItsLine) {
+  const Scene scene = scene_with(R"(, "friction": 0.4)", ", \"contact\": {},\n \"gravity_m_s2\": [0, 0, -9.81]");
+  std::map<std::string, int> lines;
+  for (const Effect& effect : effects_of(scene))
+    if (effect.is_on()) lines[effect.name] = effect.askers.back().line;
+  EXPECT_EQ(lines.at("collision"), 3);         // the ball's
+  EXPECT_EQ(lines.at("friction"), 3);
+  EXPECT_EQ(lines.at("lasting contact"), 3);
+  EXPECT_EQ(lines.at("gravity"), 4);
+  Scene in_memory = scene;
+  in_memory.lines.clear();
+  EXPECT_EQ(effects_of(in_memory)[0].askers[0].line, 0);
+}
+
 TEST(Effects, WhatSeemsToBeAskedForAndIsNotSaysWhy) {
   Scene scene = scene_with("", R"(, "contact": {})");
   scene.bodies[1].friction = 0.5;   // only one of the two has friction: of a pair, the smaller counts
