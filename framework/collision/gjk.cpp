@@ -21,17 +21,19 @@ bool holds(const Simplex& simplex, const DifferencePoint& point) {
 // difference of two near points cannot: a direction that is off by rounding over distance would find the wrong corner next.
 void settle(const Vector3d& nearest, GjkResult& result) {
   const Simplex& s = result.simplex;
+  if (s.size == 3) {
+    const Vector3d u = s.points[1].difference - s.points[0].difference, v = s.points[2].difference - s.points[0].difference;
+    const Vector3d across = u.cross(v);
+    const double squared = across.squaredNorm();
+    if (squared > kSliver * kSliver * u.squaredNorm() * v.squaredNorm()) {
+      const double height = across.dot(s.points[0].difference), area = std::sqrt(squared);
+      result.normal = across / (height < 0 ? -area : area);
+      result.distance = std::abs(height) / area;
+      return;
+    }
+  }
   result.distance = nearest.norm();
   result.normal = result.distance > 0 ? Vector3d(nearest / result.distance) : Vector3d::UnitZ();
-  if (s.size < 3) return;
-  const Vector3d u = s.points[1].difference - s.points[0].difference, v = s.points[2].difference - s.points[0].difference;
-  const Vector3d across = u.cross(v);
-  const double area = across.norm();
-  if (!(area > kSliver * u.norm() * v.norm())) return;
-  const Vector3d n = across / area;
-  const double height = n.dot(s.points[0].difference);
-  result.normal = height < 0 ? Vector3d(-n) : n;
-  result.distance = std::abs(height);
 }
 
 }  // namespace
@@ -58,17 +60,18 @@ GjkResult gjk(const PlacedPolytope& a, const PlacedPolytope& b, double size, dou
     }
     if (result.distance - result.lower_bound <= kRoundOff * size) break;
     if (holds(simplex, next)) break;
-    GjkResult grown = result;
-    grown.simplex.points[grown.simplex.size++] = next;
-    const Vector3d nearest = reduce_to_nearest(grown.simplex);
-    if (grown.simplex.size == 4) {
-      simplex = grown.simplex;
+    const GjkResult before = result;
+    simplex.points[simplex.size++] = next;
+    const Vector3d nearest = reduce_to_nearest(simplex);
+    if (simplex.size == 4) {
       result.verdict = Apartness::kEnclosed;
       return result;
     }
-    settle(nearest, grown);
-    if (!(grown.distance < result.distance)) break;  // round-off ends the descent
-    result = grown;
+    settle(nearest, result);
+    if (!(result.distance < before.distance)) {  // round-off ends the descent
+      result = before;
+      break;
+    }
   }
   result.verdict = result.distance > touching ? Apartness::kApart : Apartness::kTouching;
   return result;

@@ -117,9 +117,9 @@ void append_corners(const Region& region, std::vector<NearPoint>& points) {
   for (const int corner : hull_corners(all, region.normal)) points.push_back(region.points[corner]);
 }
 
-std::vector<NearPoint> between_convex(const Query& query, const Vector3d& com_b_world, double reach) {
+std::vector<NearPoint> between_convex(const Query& query, const Vector3d& com_b_world, double reach, PairCache* cache) {
   const PlacedPolytope placed_a = query.piece_of_a(0), placed_b = query.piece_of_b(0);
-  const PolytopeGap found = polytope_gap(placed_a, placed_b, query.size, reach);
+  const PolytopeGap found = convex_gap(query, reach, cache);
   if (found.beyond || found.distance > reach) return {};
   Region region{found.normal_b_to_a, {}};
   add_points(placed_a, placed_b, region.normal, reach, com_b_world, region);
@@ -171,7 +171,7 @@ std::vector<NearPoint> near_points(const CollisionShape& a, const Pose& pose_a, 
   }
   const Query query(a, pose_a, b, pose_b);
   const bool convex = !a.is_closed_surface() && !b.is_closed_surface();
-  return convex ? between_convex(query, pose_b.com_world, reach) : between_surfaces(query, pose_b.com_world, reach, cache);
+  return convex ? between_convex(query, pose_b.com_world, reach, cache) : between_surfaces(query, pose_b.com_world, reach, cache);
 }
 
 }  // namespace tumble::collision

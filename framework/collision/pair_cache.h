@@ -1,8 +1,8 @@
 /// What a caller may keep about a pair of solids between questions, to be answered sooner. Answers are the same without it, bit for bit.
 ///
 /// Keep one object a pair of solids (the same two, in the same order) and hand its address to every question about them; forget it
-/// when the pair is forgotten. It helps where one of the two is not convex: of thousands of pairs of faces only those near each other
-/// are looked at, as long as the two have not moved far. Not to be shared between threads. Nothing in it concerns the caller.
+/// when the pair is forgotten. Where one of the two is not convex, of thousands of pairs of faces only
+/// those near each other are looked at as long as the two have not moved far; two convex solids out of reach are told by one axis. Not to be shared between threads. Nothing in it concerns the caller.
 #pragma once
 
 #include <vector>
@@ -21,6 +21,7 @@ struct PairCache {
   Matrix3d a_from_b = Matrix3d::Identity();    // where the two were then
   Vector3d b_in_a = Vector3d::Zero(), a_in_b = Vector3d::Zero();   // [m]
   int served = 0, unused = 0;                  // questions answered from it; to pass until it is filled again
+  Vector3d apart_along_body_a = Vector3d::Zero();   // of two convex solids; zero: not known
 };
 
 }  // namespace tumble::collision

@@ -146,11 +146,24 @@ bool look_in_cache(const Query& query, double limit, PairCache& cache, Nearest& 
 
 }  // namespace
 
+PolytopeGap convex_gap(const Query& query, double limit, PairCache* cache) {
+  const PlacedPolytope a = query.piece_of_a(0), b = query.piece_of_b(0);
+  // A bound that is beyond all rounding: without it the answer would be the same.
+  const double certain = std::max(limit, 0.0) + rounding(query);
+  if (cache && !cache->apart_along_body_a.isZero(0.0)) {
+    const Vector3d axis = query.rotation_a * cache->apart_along_body_a;
+    if (const double apart = separation_along(a, b, axis); apart > certain) return {apart, Vector3d::Zero(), Vector3d::Zero(), axis, true};
+  }
+  const PolytopeGap gap = polytope_gap(a, b, query.size, limit);
+  if (cache) cache->apart_along_body_a = gap.beyond ? a.in_body(gap.normal_b_to_a) : Vector3d::Zero();
+  return gap;
+}
+
 NearestPieces nearest_pieces(const Query& query, double limit, PairCache* cache) {
   Nearest nearest(query, limit);
   if (one_pair(query)) {
-    if (NodeDistance(query)(0, 0, limit) <= limit + rounding(query)) nearest.look_at(0, 0);
-    return nearest.best();
+    const PolytopeGap gap = convex_gap(query, limit, cache);
+    return gap.beyond || gap.distance > limit ? NearestPieces{} : NearestPieces{0, 0, gap};
   }
   if (cache && look_in_cache(query, limit, *cache, nearest)) {
     ++cache->served;

@@ -38,6 +38,9 @@ struct NearestPieces {
 /// @param cache  may be null
 NearestPieces nearest_pieces(const Query& query, double limit, PairCache* cache);
 
+/// The gap of two solids of one piece each, as polytope_gap gives it. @param limit, cache  as above
+PolytopeGap convex_gap(const Query& query, double limit, PairCache* cache);
+
 /// Pairs of pieces that may be within `reach` of each other, sorted: all that are, and some that are not.
 std::vector<std::pair<int, int>> pieces_within(const Query& query, double reach, PairCache* cache);
 

@@ -8,8 +8,8 @@ namespace tumble::collision {
 void Polytope::prepare() {
   const int n = static_cast<int>(vertices.size());
   columns.clear();
-  for (int i = 0; i < n; i += 2) {
-    const Vector3d &v = vertices[i], &w = vertices[std::min(i + 1, n - 1)];
+  for (int i = 0; i < n || columns.size() % 2 != 0; i += 2) {
+    const Vector3d &v = vertices[std::min(i, n - 1)], &w = vertices[std::min(i + 1, n - 1)];
     columns.push_back({Lanes{v.x(), w.x()}, Lanes{v.y(), w.y()}, Lanes{v.z(), w.z()}});
   }
   arms.clear();
@@ -36,21 +36,39 @@ void Polytope::prepare() {
 
 int Polytope::lowest(const Vector3d& direction, double& height) const {
   const Lanes x = {direction.x(), direction.x()}, y = {direction.y(), direction.y()}, z = {direction.z(), direction.z()};
-  Lanes best = columns[0][0] * x + columns[0][1] * y + columns[0][2] * z;
-  using Places = long long __attribute__((vector_size(16)));
-  Places place = {0, 1};
-  Places at = place;
-  const Places two = {2, 2};
-  for (std::size_t k = 1; k < columns.size(); ++k) {
-    at += two;
-    const Lanes h = columns[k][0] * x + columns[k][1] * y + columns[k][2] * z;
-    const Places lower = h < best;
-    best = lower ? h : best;
-    place = lower ? at : place;
+  const auto heights = [&](const Columns& c) { return c[0] * x + c[1] * y + c[2] * z; };
+  // First how low, then which: four at a time, and no step waits for the one before to have been compared.
+  constexpr std::size_t kMost = 64;
+  const std::size_t n = columns.size();
+  if (n > kMost) return lowest_of_many(direction, height);
+  Lanes kept[kMost];
+  kept[0] = heights(columns[0]);
+  kept[1] = heights(columns[1]);
+  Lanes even = kept[0], odd = kept[1];
+  for (std::size_t k = 2; k < n; k += 2) {
+    kept[k] = heights(columns[k]);
+    kept[k + 1] = heights(columns[k + 1]);
+    even = kept[k] < even ? kept[k] : even;
+    odd = kept[k + 1] < odd ? kept[k + 1] : odd;
   }
-  const int lane = best[1] < best[0] || (best[1] == best[0] && place[1] < place[0]) ? 1 : 0;
-  height = best[lane];
-  return std::min(static_cast<int>(place[lane]), static_cast<int>(vertices.size()) - 1);
+  even = odd < even ? odd : even;
+  height = even[1] < even[0] ? even[1] : even[0];
+  for (std::size_t k = 0; k < n; ++k) {
+    if (kept[k][0] == height) return static_cast<int>(2 * k);
+    if (kept[k][1] == height) return static_cast<int>(2 * k + 1);
+  }
+  return 0;   // not a number anywhere
+}
+
+int Polytope::lowest_of_many(const Vector3d& direction, double& height) const {
+  int best = 0;
+  height = direction.dot(vertices[0]);
+  for (int i = 1; i < static_cast<int>(vertices.size()); ++i)
+    if (const double h = direction.dot(vertices[i]); h < height) {
+      height = h;
+      best = i;
+    }
+  return best;
 }
 
 double separation_along(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& n) {

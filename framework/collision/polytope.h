@@ -19,7 +19,7 @@ struct Polytope {
   // Worked out from these by `prepare`.
   using Lanes = double __attribute__((vector_size(16)));
   using Columns = std::array<Lanes, 3>;     // x, y and z of two vertices: one instruction works on both
-  std::vector<Columns> columns;            // the last vertex again where their number is odd
+  std::vector<Columns> columns;            // the last vertex again up to a multiple of four
   std::vector<double> arms;                // distance of each vertex from the origin [m]
   std::vector<double> face_offsets;        // largest normal . vertex [m]
   std::vector<int> first_neighbour;        // neighbours of vertex i: from first_neighbour[i] to first_neighbour[i + 1]
@@ -28,6 +28,9 @@ struct Polytope {
   void prepare();
   /// The vertex that lies lowest along a direction, of equal ones the first. @param height  where it lies [m]
   int lowest(const Vector3d& direction, double& height) const;
+
+ private:
+  int lowest_of_many(const Vector3d& direction, double& height) const;
 };
 
 /// A polytope where it stands now, in the frame of a query.
@@ -38,7 +41,7 @@ struct PlacedPolytope {
 
   Vector3d vertex(int i) const { return query_from_body * polytope->vertices[i] + translation; }
   int size() const { return static_cast<int>(polytope->vertices.size()); }
-  Vector3d in_body(const Vector3d& direction) const { return query_from_body.transpose() * direction; }
+  Vector3d in_body(const Vector3d& d) const { return {query_from_body.col(0).dot(d), query_from_body.col(1).dot(d), query_from_body.col(2).dot(d)}; }
   /// Index of the vertex that lies lowest along a direction.
   int lowest(const Vector3d& direction) const {
     double height;
