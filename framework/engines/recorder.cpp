@@ -1,28 +1,42 @@
 #include "framework/engines/recorder.h"
 
+#include <algorithm>
 #include <limits>
 
 #include "framework/engines/sleeping.h"
 
 namespace tumble::engines {
+namespace {
 
-double smallest_gap(const MovingWorld& moving, const std::vector<RigidBodyState>& states) {
-  double smallest = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < moving.size(); ++i) {
-    for (int j = i + 1; j < moving.size(); ++j) {
-      if (!moving.may_collide(i, j)) continue;
-      const collision::CollisionShape& a = moving.shape(i);
-      const collision::CollisionShape& b = moving.shape(j);
-      if (!a.is_half_space() && !b.is_half_space()) {
-        // No gap is smaller than that of the balls around the two.
-        const double reach = smallest + a.bounding_radius() + b.bounding_radius();
-        if ((states[i].com_world - states[j].com_world).squaredNorm() > reach * reach) continue;
-      }
-      const auto pose = [&](int k) { return collision::Pose{states[k].com_world, states[k].world_from_body}; };
-      smallest = std::min(smallest, collision::compute_gap(a, pose(i), b, pose(j)).distance);
-    }
+// No pair whose gap is at least `smallest` changes it, and that of most is told by the balls around the two.
+double smaller_gap(const MovingWorld& moving, const std::vector<RigidBodyState>& states, int i, int j, double smallest) {
+  if (!moving.may_collide(i, j)) return smallest;
+  const collision::CollisionShape& a = moving.shape(i);
+  const collision::CollisionShape& b = moving.shape(j);
+  if (!a.is_half_space() && !b.is_half_space()) {
+    const double reach = smallest + a.bounding_radius() + b.bounding_radius();
+    if ((states[i].com_world - states[j].com_world).squaredNorm() > reach * reach) return smallest;
   }
-  return smallest;
+  const auto pose = [&](int k) { return collision::Pose{states[k].com_world, states[k].world_from_body}; };
+  return std::min(smallest, collision::compute_gap(a, pose(i), b, pose(j)).distance);
+}
+
+}  // namespace
+
+double SmallestGap::measure(const MovingWorld& moving, const std::vector<RigidBodyState>& states) {
+  std::vector<char> still(moving.size());
+  for (int i = 0; i < moving.size(); ++i) still[i] = moving.asleep(i) || (moving.world().bodies[i].immovable() && !moving.is_driven(i));
+  const auto over_pairs = [&](double smallest, bool of_still) {
+    for (int i = 0; i < moving.size(); ++i)
+      for (int j = i + 1; j < moving.size(); ++j)
+        if ((still[i] && still[j]) == of_still) smallest = smaller_gap(moving, states, i, j, smallest);
+    return smallest;
+  };
+  if (still != still_) {
+    still_gap_ = over_pairs(std::numeric_limits<double>::infinity(), true);
+    still_ = still;
+  }
+  return over_pairs(still_gap_, false);
 }
 
 void FrameRecorder::push(MovingWorld& moving, double t) {
@@ -42,7 +56,7 @@ void FrameRecorder::push(MovingWorld& moving, double t) {
   frame.potential_energy = sums.potential_energy;
   frame.momentum_world = sums.momentum_world;
   frame.angular_momentum_world = sums.angular_momentum_world;
-  frame.smallest_gap = smallest_gap(moving, states);
+  frame.smallest_gap = smallest_gap_.measure(moving, states);
   LinkForces forces = moving.measure_links(states, t);
   frame.spring_forces = std::move(forces.springs);
   frame.rod_tensions = std::move(forces.rods);

@@ -8,6 +8,17 @@ namespace tumble::engines {
 class LastingContacts;
 class Sleepers;
 
+/// Smallest gap over all pairs that may collide; infinite where there is none. [m] Pairs of bodies that stand still from frame to frame
+/// (asleep, or immovable) are measured once.
+class SmallestGap {
+ public:
+  double measure(const MovingWorld& moving, const std::vector<RigidBodyState>& states);
+
+ private:
+  std::vector<char> still_;    // by body, when still_gap_ was measured
+  double still_gap_ = 0.0;     // between two of these [m]
+};
+
 class FrameRecorder {
  public:
   FrameRecorder(double rate_hz, double duration, TrajectorySink& sink) : rate_(rate_hz), duration_(duration), sink_(sink) {}
@@ -29,10 +40,9 @@ class FrameRecorder {
   TrajectorySink& sink_;
   const LastingContacts* contacts_ = nullptr;
   const Sleepers* sleepers_ = nullptr;
+  SmallestGap smallest_gap_;
   long next_ = 0;
 };
 
-/// Smallest gap over all pairs that may collide; infinite where there is none. [m]
-double smallest_gap(const MovingWorld& moving, const std::vector<RigidBodyState>& states);
 
 }  // namespace tumble::engines

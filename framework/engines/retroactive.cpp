@@ -34,7 +34,7 @@ class RetroactiveRun {
     contacts_.emplace(moving_, laws_, *moving_.world().contact, scene.rest_speed_m_s, counters_, sink);
     impacts_.use_contact_rules(scene.rest_speed_m_s, moving_.world().contact->impact_law);
     recorder_.record_contacts_of(*contacts_);
-    if (built::kFriction && std::any_of(moving_.world().bodies.begin(), moving_.world().bodies.end(), [](const WorldBody& body) { return body.friction > 0.0; })) modes_.emplace(*contacts_, sink);
+    if (built::kFriction && std::any_of(moving_.world().bodies.begin(), moving_.world().bodies.end(), [](const WorldBody& body) { return body.friction > 0.0; })) modes_.emplace(moving_, *contacts_, scene.rest_speed_m_s, sink);
     if (!built::kSleep || !moving_.world().contact->sleep) return;
     sleepers_.emplace(moving_, *contacts_, modes_ ? &*modes_ : nullptr, scene.rest_speed_m_s, counters_, sink);
     recorder_.record_contacts_of(*sleepers_);
@@ -247,7 +247,7 @@ void RetroactiveRun::advance_to(double target) {
       begin_again();
       continue;
     }
-    if (has_modes()) modes_->look(moving_.time());
+    if (has_modes()) modes_->look();
     const double before = moving_.time(), reached = earliest ? earliest->time : moving_.target();
     record([&] { recorder_.record_before(moving_, reached); });
     moving_.commit(reached);

@@ -12,6 +12,7 @@ namespace {
 constexpr double kStillFor = 0.5;        // s: a swing that turns back within it is seen to swing
 constexpr double kSlow = 0.1;            // of the rest speed: faster than this, be it for a moment, is no rest
 constexpr double kMean = 0.01;           // of the rest speed, on the average: ten times what heaps are solved to, a step's fall times 1e-5
+constexpr double kMeanSliding = 1e-4;    // likewise, where something slides
 constexpr double kSameTorque = 1e-6;     // of the largest torque: what the rates of bodies at rest change in it
 constexpr double kSameAngle = 1e-9;      // rad: likewise, by a motor's stiffness
 constexpr double kRoom = 1e-8;           // of the smaller body: lasting contacts are kept nearer
@@ -20,7 +21,10 @@ constexpr double kRoom = 1e-8;           // of the smaller body: lasting contact
 
 Sleepers::Sleepers(MovingWorld& moving, const LastingContacts& contacts, const ContactModes* modes, double rest_speed, RunCounters& counters, TrajectorySink& sink)
     : moving_(moving), contacts_(contacts), modes_(modes), rest_speed_(rest_speed), counters_(counters), sink_(sink), group_of_(moving.size(), -1) {
-  for (const RigidBodyState& state : moving.states()) still_.push_back({moving.time(), state.com_world, state.world_from_body});
+  for (const RigidBodyState& state : moving.states()) {
+    const Place place{moving.time(), state.com_world, state.world_from_body};
+    still_.push_back({place, place});
+  }
   for (const LinkedBodies& group : moving.linked_groups()) torques_.push_back(group.torques());
 }
 
@@ -31,9 +35,15 @@ void Sleepers::watch(int body) {
   const WorldBody& b = moving_.world().bodies[body];
   const double radius = moving_.shape(body).bounding_radius();
   const double speed = b.inertia.inverse_mass * state.momentum_world.norm() + omega_of(state, b.inertia).norm() * radius;
-  const double way = (state.com_world - still.com_world).norm() + state.world_from_body.angularDistance(still.world_from_body) * radius;
-  if (speed <= kSlow * rest_speed_ && way <= kMean * rest_speed_ * kStillFor) return;
-  still = {moving_.time(), state.com_world, state.world_from_body};
+  const auto way = [&](const Place& place) { return (state.com_world - place.com_world).norm() + state.world_from_body.angularDistance(place.world_from_body) * radius; };
+  const Place here{moving_.time(), state.com_world, state.world_from_body};
+  const bool fast = speed > kSlow * rest_speed_;
+  if (fast || way(still.roughly) > kMean * rest_speed_ * kStillFor) still.roughly = here;
+  if (fast || way(still.strictly) > kMeanSliding * rest_speed_ * kStillFor) still.strictly = here;
+}
+
+bool Sleepers::is_still(const Group& group, double since) const {
+  return std::all_of(group.bodies.begin(), group.bodies.end(), [&](int body) { return (group.slides ? still_[body].strictly : still_[body].roughly).since <= since; });
 }
 
 bool Sleepers::torques_differ(int linked) const {
@@ -52,7 +62,7 @@ void Sleepers::watch_torques(int linked) {
   const LinkedBodies& group = moving_.linked_groups()[linked];
   if (!torques_differ(linked)) return;
   torques_[linked] = group.torques();
-  for (const int body : group.bodies()) still_[body].since = moving_.time();
+  for (const int body : group.bodies()) still_[body].roughly.since = still_[body].strictly.since = moving_.time();
 }
 
 // Awake bodies that touch or are linked.
@@ -76,12 +86,12 @@ std::map<int, Sleepers::Group> Sleepers::groups_of(const std::vector<Pair>& touc
   const bool weightless = !moving_.world().gravity_world;
   const auto end_at = [&](Group& group, int immovable) {
     group.held = true;
-    if (immovable >= 0 && moving_.is_driven(immovable)) group.moves = true;
+    if (immovable >= 0 && moving_.is_driven(immovable)) group.driven = true;
   };
   for (const auto& [a, b] : touching) {
     if (!moving_.can_move(a) && !moving_.can_move(b)) continue;
     Group& group = groups[find(moving_.can_move(a) ? a : b)];
-    group.moves = group.moves || (modes_ && modes_->slides({a, b}));
+    group.slides = group.slides || (modes_ && modes_->slides({a, b}));
     for (const int body : {a, b})
       if (moving_.world().bodies[body].immovable()) end_at(group, body);
   }
@@ -109,11 +119,10 @@ void Sleepers::look(const std::vector<Pair>& touching) {
   for (int k = 0; k < static_cast<int>(torques_.size()); ++k)
     if (moving_.can_move(moving_.linked_groups()[k].bodies().front())) watch_torques(k);
   const double latest = moving_.time() - kStillFor;
-  const auto still = [&](int body) { return still_[body].since <= latest; };
   for (int body = 0; body < moving_.size(); ++body)
-    if (moving_.can_move(body) && still(body)) {   // most of the time nobody is: no groups are made
+    if (moving_.can_move(body) && still_[body].roughly.since <= latest) {   // most of the time nobody is: no groups are made
       for (auto& [first, group] : groups_of(touching))
-        if (group.held && !group.moves && std::all_of(group.bodies.begin(), group.bodies.end(), still)) put_to_sleep(std::move(group));
+        if (group.held && !group.driven && is_still(group, latest)) put_to_sleep(std::move(group));
       return;
     }
 }
@@ -136,7 +145,7 @@ bool Sleepers::wake(int body, int waker) {
   for (const int sleeper : found->second.bodies) {
     moving_.wake(sleeper);
     group_of_[sleeper] = -1;
-    still_[sleeper].since = moving_.time();
+    still_[sleeper].roughly.since = still_[sleeper].strictly.since = moving_.time();
     sink_.event({moving_.time(), EventKind::kWake, sleeper, waker, moving_.state(sleeper).com_world, Vector3d::UnitZ(), 0.0, 0.0});
   }
   asleep_.erase(found);

@@ -3,8 +3,8 @@
 /// Bodies that touch each other or are linked are still or not as a group. A group falls asleep when for half a second none of its
 /// bodies was faster than a tenth of the rest speed, or left its place by more than a hundredth of the way that the rest speed makes in
 /// that time: 5 um at the rest speed that scenes start from, 1 mm/s. That is what a contact solver leaves of motion in heaps and, where
-/// there is no friction, in stacks. What slides by friction is not at rest, however slowly it creeps. Something must hold the group, too: a
-/// body at the top of its path is slow for a while, and not at rest.
+/// there is no friction, in stacks. Where a pair of the group slides by friction, a hundredth of that is too much: 1e-7 m/s, the creep that a
+/// sticking contact is allowed. Something must hold the group, too: a body at the top of its path is slow for a while, and not at rest.
 ///
 /// Asleep, a body keeps its place to the last bit and its velocity is zero; it is not integrated, its contacts are not solved, and it is
 /// no candidate with others that do not move. What its contacts carried in the last step stays on record. A group wakes as a whole, at
@@ -46,19 +46,24 @@ class Sleepers {
   void append_forces(std::vector<ContactPoint>& forces) const;
 
  private:
-  struct Stillness {
-    double since;                  // it was last seen to move [s]
+  struct Place {
+    double since;                  // it was last seen to have left its place [s]
     Vector3d com_world;            // then
     Quaterniond world_from_body;
+  };
+  struct Stillness {
+    Place roughly, strictly;
   };
   struct Group {
     std::vector<int> bodies;       // ascending
     std::vector<int> linked;       // places in linked_groups()
     std::vector<ContactPoint> forces;
-    bool held = false, moves = false;   // by something that does not move; by something that goes on
+    bool held = false, driven = false;   // by something that does not move; by something that moves by its own law
+    bool slides = false;
   };
 
   void watch(int body);
+  bool is_still(const Group& group, double since) const;
   void watch_torques(int linked);
   bool torques_differ(int linked) const;
   std::map<int, Group> groups_of(const std::vector<Pair>& touching) const;
