@@ -94,6 +94,10 @@ CollisionShape::CollisionShape(const Shape& shape) {
       pieces_.push_back(hull_polytope(solid->mesh_body));
     } else {
       for (const Face& face : solid->mesh_body.faces) pieces_.push_back(triangle_polytope(solid->mesh_body, face));
+      faces_ = solid->mesh_body.faces;
+      neighbours_.resize(solid->mesh_body.vertices.size());
+      for (const Face& face : faces_)
+        for (int i = 0; i < 3; ++i) neighbours_[face[i]].push_back(face[(i + 1) % 3]);   // closed: each edge once in either sense
     }
     vertices_ = solid->mesh_body.vertices;
   } else {

@@ -44,6 +44,9 @@ class CollisionShape {
   const std::vector<Vector3d>& vertices() const { return vertices_; }
   /// All vertices as one polytope without faces: what meets a half-space.
   const Polytope& corners() const { return corners_; }
+  /// Of a solid made of flat pieces: which vertices a piece has, and which vertices share an edge with a vertex.
+  const Face& vertices_of_piece(int piece) const { return faces_[piece]; }
+  const std::vector<int>& neighbours(int vertex) const { return neighbours_[vertex]; }
   /// Faces of a solid made of flat pieces, for the question whether a point is inside.
   bool holds_point(const Vector3d& point_body) const;
 
@@ -54,6 +57,8 @@ class CollisionShape {
   std::vector<BallNode> nodes_;
   std::vector<Vector3d> vertices_;
   Polytope corners_;
+  std::vector<Face> faces_;                     // of a solid made of flat pieces
+  std::vector<std::vector<int>> neighbours_;
   double radius_ = 0.0;
   double bounding_radius_ = 0.0;
 };

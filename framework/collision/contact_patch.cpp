@@ -33,7 +33,7 @@ FlatHull contact_patch(const CollisionShape& a, const Pose& pose_a, const Collis
     const double reach = std::max(gap.distance, 0.0) + tolerance;
       for (const auto& [i, j] : pieces_within(query, reach, nullptr)) {
       const PlacedPolytope placed_a = query.piece_of_a(i), placed_b = query.piece_of_b(j);
-      const PolytopeGap found = polytope_gap(placed_a, placed_b, query.size, reach);
+      const PolytopeGap found = polytope_gap(placed_a, placed_b, query.size, reach, Points::kUnwanted);
       if (found.beyond || found.distance > reach || (found.normal_b_to_a - n).norm() > kSameNormal) continue;
       for (const Vector3d& p : facing_region(placed_a, placed_b, n, tolerance)) points.push_back(pose_b.com_world + p);
     }

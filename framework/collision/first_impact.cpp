@@ -31,7 +31,7 @@ struct Search {
 
   double gap_at(double t) const {
     ++cost.gap_evaluations;
-    return compute_gap(a, motion_a.at(t).pose, b, motion_b.at(t).pose, cache).distance;
+    return gap_distance(a, motion_a.at(t).pose, b, motion_b.at(t).pose, cache);
   }
   double rate_at(double t) const {
     const MotionState sa = motion_a.at(t), sb = motion_b.at(t);

@@ -44,7 +44,7 @@ Gap gap_of_balls(const CollisionShape& a, const Pose& pose_a, const CollisionSha
 }
 
 Gap gap_of_pieces(const CollisionShape& a, const CollisionShape& b, const Query& query, const Vector3d& com_b_world, PairCache* cache) {
-  const PolytopeGap best = nearest_pieces(query, kInfinity, cache).gap;
+  const PolytopeGap best = nearest_pieces(query, kInfinity, cache, Points::kWanted).gap;
   Gap gap;
   gap.distance = best.distance - (a.radius() + b.radius());
   gap.normal_b_to_a_world = best.normal_b_to_a;
@@ -69,8 +69,13 @@ Gap compute_gap(const CollisionShape& a, const Pose& pose_a, const CollisionShap
   return gap_of_pieces(a, b, Query(a, pose_a, b, pose_b), pose_b.com_world, cache);
 }
 
+double gap_distance(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, PairCache* cache) {
+  if (a.is_half_space() || b.is_half_space() || (a.is_ball() && b.is_ball())) return compute_gap(a, pose_a, b, pose_b).distance;
+  return nearest_pieces(Query(a, pose_a, b, pose_b), kInfinity, cache, Points::kUnwanted).gap.distance - (a.radius() + b.radius());
+}
+
 bool overlapping(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double allowance) {
-  if (compute_gap(a, pose_a, b, pose_b).distance < -allowance) return true;
+  if (gap_distance(a, pose_a, b, pose_b) < -allowance) return true;
   return holds_some_point_of(a, pose_a, b, pose_b) || holds_some_point_of(b, pose_b, a, pose_a);
 }
 

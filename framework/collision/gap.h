@@ -18,12 +18,15 @@ struct Gap {
 };
 
 /// The gap between two solids.
-/// Round shapes and half-spaces: closed forms, also when overlapping. Polytopes: see polytope.h. Surfaces that are not
+/// Round shapes and half-spaces: closed forms, also when overlapping. Polytopes: see polytope_gap.h. Surfaces that are not
 /// convex: the smallest over their faces; an overlap is any negative number, and a solid wholly inside another is not
 /// noticed here (see `overlapping`).
 /// @param cache  of this pair, may be null: see pair_cache.h
 /// @return distance to a few roundings of the solids' size and of the distance of their centres. Infinite between two half-spaces.
 Gap compute_gap(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, PairCache* cache = nullptr);
+
+/// The same distance to the last bit, sooner: without the nearest points. [m]
+double gap_distance(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, PairCache* cache = nullptr);
 
 /// Whether two solids share a point of their insides, also when one lies wholly inside the other. For initial states.
 /// @param allowance  an overlap this deep still counts as touching [m]

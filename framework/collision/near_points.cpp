@@ -17,6 +17,10 @@ constexpr double kOfAFace = 1e-6;
 constexpr double kSameNormal = 1e-6;
 // A face that leans more from the normal than this cosine does not bound a column along it.
 constexpr double kSteep = 0.05;
+// Cosine to the direction away from the other: a face that looks more that way than this is a far side.
+constexpr double kBack = 0.5;
+// Of a solid's size: vertices that differ by less are as foremost as each other.
+constexpr double kSameHeight = 1e-9;
 
 // Height along n of the foremost surface of a convex piece over a point, `side` +1: the lowest of A, -1: the highest of B. The
 // vertices bound it where no face looks that way (an edge, a corner).
@@ -94,6 +98,29 @@ bool of_a_face(const PlacedPolytope& a, bool a_is_flat, const PlacedPolytope& b,
   return faces(b, b_is_flat, n) || faces(a, a_is_flat, -n);
 }
 
+// Whether a flat piece shows the other its back, as the far side of a thin plate does. `away` leads from the other to the piece.
+bool shows_its_back(const PlacedPolytope& piece, bool is_flat, const Vector3d& away) {
+  const auto& normals = piece.polytope->face_normals;
+  return is_flat && !normals.empty() && normals.front().dot(piece.in_body(away)) > kBack;
+}
+
+// Whether what a piece touches with is foremost of all the surface about it, too: then the push is the solid's own, of an edge or a
+// corner. Else it is that of a rim, which the face beyond it overrules. `down` leads from the piece to the other.
+bool is_foremost_around(const CollisionShape& shape, int piece, const PlacedPolytope& placed, const Vector3d& down) {
+  if (!shape.is_closed_surface()) return true;
+  const Vector3d d = placed.in_body(down);
+  const Face& face = shape.vertices_of_piece(piece);
+  const double slack = kSameHeight * shape.bounding_radius();
+  double foremost = -kInfinity;
+  for (const int v : face) foremost = std::max(foremost, d.dot(shape.vertices()[v]));
+  for (const int v : face) {
+    if (d.dot(shape.vertices()[v]) < foremost - slack) continue;
+    for (const int w : shape.neighbours(v))
+      if (d.dot(shape.vertices()[w]) > foremost + slack) return false;
+  }
+  return true;
+}
+
 struct NearPair {
   int i, j;
   PolytopeGap gap;
@@ -119,7 +146,7 @@ void append_corners(const Region& region, std::vector<NearPoint>& points) {
 
 std::vector<NearPoint> between_convex(const Query& query, const Vector3d& com_b_world, double reach, PairCache* cache) {
   const PlacedPolytope placed_a = query.piece_of_a(0), placed_b = query.piece_of_b(0);
-  const PolytopeGap found = convex_gap(query, reach, cache);
+  const PolytopeGap found = convex_gap(query, reach, cache, Points::kUnwanted);
   if (found.beyond || found.distance > reach) return {};
   Region region{found.normal_b_to_a, {}};
   add_points(placed_a, placed_b, region.normal, reach, com_b_world, region);
@@ -133,8 +160,9 @@ std::vector<NearPoint> between_surfaces(const Query& query, const Vector3d& com_
   Vector3d main_normal = Vector3d::UnitZ();
   std::vector<NearPair> pairs;
   for (const auto& [i, j] : pieces_within(query, reach, cache)) {
-    const PolytopeGap found = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size, reach);
+    const PolytopeGap found = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size, reach, Points::kUnwanted);
     if (found.beyond || found.distance > reach) continue;
+    if (shows_its_back(query.piece_of_a(i), query.a.is_closed_surface(), found.normal_b_to_a) || shows_its_back(query.piece_of_b(j), query.b.is_closed_surface(), -found.normal_b_to_a)) continue;
     pairs.push_back({i, j, found});
     if (found.distance < nearest) {
       nearest = found.distance;
@@ -145,7 +173,9 @@ std::vector<NearPoint> between_surfaces(const Query& query, const Vector3d& com_
   for (const NearPair& pair : pairs) {
     const PlacedPolytope placed_a = query.piece_of_a(pair.i), placed_b = query.piece_of_b(pair.j);
     const Vector3d& n = pair.gap.normal_b_to_a;
-    if ((n - main_normal).norm() > kSameNormal && !of_a_face(placed_a, query.a.is_closed_surface(), placed_b, query.b.is_closed_surface(), n)) continue;
+    const bool own = (n - main_normal).norm() <= kSameNormal || of_a_face(placed_a, query.a.is_closed_surface(), placed_b, query.b.is_closed_surface(), n) ||
+                     (is_foremost_around(query.a, pair.i, placed_a, -n) && is_foremost_around(query.b, pair.j, placed_b, n));
+    if (!own) continue;
     auto region = std::find_if(regions.begin(), regions.end(), [&](const Region& r) { return (r.normal - n).norm() <= kSameNormal; });
     if (region == regions.end()) region = regions.insert(regions.end(), {n, {}});
     add_points(placed_a, placed_b, n, reach, com_b_world, *region);

@@ -78,11 +78,11 @@ void visit(const Query& query, Reach&& reach, Visit&& visit_pair) {
 // Keeps the nearest of the pairs that it is shown, whatever their order.
 class Nearest {
  public:
-  Nearest(const Query& query, double limit) : query_(query), limit_(limit), rounding_(rounding(query)) {}
+  Nearest(const Query& query, double limit, Points points) : query_(query), limit_(limit), rounding_(rounding(query)), points_(points) {}
 
   double reach() const { return std::max(std::min(limit_, best_.gap.distance), 0.0) + rounding_; }
   void look_at(int i, int j) {
-    const PolytopeGap found = polytope_gap(query_.piece_of_a(i), query_.piece_of_b(j), query_.size, reach());
+    const PolytopeGap found = polytope_gap(query_.piece_of_a(i), query_.piece_of_b(j), query_.size, reach(), points_);
     if (found.beyond || found.distance > limit_) return;
     const bool first = std::pair(i, j) < std::pair(best_.piece_a, best_.piece_b);
     if (found.distance < best_.gap.distance || (found.distance == best_.gap.distance && first)) best_ = {i, j, found};
@@ -92,6 +92,7 @@ class Nearest {
  private:
   const Query& query_;
   double limit_, rounding_;
+  Points points_;
   NearestPieces best_;
 };
 
@@ -118,12 +119,13 @@ void fill(const Query& query, double reach, PairCache& cache) {
     return;
   }
   const double size = std::min(query.a.bounding_radius(), query.b.bounding_radius());
-  cache.reach = reach + std::max(kSkin * size, 0.5 * reach);
+  const double apart = reach - query.a.radius() - query.b.radius();   // pieces are cores: balls touch when they are a radius apart
+  cache.reach = reach + std::max(kSkin * size, 0.5 * apart);
   cache.served = 0;
   cache.near.clear();
   const double looked = cache.reach + rounding(query);
   visit(query, [&] { return looked; }, [&](int i, int j) {
-    const PolytopeGap gap = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size, looked);
+    const PolytopeGap gap = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size, looked, Points::kUnwanted);
     if (!gap.beyond && gap.distance <= looked) cache.near.push_back({i, j, gap.distance});
   });
   std::sort(cache.near.begin(), cache.near.end(), [](const PairCache::Near& p, const PairCache::Near& q) { return std::pair(p.piece_a, p.piece_b) < std::pair(q.piece_a, q.piece_b); });
@@ -146,7 +148,7 @@ bool look_in_cache(const Query& query, double limit, PairCache& cache, Nearest& 
 
 }  // namespace
 
-PolytopeGap convex_gap(const Query& query, double limit, PairCache* cache) {
+PolytopeGap convex_gap(const Query& query, double limit, PairCache* cache, Points points) {
   const PlacedPolytope a = query.piece_of_a(0), b = query.piece_of_b(0);
   // A bound that is beyond all rounding: without it the answer would be the same.
   const double certain = std::max(limit, 0.0) + rounding(query);
@@ -154,15 +156,15 @@ PolytopeGap convex_gap(const Query& query, double limit, PairCache* cache) {
     const Vector3d axis = query.rotation_a * cache->apart_along_body_a;
     if (const double apart = separation_along(a, b, axis); apart > certain) return {apart, Vector3d::Zero(), Vector3d::Zero(), axis, true};
   }
-  const PolytopeGap gap = polytope_gap(a, b, query.size, limit);
+  const PolytopeGap gap = polytope_gap(a, b, query.size, limit, points);
   if (cache) cache->apart_along_body_a = gap.beyond ? a.in_body(gap.normal_b_to_a) : Vector3d::Zero();
   return gap;
 }
 
-NearestPieces nearest_pieces(const Query& query, double limit, PairCache* cache) {
-  Nearest nearest(query, limit);
+NearestPieces nearest_pieces(const Query& query, double limit, PairCache* cache, Points points) {
+  Nearest nearest(query, limit, points);
   if (one_pair(query)) {
-    const PolytopeGap gap = convex_gap(query, limit, cache);
+    const PolytopeGap gap = convex_gap(query, limit, cache, points);
     return gap.beyond || gap.distance > limit ? NearestPieces{} : NearestPieces{0, 0, gap};
   }
   if (cache && look_in_cache(query, limit, *cache, nearest)) {
@@ -170,8 +172,8 @@ NearestPieces nearest_pieces(const Query& query, double limit, PairCache* cache)
     return nearest.best();
   }
   visit(query, [&] { return nearest.reach(); }, [&](int i, int j) { nearest.look_at(i, j); });
-  const double size = std::min(query.a.bounding_radius(), query.b.bounding_radius());
-  if (cache && nearest.best().gap.distance < kSkin * size) fill(query, std::max(nearest.best().gap.distance, 0.0), *cache);
+  const double size = std::min(query.a.bounding_radius(), query.b.bounding_radius()), touch = query.a.radius() + query.b.radius();
+  if (cache && nearest.best().gap.distance < touch + kSkin * size) fill(query, std::max(nearest.best().gap.distance, touch), *cache);
   return nearest.best();
 }
 

@@ -36,10 +36,11 @@ struct NearestPieces {
 };
 /// @param limit  farther pairs are of no interest [m]
 /// @param cache  may be null
-NearestPieces nearest_pieces(const Query& query, double limit, PairCache* cache);
+/// @param points whether the nearest points are asked for, too
+NearestPieces nearest_pieces(const Query& query, double limit, PairCache* cache, Points points);
 
-/// The gap of two solids of one piece each, as polytope_gap gives it. @param limit, cache  as above
-PolytopeGap convex_gap(const Query& query, double limit, PairCache* cache);
+/// The gap of two solids of one piece each, as polytope_gap gives it. @param limit, cache, points  as above
+PolytopeGap convex_gap(const Query& query, double limit, PairCache* cache, Points points);
 
 /// Pairs of pieces that may be within `reach` of each other, sorted: all that are, and some that are not.
 std::vector<std::pair<int, int>> pieces_within(const Query& query, double reach, PairCache* cache);

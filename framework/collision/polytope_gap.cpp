@@ -35,10 +35,9 @@ PolytopeGap from_simplex(const PlacedPolytope& a, const PlacedPolytope& b, const
   return gap;
 }
 
-PolytopeGap from_axis(const PlacedPolytope& a, const PlacedPolytope& b, const Axis& axis, double size) {
-  PolytopeGap gap;
-  gap.distance = axis.separation;
-  gap.normal_b_to_a = axis.normal_b_to_a;
+PolytopeGap from_axis(const PlacedPolytope& a, const PlacedPolytope& b, const Axis& axis, double size, Points points) {
+  PolytopeGap gap{axis.separation, Vector3d::Zero(), Vector3d::Zero(), axis.normal_b_to_a};
+  if (points == Points::kUnwanted) return gap;
   gap.point_a = middle_of_facing_region(a, b, axis.normal_b_to_a, kFacing * size);
   gap.point_b = gap.point_a - axis.separation * axis.normal_b_to_a;
   return gap;
@@ -62,7 +61,7 @@ Axis axis_of_overlap(const PlacedPolytope& a, const PlacedPolytope& b, const Sim
 
 }  // namespace
 
-PolytopeGap polytope_gap(const PlacedPolytope& a, const PlacedPolytope& b, double size, double limit) {
+PolytopeGap polytope_gap(const PlacedPolytope& a, const PlacedPolytope& b, double size, double limit, Points points) {
   const GjkResult found = gjk(a, b, size, limit);
   if (found.verdict == Apartness::kBeyond) return {found.lower_bound, Vector3d::Zero(), Vector3d::Zero(), found.normal, true};
   if (found.verdict == Apartness::kApart) {
@@ -70,8 +69,8 @@ PolytopeGap polytope_gap(const PlacedPolytope& a, const PlacedPolytope& b, doubl
     if (gap.distance > kNearZone * size) return gap;
     // What rounding has made of the direction between the nearest points.
     const double angle = std::min(1e-2, std::max(1e-7, 16 * kRoundOff * size / gap.distance));
-    const Axis axis = has_few_axes(a, b) ? best_axis(a, b, size) : best_axis_near(a, b, gap.normal_b_to_a, angle, size);
-    if (axis.separation * (1 + 1e-9) + 16 * kRoundOff * size >= gap.distance) return from_axis(a, b, axis, size);
+    const Axis axis = best_axis_near(a, b, gap.normal_b_to_a, angle, size);
+    if (axis.separation * (1 + 1e-9) + 16 * kRoundOff * size >= gap.distance) return from_axis(a, b, axis, size, points);
     // Corner against corner, or corner against edge: no axis of faces and edges measures their distance, the algorithm does.
     if (gap.distance > kTrusted * size) return gap;
   }
@@ -80,7 +79,7 @@ PolytopeGap polytope_gap(const PlacedPolytope& a, const PlacedPolytope& b, doubl
     if (found.verdict == Apartness::kApart) return from_simplex(a, b, found);
     return {0.0, a.vertex(0), b.vertex(0), Vector3d::UnitZ()};
   }
-  return from_axis(a, b, axis, size);
+  return from_axis(a, b, axis, size, points);
 }
 
 }  // namespace tumble::collision

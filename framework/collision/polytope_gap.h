@@ -20,9 +20,13 @@ struct PolytopeGap {
   bool beyond = false;    // farther than asked: `distance` is a lower bound of it along the normal, the points are not set
 };
 
+enum class Points { kWanted, kUnwanted };
+
 /// @param size   a length to scale round-off by: how far the points lie from the origin of the query [m]
 /// @param limit  a distance beyond it need not be known, only told [m]
 /// Error: a few roundings of `size`.
-PolytopeGap polytope_gap(const PlacedPolytope& a, const PlacedPolytope& b, double size, double limit = std::numeric_limits<double>::infinity());
+/// @param points whether the nearest points are set, too
+PolytopeGap polytope_gap(const PlacedPolytope& a, const PlacedPolytope& b, double size, double limit = std::numeric_limits<double>::infinity(),
+                         Points points = Points::kWanted);
 
 }  // namespace tumble::collision

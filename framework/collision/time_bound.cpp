@@ -120,7 +120,7 @@ TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a, 
     const Vector3d n = query.rotation_b.col(2);
     collect_lines({&a.corners(), query.rotation_a, query.offset}, state_a, bounds_a, n, 1.0, lines_a);
     lines_b.push_back({0.0, 0.0, 0.0});   // nothing turns
-    along(compute_gap(a, state_a.pose, b, state_b.pose).distance, n, lines_b);
+    along(gap_distance(a, state_a.pose, b, state_b.pose), n, lines_b);
     return bound;
   }
   const double turning = 1.0 + 1e-12;  // the bounding radii are rounded
@@ -132,14 +132,14 @@ TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a, 
     along(found.distance - radius, found.normal_b_to_a, lines_b);
   };
   // The nearest pair first: the sooner it may touch, the fewer others can touch before.
-  const NearestPieces nearest = nearest_pieces(query, relative.reach(horizon) + radius, cache);
+  const NearestPieces nearest = nearest_pieces(query, relative.reach(horizon) + radius, cache, Points::kUnwanted);
   if (nearest.piece_a < 0) return bound;
   look_at(nearest.piece_a, nearest.piece_b, nearest.gap);
   if (!a.is_closed_surface() && !b.is_closed_surface()) return bound;
   for (const auto& [i, j] : pieces_within(query, relative.reach(bound.duration) + radius, cache)) {
     if (i == nearest.piece_a && j == nearest.piece_b) continue;
     const double limit = relative.reach(bound.duration) + radius;
-    const PolytopeGap found = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size, limit);
+    const PolytopeGap found = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size, limit, Points::kUnwanted);
     if (!found.beyond && found.distance <= limit) look_at(i, j, found);
   }
   return bound;

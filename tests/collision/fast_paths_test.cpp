@@ -209,6 +209,8 @@ TEST(PairCache, ChangesNoBitOfAnyAnswer) {
         pose_a.world_from_body = (pose_a.world_from_body * Quaterniond(Eigen::AngleAxisd(stride, chance.vector().normalized()))).normalized();
         const Gap gap = collision::compute_gap(*first, pose_a, b, pose_b);
         expect_same_bits(gap, collision::compute_gap(*first, pose_a, b, pose_b, &cache));
+        EXPECT_EQ(gap.distance, collision::gap_distance(*first, pose_a, b, pose_b));
+        EXPECT_EQ(gap.distance, collision::gap_distance(*first, pose_a, b, pose_b, &cache));
         const double reach = size * std::pow(10.0, chance.in(-9, -1));
         const auto points = collision::near_points(*first, pose_a, b, pose_b, reach), kept = collision::near_points(*first, pose_a, b, pose_b, reach, &cache);
         ASSERT_EQ(points.size(), kept.size());
