@@ -1,8 +1,8 @@
 /// Which contacts with friction stick and which slide, told as events where that changes.
 ///
 /// A pair slides when the force is on the edge of Coulomb's cone at every point where the two push each other and one of these points
-/// slips, sticks when at none, and keeps its mode in between (a box that pivots about a corner). A force alone does not tell: where
-/// joints hold a body too, friction may be at its limit and nothing slips. A contact begins sticking; it is a new one where the pair has not
+/// slips, sticks when at none, and keeps its mode in between (a box that pivots about a corner). The force alone does not tell: on a slope as
+/// steep as friction holds it is at its limit and nothing slips. A contact begins sticking; it is a new one where the pair has not
 /// pushed for a twentieth of a second. What changes again sooner than that after it was told is told then, if it has not changed
 /// back: a heap that chatters does not tell of every step.
 #pragma once

@@ -74,6 +74,15 @@ TEST(ContactModes, SlidingAndStickingTakeTurns) {
   }
 }
 
+// On a slope as steep as friction holds, to a billionth: the force lies on the cone, and nothing slips.
+TEST(ContactModes, FrictionAtItsLimitIsNoSliding) {
+  const double angle = 0.4;
+  const Vector3d normal(std::sin(angle), 0, std::cos(angle));
+  auto block = rough(box("block", {0.1, 0.1, 0.05}, 1.0, 0.05 * normal, Vector3d::Zero()), std::tan(angle) * (1 + 1e-10)), ramp = rough(plane("ramp", Vector3d::Zero(), normal), 1.0);
+  block.world_from_body = ramp.world_from_body = Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitY()));
+  EXPECT_EQ(changes_in(with_contact({block, ramp}, 1.0)).size(), 0u);
+}
+
 // Shaken at 30 Hz it sticks and slides sixty times a second.
 TEST(ContactModes, ChatterIsToldTwentyTimesASecondAtMost) {
   auto table = floor_of(0.5);

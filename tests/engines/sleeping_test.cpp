@@ -76,6 +76,9 @@ TEST(Sleeping, AStackKeepsItsPlaceToTheLastBitAndStillTellsItsReactions) {
   const Frame& last = result.frames.back();
   for (const Frame& frame : result.frames)
     for (int i = 0; i < 10 && frame.time > asleep + 0.02; ++i) EXPECT_TRUE(same_bits(frame.poses[i], last.poses[i])) << frame.time << ' ' << i;
+  const auto looked = std::find_if(result.frames.begin(), result.frames.end(), [&](const Frame& frame) { return std::abs(frame.time - asleep) < 1e-9; });
+  ASSERT_NE(looked, result.frames.end());   // the last frame that was looked at awake
+  EXPECT_EQ(looked->smallest_gap, last.smallest_gap);
   double carried = 0.0;
   for (const ContactPoint& contact : last.contacts)
     if (contact.body_b == 10) carried += contact.force_on_a_world.z();
