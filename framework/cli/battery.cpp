@@ -64,9 +64,8 @@ std::string fit(const std::string& text, std::size_t width) {
 }
 
 void print_measure(const std::string& name, const Measure& m) {
-  const bool has_value = m.not_run.empty() && m.error.empty();
-  fmt::print("{:<24} {:<50} {:>15} {:>15} {:>9}  {}\n", fit(name, 24), fit(m.what, 50), has_value ? report::shown(m.value, m.unit) : "-",
-             m.not_run.empty() ? report::shown_threshold(m) : "-", report::shown_margin(m), report::word_of(report::outcome_of(m)));
+  fmt::print("{:<24} {:<50} {:>15} {:>15} {:>9}  {}\n", fit(name, 24), fit(m.what, 50), report::shown_value(m), report::shown_threshold(m),
+             report::shown_margin(m), report::word_of(report::outcome_of(m)));
   const std::string note = !m.error.empty() ? m.error : !m.not_run.empty() ? m.not_run : report::outcome_of(m) == Outcome::kShort ? m.shortfall : "";
   if (!note.empty()) fmt::print("{:<24}   {}\n", "", note);
 }

@@ -33,6 +33,8 @@ class Findings {
   void at_least(const std::string& what, double value, double threshold, const std::string& unit, const std::string& why);
   /// The same as at_most by a method known not to hold: it must be seen failing.
   void must_fail(const std::string& what, double value, double threshold, const std::string& unit, const std::string& why);
+  /// A question that must be answered with yes.
+  void is_true(const std::string& what, bool answer, const std::string& why);
   void not_run(const std::string& what, const std::string& reason);
   void plot(report::Plot plot) { row_.plots.push_back(std::move(plot)); }
 

@@ -20,14 +20,18 @@ Look look_of(Outcome outcome) {
   }
 }
 
-// With a sign of its own, for those who do not see the colour.
+// With a sign of its own, for those who do not see the colour; not to be broken into lines.
 std::string marked(Outcome outcome) {
+  std::string words;
   switch (outcome) {
-    case Outcome::kHolds: return "\u2713 " + word_of(outcome);
-    case Outcome::kFailsAsItMust: return "\u2717 " + word_of(outcome);
-    case Outcome::kNotRun: return "\u2013 " + word_of(outcome);
-    default: return "\u25a0 " + word_of(outcome);
+    case Outcome::kHolds: words = "\u2713 "; break;
+    case Outcome::kFailsAsItMust: words = "\u2717 "; break;
+    case Outcome::kNotRun: words = "\u2013 "; break;
+    default: words = "\u25a0 ";
   }
+  std::string whole;
+  for (const char c : words + word_of(outcome)) whole += c == ' ' ? std::string("\u00a0") : std::string(1, c);
+  return whole;
 }
 
 std::string anchor_of(const BatteryRow& row) { return "case-" + std::to_string(row.row); }
@@ -42,13 +46,12 @@ void add_overview(const std::vector<BatteryRow>& rows, Page& page) {
     if (worst == nullptr) {
       cells.insert(cells.end(), {{row.not_part.empty() ? "" : "not part of the battery yet", "", Look::kMuted}, {}, {}, {}, {marked(Outcome::kNotRun), "", Look::kMuted}, {}});
     } else {
-      const bool has_value = worst->not_run.empty() && worst->error.empty();
       int failing = 0, meant = 0;
       for (const Measure& m : row.measures) {
         meant += m.must_fail && m.not_run.empty() ? 1 : 0;
         failing += outcome_of(m) == Outcome::kFailsAsItMust ? 1 : 0;
       }
-      cells.insert(cells.end(), {{worst->what}, {has_value ? shown(worst->value, worst->unit) : "-"}, {shown_threshold(*worst)}, {shown_margin(*worst)}, {marked(outcome), "", look_of(outcome)},
+      cells.insert(cells.end(), {{worst->what}, {shown_value(*worst)}, {shown_threshold(*worst)}, {shown_margin(*worst)}, {marked(outcome), "", look_of(outcome)},
                                  {meant == 0 ? "" : fmt::format("{} of {} fail", failing, meant), "", failing == meant ? Look::kPlain : Look::kBad}});
     }
     table.rows.push_back(std::move(cells));
@@ -69,8 +72,7 @@ void add_case(const BatteryRow& row, Page& page) {
     if (!m.not_run.empty()) why = "Not run: " + m.not_run;
     if (!m.error.empty()) why += (why.empty() ? "" : ". ") + std::string("What happened: ") + m.error;
     if (outcome == Outcome::kShort) why += (why.empty() ? "" : ". ") + std::string("Known shortfall: ") + m.shortfall;
-    const bool has_value = m.not_run.empty() && m.error.empty();
-    table.rows.push_back({{m.what}, {has_value ? shown(m.value, m.unit) : "-"}, {m.not_run.empty() ? shown_threshold(m) : "-"}, {shown_margin(m)}, {marked(outcome), "", look_of(outcome)}, {why}});
+    table.rows.push_back({{m.what}, {shown_value(m)}, {shown_threshold(m)}, {shown_margin(m)}, {marked(outcome), "", look_of(outcome)}, {why}});
   }
   page.table(table);
   for (const Plot& plot : row.plots) page.plot(plot);

@@ -8,7 +8,10 @@
 
 namespace tumble::report {
 
-bool within(const Measure& measure) { return measure.at_least ? measure.value >= measure.threshold : measure.value <= measure.threshold; }
+bool within(const Measure& measure) {
+  if (measure.is_question) return measure.value == measure.threshold;
+  return measure.at_least ? measure.value >= measure.threshold : measure.value <= measure.threshold;
+}
 
 Outcome outcome_of(const Measure& measure) {
   if (!measure.not_run.empty()) return Outcome::kNotRun;
@@ -18,7 +21,7 @@ Outcome outcome_of(const Measure& measure) {
 }
 
 double margin_of(const Measure& measure) {
-  if (!measure.not_run.empty() || !measure.error.empty()) return std::numeric_limits<double>::quiet_NaN();
+  if (!measure.not_run.empty() || !measure.error.empty() || measure.is_question) return std::numeric_limits<double>::quiet_NaN();
   const double above = measure.at_least ? measure.value : measure.threshold, below = measure.at_least ? measure.threshold : measure.value;
   if (below <= 0.0) return above >= below ? std::numeric_limits<double>::infinity() : 0.0;
   return std::max(above, 0.0) / below;
@@ -40,9 +43,10 @@ const Measure* tightest(const BatteryRow& row) {
     const Outcome outcome = outcome_of(m);
     return outcome == Outcome::kFailsAsItMust || outcome == Outcome::kNotRun ? -1 : static_cast<int>(outcome);   // no news
   };
+  const auto closer = [](const Measure& a, const Measure& b) { return margin_of(a) < margin_of(b) || (std::isnan(margin_of(b)) && !std::isnan(margin_of(a))); };
   const Measure* found = nullptr;
   for (const Measure& measure : row.measures) {
-    if (found == nullptr || rank(measure) > rank(*found) || (rank(measure) == rank(*found) && !(margin_of(measure) >= margin_of(*found)))) found = &measure;
+    if (found == nullptr || rank(measure) > rank(*found) || (rank(measure) == rank(*found) && closer(measure, *found))) found = &measure;
   }
   return found;
 }
@@ -67,6 +71,12 @@ std::string shown(double value, const std::string& unit) {
   return (plain ? fmt::format("{:.0f}", value) : std::abs(value) >= 0.1 && std::abs(value) < 1e4 ? fmt::format("{:.4g}", value) : fmt::format("{:.1e}", value)) + space;
 }
 
+std::string shown_value(const Measure& measure) {
+  if (!measure.not_run.empty() || !measure.error.empty()) return "-";
+  if (measure.is_question) return measure.value == 1.0 ? "yes" : "no";
+  return shown(measure.value, measure.unit);
+}
+
 std::string shown_margin(const Measure& measure) {
   const double margin = margin_of(measure);
   if (std::isnan(margin)) return "-";
@@ -74,7 +84,11 @@ std::string shown_margin(const Measure& measure) {
   return margin >= 0.1 && margin < 1e4 ? fmt::format("x {:.2g}", margin) : fmt::format("x {:.0e}", margin);
 }
 
-std::string shown_threshold(const Measure& measure) { return (measure.at_least ? ">= " : "<= ") + shown(measure.threshold, measure.unit); }
+std::string shown_threshold(const Measure& measure) {
+  if (!measure.not_run.empty() || std::isnan(measure.threshold)) return "-";
+  if (measure.is_question) return measure.threshold == 1.0 ? "yes" : "no";
+  return (measure.at_least ? ">= " : "<= ") + shown(measure.threshold, measure.unit);
+}
 
 BatteryCount count_of(const std::vector<BatteryRow>& rows) {
   BatteryCount count;

@@ -28,6 +28,7 @@ struct Measure {
   std::string why;                // the threshold's reason
   bool at_least = false;          // holds when value >= threshold instead of <=
   bool must_fail = false;         // of a method known not to hold
+  bool is_question = false;       // yes (1) or no (0), of which the threshold is the right one
   std::string shortfall{};        // why it is known not to be reached; empty: it must be
   std::string not_run{};          // why there is no value; empty: there is one
   std::string error{};            // what stopped it, where something did
@@ -46,7 +47,7 @@ struct BatteryRow {
 /// Whether value and threshold stand as `at_least` says. NaN never does.
 bool within(const Measure& measure);
 Outcome outcome_of(const Measure& measure);
-/// How many times better than the threshold; below 1: worse. Infinite for an error of exactly 0; NaN without a value.
+/// How many times better than the threshold; below 1: worse. Infinite for an error of exactly 0; NaN without a value, and for a question.
 double margin_of(const Measure& measure);
 /// The worst of its measures; kNotRun without any.
 Outcome outcome_of(const BatteryRow& row);
@@ -55,8 +56,10 @@ const Measure* tightest(const BatteryRow& row);
 
 /// "holds", "fails, as it must", "short", ...
 std::string word_of(Outcome outcome);
-/// "3.1e-12 m", "12", "none".
+/// "3.1e-12 m", "12", "without bound".
 std::string shown(double value, const std::string& unit);
+/// The value, "yes" or "no" of a question, "-" where there is none.
+std::string shown_value(const Measure& measure);
 /// "x 32", "exact".
 std::string shown_margin(const Measure& measure);
 /// "<= 1e-8 m".

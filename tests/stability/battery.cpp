@@ -46,6 +46,11 @@ void Findings::must_fail(const std::string& what, double value, double threshold
   row_.measures.back().must_fail = true;
 }
 
+void Findings::is_true(const std::string& what, bool answer, const std::string& why) {
+  row_.measures.push_back(measure(what, answer ? 1.0 : 0.0, 1.0, "", why));
+  row_.measures.back().is_question = true;
+}
+
 void Findings::not_run(const std::string& what, const std::string& reason) {
   row_.measures.push_back(measure(what, kUnset, kUnset, "", ""));
   row_.measures.back().not_run = reason;
@@ -64,7 +69,7 @@ void Findings::part(const std::string& what, const std::function<void()>& work) 
 
 std::vector<Case> cases() {
   std::vector<Case> all;
-  for (const auto add : {add_springs, add_chains, add_loops, add_tops, add_meshes, add_impacts, add_sweeps, add_scales, add_rotation}) add(all);
+  for (const auto add : {add_springs, add_chains, add_loops, add_tops, add_meshes, add_impacts, add_sweeps, add_scales, add_rotation, add_stacks, add_structures, add_friction, add_piles}) add(all);
   std::stable_sort(all.begin(), all.end(), [](const Case& a, const Case& b) { return a.row < b.row; });
   return all;
 }

@@ -23,8 +23,6 @@ double box_error(const MassProperties& found) {
   return std::max(std::abs(found.volume / 6.0 - 1), (found.inertia_com_mesh - exact).cwiseAbs().maxCoeff() / moments.maxCoeff());
 }
 
-double yes(bool condition) { return condition ? 1.0 : 0.0; }
-
 // ---- Row 8 -----------------------------------------------------------------------------------------------------------
 
 void degenerate_meshes(const Given& given, Findings& findings) {
@@ -40,7 +38,7 @@ void degenerate_meshes(const Given& given, Findings& findings) {
   slivers.faces.push_back({twin, 0, 0});
   findings.at_most("faces of zero area: volume and inertia, against without", box_error(compute_mass_properties(slivers)), 1e-14, "", "they add exactly nothing: the same roundings as without");
   const ClosedReport repaired = check_closed(slivers);
-  findings.at_most("faces of zero area: repaired, or refused in words (0: yes)", repaired.is_closed() ? box_error(compute_mass_properties(repaired.mesh)) : yes(repaired.defects.empty()), 1e-14, "", "repaired it weighs what it weighed; never NaN");
+  findings.is_true("faces of zero area: repaired, or refused in words", repaired.is_closed() ? box_error(compute_mass_properties(repaired.mesh)) <= 1e-14 : !repaired.defects.empty(), "repaired it weighs what it weighed, to 1e-14; never NaN");
 
   TriangleMesh inverted = good;
   for (Face& face : inverted.faces) std::swap(face[0], face[1]);
@@ -51,13 +49,13 @@ void degenerate_meshes(const Given& given, Findings& findings) {
   TriangleMesh open = good;
   open.faces.pop_back();
   const ClosedReport hole = check_closed(open);
-  findings.at_least("a face missing: refused, with the place (1: yes)", yes(!hole.is_closed() && hole.defects.front().kind == DefectKind::kMissingFace), 1.0, "", "every edge of a closed surface is in two faces, once in each direction");
+  findings.is_true("a face missing: refused, with the place", !hole.is_closed() && hole.defects.front().kind == DefectKind::kMissingFace, "every edge of a closed surface is in two faces, once in each direction");
   findings.must_fail("the textbook integral of the open surface: volume", std::abs(signed_volume(open) / 6.0 - 1), 1e-14, "", "it assumes a closed surface and does not look: a hole is a wrong weight");
 
   TriangleMesh nan = good;
   nan.vertices[3].y() = kUnset;
   const ClosedReport not_finite = check_closed(nan);
-  findings.at_least("a coordinate that is no number: refused (1: yes)", yes(!not_finite.is_closed() && not_finite.defects.front().kind == DefectKind::kNotFinite), 1.0, "", "never NaN in a mass");
+  findings.is_true("a coordinate that is no number: refused", !not_finite.is_closed() && not_finite.defects.front().kind == DefectKind::kNotFinite, "never NaN in a mass");
 
   report::Plot plot{"A box one side of which is thinner and thinner", {"thickness over length", "", report::Scale::kLog}, {"relative error of volume and moments", "", report::Scale::kLog}, {}, {{1e-12, "12 digits"}}, "What a plate weighs is known as well as what a cube weighs, down to a millionth of its length."};
   report::Curve curve{"this project", {}, {}, true};

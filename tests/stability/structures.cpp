@@ -1,0 +1,240 @@
+// Rows 11, 12 and 13: a card tent, an arch, a body in a nip: what stands or falls by a number that is known.
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <fmt/format.h>
+
+#include "framework/core/files.h"
+#include "models/write_3ds.h"
+#include "tests/stability/cases.h"
+#include "tests/stability/support.h"
+
+namespace tumble::battery {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// Writes a four-cornered prism. @param corners  (x, z), the inside to the left of each side, seen against y
+void write_prism(const std::vector<Vector2d>& corners, double half_depth, const std::filesystem::path& file) {
+  TriangleMesh mesh;
+  for (const double y : {-half_depth, half_depth})
+    for (const Vector2d& corner : corners) mesh.vertices.emplace_back(corner.x(), y, corner.y());
+  for (int i = 0; i < 4; ++i) {
+    const int j = (i + 1) % 4;
+    mesh.faces.push_back({i, 4 + j, j});
+    mesh.faces.push_back({i, 4 + i, 4 + j});
+  }
+  for (const Face& face : {Face{0, 1, 2}, Face{0, 2, 3}, Face{4, 6, 5}, Face{4, 7, 6}}) mesh.faces.push_back(face);
+  write_whole(file, models::write_3ds({{"prism", mesh}}));
+}
+
+// ---- Row 11 ----------------------------------------------------------------------------------------------------------
+
+/// Cards of length 1 m that lean at half-angle a, on each other or on a smooth wall, which is the same by symmetry; they stand on, and
+/// touch by, the edges of their inner faces. By moments about a foot: H cos(a) = m g (sin(a) / 2 - t cos(a) / 2), N = m g: they stand
+/// from mu = (tan(a) - t) / 2.
+constexpr double kThickness = 0.01;
+double tent_limit(double a) { return (std::tan(a) - kThickness) / 2; }
+
+scene::Scene tent(double a, double mu, bool wall) {
+  constexpr double kApart = 1e-9;   // m: so that the two edges have a direction from one to the other
+  std::vector<scene::BodySpec> bodies;
+  for (const double side : {-1.0, 1.0}) {
+    if (wall && side < 0) continue;
+    // Along the card, up; out of its inner face, towards the other card and down.
+    const Vector3d along(-side * std::sin(a), 0, std::cos(a)), inner(-side * std::cos(a), 0, -std::sin(a));
+    const Vector3d foot(side * (std::sin(a) + 0.5 * kApart), 0, 0);
+    bodies.push_back(turned(rough(box(side < 0 ? "left" : "right", Vector3d(0.5 * kThickness, 0.5, 0.5), 0.1, foot + 0.5 * along - 0.5 * kThickness * inner), mu), -side * a, Vector3d::UnitY()));
+  }
+  bodies.push_back(floor_of(mu));
+  if (wall) bodies.push_back(truths::wall("wall", Vector3d::Zero(), Vector3d::UnitX(), 0.0));
+  return with_contact("card tent", std::move(bodies));
+}
+
+/// Two loose cards cut so that they stand flat on the floor and meet face to face at x = 0, with corners as a .3ds file keeps them.
+/// Statics may put the floor's push at the inner end of the foot and the other card's at the top: they stand from (foot - x_com) / high.
+struct CutCard {
+  double foot, width, low, high;   // inner end and length of the foot, ends of the upper face [m]
+  Vector3d com() const {   // a right-angled triangle without a smaller one
+    const double outer = foot + width, whole = outer * high, inner = foot * low;
+    return {(whole * outer - inner * foot) / (3 * (whole - inner)), 0.0, (whole * high - inner * low) / (3 * (whole - inner))};
+  }
+  double limit() const { return (foot - com().x()) / high; }
+};
+
+CutCard cut_card(double a) {
+  const auto kept = [](double v) { return static_cast<double>(static_cast<float>(v)); };
+  const double foot = kept(std::sin(a)), outer = kept(std::sin(a) + kThickness / std::cos(a));
+  return {foot, outer - foot, kept(foot / std::tan(a)), kept(outer / std::tan(a))};
+}
+
+scene::Scene cut_tent(double a, double part, const std::filesystem::path& folder) {
+  const CutCard card = cut_card(a);
+  const std::filesystem::path file = folder / "card.3ds";
+  write_prism({{card.foot, 0.0}, {card.foot + card.width, 0.0}, {0.0, card.high}, {0.0, card.low}}, 0.5, file);
+  std::vector<scene::BodySpec> bodies;
+  for (const double side : {1.0, -1.0}) {
+    scene::BodySpec body = rough(box(side > 0 ? "right" : "left", Vector3d::Ones(), 0.1, Vector3d(side * card.com().x(), 0, card.com().z())), part * card.limit());
+    body.shape = scene::ModelSpec{file.string(), "", 1.0};
+    if (side < 0) body.world_from_body = Quaterniond(0, 0, 0, 1);   // half a turn about z
+    bodies.push_back(body);
+  }
+  bodies.push_back(floor_of(1.0));
+  return with_contact("cut tent", std::move(bodies));
+}
+
+void two_loose_cards(const Given& given, Findings& findings) {
+  const PrivateFolder folder;
+  for (const double part : {1.1, 0.9}) {
+    const std::string name = fmt::format("tent of two loose cards, half-angle 0.4, mu = {:g} of the limit", part);
+    findings.part(name, [&] {
+      const Trajectory run = run_by_steps(cut_tent(0.4, part, folder.path()), given.laws, given.is_long ? 10.0 : 2.0, 1.0 / 240, 200);
+      const double way = std::max(drift_of(run, 0), drift_of(run, 1));
+      if (part > 1) findings.at_most(name + ": creep", way, 1e-3, "m", "static: 1e-3 of a card's length in 10 s");
+      else findings.must_fail(name + ": stands", way, 1e-3, "m", "friction a tenth too small");
+    });
+  }
+}
+
+void card_tent(const Given& given, Findings& findings) {
+  report::Plot plot{"Card on a smooth wall (half a tent) at half-angle 0.4: how far a foot has gone", {"time", "s"}, {"way", "m", report::Scale::kLog}, {}, {{1e-3, "threshold"}}, "A tenth above the limit it stands without creeping, a tenth below it slides."};
+  for (const double a : {0.2, 0.4}) {
+    for (const double part : {1.1, 0.9}) {
+      const std::string name = fmt::format("card on a smooth wall, half-angle {:g}, mu = {:g} of the limit", a, part);
+      findings.part(name, [&] {
+        const Trajectory run = run_by_steps(tent(a, part * tent_limit(a), true), given.laws, given.is_long ? 10.0 : 2.0, 1.0 / 240, 200);
+        const double way = drift_of(run, 0);
+        if (part > 1) findings.at_most(name + ": creep", way, 1e-3, "m", "static: 1e-3 of a card's length in 10 s");
+        else findings.at_least(name + ": slides down", way, 0.2, "m", "below the limit the feet go apart until the cards lie");
+        if (part < 1) findings.must_fail(name + ": stands", way, 1e-3, "m", "friction a tenth too small");
+        if (a == 0.4) plot.curves.push_back(curve_of(fmt::format("{:g} of the limit", part), run, [&](const Frame& f) { return std::max(1e-12, (f.poses[0].com_world - run.frames.front().poses[0].com_world).norm()); }));
+      });
+    }
+  }
+  findings.part("two loose cards", [&] { two_loose_cards(given, findings); });
+  findings.part("two loose cards, edge on edge", [&] {
+    const Trajectory run = run_by_steps(tent(0.4, 1.1 * tent_limit(0.4), false), given.laws, given.is_long ? 10.0 : 2.0, 1.0 / 240, 200);
+    findings.at_most("two loose cards, edge on edge, half-angle 0.4, mu = 1.1 of the limit: creep", std::max(drift_of(run, 0), drift_of(run, 1)), 1e-3, "m", "the same structure as the card on a smooth wall, by symmetry");
+  });
+  findings.plot(std::move(plot));
+  findings.not_run("houses of 2 to 4 levels", "only the tent is built so far");
+}
+
+// ---- Row 12 ----------------------------------------------------------------------------------------------------------
+
+/// One stone of a semicircular arch of middle radius 1, in the frame of the arch's centre, its middle along x. Coordinates are those
+/// that a .3ds file keeps, so that all that follows from them is exact.
+struct Stone {
+  double inner_x, inner_z, outer_x, outer_z;
+  double half_angle() const { return std::atan2(outer_z - inner_z, outer_x - inner_x); }
+  double centre() const { return inner_x - inner_z * (outer_x - inner_x) / (outer_z - inner_z); }   // where the joints' planes meet
+  double com() const {   // of the trapezium
+    const double h = outer_x - inner_x;
+    return inner_x + h / 3 * (inner_z + 2 * outer_z) / (inner_z + outer_z);
+  }
+};
+
+Stone stone_of(int n, double thickness) {
+  const double b = 0.5 * kPi / n, inner = 1 - 0.5 * thickness, outer = 1 + 0.5 * thickness;
+  const auto kept = [](double v) { return static_cast<double>(static_cast<float>(v)); };
+  return {kept(inner * std::cos(b)), kept(inner * std::sin(b)), kept(outer * std::cos(b)), kept(outer * std::sin(b))};
+}
+
+scene::Scene arch(int n, double thickness, const std::filesystem::path& folder) {
+  constexpr double kMu = 0.5;
+  const Stone stone = stone_of(n, thickness);
+  const std::filesystem::path file = folder / fmt::format("stone_{}_{}.3ds", n, thickness);
+  write_prism({{stone.inner_x, -stone.inner_z}, {stone.outer_x, -stone.outer_z}, {stone.outer_x, stone.outer_z}, {stone.inner_x, stone.inner_z}}, 0.25, file);
+  const double b = stone.half_angle(), first = 0.5 * (kPi - 2 * n * b), radius = stone.com() - stone.centre();
+  std::vector<scene::BodySpec> bodies;
+  for (int i = 0; i < n; ++i) {
+    const double angle = first + (2 * i + 1) * b;
+    scene::BodySpec body = rough(box("stone" + std::to_string(i), Vector3d::Ones(), 1.0, radius * Vector3d(std::cos(angle), 0, std::sin(angle))), kMu);
+    body.shape = scene::ModelSpec{file.string(), "", 1.0};
+    body.mass_kg.reset();
+    body.density_kg_m3 = 2000.0;
+    bodies.push_back(turned(body, -angle, Vector3d::UnitY()));   // x of the stone along the radius
+  }
+  for (const double end : {first, kPi - first}) {   // abutments: boxes under the first and the last joint
+    const double side = end < 1 ? -1.0 : 1.0;       // away from the arch, around the centre
+    const Vector3d radial(std::cos(end), 0, std::sin(end)), away(-side * std::sin(end), 0, side * std::cos(end));
+    scene::BodySpec abutment = rough(box(end < 1 ? "right abutment" : "left abutment", Vector3d(0.4, 0.5, 0.2), 1.0, radial + 0.2 * away), kMu);
+    abutment.mass_kg.reset();
+    abutment.immovable = true;
+    bodies.push_back(turned(abutment, -end, Vector3d::UnitY()));
+  }
+  return with_contact("arch", std::move(bodies));
+}
+
+void masonry_arch(const Given& given, Findings& findings) {
+  const PrivateFolder folder;
+  report::Plot plot{"Arch of 25 stones: how far the crown has come down", {"time", "s"}, {"drop", "R", report::Scale::kLog}, {}, {{1e-3, "threshold"}}, "An arch stands while a line of thrust fits into it: from t/R = 0.1075 on (Milankovitch)."};
+  for (const int n : {25, 101}) {
+    if (n > 25 && !given.is_long) continue;
+    for (const double thickness : {0.12, 0.09}) {
+      const std::string name = fmt::format("{} stones, t/R = {:g}", n, thickness);
+      findings.part(name, [&] {
+        const bool stands = thickness > 0.1075;
+        const double duration = given.is_long && stands ? 10.0 : stands ? 1.0 : 0.5;
+        const Trajectory run = run_by_steps(arch(n, thickness, folder.path()), given.laws, duration, 1.0 / 240, 100);
+        const auto crown = [&](const Frame& frame) { return run.frames.front().poses[static_cast<std::size_t>(n / 2)].com_world.z() - frame.poses[static_cast<std::size_t>(n / 2)].com_world.z(); };
+        double drop = 0.0;
+        for (const Frame& frame : run.frames) drop = std::max(drop, std::abs(crown(frame)));
+        if (stands) findings.at_most(name + fmt::format(", {:g} s: drop of the crown", duration), drop, 1e-3, "R", "static, at mu = 0.5");
+        else findings.must_fail(name + fmt::format(", {:g} s: stands", duration), drop, 1e-3, "R", "no line of thrust fits into it");
+        findings.at_least(name + ": smallest gap", smallest_gap(run), 0.0, "m", "nothing interpenetrates");
+        if (n == 25) plot.curves.push_back(curve_of(fmt::format("t/R = {:g}", thickness), run, [&](const Frame& frame) { return std::max(1e-12, std::abs(crown(frame))); }));
+      });
+    }
+  }
+  findings.plot(std::move(plot));
+}
+
+// ---- Row 13 ----------------------------------------------------------------------------------------------------------
+
+/// A ball between a floor and a jaw hinged at the origin, at an angle of 2 a; the jaw is pressed down with 100 N. No gravity.
+/// The ball is in balance under two forces only along the line through both points of contact, a off either normal: mu >= tan(a).
+scene::Scene nip(double a, double mu) {
+  constexpr double kBall = 0.1;
+  const double reach = kBall / std::sin(a);
+  scene::BodySpec ball = rough(truths::ball("ball", 1.0, kBall, Vector3d(reach * std::cos(a), 0, reach * std::sin(a)), Vector3d::Zero(), 0.0), mu);
+  const Vector3d along(std::cos(2 * a), 0, std::sin(2 * a)), up(-std::sin(2 * a), 0, std::cos(2 * a));
+  scene::BodySpec jaw = turned(rough(box("jaw", Vector3d(1.0, 0.3, 0.05), 1.0, along + 0.05 * up), mu), -2 * a, Vector3d::UnitY());
+  scene::Scene scene = with_contact("nip", {ball, jaw, floor_of(mu)});
+  scene.gravity_m_s2.reset();
+  scene.stabilisation = scene::StabilisationSpec{};
+  scene.joints = {{"hinge", scene::JointKind::kHinge, "jaw", "", Vector3d::Zero(), Vector3d::UnitY()}};
+  scene.apart = {{"jaw", "floor"}};
+  scene.point_forces = {{"jaw", -100.0 * up, along + 0.05 * up, 0.0, 100.0}};
+  return scene;
+}
+
+void wedge(const Given& given, Findings& findings) {
+  report::Plot plot{"A ball in a nip of 2 x 0.2 rad, pressed with 100 N: how far it has come out", {"time", "s"}, {"way", "m", report::Scale::kLog}, {}, {{1e-6, "threshold"}}, "Two percent of friction decide whether the nip holds it."};
+  for (const double a : {0.2, 0.35}) {
+    for (const double part : {1.02, 0.98}) {
+      const std::string name = fmt::format("half-angle {:g}, mu = {:g} tan(a)", a, part);
+      findings.part(name, [&] {
+        const Trajectory run = run_by_steps(nip(a, part * std::tan(a)), given.laws, given.is_long ? 5.0 : 0.3, 1.0 / 1000, 150);
+        const double way = drift_of(run, 0);
+        if (part > 1) findings.at_most(name + ": way of the ball", way, 1e-6, "m", "self-locking from mu = tan(a)");
+        else findings.must_fail(name + ": stays", way, 1e-6, "m", "2 % below the limit it is squeezed out");
+        findings.at_most(name + ": penetration over the ball's size", std::max(0.0, -smallest_gap(run)) / 0.2, 1e-9, "", "pressed, not pressed in");
+        if (a == 0.2) plot.curves.push_back(curve_of(fmt::format("mu = {:g} tan(a)", part), run, [&](const Frame& f) { return std::max(1e-14, (f.poses[0].com_world - run.frames.front().poses[0].com_world).norm()); }));
+      });
+    }
+  }
+  findings.plot(std::move(plot));
+  findings.not_run("spikes and cliff edges of Erleben's set", "their models are not made yet");
+}
+
+}  // namespace
+
+void add_structures(std::vector<Case>& cases) {
+  cases.push_back({11, "card house", "Two cards that lean on each other stand if their friction is at least half the tangent of their angle. Solvers that correct velocities a little at every step let them creep apart.", "a1 a3", card_tent});
+  cases.push_back({12, "masonry arch", "A semicircle of loose stones stands by its shape alone if it is thicker than a tenth of its radius (0.1075), and falls with four hinges if it is thinner. Nothing but contact forces decides.", "a1 a3", masonry_arch});
+  cases.push_back({13, "wedge, jamming", "A body squeezed between two faces locks itself if friction is at least the tangent of half their angle, whatever the force. Two percent above and two below must differ: no creep, no overlap.", "a1 a3", wedge});
+}
+
+}  // namespace tumble::battery
