@@ -130,7 +130,7 @@ void redundant(const Given& given, Findings& findings) {
   const std::string name = fmt::format("chain of 4, one rod entered twice, {:g} s", duration);
   findings.at_most(name + ": places against the single one", places, 1e-9, "m", "a chain of 4 multiplies errors by less than 1e4 in that time");
   findings.at_most(name + ": sum of the two forces against the single one", forces, 1e-9, "", "which of the two carries how much is not determined; what they carry together is");
-  findings.plot({"One rod of a chain entered twice: difference from the chain with each rod once", {"time", "s"}, {"m, and of the top's force", "", report::Scale::kLog}, {a, b}, {{1e-9, "threshold"}}, "The matrix of the constraints is singular; the motion is not."});
+  findings.plot({"One rod of a chain entered twice: difference from the single one", {"time", "s"}, {"m, and of the top's force", "", report::Scale::kLog}, {a, b}, {{1e-9, "threshold"}}, "The matrix of the constraints is singular; the motion is not."});
   findings.part("inverse", [&] {
     double value = INFINITY;
     try {

@@ -41,9 +41,7 @@ void dense_pile(const Given& given, Findings& findings) {
   findings.part(size, [&] {
     const Trajectory run = run_by_steps(pile(n, false), given.laws, duration, 1e-3, 100);
     findings.at_most(size + fmt::format(", e = 0, mu = 0, {:g} s: penetration over the diameter", duration), std::max(0.0, -smallest_gap(run)) / (2 * kRadius), 1e-4, "", "the mean is asked for; the worst is taken");
-    double rise = 0.0, lowest = energy_of(run.frames.front());
-    for (const Frame& frame : run.frames) rise = std::max(rise, energy_of(frame) - lowest), lowest = std::min(lowest, energy_of(frame));
-    findings.at_most(size + ": rise of the energy over what was there", rise / energy_of(run.frames.front()), 1e-9, "", "plastic impacts only take");
+    findings.at_most(size + ": rise of the energy over what was there", energy_rise(run), 1e-9, "", "plastic impacts only take");
     findings.plot({"Pile of " + size + ", e = 0", {"time", "s"}, {"kinetic energy", "J", report::Scale::kLog}, {curve_of("kinetic energy", run, [](const Frame& f) { return std::max(1e-12, f.kinetic_energy); })}, {}, "It comes to rest without a ball inside another."});
   });
   findings.part("elastic", [&] {

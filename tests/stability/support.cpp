@@ -63,6 +63,15 @@ double energy_drift(const Trajectory& run, double scale) {
   return worst;
 }
 
+double energy_rise(const Trajectory& run) {
+  double rise = 0.0, lowest = energy_of(run.frames.front());
+  for (const Frame& frame : run.frames) {
+    rise = std::max(rise, energy_of(frame) - lowest);
+    lowest = std::min(lowest, energy_of(frame));
+  }
+  return rise / energy_of(run.frames.front());
+}
+
 double drift_of(const Trajectory& run, std::size_t body) {
   double worst = 0.0;
   for (const Frame& frame : run.frames) worst = std::max(worst, (frame.poses[body].com_world - run.frames.front().poses[body].com_world).norm());
@@ -122,7 +131,7 @@ void compare_with_truth(const Given& given, Findings& findings, const std::strin
     }
     require(worst != nullptr, "no output of truth " + id + " was compared");
     findings.at_most("truth " + id + ": " + worst->output, worst->error, worst->pass_mark, "",
-                     worst->note.empty() ? "100 times what rounding of the inputs forces, or the error that the method's order predicts; of all outputs the one closest to its mark" : worst->note);
+                     worst->note.empty() ? "100 floors of double precision; of all outputs the one closest to its mark" : worst->note);
   });
 }
 

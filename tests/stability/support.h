@@ -32,6 +32,8 @@ Trajectory run_by_steps(const scene::Scene& scene, const Laws& laws, double dura
 double energy_of(const Frame& frame);
 /// Largest |E - E0| / scale over the frames.
 double energy_drift(const Trajectory& run, double scale);
+/// Largest rise of the energy above an earlier value, over the energy at the start.
+double energy_rise(const Trajectory& run);
 /// Largest way of a body from where it began. [m]
 double drift_of(const Trajectory& run, std::size_t body);
 /// Largest turn of a body against how it began. [rad]

@@ -157,7 +157,10 @@ void heavy_top(const Given& given, Findings& findings) {
     // Linearised: z'' - i a z' - b z = 0 with a = I3 w / It, b = m g l / It; let go at rest it reaches a / sqrt(a^2 - 4 b) times its tilt.
     const double a = axial * part * critical / across, b = m * kG * l / across;
     if (part > 1) findings.at_most("spin 1.1 of the critical one: largest tilt", largest, 1e-3 * a / std::sqrt(a * a - 4 * b) * (1 + 1e-4), "rad", "of the linearised equation a / sqrt(a^2 - 4 b) times the first tilt, and (1e-3)^2 for what is not linear");
-    else findings.at_least("spin 0.9 of the critical one: largest tilt", largest, 0.3, "rad", "below the critical spin a top does not sleep");
+    else {
+      findings.at_least("spin 0.9 of the critical one: largest tilt", largest, 0.3, "rad", "below the critical spin a top does not sleep");
+      findings.must_fail("spin 0.9 of the critical one: sleeps", largest, 1e-2, "rad", "a battery in which it slept would hold any top upright");
+    }
     plot.curves.push_back(curve_of(fmt::format("{:g} of the critical spin", part), run, tilt));
   }
   findings.plot(std::move(plot));
