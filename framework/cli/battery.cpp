@@ -94,15 +94,17 @@ void run_battery(Context& context, const Options& options) {
     if (const auto slash = name.find('/'); slash != std::string::npos) name.replace(slash, 1, "__");
     return read_truth(truths / (name + ".json"));
   };
+  std::vector<battery::Case> wanted;
+  for (const battery::Case& a_case : battery::cases())
+    if (is_wanted(a_case, options.only)) wanted.push_back(a_case);
+  if (wanted.empty()) throw UserError("--only", "no case has that number or that word in its name", "Run without --only to see all of them.");
   std::vector<BatteryRow> rows;
   fmt::print("{:<24} {:<50} {:>15} {:>15} {:>9}  {}\n", "case", "closest to its threshold; methods that must fail", "value", "threshold", "margin", "verdict");
-  for (const battery::Case& a_case : battery::cases()) {
-    if (!is_wanted(a_case, options.only)) continue;
+  for (const battery::Case& a_case : wanted) {
     fmt::print(stderr, "tumble: {} {}\n", a_case.row, a_case.name);
     rows.push_back(battery::run(a_case, given));
     print_row(rows.back(), options.each);
   }
-  if (rows.empty()) throw UserError("--only", "no case has that number or that word in its name", "Run without --only to see all of them.");
   const report::BatteryCount count = report::count_of(rows);
   const fs::path page = fs::path(options.out) / "battery.html";
   report::write_battery_page(rows, std::string(options.is_long ? "long runs" : "short runs (--long: the whole lengths)") + "; integration: " + given.laws.integrator_source +

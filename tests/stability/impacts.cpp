@@ -178,7 +178,7 @@ void add_impacts(std::vector<Case>& cases) {
                    "Below a cut-off speed a bounce is rest.", "a1", zeno});
   cases.push_back({19, "simultaneous impacts", "Newton's cradle: impacts at one instant have no single right answer. One after the other the cradle works; all at once (a linear complementarity problem) "
                    "the balls move off together. The scene says which law it uses; both keep the invariants.", "a1", simultaneous_impacts});
-  cases.push_back({32, "chaos and predictability", "Three hard spheres in a box. Each collision multiplies an error by about four, so that after thirty even exact arithmetic on rounded inputs says nothing. "
+  cases.push_back({32, "chaos", "Three hard spheres in a box. Each collision multiplies an error by about four, so that after thirty even exact arithmetic on rounded inputs says nothing. "
                    "Up to there the order and times of collisions must be right; after that energy and the box.", "a1", chaos});
 }
 

@@ -157,7 +157,7 @@ void redundant(const Given& given, Findings& findings) {
 }  // namespace
 
 void add_loops(std::vector<Case>& cases) {
-  cases.push_back({5, "closed loop, singular posture", "Cranks and couplers in a row (IFToMM benchmark A02). Where all links lie along one line the constraints lose their rank and the mechanism could fold: "
+  cases.push_back({5, "closed loop", "Cranks and couplers in a row (IFToMM benchmark A02). Where all links lie along one line the constraints lose their rank and the mechanism could fold: "
                    "codes that expect independent rows stop or switch branch there. In space its hinges are redundant everywhere.", "a3", closed_loop});
   cases.push_back({6, "redundant constraints", "The same rod twice, or a table on four legs. The matrix of the constraints is singular, so that single forces are not determined, but the motion and the sums are. "
                    "A solver that expects independent rows divides by rounding.", "a3", redundant});

@@ -168,7 +168,7 @@ void far_from_origin(const Given& given, Findings& findings) {
 void add_meshes(std::vector<Case>& cases) {
   cases.push_back({8, "degenerate mesh", "Surfaces with faces of no area, vertices twice, turned inside out, with a hole, with a cavity. The integrals for mass and inertia assume a closed surface and do not look: "
                    "they give some number. Each must give the right mass or a refusal that says where.", "", degenerate_meshes});
-  cases.push_back({22, "10^6 m from the origin", "The same scene a thousand kilometres off. Doubles stand 10^-10 m apart there; float engines fail after a few kilometres. Sums about the world's origin lose the "
+  cases.push_back({22, "far from the origin", "The same scene a thousand kilometres off. Doubles stand 10^-10 m apart there; float engines fail after a few kilometres. Sums about the world's origin lose the "
                    "inertia altogether: a textbook gives a box a moment that is wrong by factors up to 10^11.", "", far_from_origin});
 }
 

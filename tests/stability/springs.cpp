@@ -191,7 +191,7 @@ void add_springs(std::vector<Case>& cases) {
                    "A spring of 10^6 N/m on one kilogram swings at 1000 rad/s. Explicit Euler blows up at every step size; symplectic Euler holds up to w h = 2, RK4 up to 2.83. "
                    "Steps outside a method's range are refused at start-up with the largest step that holds.",
                    "a3", stiff_spring});
-  cases.push_back({24, "energy over 10^6 steps",
+  cases.push_back({24, "energy, 10^6 steps",
                    "A swing of a million steps. Symplectic methods keep the energy within a band for ever; others gain or lose a little at every step, which adds up: RK4 by an amount that is known beforehand.",
                    "a3", energy_over_a_million_steps});
 }

@@ -169,13 +169,13 @@ void heavy_top(const Given& given, Findings& findings) {
 }  // namespace
 
 void add_tops(std::vector<Case>& cases) {
-  cases.push_back({7, "near-singular inertia", "A needle resists turning end over end a million times more than spinning about its axis. Whoever keeps the inverse tensor in the world frame mixes the two and "
+  cases.push_back({7, "needle", "A needle resists turning end over end a million times more than spinning about its axis. Whoever keeps the inverse tensor in the world frame mixes the two and "
                    "loses the spin's digits; in the body frame nothing is lost.", "", needle});
   cases.push_back({20, "spin of 10^4 rad/s", "A top that turns 1600 times a second. Engines clamp the turn of a step or add an explicit gyroscopic term, and blow up. The closed form holds to rounding, "
                    "an integrator to its order; over half a turn a step nothing can be right, and it must say so.", "", high_spin});
   cases.push_back({21, "intermediate axis", "A body thrown turning about its middle axis flips over and over, with a period that Jacobi's functions give. Explicit gyroscopic terms add energy, clamped momenta "
                    "lose it, and some engines leave the term out: then nothing flips.", "", intermediate_axis});
-  cases.push_back({27, "sleeping and heavy tops", "A top on its tip sleeps upright if it spins faster than 2 sqrt(It m g l) / I3, and nutates between two bounds that a cubic gives. Half a percent of drift wakes it.", "a3", heavy_top});
+  cases.push_back({27, "heavy top", "A top on its tip sleeps upright if it spins faster than 2 sqrt(It m g l) / I3, and nutates between two bounds that a cubic gives. Half a percent of drift wakes it.", "a3", heavy_top});
 }
 
 }  // namespace tumble::battery
