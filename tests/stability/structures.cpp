@@ -216,15 +216,16 @@ scene::Scene nip(double a, double mu) {
 }
 
 void wedge(const Given& given, Findings& findings) {
-  report::Plot plot{"A ball in a nip of 2 x 0.2 rad, pressed with 100 N: how far it has come out", {"time", "s"}, {"way", "m", report::Scale::kLog}, {}, {{1e-6, "threshold"}}, "Two percent of friction decide whether the nip holds it."};
+  constexpr double kCreep = 2e-4;   // m: 1e-3 of the ball, as of stacks and cards
+  report::Plot plot{"A ball in a nip of 2 x 0.2 rad, pressed with 100 N: how far it has come out", {"time", "s"}, {"way", "m", report::Scale::kLog}, {}, {{kCreep, "threshold"}}, "Two percent of friction decide whether the nip holds it."};
   for (const double a : {0.2, 0.35}) {
     for (const double part : {1.02, 0.98}) {
       const std::string name = fmt::format("half-angle {:g}, mu = {:g} tan(a)", a, part);
       findings.part(name, [&] {
         const Trajectory run = run_by_steps(nip(a, part * std::tan(a)), given.laws, given.is_long ? 5.0 : 0.3, 1.0 / 1000, 150);
         const double way = drift_of(run, 0);
-        if (part > 1) findings.at_most(name + ": way of the ball", way, 1e-6, "m", "self-locking from mu = tan(a)");
-        else findings.must_fail(name + ": stays", way, 1e-6, "m", "2 % below the limit it is squeezed out");
+        if (part > 1) findings.at_most(name + ": way of the ball", way, kCreep, "m", "self-locking from mu = tan(a); creep at most 1e-3 of the body");
+        else findings.must_fail(name + ": stays", way, kCreep, "m", "2 % below the limit it is squeezed out");
         findings.at_most(name + ": penetration over the ball's size", std::max(0.0, -smallest_gap(run)) / 0.2, 1e-9, "", "pressed, not pressed in");
         if (a == 0.2) plot.curves.push_back(curve_of(fmt::format("mu = {:g} tan(a)", part), run, [&](const Frame& f) { return std::max(1e-14, (f.poses[0].com_world - run.frames.front().poses[0].com_world).norm()); }));
       });
