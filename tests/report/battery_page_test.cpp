@@ -49,7 +49,7 @@ TEST(BatteryRows, AreDecidedByTheWorstMeasure) {
 }
 
 TEST(BatteryRows, WhatStopsAMethodThatMustFailIsItsFailure) {
-  Measure m = at_most(kUnset, kUnset);
+  Measure m = at_most(std::nan(""), std::nan(""));
   m.must_fail = true;
   m.error = "runaway energy";
   EXPECT_EQ(outcome_of(m), Outcome::kFailsAsItMust);
