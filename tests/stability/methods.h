@@ -22,7 +22,5 @@ std::function<VectorXd(const OdeFunction&, double, const VectorXd&, double)> dor
 
 /// Multipliers by so many sweeps of Gauss and Seidel from a cold start: what engines for games do.
 Laws with_gauss_seidel(Laws laws, int sweeps);
-/// Multipliers by the inverse of a matrix that is expected to have one.
-Laws with_explicit_inverse(Laws laws);
 
 }  // namespace tumble::battery
