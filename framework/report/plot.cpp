@@ -16,6 +16,7 @@ namespace {
 constexpr double kWidth = 640, kHeight = 360, kLeft = 78, kRight = 622, kTop = 34, kBottom = 306;
 constexpr std::size_t kMostPoints = 2000, kParts = 1000;
 constexpr double kTextHeight = 17;
+constexpr double kLetter = 0.64;        // width of a bold letter over its size, on average
 constexpr double kMostDecades = 40.0;   // on a logarithmic axis: what lies deeper is rounding, and drawn at the edge
 
 // From dark to light for print, told apart by the colour-blind (after M. Okabe, K. Ito, "Color universal design", 2008).
@@ -180,7 +181,8 @@ std::string svg_of(const Plot& plot) {
   const Range across = widened(xs, plot.x.scale), up = widened(ys, plot.y.scale);
   const Scaled x{plot.x.scale, across.low, across.high, kLeft, kRight}, y{plot.y.scale, up.low, up.high, kBottom, kTop};
 
-  std::string body = text(kLeft, 20, plot.title, "start", " font-weight=\"bold\" font-size=\"13.5\"");
+  const double room = (kRight - kLeft) / (kLetter * std::max<double>(1.0, static_cast<double>(plot.title.size())));
+  std::string body = text(kLeft, 20, plot.title, "start", fmt::format(" font-weight=\"bold\" font-size=\"{:.3g}\"", std::min(13.5, room)));
   body += grid(plot.y, y, true) + grid(plot.x, x, false);
   body += fmt::format("<rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" fill=\"none\" stroke=\"#5b6875\"/>\n", kLeft, kTop, kRight - kLeft, kBottom - kTop);
   for (const Limit& limit : plot.limits) {

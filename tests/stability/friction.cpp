@@ -130,7 +130,7 @@ void box_rolls(const Given& given, Findings& findings, int count, bool rolls) {
 
 void friction_cone(const Given& given, Findings& findings) {
   constexpr double mu = 0.8, duration = 0.5;
-  report::Plot plot{"Box of 10 kg pushed with 100 N, mu = 0.8: acceleration over the direction of the push", {"direction", "deg"}, {"acceleration", "m/s^2"}, {}, {}, "A cone is round. A pyramid of four sides holds up to 111 N along the diagonal, and does not let the box go."};
+  report::Plot plot{"Box of 10 kg pushed with 100 N, mu = 0.8", {"direction of the push", "deg"}, {"acceleration", "m/s^2"}, {}, {}, "A cone is round. A pyramid of four sides holds up to 111 N along the diagonal, and does not let the box go."};
   report::Curve found{"this project", {}, {}, true}, pyramid{"pyramid of four sides", {}, {}};
   double direction_error = 0.0, way_error = 0.0;
   for (int degrees = 0; degrees <= 90; degrees += 15) {

@@ -103,7 +103,7 @@ void two_loose_cards(const Given& given, Findings& findings) {
 }
 
 void card_tent(const Given& given, Findings& findings) {
-  report::Plot plot{"Card on a smooth wall (half a tent) at half-angle 0.4: how far a foot has gone", {"time", "s"}, {"way", "m", report::Scale::kLog}, {}, {{1e-3, "threshold"}}, "A tenth above the limit it stands without creeping, a tenth below it slides."};
+  report::Plot plot{"Card on a smooth wall, half-angle 0.4: way of its foot", {"time", "s"}, {"way", "m", report::Scale::kLog}, {}, {{1e-3, "threshold"}}, "A tenth above the limit it stands without creeping, a tenth below it slides."};
   for (const double a : {0.2, 0.4}) {
     for (const double part : {1.1, 0.9}) {
       const std::string name = fmt::format("card on a smooth wall, half-angle {:g}, mu = {:g} of the limit", a, part);
@@ -217,7 +217,7 @@ scene::Scene nip(double a, double mu) {
 
 void wedge(const Given& given, Findings& findings) {
   constexpr double kCreep = 2e-4;   // m: 1e-3 of the ball, as of stacks and cards
-  report::Plot plot{"A ball in a nip of 2 x 0.2 rad, pressed with 100 N: how far it has come out", {"time", "s"}, {"way", "m", report::Scale::kLog}, {}, {{kCreep, "threshold"}}, "Two percent of friction decide whether the nip holds it."};
+  report::Plot plot{"Ball in a nip of 2 x 0.2 rad: how far it has come out", {"time", "s"}, {"way", "m", report::Scale::kLog}, {}, {{kCreep, "threshold"}}, "Two percent of friction decide whether the nip holds it."};
   for (const double a : {0.2, 0.35}) {
     for (const double part : {1.02, 0.98}) {
       const std::string name = fmt::format("half-angle {:g}, mu = {:g} tan(a)", a, part);
