@@ -38,7 +38,7 @@ void dense_pile(const Given& given, Findings& findings) {
   const int n = given.is_long ? 6 : 3;
   const double duration = given.is_long ? 2.0 : 0.6;
   const std::string size = fmt::format("{0} x {0} x {0} balls", n);
-  findings.part(size, [&] {
+  findings.part(size + ", e = 0", [&] {
     const Trajectory run = run_by_steps(pile(n, false), given.laws, duration, 1e-3, 100);
     findings.at_most(size + fmt::format(", e = 0, mu = 0, {:g} s: penetration over the diameter", duration), std::max(0.0, -smallest_gap(run)) / (2 * kRadius), 1e-4, "", "the mean is asked for; the worst is taken");
     findings.at_most(size + ": rise of the energy over what was there", energy_rise(run), 1e-9, "", "plastic impacts only take");
