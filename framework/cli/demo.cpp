@@ -57,13 +57,13 @@ std::size_t count_of(const Grade& grade, grading::Verdict verdict) {
 
 void add_scores(report::Page& page, const std::vector<Graded>& all) {
   report::Table table;
-  table.columns = {{"Assignment"}, {"Submission"}, {"Score", true}, {"of", true}, {"Right", true}, {"Wrong", true}, {"Not attempted", true}, {"Crashed", true}};
+  table.columns = {{"Assignment"}, {"Submission"}, {"Score", true}, {"of", true}, {"Right", true}, {"Wrong", true}, {"Not attempted", true}, {"Crashed", true}, {"Out of time or memory", true}};
   for (const Graded& graded : all)
     for (const Grade& grade : graded.grades)
       table.rows.push_back({{graded.kind->id + " " + graded.kind->title}, {grade.name, report::link_to(fs::path(graded.kind->id) / grade.folder / "index.html")},
                             {fmt::format("{:g}", grade.score)}, {fmt::format("{:g}", grade.possible)}, {std::to_string(count_of(grade, grading::Verdict::kRight))},
                             {std::to_string(count_of(grade, grading::Verdict::kWrong))}, {std::to_string(count_of(grade, grading::Verdict::kNotAttempted))},
-                            {std::to_string(count_of(grade, grading::Verdict::kCrashed))}});
+                            {std::to_string(count_of(grade, grading::Verdict::kCrashed))}, {std::to_string(count_of(grade, grading::Verdict::kOutOfResources))}});
   page.table(table);
 }
 

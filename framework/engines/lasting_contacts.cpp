@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "framework/collision/gap.h"
+#include "framework/engines/body_groups.h"
 #include "framework/engines/guarded_laws.h"
 
 namespace tumble::engines {
@@ -87,25 +87,12 @@ LastingContacts::Points LastingContacts::points_at(Pair pair, const std::vector<
 
 std::vector<LastingContacts::Group> LastingContacts::groups(const std::vector<Pair>& touching) {
   const int n = moving_.size();
-  std::vector<int> leader(n);
-  std::iota(leader.begin(), leader.end(), 0);
-  const auto find = [&](int i) {
-    while (leader[i] != i) i = leader[i] = leader[leader[i]];
-    return i;
-  };
-  const auto join = [&](int a, int b) {
-    const int i = find(a), j = find(b);
-    leader[std::max(i, j)] = std::min(i, j);
-  };
-  for (const LinkedBodies& group : moving_.linked_groups())
-    for (const int body : group.bodies()) join(group.bodies().front(), body);
-  for (const auto& [a, b] : touching)
-    if (moving_.can_move(a) && moving_.can_move(b)) join(a, b);
+  const std::vector<int> leader = group_leaders(moving_, touching);
   std::map<int, Group> by_leader;
-  for (const auto& pair : touching) by_leader[find(moving_.can_move(pair.first) ? pair.first : pair.second)].pairs.push_back(pair);
+  for (const auto& pair : touching) by_leader[leader[moving_.can_move(pair.first) ? pair.first : pair.second]].pairs.push_back(pair);
   for (int i = 0; i < n; ++i) {
     if (!moving_.can_move(i)) continue;
-    const auto group = by_leader.find(find(i));
+    const auto group = by_leader.find(leader[i]);
     if (group == by_leader.end()) continue;
     group->second.bodies.push_back(i);
     const int linked = moving_.linked_group(i);

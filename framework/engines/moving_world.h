@@ -57,6 +57,7 @@ class MovingWorld {
 
   /// Bodies tied by springs, rods, joints, drag: groups that are integrated as one.
   std::vector<LinkedBodies>& linked_groups() { return linked_; }
+  const std::vector<LinkedBodies>& linked_groups() const { return linked_; }
   /// Place of a body's group in linked_groups(); -1 for a body without links.
   int linked_group(int body) const { return group_of_[body]; }
   /// Control laws whose time has come look. @return when the next one does; infinite without

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "framework/collision/gap.h"
+#include "framework/engines/body_groups.h"
 
 namespace tumble::engines {
 namespace {
@@ -67,20 +67,7 @@ void Sleepers::watch_torques(int linked) {
 
 // Awake bodies that touch or are linked.
 std::map<int, Sleepers::Group> Sleepers::groups_of(const std::vector<Pair>& touching) const {
-  std::vector<int> leader(moving_.size());
-  std::iota(leader.begin(), leader.end(), 0);
-  const auto find = [&](int i) {
-    while (leader[i] != i) i = leader[i] = leader[leader[i]];
-    return i;
-  };
-  const auto join = [&](int a, int b) {
-    const int i = find(a), j = find(b);
-    leader[std::max(i, j)] = std::min(i, j);
-  };
-  for (const LinkedBodies& linked : moving_.linked_groups())
-    for (const int body : linked.bodies()) join(linked.bodies().front(), body);
-  for (const auto& [a, b] : touching)
-    if (moving_.can_move(a) && moving_.can_move(b)) join(a, b);
+  const std::vector<int> leader = group_leaders(moving_, touching);
 
   std::map<int, Group> groups;
   const bool weightless = !moving_.world().gravity_world;
@@ -90,7 +77,7 @@ std::map<int, Sleepers::Group> Sleepers::groups_of(const std::vector<Pair>& touc
   };
   for (const auto& [a, b] : touching) {
     if (!moving_.can_move(a) && !moving_.can_move(b)) continue;
-    Group& group = groups[find(moving_.can_move(a) ? a : b)];
+    Group& group = groups[leader[moving_.can_move(a) ? a : b]];
     group.slides = group.slides || (modes_ && modes_->slides({a, b}));
     for (const int body : {a, b})
       if (moving_.world().bodies[body].immovable()) end_at(group, body);
@@ -98,13 +85,13 @@ std::map<int, Sleepers::Group> Sleepers::groups_of(const std::vector<Pair>& touc
   for (int k = 0; k < static_cast<int>(moving_.linked_groups().size()); ++k) {
     const LinkedBodies& linked = moving_.linked_groups()[k];
     if (!moving_.can_move(linked.bodies().front())) continue;
-    Group& group = groups[find(linked.bodies().front())];
+    Group& group = groups[leader[linked.bodies().front()]];
     group.linked.push_back(k);
     for (const int end : linked.fixed_ends()) end_at(group, end);
   }
   for (int body = 0; body < moving_.size(); ++body) {
     if (!moving_.can_move(body)) continue;
-    if (const auto group = groups.find(find(body)); group != groups.end()) group->second.bodies.push_back(body);
+    if (const auto group = groups.find(leader[body]); group != groups.end()) group->second.bodies.push_back(body);
   }
   for (auto& [first, group] : groups) group.held = group.held || weightless;
   return groups;

@@ -4,11 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "assignments/a1_impulse/a1_binding.h"
-#include "assignments/a2_integration/a2_binding.h"
-#include "assignments/a3_constraints/a3_binding.h"
 #include "framework/core/error.h"
-#include "framework/modules/load.h"
+#include "tests/engines/reference_laws.h"
 #include "tests/engines/scenes.h"
 
 namespace tumble::testing {
@@ -16,18 +13,6 @@ namespace {
 
 constexpr double kG = 9.81;
 const Vector3d kGravity(0, 0, -kG);
-
-Laws reference_laws() {
-  modules::Registry registry;
-  register_assignments(registry);
-  const std::filesystem::path built = std::filesystem::path(TUMBLE_BINARY_DIR) / "modules";
-  const auto load = [&](const char* id, const char* file) { return modules::load_module(registry.find(id), built / file); };
-  Laws laws = library_laws();
-  a1::bind(*std::static_pointer_cast<const a1::Module>(load("a1", "a1_reference.so")), laws);
-  a2::bind(*std::static_pointer_cast<const a2::Module>(load("a2", "a2_reference.so")), laws);
-  a3::bind(*std::static_pointer_cast<const a3::Module>(load("a3", "a3_reference.so")), laws);
-  return laws;
-}
 
 scene::BodySpec rough(scene::BodySpec body, double friction, double restitution = 0.0) {
   body.friction = friction;

@@ -41,20 +41,8 @@ Laws euler() {
   return laws;
 }
 
-/// A chain of equal links, hung up at the origin, each rod from bob to bob. @param direction  unit, along the chain
-scene::Scene chain(const std::vector<double>& masses, double length, const Vector3d& direction) {
-  scene::Scene scene = truths::empty_scene("chain", 1.0, 1e-9);
-  scene.gravity_m_s2 = kGravity;
-  scene.stabilisation = scene::StabilisationSpec{};
-  std::string above;
-  for (std::size_t i = 0; i < masses.size(); ++i) {
-    const std::string bob = "bob" + std::to_string(i);
-    scene.bodies.push_back(truths::point_mass(bob, masses[i], length * static_cast<double>(i + 1) * direction, Vector3d::Zero()));
-    scene.rods.push_back({"rod" + std::to_string(i), {above, Vector3d::Zero()}, {bob, Vector3d::Zero()}, length});
-    above = bob;
-  }
-  return scene;
-}
+/// Hung up at the origin.
+scene::Scene chain(const std::vector<double>& masses, double length, const Vector3d& direction) { return truths::straight_chain(masses, length, direction, kGravity); }
 
 scene::Scene spring(double k) {
   scene::Scene scene = truths::empty_scene("spring", 1.0, 1e-9);

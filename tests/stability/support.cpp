@@ -36,19 +36,7 @@ scene::Scene with_contact(const std::string& name, std::vector<scene::BodySpec> 
   return scene;
 }
 
-scene::Scene chain(const std::vector<double>& masses, double length, const Vector3d& direction) {
-  scene::Scene scene = truths::empty_scene("chain", 1.0, 1e-9);
-  scene.gravity_m_s2 = kDown;
-  scene.stabilisation = scene::StabilisationSpec{};
-  std::string above;
-  for (std::size_t i = 0; i < masses.size(); ++i) {
-    const std::string bob = "bob" + std::to_string(i);
-    scene.bodies.push_back(truths::point_mass(bob, masses[i], length * static_cast<double>(i + 1) * direction, Vector3d::Zero()));
-    scene.rods.push_back({"rod" + std::to_string(i), {above, Vector3d::Zero()}, {bob, Vector3d::Zero()}, length});
-    above = bob;
-  }
-  return scene;
-}
+scene::Scene chain(const std::vector<double>& masses, double length, const Vector3d& direction) { return truths::straight_chain(masses, length, direction, kDown); }
 
 Trajectory run_by_steps(const scene::Scene& scene, const Laws& laws, double duration, double h, long frames) {
   const long about = std::max(1L, std::lround(duration / h)), stride = std::max(1L, about / std::max(1L, frames)), steps = std::max(1L, about / stride) * stride;

@@ -17,6 +17,10 @@ scene::BodySpec wall(const std::string& name, const Vector3d& position, const Ve
 /// A body that nothing touches and that springs and rods hold at its centre, so that its inertia does not matter.
 scene::BodySpec point_mass(const std::string& name, double mass, const Vector3d& position, const Vector3d& velocity);
 
+/// Point masses on rods, each hung on the one before, the first on the world's origin; under gravity, places kept by projection.
+/// @param direction  unit, along the chain  @param length  of each rod [m]
+scene::Scene straight_chain(const std::vector<double>& masses, double length, const Vector3d& direction, const Vector3d& gravity);
+
 /// The whole run; `frame_rate_hz` as small as wanted where only events matter.
 /// @throws UserError as run_scene; std::runtime_error when the run was stopped early
 Trajectory run_in_memory(const scene::Scene& scene, const Laws& laws, double frame_rate_hz);
