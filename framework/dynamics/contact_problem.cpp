@@ -53,24 +53,32 @@ void sweep_until(const Goal& goal, const std::vector<contacts::LocalContact>& lo
 /// The means by turns, cheap ones first; `best` is the best that was met.
 class Turns {
  public:
-  Turns(const Goal& goal, contacts::BodyMatrix& matrix, Progress& progress)
-      : goal_(goal), locals_(contacts::prepare_locals(goal.system)), matrix_(matrix), now_(progress), best_(progress) {}
+  /// @param enough  a violation this small is not worth dearer means [m/s]
+  Turns(const Goal& goal, double enough, contacts::BodyMatrix& matrix, Progress& progress)
+      : goal_(goal), enough_(enough), locals_(contacts::prepare_locals(goal.system)), matrix_(matrix), now_(progress), best_(progress) {}
 
   void run(int sweeps) {
-    for (int round = 0; round < kSweepRounds && !best_.accepted; ++round) sweep_and_finish(sweeps << (2 * round));
-    if (!best_.accepted) soften(kFewSoftRounds, kLeastCompliance);
-    if (!best_.accepted) follow();
-    if (!best_.accepted) soften(kManySoftRounds, kSteadyCompliance);
-    for (int round = 0; round < kLastRounds && !best_.accepted; ++round) {
-      take_best();
-      sweep_and_finish(kLastSweeps);
-    }
+    for (int round = 0; round < kSweepRounds && !done(); ++round) sweep_and_finish(sweeps << (2 * round));
+    if (!done()) go_on();
+    if (!done() && now_.violation.squares < best_.violation.squares) best_ = now_;
     best_.sweeps = now_.sweeps;
     best_.factorisations = now_.factorisations;
     now_ = std::move(best_);
   }
 
  private:
+  bool done() const { return best_.accepted || best_.violation.largest <= enough_; }
+
+  void go_on() {
+    if (!done()) soften(kFewSoftRounds, kLeastCompliance);
+    if (!done()) follow();
+    if (!done()) soften(kManySoftRounds, kSteadyCompliance);
+    for (int round = 0; round < kLastRounds && !done(); ++round) {
+      take_best();
+      sweep_and_finish(kLastSweeps);
+    }
+  }
+
   /// Newton's method on the law, from where we are. It leaves us there: where it fails it has gone astray.
   void try_to_finish() {
     Progress trial = now_;
@@ -117,7 +125,7 @@ class Turns {
   void soften(int rounds, double least_compliance) {
     double compliance = std::max(kFirstCompliance, least_compliance);
     Impulses second_last, last = now_.impulses;
-    for (int round = 0; round < rounds && !best_.accepted; ++round) {
+    for (int round = 0; round < rounds && !done(); ++round) {
       if (round % kFinishEvery == 2) extrapolate(second_last, last);
       second_last = std::move(last);
       last = now_.impulses;
@@ -128,20 +136,21 @@ class Turns {
   }
 
   void follow() {
-    for (double eps = kSoftest; eps > kHardest && !best_.accepted; eps *= kPathStep) {
+    for (double eps = kSoftest; eps > kHardest && !done(); eps *= kPathStep) {
       contacts::follow(goal_, eps, matrix_, now_);
       if (eps < kWorthFinishing) try_to_finish();
     }
   }
 
   const Goal& goal_;
+  double enough_;
   std::vector<contacts::LocalContact> locals_;
   contacts::BodyMatrix& matrix_;
   Progress& now_;
   Progress best_;
 };
 
-void iterate(const Goal& goal, const ContactOptions& options, Progress& progress) {
+void iterate(const Goal& goal, const ContactOptions& options, double enough, Progress& progress) {
   const std::size_t size = goal.system.contacts.size() + goal.system.rows.size();
   if (static_cast<int>(size) > options.largest_direct || size == 1) {  // one contact: the first sweep is exact
     sweep_until(goal, contacts::prepare_locals(goal.system), options.most_sweeps_alone, progress);
@@ -149,7 +158,7 @@ void iterate(const Goal& goal, const ContactOptions& options, Progress& progress
   }
   contacts::BodyMatrix matrix(goal.system);
   contacts::finish(goal, kFirstNewtonSteps, matrix, progress);
-  if (!progress.accepted) Turns(goal, matrix, progress).run(options.most_sweeps);
+  if (!progress.accepted && !(progress.violation.largest <= enough)) Turns(goal, enough, matrix, progress).run(options.most_sweeps);
 }
 
 ContactSolution describe(const ContactProblem& problem, const System& system, const Impulses& impulses) {
@@ -180,7 +189,7 @@ ContactSolution solve_contacts(const ContactProblem& problem, const ContactOptio
   Progress progress;
   progress.impulses = contacts::first_guess(system, problem);
   goal.measure(progress);
-  if (!progress.accepted) iterate(goal, options, progress);
+  if (!progress.accepted) iterate(goal, options, options.enough * speed, progress);
   ContactSolution solution = describe(problem, system, progress.impulses);
   solution.residual = progress.violation.largest / speed;
   solution.converged = progress.accepted;

@@ -34,6 +34,7 @@ struct PushingContact {
   Vector3d normal_b_to_a_world = unset_vector();              // unit
   double friction = 0.0;                                      // mu >= 0
   double target = 0.0;                                        // least normal velocity afterwards [m/s]; < 0 where there is room left
+  Vector3d slip_target_world = Vector3d::Zero();              // v_t in (C.2) counts from here: a conveyor, a point that moves on [m/s]
   Vector3d guess_world = Vector3d::Zero();                    // impulse on A to begin from (the last step's) [N s]
 };
 
@@ -60,6 +61,7 @@ struct ContactOptions {
   double tolerance = 1e-12;                                   // relative
   int most_sweeps = 50;                                       // of block Gauss-Seidel where Newton's method from the guess fails; then 4 times so many
   int largest_direct = 600;                                   // contacts and rows: beyond, sweeps only
+  double enough = 0.0;                                        // relative: what Newton's method and sweeps reach is taken if it is as good as this
   int most_sweeps_alone = 2000;                               // where the direct method is not called
 };
 

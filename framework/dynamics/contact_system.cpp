@@ -73,6 +73,7 @@ ContactBlock build_contact(const ContactProblem& problem, const PushingContact& 
   const Vector3d v_a = a.velocity_world + a.omega_world.cross(arm_a), v_b = b.velocity_world + b.omega_world.cross(arm_b);
   block.base = block.contact_from_world * (v_a - v_b);
   block.base[0] -= contact.target;
+  block.base.tail<2>() -= (block.contact_from_world * contact.slip_target_world).tail<2>();
   if (!block.is_frictional()) block.base.tail<2>().setZero();
   block.give = diagonal_mean(block);
   system.speed = std::max({system.speed, v_a.norm(), v_b.norm(), std::abs(contact.target)});

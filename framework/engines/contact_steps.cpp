@@ -16,7 +16,12 @@ constexpr double kEnoughOfAPile = 1e-5;
 constexpr int kSweepsOfAPile = 120;
 constexpr double kFarOff = 1e-3;          // of the group's speed: an answer this wrong is not taken without another attempt
 constexpr double kMidway = 0.3;           // of the smaller body: how far from each other points of one contact may lie at the middle of a step
-constexpr int kMostShifts = 8;            // rounds of taking back overlaps
+constexpr int kMostShifts = 10;           // rounds of taking back overlaps
+constexpr int kHeldRounds = 5;            // of these, in which points that push are drawn to their shells too
+constexpr double kHeldReach = 1e-3;       // of the smaller body: what turning may leave between points that push
+constexpr double kShiftReach = 4.0;       // shifts: how far apart points may be to matter
+constexpr double kNotYet = 1e3;           // shells: a point farther away at the start has come down in the step
+constexpr double kMoving = 10.0;          // rest speeds
 constexpr int kMostOfStudents = 64;       // contacts of a group that the laws' contact_forces is asked for: it is given a dense matrix
 constexpr int kMostLocated = 12;          // contacts of a group whose end of sliding is located in time
 constexpr int kMostSearches = 16;         // for ends of sliding within a step: bodies that chatter stop with the step
@@ -65,6 +70,7 @@ int LastingContacts::place(int body, double t, std::map<int, int>& places, const
 void LastingContacts::add_rows(const Group& group, const std::vector<RigidBodyState>& states, double t, const std::map<int, int>& places, bool of_places,
                                ContactProblem& problem) {
   std::vector<double> targets;
+  for (const Constraint& held : problem.rows) targets.push_back(-held.row.value);
   int fixed = -1;
   for (const int index : group.linked) {
     LinkedBodies& linked = moving_.linked_groups()[index];
@@ -89,19 +95,23 @@ void LastingContacts::add_rows(const Group& group, const std::vector<RigidBodySt
   problem.row_targets = Eigen::Map<const VectorXd>(targets.data(), static_cast<Eigen::Index>(targets.size()));
 }
 
+// Over a step of length h, which changes the velocities that the bodies would end with; with h = 0 those that they have now.
 ContactProblem LastingContacts::problem_of(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& states, double h) {
   ContactProblem problem;
   std::map<int, int> places;
-  for (const int body : group.bodies) place(body, moving_.target(), places, states, &moving_.path_end(body), problem);
+  const bool at_once = h == 0.0;
+  const double t = at_once ? moving_.time() : moving_.target();
+  for (const int body : group.bodies) place(body, t, places, states, at_once ? &states[body] : &moving_.path_end(body), problem);
   for (const Touch& touch : touches) {
     PushingContact contact;
-    contact.body_a = place(touch.pair.first, moving_.target(), places, states, &states[touch.pair.first], problem);
-    contact.body_b = place(touch.pair.second, moving_.target(), places, states, &states[touch.pair.second], problem);
+    contact.body_a = place(touch.pair.first, t, places, states, &states[touch.pair.first], problem);
+    contact.body_b = place(touch.pair.second, t, places, states, &states[touch.pair.second], problem);
     contact.point_world = point_of(touch.pair, touch.point);
     contact.normal_b_to_a_world = touch.point.normal_b_to_a_world;
     contact.friction = friction(touch.pair);
     contact.target = touch.target;
-    if (const auto warm = warm_.find(touch.pair); warm != warm_.end()) {
+    contact.slip_target_world = touch.slip_target_world;
+    if (const auto warm = warm_.find(touch.pair); !at_once && warm != warm_.end()) {
       const Vector3d point_body_a = states[touch.pair.first].world_from_body.conjugate() * (contact.point_world - states[touch.pair.first].com_world);
       double nearest = 1e-2 * std::min(moving_.shape(touch.pair.first).bounding_radius(), moving_.shape(touch.pair.second).bounding_radius());
       for (const Warm& known : warm->second) {
@@ -127,6 +137,7 @@ ContactSolution LastingContacts::solve(const Group& group, const ContactProblem&
   if (!frictionless || !problem.rows.empty() || static_cast<int>(problem.contacts.size()) > kMostOfStudents) {
     ContactOptions options;
     if (static_cast<int>(problem.contacts.size()) > kMostLocated) options.tolerance = kEnough;
+    if (speed(group) > kMoving * rest_speed_) options.enough = kEnough;   // what stands has to be found to the last digit
     if (rules_.plastic_impacts == scene::PlasticImpacts::kInStep && problem.contacts.size() > kPile) {
       options.tolerance = kEnoughOfAPile;
       options.largest_direct = 0;
@@ -215,7 +226,7 @@ std::optional<double> LastingContacts::stop_of_sliding(const ContactProblem& pro
     }
     // What friction stops within a billionth of the step has stopped.
     const double within_step = limit * (moving_.world().bodies[pair.first].inertia.inverse_mass + moving_.world().bodies[pair.second].inertia.inverse_mass);
-    if (!sticks || !(limit > 0) || slip <= kSlides * (speed + within_step)) continue;
+    if (!sticks || stuck_.contains(pair) || !(limit > 0) || slip <= kSlides * (speed + within_step)) continue;
     if (along.norm() >= least * limit) continue;
     least = along.norm() / limit;
     stopping = &pair;
@@ -278,6 +289,22 @@ double LastingContacts::largest_turn(const Group& group, const std::vector<Rigid
   return turn;
 }
 
+// The point of `points` that is `p` at another time: fixed in one of the two bodies. Null where none lies as near as that.
+const collision::NearPoint* LastingContacts::same_point(Pair pair, const collision::NearPoint& p, const std::vector<RigidBodyState>& p_at, const Points& points,
+                                                        const std::vector<RigidBodyState>& at, double near) {
+  const auto in = [](const RigidBodyState& s, const Vector3d& x) -> Vector3d { return s.world_from_body.conjugate() * (x - s.com_world); };
+  const collision::NearPoint* best = nullptr;
+  double distance = near;
+  for (const collision::NearPoint& q : points) {
+    const double d = std::min((in(p_at[pair.first], p.point_a_world) - in(at[pair.first], q.point_a_world)).norm(),
+                              (in(p_at[pair.second], p.point_b_world) - in(at[pair.second], q.point_b_world)).norm());
+    if (d >= distance) continue;
+    distance = d;
+    best = &q;
+  }
+  return best;
+}
+
 // Contacts of a group that turns: at the middle of the step, where their forces act evenly, with targets that make the velocities at the
 // step's end fit the surfaces there: J_middle v' = target - (J_end - J_middle) v'. Without that a body that tips over its edge gains or
 // loses energy in proportion to the step.
@@ -288,14 +315,14 @@ std::vector<LastingContacts::Touch> LastingContacts::touches_midway(const Group&
     middle[body].com_world = 0.5 * (starts[body].com_world + ends[body].com_world);
     middle[body].world_from_body = starts[body].world_from_body.slerp(0.5, ends[body].world_from_body);
   }
-  const auto rate = [&](Pair pair, const std::vector<RigidBodyState>& at, const collision::NearPoint& p) {
+  const auto slip = [&](Pair pair, const std::vector<RigidBodyState>& at, const collision::NearPoint& p) -> Vector3d {
     const Vector3d point = point_of(pair, p);
     const auto velocity = [&](int body) -> Vector3d {
       const WorldBody& b = moving_.world().bodies[body];
       if (b.immovable()) return prescribed_velocity(b, moving_.target());
       return b.inertia.inverse_mass * ends[body].momentum_world + omega_of(ends[body], b.inertia).cross(point - at[body].com_world);
     };
-    return p.normal_b_to_a_world.dot(velocity(pair.first) - velocity(pair.second));
+    return velocity(pair.first) - velocity(pair.second);
   };
   std::vector<Touch> result;
   std::size_t from = 0;
@@ -304,29 +331,15 @@ std::vector<LastingContacts::Touch> LastingContacts::touches_midway(const Group&
     while (to < touches.size() && touches[to].pair == pair) ++to;
     const double near = kMidway * std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius());
     const Points at_middle = points_at(pair, middle, near), at_end = points_at(pair, ends, near);
-    // The same point at another time: fixed in one of the two bodies.
-    const auto between = [&](const collision::NearPoint& p, const std::vector<RigidBodyState>& p_at, const collision::NearPoint& q, const std::vector<RigidBodyState>& q_at) {
-      const auto in = [](const RigidBodyState& s, const Vector3d& x) -> Vector3d { return s.world_from_body.conjugate() * (x - s.com_world); };
-      return std::min((in(p_at[pair.first], p.point_a_world) - in(q_at[pair.first], q.point_a_world)).norm(),
-                      (in(p_at[pair.second], p.point_b_world) - in(q_at[pair.second], q.point_b_world)).norm());
-    };
-    const auto nearest = [&](const Points& points, const std::vector<RigidBodyState>& at, const collision::NearPoint& p, const std::vector<RigidBodyState>& p_at) {
-      const collision::NearPoint* best = nullptr;
-      double distance = near;
-      for (const collision::NearPoint& q : points)
-        if (const double d = between(p, p_at, q, at); d < distance) {
-          distance = d;
-          best = &q;
-        }
-      return best;
-    };
     for (std::size_t i = from; i < to; ++i) {
       Touch touch = touches[i];
-      const collision::NearPoint* mid = nearest(at_middle, middle, touch.point, starts);
-      const collision::NearPoint* end = mid ? nearest(at_end, ends, *mid, middle) : nullptr;
+      const collision::NearPoint* mid = same_point(pair, touch.point, starts, at_middle, middle, near);
+      const collision::NearPoint* end = mid ? same_point(pair, *mid, middle, at_end, ends, near) : nullptr;
       if (mid && end) {
         touch.point = *mid;
-        touch.target -= rate(pair, ends, *end) - rate(pair, middle, *mid);
+        const Vector3d at_end_point = slip(pair, ends, *end), at_mid_point = slip(pair, middle, *mid);
+        touch.target -= end->normal_b_to_a_world.dot(at_end_point) - mid->normal_b_to_a_world.dot(at_mid_point);
+        touch.slip_target_world = at_mid_point - at_end_point;
       }
       result.push_back(touch);
     }
@@ -335,47 +348,96 @@ std::vector<LastingContacts::Touch> LastingContacts::touches_midway(const Group&
   return result;
 }
 
-void LastingContacts::give_paths(const Group& group, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing) {
+// @return whether no overlap was left
+bool LastingContacts::give_paths(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& touches_at, const ContactProblem& problem,
+                                 const ContactSolution& solution, double h, bool landing) {
   std::vector<RigidBodyState> ends = ends_of(group, problem, solution, h, landing);
-  keep_apart(group, ends, moving_.target());
-  for (const int body : group.bodies) moving_.set_path(body, moving_.state(body), ends[body]);
+  std::vector<Held> held;   // where nothing turns, points stay as near as they are
+  if (&touches_at != &moving_.states() && !landing && touches.size() <= kPile)
+    for (std::size_t i = 0; i < touches.size(); ++i)
+      if (touches[i].point.gap < kNotYet * shell(touches[i].pair) && solution.impulses_world[i].squaredNorm() > 0.0) held.push_back({touches[i].pair, touches[i].point, &touches_at});
+  // Pairs that are not in contact may meet within the step: that is for the finding of impacts.
+  const bool apart = keep_apart(group, group.pairs, ends, moving_.target(), held);
+  for (const int body : group.bodies) {
+    RigidBodyState start = moving_.state(body);
+    if (landing) {   // straight from place to place, as x' = x + h v' says: a bent path would dip below the surface on its way
+      const Inertia& inertia = moving_.world().bodies[body].inertia;
+      start.momentum_world = ends[body].momentum_world;
+      start.angular_momentum_world = angular_momentum_of(omega_of(ends[body], inertia), start.world_from_body, inertia);
+    }
+    moving_.set_path(body, start, ends[body]);
+  }
+  return apart;
 }
 
-// The smallest shift (in the measure of the masses) that leaves no gap of the group below its shell, and no rod or joint open.
-void LastingContacts::keep_apart(const Group& group, std::vector<RigidBodyState>& states, double t) {
+// The group's contacts as they are in these places: what each has to move by. Points farther apart than `reach` are no concern.
+// @return the farthest that any too near, or held too far, has to move; 0 where none is
+double LastingContacts::add_shifts(const Group& group, const std::vector<Pair>& pairs, const std::vector<RigidBodyState>& states, double t, const std::vector<Held>& held, double reach,
+                                   std::map<int, int>& places, ContactProblem& problem) {
+  double wrong = 0.0;
+  for (const Pair& pair : pairs) {
+    const double room = shell(pair), size = std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius());
+    const bool holds = std::any_of(held.begin(), held.end(), [&](const Held& h) { return h.pair == pair; });
+    const Points points = points_at(pair, states, std::max({1e3 * room, reach, holds ? kHeldReach * size : 0.0}));
+    std::vector<const collision::NearPoint*> at_shell;
+    for (const Held& h : held)
+      if (h.pair == pair) at_shell.push_back(same_point(pair, h.point, *h.at, points, states, kMidway * size));
+    for (const collision::NearPoint& point : points) {
+      const bool is_held = std::find(at_shell.begin(), at_shell.end(), &point) != at_shell.end();
+      if (point.gap < 0.5 * room || (is_held && point.gap > 2 * room)) wrong = std::max(wrong, std::abs(room - point.gap));
+      PushingContact contact;
+      contact.body_a = place(pair.first, t, places, states, nullptr, problem);
+      contact.body_b = place(pair.second, t, places, states, nullptr, problem);
+      for (const int index : {contact.body_a, contact.body_b})   // bodies of other groups stay where they are
+        if (index >= static_cast<int>(group.bodies.size())) {
+          problem.bodies[index].inverse_mass = 0.0;
+          problem.bodies[index].inverse_inertia_world.setZero();
+        }
+      contact.point_world = point_of(pair, point);
+      contact.normal_b_to_a_world = point.normal_b_to_a_world;
+      contact.target = room - point.gap;
+      if (is_held) {
+        Constraint row;
+        row.body_a = contact.body_a;
+        row.body_b = contact.body_b;
+        const Vector3d& n = contact.normal_b_to_a_world;
+        row.row.jacobian_a << n, (contact.point_world - problem.bodies[contact.body_a].com_world).cross(n);
+        row.row.jacobian_b << -n, -(contact.point_world - problem.bodies[contact.body_b].com_world).cross(n);
+        row.row.value = -contact.target;
+        problem.rows.push_back(row);
+      } else {
+        problem.contacts.push_back(contact);
+      }
+    }
+  }
+  return wrong;
+}
+
+// The smallest shift (in the measure of the masses) that leaves no gap of these pairs below its shell, and no rod or joint open; held
+// points come to lie at their shell.
+// @return whether it was found
+bool LastingContacts::keep_apart(const Group& group, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, const std::vector<Held>& held) {
   for (int i = 0; i < moving_.size(); ++i)
     if (moving_.world().bodies[i].immovable()) states[i].com_world = prescribed_position(moving_.world().bodies[i], t);
+  double reach = 0.0;
   for (int round = 0; round < kMostShifts; ++round) {
     ContactProblem problem;
     std::map<int, int> places;
     for (const int body : group.bodies) place(body, t, places, states, nullptr, problem);
-    bool overlap = false;
-    for (const Pair& pair : group.near) {
-      const double room = shell(pair), near = 1e3 * room;
-      for (const collision::NearPoint& point : points_at(pair, states, near)) {
-        overlap = overlap || point.gap < 0.5 * room;
-        PushingContact contact;
-        contact.body_a = place(pair.first, t, places, states, nullptr, problem);
-        contact.body_b = place(pair.second, t, places, states, nullptr, problem);
-        for (const int index : {contact.body_a, contact.body_b})   // bodies of other groups stay where they are
-          if (index >= static_cast<int>(group.bodies.size())) {
-            problem.bodies[index].inverse_mass = 0.0;
-            problem.bodies[index].inverse_inertia_world.setZero();
-          }
-        contact.point_world = point_of(pair, point);
-        contact.normal_b_to_a_world = point.normal_b_to_a_world;
-        contact.target = room - point.gap;
-        problem.contacts.push_back(contact);
-      }
+    const double wrong = add_shifts(group, pairs, states, t, round < kHeldRounds ? held : std::vector<Held>{}, reach, places, problem);
+    if (kShiftReach * wrong > reach) {   // what a shift this long may bring together has to be in it
+      reach = 2 * kShiftReach * wrong;
+      if (round == 0) continue;
     }
     add_rows(group, states, t, places, true, problem);
     double size = 0.0;
     for (const int body : group.bodies) size = std::max(size, states[body].com_world.cwiseAbs().maxCoeff());
     const bool open = problem.row_targets.size() > 0 && problem.row_targets.cwiseAbs().maxCoeff() > 1e-13 * size;
-    if (!overlap && !open) return;
+    if (wrong == 0.0 && !open) return true;
     ++counters_.nudges;
     ContactOptions options;
     options.tolerance = 1e-6;   // of what is missing: the next round takes the rest
+    options.enough = 1e-3;
     const ContactSolution shift = solve_contacts(problem, options);
     for (std::size_t k = 0; k < group.bodies.size(); ++k) {
       RigidBodyState& state = states[group.bodies[k]];
@@ -386,6 +448,7 @@ void LastingContacts::keep_apart(const Group& group, std::vector<RigidBodyState>
       state.angular_momentum_world = angular_momentum_of(omega, state.world_from_body, inertia);
     }
   }
+  return false;
 }
 
 }  // namespace tumble::engines

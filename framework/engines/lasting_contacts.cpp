@@ -13,11 +13,13 @@ namespace {
 constexpr double kEpsilon = 2.220446049250313e-16;
 constexpr double kShell = 1e-10;          // of the smaller body's radius: far above rounding, far below what is seen or measured
 constexpr double kRounding = 64;          // of coordinates far from the origin, in the shell
-constexpr double kBand = 2.0;             // shells: nearer than this two touch
+constexpr double kBand = 8.0;             // shells: nearer than this two touch
 constexpr double kUnseenRoom = 1e-9;      // of the way in a step: what the tolerance of the impulses leaves between bodies that touch
-constexpr double kApart = 8.0;            // shells: farther than this, and than the rest speed goes in a step, a contact has ended
+constexpr double kApart = 32.0;           // shells: farther than this, and than the rest speed goes in a step, a contact has ended
 constexpr double kReach = 0.25;           // of the smaller body: points farther away are not looked at
 constexpr double kMostTurn = 0.05;        // rad: a group with contacts that turns twice as far gets shorter steps; what is left is of second order
+constexpr double kMoves = 10.0;             // rest speeds: what holds a group that is slower is an equilibrium, however it trembles
+constexpr double kSlips = 1e-4;           // of the rest speed: slower than this nothing slides, though friction may be all there can be
 constexpr double kTurns = 1e-3;           // rad: a body that turns less in a step meets the same points at its end
 
 }  // namespace
@@ -134,36 +136,70 @@ std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidat
   for (Group& group : groups_)
     for (const Pair& pair : candidates)
       if (std::binary_search(group.bodies.begin(), group.bodies.end(), pair.first) || std::binary_search(group.bodies.begin(), group.bodies.end(), pair.second)) group.near.push_back(pair);
-  std::map<Pair, std::vector<Warm>> warm;
-  for (const Group& group : groups_) {
-    std::vector<Touch> touches = touches_of(group);
-    ContactProblem problem = problem_of(group, touches, moving_.states(), h);
-    ContactSolution solution = solve(group, problem, h);
-    bool landing = lands(touches, solution);
-    const std::vector<RigidBodyState> ends = ends_of(group, problem, solution, h, landing);
-    const double turn = largest_turn(group, ends, h);
-    if (rules_.plastic_impacts == scene::PlasticImpacts::kLocated && turn > 2 * kMostTurn && h > kShortest * step_) return moving_.time() + h * kMostTurn / turn;
-    if (!landing && turn > kTurns) {
-      std::vector<RigidBodyState> middle = moving_.states();
-      const std::vector<Touch> midway = touches_midway(group, touches, ends, middle);
-      problem = problem_of(group, midway, middle, h);
-      solution = solve(group, problem, h);
-      landing = lands(touches, solution);
-    }
-    for (std::size_t k = 0; k < group.bodies.size(); ++k)
-      if (!solution.velocities[k].linear_world.allFinite() || !solution.velocities[k].angular_world.allFinite())
-        throw StoppedRun("lasting contact: the impulses on body '" + moving_.world().bodies[group.bodies[k]].name + "' are not numbers");
-    if (const auto stop = stop_of_sliding(problem, touches, solution, h)) return stop;
-    give_paths(group, problem, solution, h, landing);
-    for (std::size_t i = 0; i < touches.size(); ++i) {
-      const RigidBodyState& a = moving_.state(touches[i].pair.first);
-      const Vector3d force = solution.impulses_world[i] / h, point = problem.contacts[i].point_world;
-      warm[touches[i].pair].push_back({a.world_from_body.conjugate() * (point - a.com_world), solution.impulses_world[i], h});
-      if (!force.isZero(0.0)) forces_.push_back({touches[i].pair.first, touches[i].pair.second, point, touches[i].point.normal_b_to_a_world, force});
-    }
-  }
-  warm_ = std::move(warm);
+  next_warm_.clear();
+  next_stuck_.clear();
+  for (const Group& group : groups_)
+    if (const auto earlier = take_step(group, h)) return earlier;
+  warm_ = std::move(next_warm_);
+  stuck_ = std::move(next_stuck_);
   return std::nullopt;
+}
+
+// Of the fastest point of the group's bodies. [m/s]
+double LastingContacts::speed(const Group& group) const {
+  double fastest = 0.0;
+  for (const int index : group.bodies) {
+    const Body body = moving_.body_at_impact(index);
+    fastest = std::max(fastest, body.velocity_world.norm() + body.omega_world.norm() * moving_.shape(index).bounding_radius());
+  }
+  return fastest;
+}
+
+// One group's step. @return an earlier target (or the same after a blow) to begin the step again with
+std::optional<double> LastingContacts::take_step(const Group& group, double h) {
+  std::vector<Touch> touches = touches_of(group);
+  const bool located = rules_.plastic_impacts == scene::PlasticImpacts::kLocated, moves = located && speed(group) > kMoves * rest_speed_;
+  if (moves && strike_what_is_down(group, touches)) return moving_.target();
+  ContactProblem problem = problem_of(group, touches, moving_.states(), h);
+  ContactSolution solution = solve(group, problem, h);
+  bool landing = lands(touches, solution);
+  if (moves && comes_down(group, touches, problem, solution, h)) {
+    if (const auto again = sort_out_landings(group, touches, h)) return again;
+    problem = problem_of(group, touches, moving_.states(), h);
+    solution = solve(group, problem, h);
+    landing = false;
+  }
+  const std::vector<RigidBodyState> ends = ends_of(group, problem, solution, h, landing);
+  const double turn = largest_turn(group, ends, h);
+  if (located && turn > 2 * kMostTurn && h > kShortest * step_) return moving_.time() + h * kMostTurn / turn;
+  std::vector<RigidBodyState> middle;
+  std::vector<Touch> used = touches;
+  if (!landing && turn > kTurns) {
+    middle = moving_.states();
+    used = touches_midway(group, touches, ends, middle);
+    problem = problem_of(group, used, middle, h);
+    solution = solve(group, problem, h);
+    landing = lands(used, solution);
+  }
+  for (std::size_t k = 0; k < group.bodies.size(); ++k)
+    if (!solution.velocities[k].linear_world.allFinite() || !solution.velocities[k].angular_world.allFinite())
+      throw StoppedRun("lasting contact: the impulses on body '" + moving_.world().bodies[group.bodies[k]].name + "' are not numbers");
+  if (const auto stop = stop_of_sliding(problem, touches, solution, h)) return stop;
+  if (!give_paths(group, used, middle.empty() ? moving_.states() : middle, problem, solution, h, landing) && h > kShortest * step_) return moving_.time() + 0.5 * h;
+  keep_warm(touches, problem, solution, h);
+  return std::nullopt;
+}
+
+void LastingContacts::keep_warm(const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h) {
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    const RigidBodyState& a = moving_.state(touches[i].pair.first);
+    const Vector3d force = solution.impulses_world[i] / h, point = problem.contacts[i].point_world;
+    next_warm_[touches[i].pair].push_back({a.world_from_body.conjugate() * (point - a.com_world), solution.impulses_world[i], h});
+    const bool slides = solution.modes[i] == ContactMode::kSlide && !force.isZero(0.0) && slip_speed(problem, i, solution.velocities) > kSlips * rest_speed_;
+    if (i == 0 || touches[i].pair != touches[i - 1].pair) next_stuck_.insert(touches[i].pair);
+    if (slides) next_stuck_.erase(touches[i].pair);
+    if (!force.isZero(0.0)) forces_.push_back({touches[i].pair.first, touches[i].pair.second, point, touches[i].point.normal_b_to_a_world, force});
+  }
 }
 
 void LastingContacts::commit() {
@@ -171,7 +207,7 @@ void LastingContacts::commit() {
   if (groups_.empty()) return;
   std::vector<RigidBodyState> states = moving_.states();
   for (const Group& group : groups_) {
-    keep_apart(group, states, moving_.time());
+    keep_apart(group, group.near, states, moving_.time());
     for (const int body : group.bodies) moving_.set_state(body, states[body]);
     for (const Pair& pair : group.pairs) {
       const collision::Gap gap = collision::compute_gap(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states));

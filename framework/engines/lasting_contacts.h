@@ -4,8 +4,8 @@
 /// `"plastic_impacts": "in_step"`, as soon as two bodies without restitution come together. Every step the bodies first go where they
 /// would without each other (the laws' method, links included); then contact impulses, spread evenly over the step, keep what touches from
 /// approaching: v' = v_free + M^-1 J^T p, x' = x_free + h/2 M^-1 J^T p, which is exact for constant forces. Bodies that turn meet their
-/// contacts at the middle of the step, and fit the surfaces at its end. Where a body only comes down within the step, x' = x + h v'.
-/// A pair that stops sliding ends the step there. Frictionless groups ask the laws' contact_forces; friction, links
+/// contacts at the middle of the step, and fit the surfaces at its end. A point that comes down faster than the rest speed ends the step
+/// there and strikes a blow without rebound; a slower one is let down by the step's end. A pair that stops sliding ends the step there. Frictionless groups ask the laws' contact_forces; friction, links
 /// inside a group, and large groups the framework's solve_contacts. What turning leaves of an overlap is taken back by the smallest shift
 /// of the group. A lasting contact does not bounce; it ends when the bodies come apart.
 ///
@@ -69,6 +69,19 @@ class LastingContacts {
     collision::NearPoint point;
     double target;               // least normal velocity afterwards [m/s]
     bool lands;                  // apart at the start of the step
+    Vector3d slip_target_world = Vector3d::Zero();   // [m/s], see PushingContact
+  };
+
+  struct Landing {
+    std::size_t touch;           // which
+    double time, speed;          // since the step's start [s], with which it comes down [m/s]
+    double approach;             // at the step's start [m/s]
+    bool within;                 // the step
+  };
+  struct Held {                  // a point that pushes to the step's end
+    Pair pair;
+    collision::NearPoint point;
+    const std::vector<RigidBodyState>* at;   // where the bodies are when it is there
   };
 
   // Of the longest step: ends of sliding that come sooner are taken with it.
@@ -90,14 +103,31 @@ class LastingContacts {
   std::vector<Touch> touches_of(const Group& group);
   ContactProblem problem_of(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& states, double h);
   ContactSolution solve(const Group& group, const ContactProblem& problem, double h);
+  static Vector3d relative_velocity(const ContactProblem& problem, std::size_t contact, const std::vector<Velocity>& velocities);
+  static double approach(const ContactProblem& problem, std::size_t contact, const std::vector<Velocity>& velocities);
+  static double slip_speed(const ContactProblem& problem, std::size_t contact, const std::vector<Velocity>& velocities);
+  bool is_down(const Touch& touch) const;
+  std::vector<Velocity> velocities_now(const Group& group, const ContactProblem& problem) const;
+  bool comes_down(const Group& group, const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h) const;
+  std::vector<Landing> predict_landings(const Group& group, const std::vector<Touch>& touches, double h);
+  std::optional<double> sort_out_landings(const Group& group, std::vector<Touch>& touches, double h);
+  bool strike_what_is_down(const Group& group, const std::vector<Touch>& touches);
+  bool strike(const Group& group, std::vector<Touch> down);
+  double speed(const Group& group) const;
+  std::optional<double> take_step(const Group& group, double h);
+  void keep_warm(const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h);
   std::optional<double> stop_of_sliding(const ContactProblem& problem, const std::vector<Touch>& touches, const ContactSolution& solution, double h);
   static bool lands(const std::vector<Touch>& touches, const ContactSolution& solution);
   std::vector<RigidBodyState> ends_of(const Group& group, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing) const;
   double largest_turn(const Group& group, const std::vector<RigidBodyState>& ends, double h) const;
   std::vector<Touch> touches_midway(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& ends,
                                     std::vector<RigidBodyState>& middle) const;
-  void give_paths(const Group& group, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing);
-  void keep_apart(const Group& group, std::vector<RigidBodyState>& states, double t);
+  static const collision::NearPoint* same_point(Pair pair, const collision::NearPoint& p, const std::vector<RigidBodyState>& p_at, const Points& points,
+                                                const std::vector<RigidBodyState>& at, double near);
+  bool give_paths(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& touches_at, const ContactProblem& problem,
+                  const ContactSolution& solution, double h, bool landing);
+  double add_shifts(const Group& group, const std::vector<Pair>& pairs, const std::vector<RigidBodyState>& states, double t, const std::vector<Held>& held, double reach, std::map<int, int>& places, ContactProblem& problem);
+  bool keep_apart(const Group& group, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, const std::vector<Held>& held = {});
   void add_rows(const Group& group, const std::vector<RigidBodyState>& states, double t, const std::map<int, int>& places, bool of_places, ContactProblem& problem);
   int place(int body, double t, std::map<int, int>& places, const std::vector<RigidBodyState>& states, const RigidBodyState* velocities, ContactProblem& problem) const;
 
@@ -109,9 +139,12 @@ class LastingContacts {
   TrajectorySink& sink_;
   std::set<Pair> lasting_;
   std::map<Pair, Points> points_;                // of the step that has begun
-  std::map<Pair, std::vector<Warm>> warm_;
+  std::map<Pair, std::vector<Warm>> warm_, next_warm_;
+  std::set<Pair> stuck_, next_stuck_;            // pairs with friction that did not slide in the last step
   std::vector<Group> groups_;                    // of the step
   std::vector<ContactPoint> forces_;
+  double struck_at_ = -1e300;                    // blows were struck last, and how many then
+  int struck_ = 0;
   double searched_from_ = -1e300;                // ends of sliding were looked for since, and how often
   int searches_ = 0;
   std::optional<Locating> locating_;             // the end of sliding that is being looked for

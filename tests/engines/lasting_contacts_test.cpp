@@ -36,6 +36,17 @@ Trajectory run_it(const scene::Scene& scene) {
 double energy(const Frame& frame) { return frame.kinetic_energy + frame.potential_energy; }
 scene::BodySpec floor_of(double friction) { return rough(plane("floor", Vector3d::Zero(), Vector3d::UnitZ()), friction); }
 
+/// A board that stands on an edge, 0.3 rad out of the vertical, and tips over it.
+scene::Scene tipping_board(double step) {
+  const Vector3d half(0.02, 0.1, 0.2);
+  auto board = rough(box("board", half, 0.5, Vector3d::Zero(), Vector3d::Zero()), 0.8);
+  board.world_from_body = Quaterniond(Eigen::AngleAxisd(0.3, Vector3d::UnitY()));
+  board.position_m.z() = half.x() * std::sin(0.3) + half.z() * std::cos(0.3);
+  scene::Scene scene = with_contact({board, floor_of(0.8)}, 1.0);
+  scene.step_s = step;
+  return scene;
+}
+
 /// A block that slides down a slope at 3 m/s.
 scene::Scene slope(double angle, double friction) {
   const Vector3d normal(std::sin(angle), 0, std::cos(angle)), down(std::cos(angle), 0, -std::sin(angle));
@@ -166,6 +177,32 @@ TEST(Stability, EnergyThatNothingBroughtInStopsTheRunWithTheBodyNamed) {
   EXPECT_NE(result.stopped_by.find("'bob'"), std::string::npos) << result.stopped_by;
   EXPECT_NE(result.stopped_by.find("runaway energy"), std::string::npos) << result.stopped_by;
   EXPECT_GT(result.frames.size(), 1u);   // what was recorded up to there is kept
+}
+
+// Where an edge sticks while the board turns, nothing is lost or won: what a step makes of energy falls as its square, and never rises.
+TEST(Tipping, EnergyIsKeptToSecondOrderAndTheEdgeStaysOnTheFloor) {
+  std::vector<double> lost;
+  for (const double step : {1.0 / 60, 1.0 / 120}) {
+    const Trajectory result = run_it(tipping_board(step));
+    double most = energy(result.frames.front());
+    for (const Frame& frame : result.frames) {
+      // Once it slides the step in which that begins is of first order: 2e-5 of the energy at 1/60 s.
+      EXPECT_LE(energy(frame), most * (1 + (frame.time < 1.0 / 3 ? 1e-12 : 1e-4))) << "t = " << frame.time;
+      most = std::min(most, energy(frame));
+      EXPECT_LT(frame.smallest_gap, 1e-7) << "t = " << frame.time;   // shells of 2e-11 m; a step that lets go leaves 1e-6 m and more
+    }
+    lost.push_back(energy(result.frames.front()) - energy(result.frames[20]));   // at t = 1/3 s, before it slides
+  }
+  EXPECT_LT(lost[0], 2e-4 * energy(run_it(tipping_board(1.0 / 60)).frames.front()));
+  EXPECT_NEAR(lost[0] / lost[1], 4.0, 0.5);   // second order
+}
+
+// The board comes down flat on the floor at 6 rad/s, in the middle of a step, and stays: plastic, and at rest at once.
+TEST(Tipping, LandsWithinAStepAndLies) {
+  const Trajectory result = run_it(tipping_board(1.0 / 60));
+  EXPECT_GT(result.counters.counts.at("contact_landings"), 0u);
+  EXPECT_LT(result.frames.back().kinetic_energy, 1e-12);
+  EXPECT_NEAR(result.frames.back().poses[0].com_world.z(), 0.02, 1e-9);
 }
 
 }  // namespace
