@@ -25,6 +25,13 @@ struct Gap {
 /// @return distance to a few roundings of the solids' size and of the distance of their centres. Infinite between two half-spaces.
 Gap compute_gap(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, PairCache* cache = nullptr);
 
+/// A bound from below for next to nothing: the gap of the balls around the two; against a half-space of the ball and it. [m]
+inline double least_gap(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b) {
+  const Vector3d between = pose_a.com_world - pose_b.com_world;
+  if (b.is_half_space()) return (pose_b.world_from_body * Vector3d::UnitZ()).dot(between) - a.bounding_radius();
+  if (a.is_half_space()) return -(pose_a.world_from_body * Vector3d::UnitZ()).dot(between) - b.bounding_radius();
+  return between.norm() - a.bounding_radius() - b.bounding_radius();
+}
 /// The same distance to the last bit, sooner: without the nearest points. [m]
 double gap_distance(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, PairCache* cache = nullptr);
 

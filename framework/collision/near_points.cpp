@@ -46,7 +46,6 @@ std::vector<NearPoint> above_half_space(const CollisionShape& a, const Pose& pos
   const Vector3d n = plane.world_from_body.toRotationMatrix().col(2);
   const double height = n.dot(pose_a.com_world - plane.com_world) - a.radius();
   std::vector<NearPoint> points;
-  std::vector<Vector3d> foremost;
   double lowest = kInfinity;
   for (const Vector3d& v : a.vertices()) lowest = std::min(lowest, n.dot(R * v));
   if (lowest + height > reach) return {};
@@ -56,27 +55,19 @@ std::vector<NearPoint> above_half_space(const CollisionShape& a, const Pose& pos
     if (gap > reach) continue;
     const Vector3d point = pose_a.com_world + arm - a.radius() * n;
     points.push_back({point, point - gap * n, n, gap});
-    foremost.push_back(point);
   }
-  constexpr std::size_t kFew = 4;
+  constexpr std::size_t kFew = 3;
   if (points.size() <= kFew) return points;
-  // Only corners of their hull carry: the others lie between.
-  const FlatHull hull = flat_hull(foremost, n);
-  std::vector<NearPoint> corners;
+  Corners places;
+  InlineVector<double, 16> heights;
   for (const NearPoint& point : points) {
-    const bool is_corner = std::any_of(hull.corners.begin(), hull.corners.end(), [&](const Vector3d& c) {
-      const Vector3d between = c - point.point_a_world;
-      return (between - n.dot(between) * n).norm() <= 1e-12 * a.bounding_radius();
-    });
-    // Vertices above one another over a corner: the lowest.
-    if (!is_corner) continue;
-    const auto same = std::find_if(corners.begin(), corners.end(), [&](const NearPoint& other) {
-      const Vector3d between = other.point_a_world - point.point_a_world;
-      return (between - n.dot(between) * n).norm() <= 1e-12 * a.bounding_radius();
-    });
-    if (same == corners.end()) corners.push_back(point);
-    else if (point.gap < same->gap) *same = point;
+    places.push_back(point.point_a_world);
+    heights.push_back(point.gap);
   }
+  auto lower = lower_corners(places, heights, n, kSameHeight * a.bounding_radius());
+  std::sort(lower.begin(), lower.end());   // as the vertices come
+  std::vector<NearPoint> corners;
+  for (const int i : lower) corners.push_back(points[static_cast<std::size_t>(i)]);
   return corners;
 }
 
@@ -136,52 +127,81 @@ void add_points(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d
   }
 }
 
-// Only the corners of a region carry: other points lie between.
-void append_corners(const Region& region, std::vector<NearPoint>& points) {
+// Only what the other could come down on carries: other points lie between.
+void append_corners(const Region& region, double size, std::vector<NearPoint>& points) {
   if (region.points.size() == 1) return points.push_back(region.points[0]);
   Corners all;
-  for (const NearPoint& p : region.points) all.push_back(p.point_a_world);
-  for (const int corner : hull_corners(all, region.normal)) points.push_back(region.points[corner]);
+  InlineVector<double, 16> gaps;
+  for (const NearPoint& p : region.points) {
+    all.push_back(p.point_a_world);
+    gaps.push_back(p.gap);
+  }
+  for (const int corner : lower_corners(all, gaps, region.normal, kSameHeight * size)) points.push_back(region.points[corner]);
 }
 
 std::vector<NearPoint> between_convex(const Query& query, const Vector3d& com_b_world, double reach, PairCache* cache) {
   const PlacedPolytope placed_a = query.piece_of_a(0), placed_b = query.piece_of_b(0);
-  const PolytopeGap found = convex_gap(query, reach, cache, Points::kUnwanted);
+  const PolytopeGap found = convex_gap(query, reach, cache, Points::kWanted);
   if (found.beyond || found.distance > reach) return {};
   Region region{found.normal_b_to_a, {}};
   add_points(placed_a, placed_b, region.normal, reach, com_b_world, region);
+  region.points.push_back({com_b_world + found.point_a, com_b_world + found.point_b, region.normal, found.distance});   // where edges cross
   std::vector<NearPoint> points;
-  append_corners(region, points);
+  append_corners(region, query.size, points);
   return points;
 }
 
-std::vector<NearPoint> between_surfaces(const Query& query, const Vector3d& com_b_world, double reach, PairCache* cache) {
+// Pairs of pieces that push along a normal of the surface's own, and the normal of the nearest. `radii` are those of balls.
+std::vector<NearPair> own_pairs(const Query& query, double reach, double radii, Points points, PairCache* cache) {
+  const bool flat_a = query.a.is_closed_surface(), flat_b = query.b.is_closed_surface();
   double nearest = kInfinity;
   Vector3d main_normal = Vector3d::UnitZ();
   std::vector<NearPair> pairs;
-  for (const auto& [i, j] : pieces_within(query, reach, cache)) {
-    const PolytopeGap found = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size, reach, Points::kUnwanted);
-    if (found.beyond || found.distance > reach) continue;
-    if (shows_its_back(query.piece_of_a(i), query.a.is_closed_surface(), found.normal_b_to_a) || shows_its_back(query.piece_of_b(j), query.b.is_closed_surface(), -found.normal_b_to_a)) continue;
+  for (const auto& [i, j] : pieces_within(query, reach + radii, cache)) {
+    const PolytopeGap found = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size, reach + radii, points);
+    if (found.beyond || found.distance > reach + radii) continue;
+    if (shows_its_back(query.piece_of_a(i), flat_a, found.normal_b_to_a) || shows_its_back(query.piece_of_b(j), flat_b, -found.normal_b_to_a)) continue;
     pairs.push_back({i, j, found});
     if (found.distance < nearest) {
       nearest = found.distance;
       main_normal = found.normal_b_to_a;
     }
   }
-  std::vector<Region> regions;
-  for (const NearPair& pair : pairs) {
+  std::erase_if(pairs, [&](const NearPair& pair) {
     const PlacedPolytope placed_a = query.piece_of_a(pair.i), placed_b = query.piece_of_b(pair.j);
     const Vector3d& n = pair.gap.normal_b_to_a;
-    const bool own = (n - main_normal).norm() <= kSameNormal || of_a_face(placed_a, query.a.is_closed_surface(), placed_b, query.b.is_closed_surface(), n) ||
+    const bool own = (n - main_normal).norm() <= kSameNormal || of_a_face(placed_a, flat_a, placed_b, flat_b, n) ||
                      (is_foremost_around(query.a, pair.i, placed_a, -n) && is_foremost_around(query.b, pair.j, placed_b, n));
-    if (!own) continue;
+    return !own;
+  });
+  return pairs;
+}
+
+// A ball in a corner of a surface touches each of its walls.
+std::vector<NearPoint> of_a_ball(const Query& query, const Vector3d& com_b_world, double reach, PairCache* cache) {
+  const double radius_a = query.a.radius(), radius_b = query.b.radius();
+  std::vector<NearPoint> points;
+  for (const NearPair& pair : own_pairs(query, reach, radius_a + radius_b, Points::kWanted, cache)) {
+    const Vector3d& n = pair.gap.normal_b_to_a;
+    const NearPoint point{com_b_world + pair.gap.point_a - radius_a * n, com_b_world + pair.gap.point_b + radius_b * n, n, pair.gap.distance - radius_a - radius_b};
+    const auto same = std::find_if(points.begin(), points.end(), [&](const NearPoint& p) { return (p.normal_b_to_a_world - n).norm() <= kSameNormal; });
+    if (same == points.end()) points.push_back(point);
+    else if (point.gap < same->gap) *same = point;
+  }
+  return points;
+}
+
+std::vector<NearPoint> between_surfaces(const Query& query, const Vector3d& com_b_world, double reach, PairCache* cache) {
+  std::vector<Region> regions;
+  for (const NearPair& pair : own_pairs(query, reach, 0.0, Points::kUnwanted, cache)) {
+    const PlacedPolytope placed_a = query.piece_of_a(pair.i), placed_b = query.piece_of_b(pair.j);
+    const Vector3d& n = pair.gap.normal_b_to_a;
     auto region = std::find_if(regions.begin(), regions.end(), [&](const Region& r) { return (r.normal - n).norm() <= kSameNormal; });
     if (region == regions.end()) region = regions.insert(regions.end(), {n, {}});
     add_points(placed_a, placed_b, n, reach, com_b_world, *region);
   }
   std::vector<NearPoint> points;
-  for (const Region& region : regions) append_corners(region, points);
+  for (const Region& region : regions) append_corners(region, query.size, points);
   return points;
 }
 
@@ -194,13 +214,14 @@ std::vector<NearPoint> near_points(const CollisionShape& a, const Pose& pose_a, 
     for (NearPoint& p : points) p = flipped(p);
     return points;
   }
-  if (a.is_ball() || b.is_ball()) {
+  const Query query(a, pose_a, b, pose_b);
+  const bool convex = !a.is_closed_surface() && !b.is_closed_surface(), of_ball = a.is_ball() || b.is_ball();
+  if (of_ball && !convex) return of_a_ball(query, pose_b.com_world, reach, cache);
+  if (of_ball) {
     const Gap gap = compute_gap(a, pose_a, b, pose_b, cache);
     if (gap.distance > reach) return {};
     return {{gap.point_a_world, gap.point_b_world, gap.normal_b_to_a_world, gap.distance}};
   }
-  const Query query(a, pose_a, b, pose_b);
-  const bool convex = !a.is_closed_surface() && !b.is_closed_surface();
   return convex ? between_convex(query, pose_b.com_world, reach, cache) : between_surfaces(query, pose_b.com_world, reach, cache);
 }
 

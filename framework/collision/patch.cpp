@@ -134,12 +134,53 @@ Polygon facing(const PlacedPolytope& piece, const PlaneAxes& axes, const Vector3
   return hull_of(points);
 }
 
+template <class Add>
+void add_vertices_inside(const PlacedPolytope& piece, const PlaneAxes& axes, const Vector3d& n, double side, double tolerance, const Polygon& region, const Add& add) {
+  const Vector3d d = piece.in_body(side * n);
+  double lowest;
+  piece.polytope->lowest(d, lowest);
+  for (int i = 0; i < piece.size(); ++i) {
+    if (d.dot(piece.polytope->vertices[i]) > lowest + tolerance) continue;
+    const Vector2d p = axes.flatten(piece.vertex(i));
+    bool inside = true;
+    for (int k = 0; k < region.size() && inside; ++k) inside = cross2(region[(k + 1) % region.size()].p - region[k].p, p - region[k].p) > 0;
+    if (inside) add(p);
+  }
+}
+
 Polygon region_of(const PlacedPolytope& a, const PlacedPolytope& b, const PlaneAxes& axes, const Vector3d& n, double tolerance, double& height) {
   double height_b;
   const Polygon of_a = facing(a, axes, n, 1.0, tolerance, height);
   if (of_a.size() == 1) return of_a;
   const Polygon of_b = facing(b, axes, n, -1.0, tolerance, height_b);
   return of_a.size() <= of_b.size() ? shared_region(of_a, of_b) : shared_region(of_b, of_a);
+}
+
+// Whether a plane through point i, or a little above it, leaves all other points above: some slope s with
+//   s . (p_j - p_i) <= height_j - height_i - tolerance  for all j.
+// Points are in the order of their heights: of two at one place the first is the lower.
+bool lies_below_others(const Polygon& points, const InlineVector<double, 16>& heights, int i, double same, double tolerance) {
+  constexpr double kSteepest = 1e3;   // steeper planes are walls
+  Polygon slopes, kept;
+  for (const Vector2d& corner : {Vector2d(-1, -1), Vector2d(1, -1), Vector2d(1, 1), Vector2d(-1, 1)}) slopes.push_back({kSteepest * corner, -1});
+  for (int j = 0; j < points.size(); ++j) {
+    const Vector2d d = points[j].p - points[i].p;
+    if (d.norm() <= same) {
+      if (j < i) return false;
+      continue;
+    }
+    const double room = heights[points[j].index] - heights[points[i].index] - tolerance;
+    kept.clear();
+    for (int k = 0; k < slopes.size(); ++k) {
+      const FlatPoint &q = slopes[k], &next = slopes[(k + 1) % slopes.size()];
+      const double over = d.dot(q.p) - room, over_next = d.dot(next.p) - room;
+      if (over <= 0) kept.push_back(q);
+      if ((over < 0 && over_next > 0) || (over > 0 && over_next < 0)) kept.push_back({q.p + (over / (over - over_next)) * (next.p - q.p), -1});
+    }
+    std::swap(slopes, kept);
+    if (slopes.empty()) return false;
+  }
+  return true;
 }
 
 Vector2d middle_of(const Polygon& hull) {
@@ -163,7 +204,12 @@ Corners facing_region(const PlacedPolytope& a, const PlacedPolytope& b, const Ve
   const PlaneAxes axes(n);
   double height;
   Corners corners;
-  for (const FlatPoint& q : region_of(a, b, axes, n, tolerance, height)) corners.push_back(q.p.x() * axes.u + q.p.y() * axes.v + height * n);
+  const Polygon region = region_of(a, b, axes, n, tolerance, height);
+  const auto add = [&](const Vector2d& p) { corners.push_back(p.x() * axes.u + p.y() * axes.v + height * n); };
+  for (const FlatPoint& q : region) add(q.p);
+  if (region.size() < 3) return corners;
+  add_vertices_inside(a, axes, n, 1.0, tolerance, region, add);
+  add_vertices_inside(b, axes, n, -1.0, tolerance, region, add);
   return corners;
 }
 
@@ -192,6 +238,28 @@ InlineVector<int, 16> hull_corners(const Corners& points, const Vector3d& n) {
   for (int i = 0; i < points.size(); ++i) flat.push_back({axes.flatten(points[i] - points[0]), i});
   InlineVector<int, 16> corners;
   for (const FlatPoint& q : hull_of(flat)) corners.push_back(q.index);
+  return corners;
+}
+
+InlineVector<int, 16> lower_corners(const Corners& points, const InlineVector<double, 16>& heights, const Vector3d& n, double tolerance) {
+  const PlaneAxes axes(n);
+  Polygon flat;
+  for (int i = 0; i < points.size(); ++i) flat.push_back({axes.flatten(points[i] - points[0]), i});
+  std::sort(flat.begin(), flat.end(), [&](const FlatPoint& p, const FlatPoint& q) {
+    return heights[p.index] != heights[q.index] ? heights[p.index] < heights[q.index] : p.index < q.index;
+  });
+  Polygon renamed = flat;   // by place in the order of heights: of points that coincide the lowest counts
+  for (int i = 0; i < renamed.size(); ++i) renamed[i].index = i;
+  InlineVector<int, 16> corners;
+  std::vector<char> outer(static_cast<std::size_t>(flat.size()), 0);
+  double size = 0.0;
+  for (const FlatPoint& q : hull_of(renamed)) {
+    corners.push_back(flat[q.index].index);
+    outer[static_cast<std::size_t>(q.index)] = 1;
+    size = std::max(size, (q.p - flat[0].p).norm());
+  }
+  for (int i = 0; i < flat.size(); ++i)
+    if (!outer[static_cast<std::size_t>(i)] && lies_below_others(flat, heights, i, 1e-12 * size, tolerance)) corners.push_back(flat[i].index);
   return corners;
 }
 

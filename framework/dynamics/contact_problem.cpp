@@ -185,7 +185,7 @@ ContactSolution describe(const ContactProblem& problem, const System& system, co
 ContactSolution solve_contacts(const ContactProblem& problem, const ContactOptions& options) {
   const System system = contacts::build_system(problem);
   const double speed = system.speed > 0 ? system.speed : 1.0;
-  const Goal goal{system, options.tolerance * speed};
+  const Goal goal{system, std::max(options.tolerance * speed, options.least_speed)};
   Progress progress;
   progress.impulses = contacts::first_guess(system, problem);
   goal.measure(progress);

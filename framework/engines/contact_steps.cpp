@@ -16,6 +16,8 @@ constexpr double kEnoughOfAPile = 1e-5;
 constexpr int kSweepsOfAPile = 120;
 constexpr double kFarOff = 1e-3;          // of the group's speed: an answer this wrong is not taken without another attempt
 constexpr double kMidway = 0.3;           // of the smaller body: how far from each other points of one contact may lie at the middle of a step
+constexpr double kSamePoint = 1e-2;       // of the smaller body: nearer to where an impulse acted in the last step a point takes it as its guess
+constexpr double kSamePointOfAPile = 0.5; // there points come and go, and the sum of a pair's impulses is worth more than their places
 constexpr int kMostShifts = 10;           // rounds of taking back overlaps
 constexpr int kHeldRounds = 5;            // of these, in which points that push are drawn to their shells too
 constexpr double kHeldReach = 1e-3;       // of the smaller body: what turning may leave between points that push
@@ -36,12 +38,12 @@ Matrix3d inverse_inertia_world(const WorldBody& body, const Quaterniond& q) {
   return R * body.inertia.inverse_inertia_body * R.transpose();
 }
 
+}  // namespace
+
 Quaterniond turned(const Quaterniond& q, const Vector3d& turn) {
   const double angle = turn.norm();
   return angle > 0 ? (Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * q).normalized() : q;
 }
-
-}  // namespace
 
 // Puts a body into the problem. With `velocities`: those of a state; without: none, as for shifts.
 int LastingContacts::place(int body, double t, std::map<int, int>& places, const std::vector<RigidBodyState>& states, const RigidBodyState* velocities,
@@ -111,21 +113,36 @@ ContactProblem LastingContacts::problem_of(const Group& group, const std::vector
     contact.friction = friction(touch.pair);
     contact.target = touch.target;
     contact.slip_target_world = touch.slip_target_world;
-    if (const auto warm = warm_.find(touch.pair); !at_once && warm != warm_.end()) {
-      const Vector3d point_body_a = states[touch.pair.first].world_from_body.conjugate() * (contact.point_world - states[touch.pair.first].com_world);
-      double nearest = 1e-2 * std::min(moving_.shape(touch.pair.first).bounding_radius(), moving_.shape(touch.pair.second).bounding_radius());
-      for (const Warm& known : warm->second) {
-        const double distance = (known.point_body_a - point_body_a).norm();
-        if (distance >= nearest) continue;
-        nearest = distance;
-        // A longer step needs more where the force lasts, no more where it was a blow.
-        contact.guess_world = std::min(1.0, h / known.duration) * known.impulse_world;
-      }
-    }
     problem.contacts.push_back(contact);
   }
+  if (!at_once) give_guesses(touches, states, h, group.pile ? kSamePointOfAPile : kSamePoint, problem);
   add_rows(group, moving_.states(), moving_.time(), places, false, problem);
   return problem;
+}
+
+// The last step's impulses, each to the point that is nearest to where it acted.
+void LastingContacts::give_guesses(const std::vector<Touch>& touches, const std::vector<RigidBodyState>& states, double h, double farthest, ContactProblem& problem) const {
+  for (std::size_t from = 0, to = 0; from < touches.size(); from = to) {
+    const Pair& pair = touches[from].pair;
+    while (to < touches.size() && touches[to].pair == pair) ++to;
+    const auto warm = warm_.find(pair);
+    if (warm == warm_.end()) continue;
+    const RigidBodyState& a = states[pair.first];
+    const double size = std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius());
+    for (const Warm& known : warm->second) {
+      const Vector3d acted = a.com_world + a.world_from_body * known.point_body_a;
+      PushingContact* nearest = nullptr;
+      double least = farthest * size;
+      for (std::size_t i = from; i < to; ++i) {
+        const double distance = (problem.contacts[i].point_world - acted).norm();
+        if (distance >= least) continue;
+        least = distance;
+        nearest = &problem.contacts[i];
+      }
+      // A longer step needs more where the force lasts, no more where it was a blow.
+      if (nearest) nearest->guess_world += std::min(1.0, h / known.duration) * known.impulse_world;
+    }
+  }
 }
 
 ContactSolution LastingContacts::solve(const Group& group, const ContactProblem& problem, double h) {
@@ -355,19 +372,50 @@ bool LastingContacts::give_paths(const Group& group, const std::vector<Touch>& t
   std::vector<Held> held;   // where nothing turns, points stay as near as they are
   if (&touches_at != &moving_.states() && !landing && touches.size() <= kPile)
     for (std::size_t i = 0; i < touches.size(); ++i)
-      if (touches[i].point.gap < kNotYet * shell(touches[i].pair) && solution.impulses_world[i].squaredNorm() > 0.0) held.push_back({touches[i].pair, touches[i].point, &touches_at});
+      if (touches[i].start_gap < kNotYet * shell(touches[i].pair) && solution.impulses_world[i].squaredNorm() > 0.0) held.push_back({touches[i].pair, touches[i].point, &touches_at});
   // Pairs that are not in contact may meet within the step: that is for the finding of impacts.
   const bool apart = keep_apart(group, group.pairs, ends, moving_.target(), held);
   for (const int body : group.bodies) {
-    RigidBodyState start = moving_.state(body);
-    if (landing) {   // straight from place to place, as x' = x + h v' says: a bent path would dip below the surface on its way
-      const Inertia& inertia = moving_.world().bodies[body].inertia;
-      start.momentum_world = ends[body].momentum_world;
-      start.angular_momentum_world = angular_momentum_of(omega_of(ends[body], inertia), start.world_from_body, inertia);
-    }
-    moving_.set_path(body, start, ends[body]);
+    if (landing) set_straight_path(body, ends[body]);
+    else moving_.set_path(body, moving_.state(body), ends[body]);
   }
   return apart;
+}
+
+// From place to place, as x' = x + h v' says: a bent path would dip below the surface on its way.
+void LastingContacts::set_straight_path(int body, const RigidBodyState& end) {
+  const Inertia& inertia = moving_.world().bodies[body].inertia;
+  RigidBodyState start = moving_.state(body);
+  start.momentum_world = end.momentum_world;
+  start.angular_momentum_world = angular_momentum_of(omega_of(end, inertia), start.world_from_body, inertia);
+  moving_.set_path(body, start, end);
+}
+
+// A contact of a problem of shifts: bodies of other groups stay where they are.
+void LastingContacts::place_for_shift(const Group& group, Pair pair, const collision::NearPoint& point, const std::vector<RigidBodyState>& states, double t, double room,
+                                      std::map<int, int>& places, ContactProblem& problem, PushingContact& contact) {
+  contact.body_a = place(pair.first, t, places, states, nullptr, problem);
+  contact.body_b = place(pair.second, t, places, states, nullptr, problem);
+  for (const int index : {contact.body_a, contact.body_b})
+    if (index >= static_cast<int>(group.bodies.size())) {
+      problem.bodies[index].inverse_mass = 0.0;
+      problem.bodies[index].inverse_inertia_world.setZero();
+    }
+  contact.point_world = point_of(pair, point);
+  contact.normal_b_to_a_world = point.normal_b_to_a_world;
+  contact.target = room - point.gap;
+}
+
+// Momenta follow: the velocities stay. @return whether the body has moved
+bool LastingContacts::apply_shift(int body, const Velocity& shift, std::vector<RigidBodyState>& states) const {
+  if (shift.linear_world.isZero(0.0) && shift.angular_world.isZero(0.0)) return false;
+  RigidBodyState& state = states[body];
+  const Inertia& inertia = moving_.world().bodies[body].inertia;
+  const Vector3d omega = omega_of(state, inertia);
+  state.com_world += shift.linear_world;
+  state.world_from_body = turned(state.world_from_body, shift.angular_world);
+  state.angular_momentum_world = angular_momentum_of(omega, state.world_from_body, inertia);
+  return true;
 }
 
 // The group's contacts as they are in these places: what each has to move by. Points farther apart than `reach` are no concern.
@@ -386,16 +434,7 @@ double LastingContacts::add_shifts(const Group& group, const std::vector<Pair>& 
       const bool is_held = std::find(at_shell.begin(), at_shell.end(), &point) != at_shell.end();
       if (point.gap < 0.5 * room || (is_held && point.gap > 2 * room)) wrong = std::max(wrong, std::abs(room - point.gap));
       PushingContact contact;
-      contact.body_a = place(pair.first, t, places, states, nullptr, problem);
-      contact.body_b = place(pair.second, t, places, states, nullptr, problem);
-      for (const int index : {contact.body_a, contact.body_b})   // bodies of other groups stay where they are
-        if (index >= static_cast<int>(group.bodies.size())) {
-          problem.bodies[index].inverse_mass = 0.0;
-          problem.bodies[index].inverse_inertia_world.setZero();
-        }
-      contact.point_world = point_of(pair, point);
-      contact.normal_b_to_a_world = point.normal_b_to_a_world;
-      contact.target = room - point.gap;
+      place_for_shift(group, pair, point, states, t, room, places, problem, contact);
       if (is_held) {
         Constraint row;
         row.body_a = contact.body_a;
@@ -439,14 +478,7 @@ bool LastingContacts::keep_apart(const Group& group, const std::vector<Pair>& pa
     options.tolerance = 1e-6;   // of what is missing: the next round takes the rest
     options.enough = 1e-3;
     const ContactSolution shift = solve_contacts(problem, options);
-    for (std::size_t k = 0; k < group.bodies.size(); ++k) {
-      RigidBodyState& state = states[group.bodies[k]];
-      const Inertia& inertia = moving_.world().bodies[group.bodies[k]].inertia;
-      const Vector3d omega = omega_of(state, inertia);
-      state.com_world += shift.velocities[k].linear_world;
-      state.world_from_body = turned(state.world_from_body, shift.velocities[k].angular_world);
-      state.angular_momentum_world = angular_momentum_of(omega, state.world_from_body, inertia);
-    }
+    for (std::size_t k = 0; k < group.bodies.size(); ++k) apply_shift(group.bodies[k], shift.velocities[k], states);
   }
   return false;
 }

@@ -32,7 +32,7 @@ void LastingContacts::begin(Pair pair, const collision::Gap& gap) {
 
 void LastingContacts::begin_where_touching(const std::vector<Pair>& pairs) {
   for (const Pair& pair : pairs) {
-    const collision::Gap gap = collision::compute_gap(moving_.shape(pair.first), pose(pair.first, moving_.states()), moving_.shape(pair.second), pose(pair.second, moving_.states()));
+    const collision::Gap gap = gap_of(pair, moving_.states());
     if (gap.distance > shell(pair)) continue;
     const Points points = points_at(pair, moving_.states(), shell(pair));
     const Body a = moving_.body_at_impact(pair.first), b = moving_.body_at_impact(pair.second);
@@ -76,7 +76,27 @@ double LastingContacts::reach(Pair pair) {
     return std::max(start.velocity_world.norm(), end.velocity_world.norm()) + std::max(start.omega_world.norm(), end.omega_world.norm()) * radius;
   };
   const double size = std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius());
-  return std::min(kReach * size, (motion(pair.first) + motion(pair.second)) * h) + kApart * shell(pair);
+  const double way = (reaches_.empty() ? motion(pair.first) + motion(pair.second) : reaches_[pair.first] + reaches_[pair.second]) * h;
+  return std::min(kReach * size, way) + kApart * shell(pair);
+}
+
+// Where blows are dealt with in the step, a body may be as fast by its end as any that can meet it. [m/s], by body
+std::vector<double> LastingContacts::speeds_about(const std::vector<Pair>& candidates) {
+  std::vector<double> speeds(moving_.size(), 0.0);
+  for (int i = 0; i < moving_.size(); ++i)
+    for (const double t : {moving_.time(), moving_.target()}) {
+      if (!moving_.can_move(i) && !moving_.is_driven(i)) continue;
+      const collision::MotionState state = moving_.motion_at(i, t);
+      speeds[i] = std::max(speeds[i], state.velocity_world.norm() + (moving_.shape(i).is_half_space() ? 0.0 : state.omega_world.norm() * moving_.shape(i).bounding_radius()));
+    }
+  std::vector<double> about = speeds;
+  for (const auto& [a, b] : candidates) {
+    about[a] = std::max(about[a], speeds[b]);
+    about[b] = std::max(about[b], speeds[a]);
+  }
+  for (int i = 0; i < moving_.size(); ++i)
+    if (!moving_.can_move(i)) about[i] = speeds[i];
+  return about;
 }
 
 collision::Pose LastingContacts::pose(int body, const std::vector<RigidBodyState>& states) const {
@@ -84,7 +104,22 @@ collision::Pose LastingContacts::pose(int body, const std::vector<RigidBodyState
 }
 
 LastingContacts::Points LastingContacts::points_at(Pair pair, const std::vector<RigidBodyState>& states, double reach) const {
-  return collision::near_points(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states), reach);
+  return collision::near_points(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states), reach,
+                                moving_.pair_cache(pair.first, pair.second));
+}
+
+collision::Gap LastingContacts::gap_of(Pair pair, const std::vector<RigidBodyState>& states) const {
+  return collision::compute_gap(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states),
+                                moving_.pair_cache(pair.first, pair.second));
+}
+
+double LastingContacts::distance_of(Pair pair, const std::vector<RigidBodyState>& states) const {
+  return collision::gap_distance(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states),
+                                 moving_.pair_cache(pair.first, pair.second));
+}
+
+double LastingContacts::least_gap_of(Pair pair, const std::vector<RigidBodyState>& states) const {
+  return collision::least_gap(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states));
 }
 
 std::vector<LastingContacts::Group> LastingContacts::groups(const std::vector<Pair>& touching) {
@@ -111,7 +146,7 @@ std::vector<LastingContacts::Touch> LastingContacts::touches_of(const Group& gro
     for (const collision::NearPoint& point : points_.at(pair)) {
       const double thickness = shell(pair), room = point.gap - thickness;
       const bool lands = room > kBand * thickness + kUnseenRoom * reach(pair);
-      touches.push_back({pair, point, lands ? -room / (moving_.target() - moving_.time()) : 0.0, lands});
+      touches.push_back({pair, point, lands ? -room / (moving_.target() - moving_.time()) : 0.0, lands, Vector3d::Zero(), point.gap});
     }
   return touches;
 }
@@ -124,8 +159,15 @@ std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidat
   forces_.clear();
   groups_.clear();
   std::vector<Pair> touching;
+  const bool in_step = rules_.plastic_impacts == scene::PlasticImpacts::kInStep;
+  reaches_ = in_step ? speeds_about(candidates) : std::vector<double>{};
   for (const Pair& pair : candidates) {
     if (!lasting_.contains(pair) && !plastic(pair)) continue;
+    if (in_step) {
+      const double within = reach(pair);
+      if (least_gap_of(pair, moving_.states()) <= within && distance_of(pair, moving_.states()) <= within) touching.push_back(pair);
+      continue;
+    }
     Points points = points_at(pair, moving_.states(), reach(pair));
     if (points.empty()) continue;
     touching.push_back(pair);
@@ -133,13 +175,18 @@ std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidat
   }
   if (touching.empty()) return std::nullopt;
   groups_ = groups(touching);
+  if (in_step)
+    for (Group& group : groups_) {
+      group.pile = is_pile(group);
+      for (const Pair& pair : group.pairs) points_.emplace(pair, group.pile ? Points{} : points_at(pair, moving_.states(), reach(pair)));
+    }
   for (Group& group : groups_)
     for (const Pair& pair : candidates)
       if (std::binary_search(group.bodies.begin(), group.bodies.end(), pair.first) || std::binary_search(group.bodies.begin(), group.bodies.end(), pair.second)) group.near.push_back(pair);
   next_warm_.clear();
   next_stuck_.clear();
   for (const Group& group : groups_)
-    if (const auto earlier = take_step(group, h)) return earlier;
+    if (const auto earlier = group.pile ? take_pile_step(group, h) : take_step(group, h)) return earlier;
   warm_ = std::move(next_warm_);
   stuck_ = std::move(next_stuck_);
   return std::nullopt;
@@ -181,13 +228,20 @@ std::optional<double> LastingContacts::take_step(const Group& group, double h) {
     solution = solve(group, problem, h);
     landing = lands(used, solution);
   }
+  require_numbers(group, solution);
+  if (const auto stop = located ? stop_of_sliding(problem, touches, solution, h) : std::nullopt) return stop;
+  if (!give_paths(group, used, middle.empty() ? moving_.states() : middle, problem, solution, h, landing)) {
+    if (!located && group.linked.empty()) return take_pile_step(group, h);
+    if (h > kShortest * step_) return moving_.time() + 0.5 * h;
+  }
+  keep_warm(touches, problem, solution, h);
+  return std::nullopt;
+}
+
+void LastingContacts::require_numbers(const Group& group, const ContactSolution& solution) const {
   for (std::size_t k = 0; k < group.bodies.size(); ++k)
     if (!solution.velocities[k].linear_world.allFinite() || !solution.velocities[k].angular_world.allFinite())
       throw StoppedRun("lasting contact: the impulses on body '" + moving_.world().bodies[group.bodies[k]].name + "' are not numbers");
-  if (const auto stop = stop_of_sliding(problem, touches, solution, h)) return stop;
-  if (!give_paths(group, used, middle.empty() ? moving_.states() : middle, problem, solution, h, landing) && h > kShortest * step_) return moving_.time() + 0.5 * h;
-  keep_warm(touches, problem, solution, h);
-  return std::nullopt;
 }
 
 void LastingContacts::keep_warm(const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h) {
@@ -202,23 +256,37 @@ void LastingContacts::keep_warm(const std::vector<Touch>& touches, const Contact
   }
 }
 
-void LastingContacts::commit() {
+bool LastingContacts::commit() {
   const StageTimer timer(counters_.contact_seconds);
-  if (groups_.empty()) return;
+  if (groups_.empty()) return true;
+  bool apart = true;
   std::vector<RigidBodyState> states = moving_.states();
   for (const Group& group : groups_) {
-    keep_apart(group, group.near, states, moving_.time());
+    std::vector<double> gaps(group.near.size(), 0.0);
+    if (group.pile) {
+      apart = keep_pile_apart(group, group.near, states, moving_.time(), gaps) && apart;
+    } else {
+      keep_apart(group, group.near, states, moving_.time());
+      apart = false;
+    }
     for (const int body : group.bodies) moving_.set_state(body, states[body]);
-    for (const Pair& pair : group.pairs) {
-      const collision::Gap gap = collision::compute_gap(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states));
-      if (gap.distance <= std::max(kApart * shell(pair), lasting_.contains(pair) ? rest_speed_ * step_ : 0.0)) {
+    for (std::size_t k = 0; k < group.near.size(); ++k) {
+      const Pair& pair = group.near[k];
+      if (!keeps(pair)) continue;
+      const bool lasted = lasts(pair), touches = (group.pile ? gaps[k] : distance_of(pair, states)) <=
+                                                 std::max(group.pile ? 2 * room_of(pair) : kApart * shell(pair), lasted ? rest_speed_ * step_ : 0.0);
+      if (touches == lasted) continue;
+      const collision::Gap gap = gap_of(pair, states);
+      if (touches) {
         begin(pair, gap);
-      } else if (lasting_.erase(pair) > 0) {
+      } else {
+        lasting_.erase(pair);
         ++counters_.contacts_ended;
         sink_.event({moving_.time(), EventKind::kBreak, pair.first, pair.second, gap.point_b_world, gap.normal_b_to_a_world, 0.0, 0.0});
       }
     }
   }
+  return apart;
 }
 
 }  // namespace tumble::engines

@@ -25,6 +25,9 @@
 
 namespace tumble::engines {
 
+/// An orientation after a turn, given as axis times angle in the world frame. [rad]
+Quaterniond turned(const Quaterniond& world_from_body, const Vector3d& turn_world);
+
 class LastingContacts {
  public:
   using Pair = std::pair<int, int>;   // bodies, first < second
@@ -47,7 +50,8 @@ class LastingContacts {
   bool keeps(Pair pair) const { return points_.contains(pair); }
 
   /// After the step was committed: takes back overlaps, ends contacts that have come apart.
-  void commit();
+  /// @return whether all pairs with a body in contact are known to be apart
+  bool commit();
   const std::vector<ContactPoint>& forces() const { return forces_; }
   /// Friction of a pair: the smaller of the two.
   double friction(Pair pair) const;
@@ -63,6 +67,7 @@ class LastingContacts {
     std::vector<Pair> pairs;     // in contact
     std::vector<Pair> near;      // pairs with a body of the group that may meet in the step; those in contact among them
     std::vector<int> linked;     // places in linked_groups()
+    bool pile = false;           // many bodies, asked for in steps: contact_piles.cpp
   };
   struct Touch {
     Pair pair;
@@ -70,6 +75,7 @@ class LastingContacts {
     double target;               // least normal velocity afterwards [m/s]
     bool lands;                  // apart at the start of the step
     Vector3d slip_target_world = Vector3d::Zero();   // [m/s], see PushingContact
+    double start_gap = 0.0;      // at the start of the step, wherever `point` is looked at [m]
   };
 
   struct Landing {
@@ -97,8 +103,13 @@ class LastingContacts {
   Vector3d point_of(Pair pair, const collision::NearPoint& point) const;
   double shell(Pair pair) const;
   double reach(Pair pair);
+  std::vector<double> speeds_about(const std::vector<Pair>& candidates);
+  void give_guesses(const std::vector<Touch>& touches, const std::vector<RigidBodyState>& states, double h, double farthest, ContactProblem& problem) const;
   collision::Pose pose(int body, const std::vector<RigidBodyState>& states) const;
   Points points_at(Pair pair, const std::vector<RigidBodyState>& states, double reach) const;
+  collision::Gap gap_of(Pair pair, const std::vector<RigidBodyState>& states) const;
+  double distance_of(Pair pair, const std::vector<RigidBodyState>& states) const;
+  double least_gap_of(Pair pair, const std::vector<RigidBodyState>& states) const;
   std::vector<Group> groups(const std::vector<Pair>& touching);
   std::vector<Touch> touches_of(const Group& group);
   ContactProblem problem_of(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& states, double h);
@@ -115,6 +126,19 @@ class LastingContacts {
   bool strike(const Group& group, std::vector<Touch> down);
   double speed(const Group& group) const;
   std::optional<double> take_step(const Group& group, double h);
+  void require_numbers(const Group& group, const ContactSolution& solution) const;
+  bool is_pile(const Group& group) const;
+  double room_of(Pair pair) const;
+  std::vector<RigidBodyState> middle_of(const Group& group, double h) const;
+  std::vector<Touch> touches_of_pile(const Group& group, const std::vector<RigidBodyState>& middle, double h);
+  std::optional<double> take_pile_step(const Group& group, double h);
+  double way_of(int body, const Velocity& shift) const;
+  bool keep_pile_apart(const Group& group, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, std::vector<double>& gaps);
+  ContactProblem shifts_of(const Group& group, const std::vector<Pair>& pairs, const std::vector<RigidBodyState>& states, double t, const std::vector<double>& gaps, double reach);
+  bool apply_shift(int body, const Velocity& shift, std::vector<RigidBodyState>& states) const;
+  void place_for_shift(const Group& group, Pair pair, const collision::NearPoint& point, const std::vector<RigidBodyState>& states, double t, double room, std::map<int, int>& places,
+                       ContactProblem& problem, PushingContact& contact);
+  void set_straight_path(int body, const RigidBodyState& end);
   void keep_warm(const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h);
   std::optional<double> stop_of_sliding(const ContactProblem& problem, const std::vector<Touch>& touches, const ContactSolution& solution, double h);
   static bool lands(const std::vector<Touch>& touches, const ContactSolution& solution);
@@ -135,6 +159,7 @@ class LastingContacts {
   const Laws& laws_;
   scene::ContactSpec rules_;
   double rest_speed_, step_ = 0.0;               // [m/s], the longest step so far [s]
+  std::vector<double> reaches_;                  // by body, where impacts are asked for in steps: how fast it or what it meets is [m/s]
   RunCounters& counters_;
   TrajectorySink& sink_;
   std::set<Pair> lasting_;

@@ -24,6 +24,7 @@ Meetings::Meetings(MovingWorld& moving, const Laws& laws, RunCounters& counters)
 
 std::optional<Earliest> Meetings::earliest(const std::vector<Pair>& pairs) {
   const StageTimer timer(counters_.collision_seconds);
+  apart_at_target_ = false;
   const auto found = find_earliest(pairs);
   return found ? found : find_missed(pairs, moving_.target());
 }
@@ -75,11 +76,12 @@ std::vector<Meetings::Pair> Meetings::candidates() {
 }
 
 std::optional<Earliest> Meetings::find_earliest(const std::vector<Pair>& pairs) {
-  const collision::ImpactOptions options{laws_.find_impact_time};
+  collision::ImpactOptions options{laws_.find_impact_time};
   std::optional<Earliest> earliest;
   double until = moving_.target();
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const auto [a, b] = pairs[k];
+    options.cache = moving_.pair_cache(a, b);
     const auto impact = collision::first_impact(moving_.shape(a), moving_.motion(a), moving_.shape(b), moving_.motion(b), moving_.time(),
                                                 until, options, &counters_.collision);
     if (!impact || (earliest && impact->time >= earliest->time)) continue;
@@ -90,14 +92,18 @@ std::optional<Earliest> Meetings::find_earliest(const std::vector<Pair>& pairs) 
   return earliest;
 }
 
+// Of those far apart a bound from below.
 double Meetings::gap_on_path(Pair pair, double t) {
+  const auto [a, b] = pair;
+  const collision::Pose pose_a = moving_.motion_at(a, t).pose, pose_b = moving_.motion_at(b, t).pose;
+  const double least = collision::least_gap(moving_.shape(a), pose_a, moving_.shape(b), pose_b);
+  if (least > touching_distance(pair)) return least;
   ++counters_.collision.gap_evaluations;
-  return collision::compute_gap(moving_.shape(pair.first), moving_.motion_at(pair.first, t).pose, moving_.shape(pair.second),
-                                moving_.motion_at(pair.second, t).pose).distance;
+  return collision::gap_distance(moving_.shape(a), pose_a, moving_.shape(b), pose_b, moving_.pair_cache(a, b));
 }
 
 collision::Gap Meetings::gap(Pair pair) const {
-  return collision::compute_gap(moving_.shape(pair.first), pose_of(pair.first), moving_.shape(pair.second), pose_of(pair.second));
+  return collision::compute_gap(moving_.shape(pair.first), pose_of(pair.first), moving_.shape(pair.second), pose_of(pair.second), moving_.pair_cache(pair.first, pair.second));
 }
 
 double Meetings::touching_distance(Pair pair) const {
@@ -127,9 +133,12 @@ std::vector<Vector3d> Meetings::touching_points(Pair pair, const collision::Gap&
 // overlap at the end that is deeper than round-off is traced back to where it began.
 std::optional<Earliest> Meetings::find_missed(const std::vector<Pair>& pairs, double target) {
   std::optional<Earliest> earliest;
+  apart_at_target_ = true;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     double low = moving_.time(), high = target;
-    if (gap_on_path(pairs[k], high) >= -touching_distance(pairs[k])) continue;
+    const double touching = touching_distance(pairs[k]), gap = gap_on_path(pairs[k], high);
+    apart_at_target_ = apart_at_target_ && gap > touching;
+    if (gap >= -touching) continue;
     for (double middle = 0.5 * (low + high); middle > low && middle < high; middle = 0.5 * (low + high))
       (gap_on_path(pairs[k], middle) < 0 ? high : low) = middle;
     if (!earliest || low < earliest->time) earliest = Earliest{low, k};
@@ -142,8 +151,10 @@ void Meetings::separate(const std::vector<Pair>& pairs) {
   for (int round = 0; round < 20; ++round) {
     bool clean = true;
     for (const auto& pair : pairs) {
+      const auto [a, b] = pair;
+      if (collision::least_gap(moving_.shape(a), pose_of(a), moving_.shape(b), pose_of(b)) > 0) continue;
+      if (collision::gap_distance(moving_.shape(a), pose_of(a), moving_.shape(b), pose_of(b), moving_.pair_cache(a, b)) >= 0) continue;
       const collision::Gap gap = this->gap(pair);
-      if (gap.distance >= 0) continue;
       clean = false;
       const double mass_a = moving_.can_move(pair.first) ? moving_.world().bodies[pair.first].inertia.inverse_mass : 0.0;
       const double mass_b = moving_.can_move(pair.second) ? moving_.world().bodies[pair.second].inertia.inverse_mass : 0.0;

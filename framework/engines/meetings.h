@@ -33,6 +33,8 @@ class Meetings {
   std::vector<Pair> candidates();
   /// The first impact of these pairs in the step under way; nothing where none meets.
   std::optional<Earliest> earliest(const std::vector<Pair>& pairs);
+  /// Whether that search has found all its pairs farther apart at the step's target than rounding could bring together.
+  bool apart_at_target() const { return apart_at_target_; }
 
   /// At the committed time.
   collision::Gap gap(Pair pair) const;
@@ -54,6 +56,7 @@ class Meetings {
   MovingWorld& moving_;
   const Laws& laws_;
   RunCounters& counters_;
+  bool apart_at_target_ = false;
   std::vector<int> colliding_;   // bodies that may touch others, ascending
 };
 

@@ -14,6 +14,7 @@
 #include "framework/dynamics/world.h"
 #include "framework/engines/effects_built.h"
 #include "framework/engines/linked_bodies.h"
+#include "framework/engines/pair_caches.h"
 #include "framework/engines/run_counters.h"
 #include "framework/engines/smooth_path.h"
 
@@ -89,6 +90,9 @@ class MovingWorld {
   /// All bodies to where their paths are at t; what the step had computed beyond counts as undone when t is before its target.
   void commit(double t);
 
+  /// Of the bodies a < b: hand it to every question about their gap.
+  collision::PairCache* pair_cache(int a, int b) const { return caches_.of(a, b); }
+
   /// As impulses need it, at the committed time.
   Body body_at_impact(int body) const;
   Vector3d velocity_of(int body, double t) const;
@@ -126,6 +130,7 @@ class MovingWorld {
   std::vector<int> active_forces_;               // indices into world_.point_forces
   std::vector<Vector3d> force_points_body_;      // by force, from when it is switched on
   std::vector<Path> paths_;
+  mutable PairCaches caches_;
   std::vector<LinkedBodies> linked_;
   std::vector<int> group_of_;                    // by body: place in linked_, -1
   std::vector<bool> told_of_shortening_, told_of_aliasing_;   // by body

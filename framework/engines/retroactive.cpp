@@ -253,9 +253,9 @@ void RetroactiveRun::advance_to(double target) {
     moving_.commit(reached);
     watch_for_trouble();
     if (!stopped_by_.empty()) return;
-    meetings_.separate(pairs);
-    if (has_contacts()) contacts_->commit();
-    if (has_contacts() && !contacts_->empty()) meetings_.separate(near);
+    if (!meetings_.apart_at_target()) meetings_.separate(pairs);
+    const bool apart = !has_contacts() || contacts_->commit();
+    if (!apart) meetings_.separate(near);
     if (has_sleepers()) note_touching(near);
     if (!earliest) continue;
     ++counters_.rollbacks;
