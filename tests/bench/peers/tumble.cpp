@@ -1,0 +1,78 @@
+// Tumble itself, through the entry that `tumble run` uses: run_scene with the laws of the reference modules. The clock starts when the
+// engine hands over its first frame, and stops when it ends: frames that it records are part of its price.
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "framework/engines/run.h"
+#include "tests/bench/peers/harness.h"
+#include "tests/engines/reference_laws.h"
+#include "tests/stability/methods.h"
+
+namespace tumble::peers {
+namespace {
+
+const std::string kRungeKutta = "RK4", kDormandPrince = "Dormand-Prince", kLocated = "RK4, plastic impacts located";
+constexpr double kAdaptiveStep = 1.0 / 30;   // s: within it the method chooses its own
+
+class Clock final : public TrajectorySink {
+ public:
+  Clock(Observed& run, double& reached) : run_(run), reached_(reached) {}
+  void begin(const TrajectoryInfo&, const std::vector<TrajectoryBody>&) override {}
+  void frame(const Frame& frame) override {
+    if (run_.samples.empty()) start_ = cpu_seconds();
+    run_.samples.push_back(frame.poses);
+    reached_ = frame.time;
+  }
+  void event(const Event& event) override {
+    if (event.kind == EventKind::kCollision) run_.bounces.push_back(event.time);
+  }
+  void end(const Counters&, const std::string& stopped_by) override {
+    run_.cpu_s = cpu_seconds() - start_;
+    stopped_by_ = stopped_by;
+  }
+  const std::string& stopped_by() const { return stopped_by_; }
+
+ private:
+  Observed& run_;
+  double& reached_;
+  double start_ = 0.0;
+  std::string stopped_by_;
+};
+
+Observed run(const BenchCase& bench, const Setting& setting, double& reached) {
+  Laws laws = testing::reference_laws();
+  laws.impulse_source = laws.integrator_source = laws.constraint_source = "reference";
+  if (setting.method == kDormandPrince) laws.integrate_step = battery::dormand_prince(setting.tolerance);
+  scene::Scene scene = bench.scene;
+  if (setting.method == kLocated) scene.contact->plastic_impacts = scene::PlasticImpacts::kLocated;
+  engines::RunOptions options;
+  options.step_s = setting.step;
+  options.frame_rate_hz = 1.0 / bench.sample_times.front();
+  if (bench.watches_first_body) options.frame_rate_hz = 1.0 / bench.sample_times.back();
+  Observed run;
+  Clock clock(run, reached);
+  engines::run_scene(scene, laws, options, clock);
+  if (!clock.stopped_by().empty()) throw std::runtime_error(clock.stopped_by());
+  return run;
+}
+
+std::vector<std::vector<Setting>> ladders(const BenchCase& bench) {
+  const std::string scene = bench.id.substr(0, 2);
+  auto all = step_ladders(bench, {kRungeKutta});
+  if (scene == "S8") all.push_back(step_ladders(bench, {kLocated}).front());
+  if (scene == "S1" || scene == "S2" || scene == "S6") {
+    all.emplace_back();
+    for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14}) all.back().push_back({kDormandPrince, kAdaptiveStep, tolerance});
+  }
+  return all;
+}
+
+}  // namespace
+}  // namespace tumble::peers
+
+int main(int argc, char** argv) {
+  using namespace tumble::peers;
+  return peer_main(argc, argv, {.name = "Tumble", .version = "this tree", .settings = "retroactive detection, the reference modules' laws; frames at the samples are part of the price",
+                                .ladders = ladders, .build = {}, .run = run});
+}
