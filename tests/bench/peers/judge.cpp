@@ -65,8 +65,7 @@ double overlap(const World& world, const Observed& run) {
 Judgement worse_of(const std::string& a, double value_a, const std::string& b, double value_b) { return {std::max(value_a, value_b), {{a, value_a}, {b, value_b}}}; }
 
 Judgement judge_top(const Observed& run) {
-  const truths::Value& q = truth_named("free_top_asymmetric__dzhanibekov_123").output("q_t60");
-  const VectorXd wxyz = q.vector();
+  const VectorXd wxyz = truth_named("free_top_asymmetric__dzhanibekov_123").output("q_t60").vector();   // scalar first
   const Quaterniond turn = Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3]).conjugate() * run.samples.back()[0].world_from_body.normalized();
   const double angle = 2 * std::atan2(turn.vec().norm(), std::abs(turn.w()));
   return {angle, {{"angle [rad]", angle}}};

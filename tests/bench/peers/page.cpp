@@ -1,0 +1,178 @@
+// The page of the peers: one table, one picture a scene, every row below it.  usage: peers_page ROWS_DIR PAGE.html [--quick]
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+
+#include <fmt/format.h>
+
+#include "framework/report/html.h"
+#include "tests/bench/peers/cases.h"
+#include "tests/bench/peers/rows.h"
+
+namespace tumble::peers {
+namespace {
+
+using report::Cell;
+using report::Look;
+
+const std::string kOurs = "Tumble";
+constexpr double kMarks[] = {1e-3, 1e-6, 1e-9};
+constexpr double kExact = 1e-17;      // an error of nothing at all is drawn here
+constexpr double kBlownUp = 1e4;      // what is worse is in the table, not in the picture
+
+constexpr const char* kRules[] = {
+    "Price: CPU time of the process around the engine's steps only. Building the world, loading models and looking at the bodies are not in it, except for Tumble, whose frames at the "
+    "samples are part of its run. Each setting runs in a process of its own; runs shorter than half a second are repeated and the median counts. All engines ran on this machine one after "
+    "another, on one core each: ratios matter, not seconds.",
+    "Error: against a truth that comes from none of the engines: a closed form, a file of tests/truths (60 digits, two methods), or what physics forbids (energy that changes, joints that open, solids that "
+    "overlap). Where two things must hold, the worse counts. All engines are looked at at the same instants, by the same code, from places, orientations and velocities alone.",
+    "Settings: what each engine's own manual recommends, over a ladder of steps (or of tolerances, where it controls its error). Of a pair the smaller friction and restitution count everywhere. Sleep and "
+    "damping are off. A curve is one way to run an engine; of a peer with several only what no other of its own ways beats is drawn, and every row stands in the fold below the picture.",
+    "Tumble goes through run_scene, the entry that `tumble run` uses, with the laws of the course's reference modules: RK4 at a fixed step, and Dormand-Prince with error control from Boost.Odeint behind the same law.",
+};
+
+std::string seconds(double s) {
+  if (s < 1e-3) return fmt::format("{:.3g} µs", 1e6 * s);
+  return s < 1.0 ? fmt::format("{:.3g} ms", 1e3 * s) : fmt::format("{:.3g} s", s);
+}
+
+std::string fineness(const Row& row) {
+  if (std::isfinite(row.tolerance)) return fmt::format("tolerance {:.0e}", row.tolerance);
+  return fmt::format("1/{:g} s", std::round(1 / row.step));
+}
+
+/// What none of the same engine's rows beats in both price and error, by price.
+std::vector<Row> not_beaten(const std::vector<Row>& rows) {
+  std::vector<Row> best;
+  for (const Row& row : rows) {
+    const bool beaten = std::any_of(rows.begin(), rows.end(), [&](const Row& other) { return other.cpu_s < row.cpu_s && other.error <= row.error; });
+    if (!beaten) best.push_back(row);
+  }
+  std::sort(best.begin(), best.end(), [](const Row& a, const Row& b) { return a.cpu_s < b.cpu_s; });
+  return best;
+}
+
+std::vector<Row> rows_of(const Measured& measured, const std::string& bench, const std::string& engine) {
+  std::vector<Row> rows;
+  for (const Row& row : measured.rows)
+    if (row.bench == bench && row.engine == engine && row.done && std::isfinite(row.error) && row.error < kBlownUp) rows.push_back(row);
+  return rows;
+}
+
+report::Curve curve_of(const std::string& name, const std::vector<Row>& rows) {
+  report::Curve curve{name, {}, {}, true};
+  for (const Row& row : rows) {
+    curve.x.push_back(row.cpu_s);
+    curve.y.push_back(std::max(row.error, kExact));
+  }
+  return curve;
+}
+
+report::Plot plot_of(const BenchCase& bench, const Measured& measured) {
+  report::Plot plot{bench.id + ": " + bench.title, {"CPU time", "s", report::Scale::kLog}, {bench.error_name, bench.error_unit, report::Scale::kLog}, {}, {}, "Left is cheaper, down is more accurate. Truth: " + bench.truth + "."};
+  for (const EngineWords& engine : measured.engines) {
+    const std::vector<Row> rows = rows_of(measured, bench.id, engine.name);
+    if (rows.empty()) continue;
+    if (engine.name != kOurs) {
+      plot.curves.push_back(curve_of(engine.name, not_beaten(rows)));
+      continue;
+    }
+    std::vector<std::string> methods;
+    for (const Row& row : rows)
+      if (std::find(methods.begin(), methods.end(), row.method) == methods.end()) methods.push_back(row.method);
+    for (const std::string& method : methods) {
+      std::vector<Row> of_method;
+      std::copy_if(rows.begin(), rows.end(), std::back_inserter(of_method), [&](const Row& row) { return row.method == method; });
+      plot.curves.push_back(curve_of("Tumble, " + method, of_method));
+    }
+  }
+  return plot;
+}
+
+Cell price_cell(const Row* row, bool with_name, Look look) {
+  if (row == nullptr) return {"-", "", Look::kMuted};
+  return {seconds(row->cpu_s) + (with_name ? " " + row->engine : ""), "", look};
+}
+
+report::Table overview(const std::vector<BenchCase>& cases, const Measured& measured) {
+  report::Table table;
+  table.caption = "CPU time of the cheapest measured setting whose error is at most 1e-3, 1e-6, 1e-9 (in the unit of the scene's picture); \"-\" where an engine never gets there. Ratio: Tumble's over the best peer's.";
+  table.columns = {{"Scene"}};
+  for (const double mark : kMarks) table.columns.insert(table.columns.end(), {{fmt::format("Tumble at {:.0e}", mark), true}, {"best peer", true}, {"ratio", true}});
+  for (const BenchCase& bench : cases) {
+    std::vector<Cell> cells{{bench.id + " " + bench.title, "#" + bench.id}};
+    for (const double mark : kMarks) {
+      const Row *ours = cheapest(measured.rows, bench.id, kOurs, false, mark), *theirs = cheapest(measured.rows, bench.id, kOurs, true, mark);
+      const bool wins = ours != nullptr && (theirs == nullptr || ours->cpu_s <= theirs->cpu_s);
+      cells.push_back(price_cell(ours, false, wins ? Look::kGood : Look::kPlain));
+      cells.push_back(price_cell(theirs, true, !wins && theirs != nullptr ? Look::kWarning : Look::kPlain));
+      const double ratio = ours && theirs ? ours->cpu_s / theirs->cpu_s : std::nan("");
+      cells.push_back(std::isfinite(ratio) ? Cell{fmt::format("{:.2g}", ratio), "", ratio <= 1 ? Look::kGood : Look::kBad} : Cell{"-", "", Look::kMuted});
+    }
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+/// Where Tumble stands in this scene, in words made of the numbers.
+std::string verdict(const BenchCase& bench, const Measured& measured) {
+  std::string words;
+  for (const double mark : kMarks) {
+    const Row *ours = cheapest(measured.rows, bench.id, kOurs, false, mark), *theirs = cheapest(measured.rows, bench.id, kOurs, true, mark);
+    std::string sentence;
+    if (ours == nullptr && theirs == nullptr) sentence = "no engine gets there";
+    else if (ours == nullptr) sentence = fmt::format("Tumble does not get there; {} needs {}", theirs->engine, seconds(theirs->cpu_s));
+    else if (theirs == nullptr) sentence = fmt::format("Tumble needs {} ({}, {}); no peer gets there", seconds(ours->cpu_s), ours->method, fineness(*ours));
+    else if (ours->cpu_s <= theirs->cpu_s) sentence = fmt::format("Tumble needs {}, {} {:.1f} times as much", seconds(ours->cpu_s), theirs->engine, theirs->cpu_s / ours->cpu_s);
+    else sentence = fmt::format("Tumble loses: {} against {} of {} ({}, {}), {:.1f} times as much", seconds(ours->cpu_s), seconds(theirs->cpu_s), theirs->engine, theirs->method, fineness(*theirs), ours->cpu_s / theirs->cpu_s);
+    words += fmt::format("{}At {:.0e}: {}.", words.empty() ? "" : " ", mark, sentence);
+  }
+  return words;
+}
+
+std::string all_rows(const BenchCase& bench, const Measured& measured) {
+  std::string text;
+  for (const Row& row : measured.rows)
+    if (row.bench == bench.id)
+      text += fmt::format("{:8} {:36} {:16} {:>11}  {}\n", row.engine, row.method, fineness(row), row.done ? seconds(row.cpu_s) : "-", row.done ? fmt::format("error {:.2e}   {}", row.error, row.words) : row.words);
+  return text;
+}
+
+void write(const std::filesystem::path& rows, const std::filesystem::path& file, bool quick) {
+  const Measured measured = read_rows(rows);
+  std::vector<BenchCase> cases;
+  for (BenchCase& bench : all_cases(quick))
+    if (std::any_of(measured.rows.begin(), measured.rows.end(), [&](const Row& row) { return row.bench == bench.id; })) cases.push_back(std::move(bench));
+  report::Page page("What accuracy costs: Tumble beside the engines people use today", quick ? "Quick run: few steps, short scenes. Figures of a quick run prove nothing but that it runs." : "Scenes S1 to S8, error against CPU time");
+  page.table(overview(cases, measured));
+  page.heading("How it was measured");
+  for (const char* rule : kRules) page.paragraph(rule);
+  report::Table engines{"", {{"Engine"}, {"Version"}, {"Settings"}}, {}};
+  for (const EngineWords& engine : measured.engines) engines.rows.push_back({{engine.name}, {engine.version}, {engine.settings}});
+  page.table(engines);
+  for (const BenchCase& bench : cases) {
+    page.heading(bench.id + ": " + bench.title, 2, bench.id);
+    page.paragraph(verdict(bench, measured) + " Goal: " + bench.goal + ".");
+    page.plot(plot_of(bench, measured));
+    page.fold("Every row", all_rows(bench, measured));
+  }
+  page.record("tests/bench/peers/run.sh");
+  page.write(file);
+}
+
+}  // namespace
+}  // namespace tumble::peers
+
+int main(int argc, char** argv) try {
+  if (argc < 3) {
+    std::fprintf(stderr, "usage: peers_page ROWS_DIR PAGE.html [--quick]\n");
+    return 2;
+  }
+  tumble::peers::write(argv[1], argv[2], argc > 3 && std::string(argv[3]) == "--quick");
+  return EXIT_SUCCESS;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "peers_page: %s\n", error.what());
+  return 2;
+}
