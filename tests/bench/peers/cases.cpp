@@ -38,7 +38,7 @@ BodySpec solid_box(const std::string& name, const Vector3d& half_extents, double
 }
 
 BenchCase free_top(bool quick) {
-  BenchCase bench{.id = "S1", .title = "A torque-free top turns over: moments 1, 2, 3, 60 s", .error_name = "error of the orientation after 60 s", .error_unit = "rad",
+  BenchCase bench{.id = "S1", .name = "free top", .title = "A torque-free top turns over: moments 1, 2, 3, 60 s", .error_name = "error of the orientation after 60 s", .error_unit = "rad",
                   .truth = "tests/truths/free_top_asymmetric__dzhanibekov_123.json: Taylor series with 60 digits, checked against Jacobi's elliptic functions",
                   .goal = "1e-7 rad at 1/30 s", .scene = empty_scene("S1", 60.0, 1e-3), .sample_times = times(10.0, 6), .steps = halvings(1.0 / 30, quick ? 3 : 9)};
   BodySpec top = ball("top", 1.0, 0.1, Vector3d::Zero(), Vector3d::Zero(), 1.0);
@@ -67,7 +67,7 @@ Scene chain_of_hinges(const std::string& name, int links, double length, double 
 }
 
 BenchCase chain(bool quick) {
-  BenchCase bench{.id = "S2", .title = "A chain of 8 rods swings from horizontal, 5 s", .error_name = "energy or joints, the worse", .error_unit = "",
+  BenchCase bench{.id = "S2", .name = "chain of 8 rods", .title = "A chain of 8 rods swings from horizontal, 5 s", .error_name = "energy or joints, the worse", .error_unit = "",
                   .truth = "energy and joints must stay: |E - E0| over the energy of the fall (m g L / 2), opening of the joints over a link's length",
                   .goal = "energy 1e-7 at 1/960 s, joints 1e-10 m", .scene = chain_of_hinges("S2", 8, kChainLink, 0.02, 1.0, Vector3d::UnitX()),
                   .sample_times = times(0.1, quick ? 10 : 50), .steps = halvings(1.0 / 60, quick ? 3 : 8)};
@@ -79,7 +79,7 @@ BenchCase elastic_balls(int n, bool quick) {
   const double side = std::cbrt(n / 100.0);   // m: the same density for every number
   const int cells = static_cast<int>(std::ceil(std::cbrt(n)));
   const double cell = side / cells, room = 0.5 * cell - kBallRadius;
-  BenchCase bench{.id = "S3-" + std::to_string(n), .title = std::to_string(n) + " elastic balls in a box, 2 s", .error_name = "energy or overlap, the worse", .error_unit = "",
+  BenchCase bench{.id = "S3-" + std::to_string(n), .name = std::to_string(n) + " elastic balls", .title = std::to_string(n) + " elastic balls in a box, 2 s", .error_name = "energy or overlap, the worse", .error_unit = "",
                   .truth = "elastic balls keep their energy and never overlap: |E - E0| / E0, deepest overlap over a radius",
                   .goal = n == 1000 ? "energy 1e-12, no overlap; 0.5 s, aim 0.1 s" : "energy 1e-12, no overlap", .scene = empty_scene("S3", quick ? 0.5 : 2.0, 1e-3),
                   .sample_times = times(0.1, quick ? 5 : 20), .steps = halvings(1.0 / 30, quick ? 2 : 7)};
@@ -99,7 +99,7 @@ BenchCase elastic_balls(int n, bool quick) {
 }
 
 BenchCase bouncing_ball(bool quick) {
-  BenchCase bench{.id = "S4", .title = "A ball bounces, e = 0.8, 5 s", .error_name = "error of the first ten bounces", .error_unit = "s",
+  BenchCase bench{.id = "S4", .name = "bouncing ball", .title = "A ball bounces, e = 0.8, 5 s", .error_name = "error of the first ten bounces", .error_unit = "s",
                   .truth = "tests/truths/bouncing_ball__e0.8.json: a geometric series", .goal = "1e-12 s; 0.5 ms", .scene = empty_scene("S4", 5.0, 1e-3),
                   .sample_times = {1.0, 2.0, 3.5, 5.0}, .steps = halvings(1.0 / 60, quick ? 3 : 8), .watches_first_body = true};
   constexpr double kRadius = 0.1;   // m
@@ -109,7 +109,7 @@ BenchCase bouncing_ball(bool quick) {
 }
 
 BenchCase stack(bool quick) {
-  BenchCase bench{.id = "S5", .title = "A stack of 10 boxes at rest, 10 s", .error_name = "way of the top box", .error_unit = "m", .truth = "static equilibrium: nothing moves",
+  BenchCase bench{.id = "S5", .name = "stack of 10", .title = "A stack of 10 boxes at rest, 10 s", .error_name = "way of the top box", .error_unit = "m", .truth = "static equilibrium: nothing moves",
                   .goal = "1e-6 m at 1/60 s; 0.65 s, aim 0.1 s", .scene = empty_scene("S5", quick ? 2.0 : 10.0, 1e-3), .sample_times = times(1.0, quick ? 2 : 10),
                   .steps = halvings(1.0 / 60, quick ? 2 : 6)};
   bench.scene.gravity_m_s2 = kDown;
@@ -123,7 +123,7 @@ BenchCase stack(bool quick) {
 BenchCase heavy_bob(bool quick) {
   constexpr double kAngle = 25 * std::numbers::pi / 180;
   const Vector3d direction(std::sin(kAngle), 0, -std::cos(kAngle));
-  BenchCase bench{.id = "S6", .title = "A bob of 10 kg swings on 10 links of 1 g, 10 s", .error_name = "energy or joints, the worse", .error_unit = "",
+  BenchCase bench{.id = "S6", .name = "heavy bob", .title = "A bob of 10 kg swings on 10 links of 1 g, 10 s", .error_name = "energy or joints, the worse", .error_unit = "",
                   .truth = "energy and joints must stay: |E - E0| over the energy of the fall, opening of the joints over a link's length",
                   .goal = "energy 1e-9, joints 1e-10 m at 1/1920 s", .scene = chain_of_hinges("S6", 10, kBobLink, 0.01, 0.001, direction),
                   .sample_times = times(0.1, quick ? 5 : 100), .steps = halvings(1.0 / 960, quick ? 2 : 5)};
@@ -137,7 +137,7 @@ BenchCase heavy_bob(bool quick) {
 
 BenchCase bullet(double speed, const std::string& id, bool quick) {
   const double end = 0.1;   // s
-  BenchCase bench{.id = id, .title = "A bullet at " + std::to_string(static_cast<int>(speed)) + " m/s against a wall of 1 cm", .error_name = "error of the place after 0.1 s", .error_unit = "m",
+  BenchCase bench{.id = id, .name = "bullet, " + std::to_string(static_cast<int>(speed)) + " m/s", .title = "A bullet at " + std::to_string(static_cast<int>(speed)) + " m/s against a wall of 1 cm", .error_name = "error of the place after 0.1 s", .error_unit = "m",
                   .truth = "closed form: there and back", .goal = "1e-9 m at any step", .scene = empty_scene("S7", end, 1e-3), .sample_times = {end}, .steps = halvings(1.0 / 60, quick ? 3 : 12)};
   BodySpec wall = solid_box("wall", Vector3d(kBulletWall / 2, 2, 2), 1.0, Vector3d::Zero());
   wall.mass_kg.reset();
@@ -149,7 +149,7 @@ BenchCase bullet(double speed, const std::string& id, bool quick) {
 
 BenchCase rocks(int n, double duration, bool quick) {
   constexpr double kSlope = 30 * std::numbers::pi / 180, kApart = 1.1, kAbove = 0.7;   // m: rocks reach 0.52 m from their middles
-  BenchCase bench{.id = "S8", .title = std::to_string(n) + " rocks tumble down a slope of 30 degrees", .error_name = "deepest overlap", .error_unit = "m",
+  BenchCase bench{.id = "S8", .name = "rocks on a slope", .title = std::to_string(n) + " rocks tumble down a slope of 30 degrees", .error_name = "deepest overlap", .error_unit = "m",
                   .truth = "solids do not overlap: separating axes over all faces and edges of every near pair, at ten instants a second",
                   .goal = "no overlap; at most 1.5 times Bullet's price", .scene = empty_scene("S8", duration, 1e-3),
                   .sample_times = times(0.1, static_cast<int>(std::lround(duration * 10))), .steps = quick ? std::vector{1.0 / 120} : std::vector{1.0 / 60, 1.0 / 120, 1.0 / 240, 1.0 / 480}};

@@ -13,7 +13,7 @@ namespace tumble::peers {
 
 struct BenchCase {
   std::string id;                     // "S3-100": unique, a file's name
-  std::string title;
+  std::string name, title;            // a few words for tables, and a line
   std::string error_name, error_unit; // of the one number that is drawn
   std::string truth;                  // where the truth comes from, for the page
   std::string goal;                   // what the project wants to reach

@@ -34,8 +34,9 @@ constexpr const char* kRules[] = {
 };
 
 std::string seconds(double s) {
-  if (s < 1e-3) return fmt::format("{:.3g} µs", 1e6 * s);
-  return s < 1.0 ? fmt::format("{:.3g} ms", 1e3 * s) : fmt::format("{:.3g} s", s);
+  const double rounded = std::stod(fmt::format("{:.1e}", s));   // prices are known to two digits
+  if (rounded < 1e-3) return fmt::format("{:g} µs", 1e6 * rounded);
+  return rounded < 1.0 ? fmt::format("{:g} ms", 1e3 * rounded) : fmt::format("{:g} s", rounded);
 }
 
 std::string fineness(const Row& row) {
@@ -91,18 +92,25 @@ report::Plot plot_of(const BenchCase& bench, const Measured& measured) {
   return plot;
 }
 
+/// Words that stay on one line.
+std::string unbroken(const std::string& words) {
+  std::string whole;
+  for (const char c : words) whole += c == ' ' ? std::string("\u00a0") : std::string(1, c);
+  return whole;
+}
+
 Cell price_cell(const Row* row, bool with_name, Look look) {
   if (row == nullptr) return {"-", "", Look::kMuted};
-  return {seconds(row->cpu_s) + (with_name ? " " + row->engine : ""), "", look};
+  return {(with_name ? row->engine + " " : "") + unbroken(seconds(row->cpu_s)), "", look};
 }
 
 report::Table overview(const std::vector<BenchCase>& cases, const Measured& measured) {
   report::Table table;
-  table.caption = "CPU time of the cheapest measured setting whose error is at most 1e-3, 1e-6, 1e-9 (in the unit of the scene's picture); \"-\" where an engine never gets there. Ratio: Tumble's over the best peer's.";
+  table.caption = "CPU time of the cheapest measured setting whose error is at most 1e-3, 1e-6, 1e-9, in the unit of the scene's picture; \"-\" where none gets there. Ratio: Tumble's price over the best peer's.";
   table.columns = {{"Scene"}};
-  for (const double mark : kMarks) table.columns.insert(table.columns.end(), {{fmt::format("Tumble at {:.0e}", mark), true}, {"best peer", true}, {"ratio", true}});
+  for (const double mark : kMarks) table.columns.insert(table.columns.end(), {{fmt::format("1e{:.0f}: Tumble", std::log10(mark)), true}, {"best peer", true}, {"ratio", true}});
   for (const BenchCase& bench : cases) {
-    std::vector<Cell> cells{{bench.id + " " + bench.title, "#" + bench.id}};
+    std::vector<Cell> cells{{unbroken(bench.id.substr(0, 2) + " " + bench.name), "#" + bench.id}};
     for (const double mark : kMarks) {
       const Row *ours = cheapest(measured.rows, bench.id, kOurs, false, mark), *theirs = cheapest(measured.rows, bench.id, kOurs, true, mark);
       const bool wins = ours != nullptr && (theirs == nullptr || ours->cpu_s <= theirs->cpu_s);
