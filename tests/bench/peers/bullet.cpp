@@ -5,12 +5,12 @@
 
 #include <btBulletDynamicsCommon.h>
 
-#include "tests/bench/peers/harness.h"
+#include "tests/bench/peers/bullet_chain.h"
 
 namespace tumble::peers {
 namespace {
 
-const std::string kSweeps = "sequential impulses (10 sweeps)", kManySweeps = "sequential impulses (100 sweeps)", kSwept = "with continuous collision";
+const std::string kSweeps = "sequential impulses (10 sweeps)", kManySweeps = "sequential impulses (100 sweeps)", kSwept = "with continuous collision", kReduced = "reduced coordinates (btMultiBody)";
 constexpr double kHullMargin = 0.001;   // m: hulls are thickened by it; the default of 4 cm would keep rocks of 0.9 m visibly apart
 
 btVector3 bt(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
@@ -130,7 +130,13 @@ std::vector<std::vector<Setting>> ladders(const BenchCase& bench) {
   const std::string scene = bench.id.substr(0, 2);
   if (scene == "S7") return step_ladders(bench, {kSweeps, kSwept});
   if (scene == "S1" || scene == "S4") return step_ladders(bench, {kSweeps});
+  if (scene == "S2" || scene == "S6") return step_ladders(bench, {kSweeps, kManySweeps, kReduced});
   return step_ladders(bench, {kSweeps, kManySweeps});
+}
+
+std::unique_ptr<PeerWorld> build(const BenchCase& bench, const World& world, const Setting& setting) {
+  if (setting.method == kReduced) return make_bullet_chain(bench, world);
+  return std::make_unique<BulletWorld>(bench, world, setting);
 }
 
 }  // namespace
@@ -139,5 +145,5 @@ std::vector<std::vector<Setting>> ladders(const BenchCase& bench) {
 int main(int argc, char** argv) {
   using namespace tumble::peers;
   return peer_main(argc, argv, {.name = "Bullet", .version = TUMBLE_PEER_VERSION, .settings = "defaults of the manual (implicit gyroscopic term, split impulse, margin 4 cm inside boxes); hulls with a margin of 1 mm; bounce from any speed; no damping, no sleep",
-                                .ladders = ladders, .build = [](const BenchCase& bench, const tumble::World& world, const Setting& setting) -> std::unique_ptr<PeerWorld> { return std::make_unique<BulletWorld>(bench, world, setting); }, .run = {}});
+                                .ladders = ladders, .build = build, .run = {}});
 }

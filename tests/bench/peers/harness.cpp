@@ -31,11 +31,12 @@ struct Options {
 /// What a child process leaves for its parent.
 struct Outcome {
   double cpu_s, error, reached_s;
+  double stop_at_s;             // CPU time of the process at which the run is given up
   bool done;
   char words[1000];             // parts of the error, or why there is none
 };
 
-constexpr double kSpareCpu = 20.0;   // s: for building, judging and looking, which are not the engine's
+constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kLongRun = 0.5;      // s: not repeated
 constexpr double kShortRun = 0.02;    // s: repeated three times as often
 
@@ -90,7 +91,9 @@ void measure(const BenchCase& bench, const Engine& engine, const Setting& settin
   std::vector<double> prices;
   Observed first;
   for (int k = 0, runs = options.runs; k < runs; ++k) {
+    outcome.stop_at_s = cpu_seconds() + options.cap_s;
     Observed run = engine.run ? engine.run(bench, setting, outcome.reached_s) : run_world(bench, world, engine, setting, outcome.reached_s);
+    outcome.stop_at_s = kNever;   // judging takes its time
     prices.push_back(run.cpu_s);
     if (k == 0) first = std::move(run);
     if (prices.back() > kLongRun) break;
@@ -111,15 +114,15 @@ struct Ending {
   bool capped;
 };
 
-/// Until a child ends, or has used so much CPU. A limit of the system's own (RLIMIT_CPU) would do, but with one the process's
+/// Until a child ends, or has used as much CPU as it may. A limit of the system's own (RLIMIT_CPU) would do, but with one the process's
 /// clock moves in ticks of 4 ms.
-Ending wait_for(pid_t child, double cap_s) {
+Ending wait_for(pid_t child, const volatile double& stop_at_s) {
   clockid_t clock{};
   const bool has_clock = clock_getcpuclockid(child, &clock) == 0;
   for (int status = 0;;) {
     if (waitpid(child, &status, WNOHANG) == child) return {status, false};
     timespec used{};
-    if (has_clock && clock_gettime(clock, &used) == 0 && static_cast<double>(used.tv_sec) > cap_s) {
+    if (has_clock && clock_gettime(clock, &used) == 0 && static_cast<double>(used.tv_sec) > stop_at_s) {
       kill(child, SIGKILL);
       waitpid(child, &status, 0);
       return {status, true};
@@ -132,7 +135,7 @@ Ending wait_for(pid_t child, double cap_s) {
 Outcome measured_apart(const BenchCase& bench, const Engine& engine, const Setting& setting, const Options& options) {
   void* memory = mmap(nullptr, sizeof(Outcome), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   if (memory == MAP_FAILED) throw std::runtime_error("no memory to share with the run");
-  Outcome& shared = *new (memory) Outcome{std::nan(""), std::nan(""), 0.0, false, ""};
+  Outcome& shared = *new (memory) Outcome{std::nan(""), std::nan(""), 0.0, kNever, false, ""};
   std::fflush(nullptr);
   const pid_t child = fork();
   if (child == 0) {
@@ -145,7 +148,7 @@ Outcome measured_apart(const BenchCase& bench, const Engine& engine, const Setti
     }
     _exit(0);
   }
-  const auto [status, capped] = wait_for(child, options.cap_s + kSpareCpu);
+  const auto [status, capped] = wait_for(child, shared.stop_at_s);
   Outcome outcome = shared;
   munmap(memory, sizeof(Outcome));
   if (!outcome.done && WIFSIGNALED(status)) {
@@ -171,7 +174,7 @@ void write_row(std::ostream& file, const BenchCase& bench, const Engine& engine,
 void run_ladder(const BenchCase& bench, const Engine& engine, const std::vector<Setting>& ladder, const Options& options, std::ostream& file) {
   double last = 0.0;
   for (const Setting& setting : ladder) {
-    Outcome outcome{std::nan(""), std::nan(""), 0.0, false, ""};
+    Outcome outcome{std::nan(""), std::nan(""), 0.0, kNever, false, ""};
     // A finer rung costs about twice the last: what would pass the cap is not begun.
     if (last > 0.6 * options.cap_s) say(outcome, "not run: it would take more than the cap");
     else outcome = measured_apart(bench, engine, setting, options);
