@@ -30,7 +30,7 @@ class Writer {
   std::string write() {
     // Memory is claimed beforehand, and what does not fit is dropped: room for what balls and rocks can have.
     const bool is_rough = std::any_of(world_.bodies.begin(), world_.bodies.end(), [](const WorldBody& body) { return body.friction > 0; });
-    const std::size_t contacts = 200 + (is_rough ? 30 : 8) * world_.bodies.size(), rows = (is_rough ? 3 : 1) * contacts;
+    const std::size_t contacts = 200 + 8 * world_.bodies.size(), rows = (is_rough ? 3 : 1) * contacts;
     std::string xml = fmt::format("<mujoco><compiler angle=\"radian\"/><size nconmax=\"{}\" njmax=\"{}\"/><option timestep=\"{:.17g}\" gravity=\"{}\" integrator=\"{}\" cone=\"elliptic\"/>\n",
                                   contacts, rows, setting_.step, words(world_.gravity_world.value_or(Vector3d::Zero())), setting_.method == kRungeKutta ? "RK4" : "Euler");
     xml += "<default><geom " + contact() + "/></default>\n<asset>" + model() + "</asset>\n<worldbody>\n";
@@ -128,6 +128,7 @@ class MujocoWorld final : public PeerWorld {
   void step(double) override { mj_step(model_, data_); }
 
   void look() override {   // after a step, bodies' places are still those before it
+    if (data_->warning[mjWARN_CONTACTFULL].number + data_->warning[mjWARN_CNSTRFULL].number > 0) throw std::runtime_error("contacts were dropped for want of memory");
     mj_kinematics(model_, data_);
     mj_comPos(model_, data_);
     mj_comVel(model_, data_);
