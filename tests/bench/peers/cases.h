@@ -17,6 +17,7 @@ struct BenchCase {
   std::string error_name, error_unit; // of the one number that is drawn
   std::string truth;                  // where the truth comes from, for the page
   std::string goal;                   // what the project wants to reach
+  std::string note;                   // what to know when reading the picture
   scene::Scene scene;
   std::vector<double> sample_times;   // [s], ascending, ends of steps of every ladder; the last is the end of the run
   std::vector<double> steps;          // the ladder, from coarse to fine [s]

@@ -140,6 +140,23 @@ std::string verdict(const BenchCase& bench, const Measured& measured) {
   return words;
 }
 
+/// What of Tumble's ended early.
+std::string trouble(const BenchCase& bench, const Measured& measured) {
+  std::string words;
+  for (const Row& row : measured.rows)
+    if (row.bench == bench.id && row.engine == kOurs && !row.done) words += fmt::format("{}Tumble, {}, {}: {}.", words.empty() ? "" : " ", row.method, fineness(row), row.words);
+  return words;
+}
+
+/// Every engine's CPU time a simulated second at one step.
+std::string prices_at(const BenchCase& bench, const Measured& measured, double step) {
+  std::string words;
+  const double duration = bench.sample_times.back();
+  for (const Row& row : measured.rows)
+    if (row.bench == bench.id && row.done && std::abs(row.step - step) < 1e-9) words += fmt::format("{}{}, {}: {}, {} {:.1e} m", words.empty() ? "" : "; ", row.engine, row.method, seconds(row.cpu_s / duration), bench.error_name, row.error);
+  return fmt::format("CPU time a simulated second at 1/{:g} s: {}.", 1 / step, words);
+}
+
 std::string all_rows(const BenchCase& bench, const Measured& measured) {
   std::string text;
   for (const Row& row : measured.rows)
@@ -163,7 +180,10 @@ void write(const std::filesystem::path& rows, const std::filesystem::path& file,
   for (const BenchCase& bench : cases) {
     page.heading(bench.id + ": " + bench.title, 2, bench.id);
     page.paragraph(verdict(bench, measured) + " Goal: " + bench.goal + ".");
+    if (const std::string words = trouble(bench, measured); !words.empty()) page.paragraph(words, Look::kWarning);
+    if (bench.id == "S8" && !quick) page.paragraph(prices_at(bench, measured, 1.0 / 240));
     page.plot(plot_of(bench, measured));
+    page.paragraph(bench.note, Look::kMuted);
     page.fold("Every row", all_rows(bench, measured));
   }
   page.record("tests/bench/peers/run.sh");
