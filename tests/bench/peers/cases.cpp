@@ -68,7 +68,7 @@ Scene chain_of_hinges(const std::string& name, int links, double length, double 
 }
 
 BenchCase chain(bool quick) {
-  BenchCase bench{.id = "S2", .name = "chain of 8 rods", .title = "A chain of 8 rods swings from horizontal, 5 s", .error_name = "energy or joints, the worse", .error_unit = "",
+  BenchCase bench{.id = "S2", .name = "chain of 8", .title = "A chain of 8 rods swings from horizontal, 5 s", .error_name = "energy or joints, the worse", .error_unit = "",
                   .truth = "energy and joints must stay: |E - E0| over the energy of the fall (m g L / 2), opening of the joints over a link's length",
                   .goal = "energy 1e-7 at 1/960 s, joints 1e-10 m",
                   .note = "MuJoCo, Simbody, DART and Bullet's btMultiBody have a hinge's angle as their coordinate, so joints cannot open and eight numbers are solved for; Tumble, ODE and Bullet's constraints have six a body, and the joints as 40 rows.", .scene = chain_of_hinges("S2", 8, kChainLink, 0.02, 1.0, Vector3d::UnitX()),
@@ -81,7 +81,7 @@ BenchCase elastic_balls(int n, bool quick) {
   const double side = std::cbrt(n / 100.0);   // m: the same density for every number
   const int cells = static_cast<int>(std::ceil(std::cbrt(n)));
   const double cell = side / cells, room = 0.5 * cell - kBallRadius;
-  BenchCase bench{.id = "S3-" + std::to_string(n), .name = std::to_string(n) + " elastic balls", .title = std::to_string(n) + " elastic balls in a box, 2 s", .error_name = "energy or overlap, the worse", .error_unit = "",
+  BenchCase bench{.id = "S3-" + std::to_string(n), .name = std::to_string(n) + " balls", .title = std::to_string(n) + " elastic balls in a box, 2 s", .error_name = "energy or overlap, the worse", .error_unit = "",
                   .truth = "elastic balls keep their energy and never overlap: |E - E0| / E0, deepest overlap over a radius",
                   .goal = n == 1000 ? "energy 1e-12, no overlap; 0.5 s, aim 0.1 s" : "energy 1e-12, no overlap",
                   .note = "Steps decide how deep balls sink into each other before an engine notices; Tumble finds the instant, so that its step decides only the price. MuJoCo has no restitution: its contacts are undamped springs.", .scene = empty_scene("S3", quick ? 0.5 : 2.0, 1e-3),
@@ -102,7 +102,7 @@ BenchCase elastic_balls(int n, bool quick) {
 }
 
 BenchCase bouncing_ball(bool quick) {
-  BenchCase bench{.id = "S4", .name = "bouncing ball", .title = "A ball bounces, e = 0.8, 5 s", .error_name = "error of the first ten bounces", .error_unit = "s",
+  BenchCase bench{.id = "S4", .name = "bounces", .title = "A ball bounces, e = 0.8, 5 s", .error_name = "error of the first ten bounces", .error_unit = "s",
                   .truth = "tests/truths/bouncing_ball__e0.8.json: a geometric series", .goal = "1e-12 s; 0.5 ms",
                   .note = "Of a stepped engine the instant of a bounce is where its last flight reaches the floor, not the end of the step.", .scene = empty_scene("S4", 5.0, 1e-3),
                   .sample_times = {1.0, 2.0, 3.5, 5.0}, .steps = halvings(1.0 / 60, quick ? 3 : 8), .watches_first_body = true};
@@ -143,7 +143,7 @@ BenchCase heavy_bob(bool quick) {
 
 BenchCase bullet(double speed, const std::string& id, bool quick) {
   const double end = 0.1;   // s
-  BenchCase bench{.id = id, .name = "bullet, " + std::to_string(static_cast<int>(speed)) + " m/s", .title = "A bullet at " + std::to_string(static_cast<int>(speed)) + " m/s against a wall of 1 cm", .error_name = "error of the place after 0.1 s", .error_unit = "m",
+  BenchCase bench{.id = id, .name = std::to_string(static_cast<int>(speed)) + " m/s", .title = "A bullet at " + std::to_string(static_cast<int>(speed)) + " m/s against a wall of 1 cm", .error_name = "error of the place after 0.1 s", .error_unit = "m",
                   .truth = "closed form: there and back", .goal = "1e-9 m at any step",
                   .note = "80 m (980 m at 5,000 m/s) is a bullet that went through the wall. With its continuous mode Bullet holds it, and lets it wait at the wall for the next step.", .scene = empty_scene("S7", end, 1e-3), .sample_times = {end}, .steps = halvings(1.0 / 60, quick ? 3 : 12)};
   BodySpec wall = solid_box("wall", Vector3d(kBulletWall / 2, 2, 2), 1.0, Vector3d::Zero());
@@ -156,7 +156,7 @@ BenchCase bullet(double speed, const std::string& id, bool quick) {
 
 BenchCase rocks(int n, double duration, bool quick) {
   constexpr double kSlope = 30 * std::numbers::pi / 180, kApart = 1.1, kAbove = 0.7;   // m: rocks reach 0.52 m from their middles
-  BenchCase bench{.id = "S8", .name = "rocks on a slope", .title = std::to_string(n) + " rocks tumble down a slope of 30 degrees", .error_name = "deepest overlap", .error_unit = "m",
+  BenchCase bench{.id = "S8", .name = "rocks", .title = std::to_string(n) + " rocks tumble down a slope of 30 degrees", .error_name = "deepest overlap", .error_unit = "m",
                   .truth = "solids do not overlap: separating axes over all faces and edges of every near pair, at ten instants a second",
                   .goal = "no overlap; at most 1.5 times Bullet's price",
                   .note = "Tumble's two curves treat impacts that do not bounce with the step they fall into, or at their instants. DART's own collision detector has no hulls.", .scene = empty_scene("S8", duration, 1e-3),

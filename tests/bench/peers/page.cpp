@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -20,7 +21,8 @@ using report::Look;
 const std::string kOurs = "Tumble";
 constexpr double kMarks[] = {1e-3, 1e-6, 1e-9};
 constexpr double kExact = 1e-17;      // an error of nothing at all is drawn here
-constexpr double kBlownUp = 1e4;      // what is worse is in the table, not in the picture
+constexpr std::size_t kMostWays = 2;  // of running Tumble, in a picture
+constexpr double kBlownUp = 1e3;      // what is worse is in the table, not in the picture
 
 constexpr const char* kRules[] = {
     "Price: CPU time of the process around the engine's steps only. Building the world, loading models and looking at the bodies are not in it, except for Tumble, whose frames at the "
@@ -71,22 +73,26 @@ report::Curve curve_of(const std::string& name, const std::vector<Row>& rows) {
   return curve;
 }
 
+std::vector<std::string> methods_of(const std::vector<Row>& rows) {
+  std::vector<std::string> methods;
+  for (const Row& row : rows)
+    if (std::find(methods.begin(), methods.end(), row.method) == methods.end()) methods.push_back(row.method);
+  return methods;
+}
+
 report::Plot plot_of(const BenchCase& bench, const Measured& measured) {
   report::Plot plot{bench.id + ": " + bench.title, {"CPU time", "s", report::Scale::kLog}, {bench.error_name, bench.error_unit, report::Scale::kLog}, {}, {}, "Left is cheaper, down is more accurate. Truth: " + bench.truth + "."};
   for (const EngineWords& engine : measured.engines) {
     const std::vector<Row> rows = rows_of(measured, bench.id, engine.name);
-    if (rows.empty()) continue;
-    if (engine.name != kOurs) {
-      plot.curves.push_back(curve_of(engine.name, not_beaten(rows)));
+    if (engine.name != kOurs) {   // empty where it does not run: an engine looks the same in all pictures
+      plot.curves.push_back(curve_of(rows.empty() ? "" : engine.name, not_beaten(rows)));
       continue;
     }
-    std::vector<std::string> methods;
-    for (const Row& row : rows)
-      if (std::find(methods.begin(), methods.end(), row.method) == methods.end()) methods.push_back(row.method);
-    for (const std::string& method : methods) {
+    for (std::size_t k = 0; k < kMostWays; ++k) {
+      const std::vector<std::string> methods = methods_of(rows);
       std::vector<Row> of_method;
-      std::copy_if(rows.begin(), rows.end(), std::back_inserter(of_method), [&](const Row& row) { return row.method == method; });
-      plot.curves.push_back(curve_of("Tumble, " + method, of_method));
+      if (k < methods.size()) std::copy_if(rows.begin(), rows.end(), std::back_inserter(of_method), [&](const Row& row) { return row.method == methods[k]; });
+      plot.curves.push_back(curve_of(of_method.empty() ? "" : "Tumble, " + methods[k], of_method));
     }
   }
   return plot;
@@ -117,7 +123,7 @@ report::Table overview(const std::vector<BenchCase>& cases, const Measured& meas
       cells.push_back(price_cell(ours, false, wins ? Look::kGood : Look::kPlain));
       cells.push_back(price_cell(theirs, true, !wins && theirs != nullptr ? Look::kWarning : Look::kPlain));
       const double ratio = ours && theirs ? ours->cpu_s / theirs->cpu_s : std::nan("");
-      cells.push_back(std::isfinite(ratio) ? Cell{fmt::format("{:.2g}", ratio), "", ratio <= 1 ? Look::kGood : Look::kBad} : Cell{"-", "", Look::kMuted});
+      cells.push_back(std::isfinite(ratio) ? Cell{ratio < 0.1 ? fmt::format("{:.1g}", ratio) : fmt::format("{:.2g}", ratio), "", ratio <= 1 ? Look::kGood : Look::kBad} : Cell{"-", "", Look::kMuted});
     }
     table.rows.push_back(std::move(cells));
   }
@@ -137,6 +143,10 @@ std::string verdict(const BenchCase& bench, const Measured& measured) {
     else sentence = fmt::format("Tumble loses: {} against {} of {} ({}, {}), {:.1f} times as much", seconds(ours->cpu_s), seconds(theirs->cpu_s), theirs->engine, theirs->method, fineness(*theirs), ours->cpu_s / theirs->cpu_s);
     words += fmt::format("{}At {:.0e}: {}.", words.empty() ? "" : " ", mark, sentence);
   }
+  const Row* closest = nullptr;   // of the peers
+  for (const Row& row : measured.rows)
+    if (row.bench == bench.id && row.engine != kOurs && row.done && std::isfinite(row.error) && (closest == nullptr || row.error < closest->error)) closest = &row;
+  if (closest != nullptr) words += fmt::format(" The least error of a peer is {:.1e}: {} ({}, {}), {}.", closest->error, closest->engine, closest->method, fineness(*closest), seconds(closest->cpu_s));
   return words;
 }
 
@@ -144,8 +154,26 @@ std::string verdict(const BenchCase& bench, const Measured& measured) {
 std::string trouble(const BenchCase& bench, const Measured& measured) {
   std::string words;
   for (const Row& row : measured.rows)
-    if (row.bench == bench.id && row.engine == kOurs && !row.done) words += fmt::format("{}Tumble, {}, {}: {}.", words.empty() ? "" : " ", row.method, fineness(row), row.words);
+    if (row.bench == bench.id && row.engine == kOurs && !row.done) words += fmt::format("{}Tumble, {}, {}: {}.", words.empty() ? "" : " ", row.method, fineness(row), row.words.substr(0, row.words.find_first_of("(;")));
   return words;
+}
+
+/// Where Tumble is not the cheapest, in one paragraph.
+std::string losses(const std::vector<BenchCase>& cases, const Measured& measured) {
+  std::string words;
+  for (const BenchCase& bench : cases) {
+    double least = std::numeric_limits<double>::infinity(), most = 0.0;
+    for (const double mark : kMarks) {
+      const Row *ours = cheapest(measured.rows, bench.id, kOurs, false, mark), *theirs = cheapest(measured.rows, bench.id, kOurs, true, mark);
+      if (theirs == nullptr || (ours != nullptr && ours->cpu_s <= theirs->cpu_s)) continue;
+      const double factor = ours == nullptr ? std::numeric_limits<double>::infinity() : ours->cpu_s / theirs->cpu_s;
+      least = std::min(least, factor), most = std::max(most, factor);
+    }
+    const std::string what = bench.id + " (" + bench.name;
+    if (rows_of(measured, bench.id, kOurs).empty()) words += fmt::format("{}{}: it does not finish)", words.empty() ? "" : ", ", what);
+    else if (most > 0.0) words += fmt::format("{}{}: {:.1f} to {:.1f} times the best peer's price)", words.empty() ? "" : ", ", what, least, most);
+  }
+  return words.empty() ? "Tumble is the cheapest at every error in every scene." : "Where Tumble loses: " + words + ".";
 }
 
 /// Every engine's CPU time a simulated second at one step.
@@ -172,6 +200,7 @@ void write(const std::filesystem::path& rows, const std::filesystem::path& file,
     if (std::any_of(measured.rows.begin(), measured.rows.end(), [&](const Row& row) { return row.bench == bench.id; })) cases.push_back(std::move(bench));
   report::Page page("What accuracy costs: Tumble beside the engines people use today", quick ? "Quick run: few steps, short scenes. Figures of a quick run prove nothing but that it runs." : "Scenes S1 to S8, error against CPU time");
   page.table(overview(cases, measured));
+  page.paragraph(losses(cases, measured));
   page.heading("How it was measured");
   for (const char* rule : kRules) page.paragraph(rule);
   report::Table engines{"", {{"Engine"}, {"Version"}, {"Settings"}}, {}};
@@ -180,7 +209,7 @@ void write(const std::filesystem::path& rows, const std::filesystem::path& file,
   for (const BenchCase& bench : cases) {
     page.heading(bench.id + ": " + bench.title, 2, bench.id);
     page.paragraph(verdict(bench, measured) + " Goal: " + bench.goal + ".");
-    if (const std::string words = trouble(bench, measured); !words.empty()) page.paragraph(words, Look::kWarning);
+    if (const std::string words = trouble(bench, measured); !words.empty()) page.paragraph(words, Look::kMuted);
     if (bench.id == "S8" && !quick) page.paragraph(prices_at(bench, measured, 1.0 / 240));
     page.plot(plot_of(bench, measured));
     page.paragraph(bench.note, Look::kMuted);
