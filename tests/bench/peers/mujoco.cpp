@@ -16,7 +16,7 @@
 namespace tumble::peers {
 namespace {
 
-const std::string kEuler = "Euler", kRungeKutta = "RK4", kSoft = "Euler, default contacts", kStiff = "Euler, stiffest contacts (solref 2 h)";
+const std::string kEuler = "Euler", kRungeKutta = "RK4", kSoft = "Euler, default contacts", kStiff = "Euler, stiffest contacts (solref 2 h)", kHard = "Euler, hard contacts (solimp 0.9999)";
 constexpr double kStepsOfABounce = 10;   // a spring's half swing: fewer are not resolved, more sink deeper
 
 std::string words(const Vector3d& v) { return fmt::format("{:.17g} {:.17g} {:.17g}", v.x(), v.y(), v.z()); }
@@ -40,7 +40,7 @@ class Writer {
   }
 
  private:
-  /// What contacts are like: by default; as stiff as the step allows; or springs that give back a share e of the speed.
+  /// What contacts are like: by default; as stiff as the step allows; harder, so that they give less; or springs that give back a share e of the speed.
   std::string contact() const {
     double bounciest = 0.0;
     for (const WorldBody& body : world_.bodies) bounciest = std::max(bounciest, body.collides && !body.immovable() ? body.restitution : 0.0);
@@ -48,6 +48,7 @@ class Writer {
       const double swing = std::numbers::pi / (kStepsOfABounce * setting_.step), decay = -std::log(bounciest) / std::numbers::pi, damping = decay / std::hypot(1.0, decay);
       return fmt::format("solref=\"{:.17g} {:.17g}\" solimp=\"0.9999 0.9999 0.001\"", -swing * swing, -2 * damping * swing);
     }
+    if (setting_.method == kHard) return "solimp=\"0.9999 0.9999 0.001\"";
     return setting_.method == kStiff ? fmt::format("solref=\"{:.17g} 1\"", 2 * setting_.step) : "";
   }
 
@@ -156,7 +157,8 @@ class MujocoWorld final : public PeerWorld {
 std::vector<std::vector<Setting>> ladders(const BenchCase& bench) {
   const std::string scene = bench.id.substr(0, 2);
   if (scene == "S1" || scene == "S2" || scene == "S6") return step_ladders(bench, {kEuler, kRungeKutta});
-  if (scene == "S5" || scene == "S8") return step_ladders(bench, {kSoft, kStiff});
+  if (scene == "S5") return step_ladders(bench, {kSoft, kHard});   // with the stiffest it jumps apart
+  if (scene == "S8") return step_ladders(bench, {kSoft, kStiff});  // hard ones are dearer and sink deeper
   return step_ladders(bench, {kEuler});
 }
 

@@ -154,7 +154,7 @@ std::string verdict(const BenchCase& bench, const Measured& measured) {
 std::string trouble(const BenchCase& bench, const Measured& measured) {
   std::string words;
   for (const Row& row : measured.rows)
-    if (row.bench == bench.id && row.engine == kOurs && !row.done) words += fmt::format("{}Tumble, {}, {}: {}.", words.empty() ? "" : " ", row.method, fineness(row), row.words.substr(0, row.words.find_first_of("(;")));
+    if (row.bench == bench.id && row.engine == kOurs && !row.done) words += fmt::format("{}Tumble, {}, {}: {}.", words.empty() ? "" : " ", row.method, fineness(row), row.words.substr(0, std::min(row.words.find(" (integrator"), row.words.find(';'))));
   return words;
 }
 
