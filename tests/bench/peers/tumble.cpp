@@ -4,7 +4,9 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/error.h"
 #include "framework/engines/run.h"
+#include "framework/engines/truths/memory_scene.h"
 #include "tests/bench/peers/harness.h"
 #include "tests/engines/reference_laws.h"
 #include "tests/stability/methods.h"
@@ -12,6 +14,8 @@
 namespace tumble::peers {
 namespace {
 
+// Retroactive detection by a method, or engines that go from event to event, where a flight is a closed form and there is no step.
+const std::vector<std::pair<std::string, std::string>> kEventEngines = {{"ca", "conservative advancement"}, {"tw", "timewarp"}};
 const std::string kRungeKutta = "RK4", kDormandPrince = "Dormand-Prince", kLocated = "RK4, plastic impacts located";
 // s: within it the method chooses its own, and at its end joints are projected.
 constexpr double kAdaptiveStep = 1.0 / 30, kAdaptiveStepOfTop = 1.0;
@@ -49,6 +53,8 @@ Observed run(const BenchCase& bench, const Setting& setting, double& reached) {
   if (setting.method == kLocated) scene.contact->plastic_impacts = scene::PlasticImpacts::kLocated;
   engines::RunOptions options;
   options.step_s = setting.step;
+  for (const auto& [word, method] : kEventEngines)
+    if (setting.method == method) options.engine = word;
   options.frame_rate_hz = 1.0 / bench.sample_times.front();
   if (bench.watches_first_body) options.frame_rate_hz = 1.0 / bench.sample_times.back();
   Observed run;
@@ -56,6 +62,21 @@ Observed run(const BenchCase& bench, const Setting& setting, double& reached) {
   engines::run_scene(scene, laws, options, clock);
   if (!clock.stopped_by().empty()) throw std::runtime_error(clock.stopped_by());
   return run;
+}
+
+/// Whether this tree has an engine of that name, and laws for it.
+bool has_engine(const std::string& word) {
+  scene::Scene scene = truths::empty_scene("nothing", 1e-3, 1e-3);
+  scene.bodies = {truths::point_mass("point", 1.0, Vector3d::Zero(), Vector3d::Zero())};
+  engines::RunOptions options;
+  options.engine = word;
+  TrajectoryRecorder recorder;
+  try {
+    engines::run_scene(scene, testing::reference_laws(), options, recorder);
+  } catch (const UserError&) {
+    return false;
+  }
+  return true;
 }
 
 std::vector<std::vector<Setting>> ladders(const BenchCase& bench) {
@@ -69,6 +90,9 @@ std::vector<std::vector<Setting>> ladders(const BenchCase& bench) {
     all.emplace_back();
     for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14}) all.back().push_back({kDormandPrince, scene == "S1" ? kAdaptiveStepOfTop : kAdaptiveStep, tolerance});
   }
+  const bool only_flies = bench.scene.joints.empty() && !bench.scene.contact;
+  for (const auto& [word, method] : kEventEngines)
+    if (only_flies && (word != "tw" || scene == "S3") && has_engine(word)) all.push_back({{method, bench.steps.front()}});   // one body has nobody to run ahead of
   return all;
 }
 
