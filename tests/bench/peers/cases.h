@@ -4,6 +4,7 @@
 /// together with the constraint that must hold. SI units, world frame, z up.
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@ struct BenchCase {
   std::string error_name, error_unit; // of the one number that is drawn
   std::string truth;                  // where the truth comes from, for the page
   std::string goal;                   // what the project wants to reach
+  double goal_error = std::numeric_limits<double>::quiet_NaN(), goal_price_s = std::numeric_limits<double>::quiet_NaN();   // where the goal has both as numbers
   std::string note;                   // what to know when reading the picture
   scene::Scene scene;
   std::vector<double> sample_times;   // [s], ascending, ends of steps of every ladder; the last is the end of the run

@@ -171,9 +171,11 @@ std::string losses(const std::vector<BenchCase>& cases, const Measured& measured
     }
     const std::string what = bench.id + " (" + bench.name;
     if (rows_of(measured, bench.id, kOurs).empty()) words += fmt::format("{}{}: it does not finish)", words.empty() ? "" : ", ", what);
-    else if (most > 0.0) words += fmt::format("{}{}: {:.1f} to {:.1f} times the best peer's price)", words.empty() ? "" : ", ", what, least, most);
+    else if (most > 0.0) words += fmt::format("{}{}: {} times the best peer's price)", words.empty() ? "" : ", ", what, most > 1.05 * least ? fmt::format("{:.1f} to {:.1f}", least, most) : fmt::format("{:.1f}", most));
+    const Row* good = cheapest(measured.rows, bench.id, kOurs, false, bench.goal_error);
+    if (good != nullptr && good->cpu_s > bench.goal_price_s) words += fmt::format("{}{}: {} where the goal is {})", words.empty() ? "" : ", ", what, seconds(good->cpu_s), seconds(bench.goal_price_s));
   }
-  return words.empty() ? "Tumble is the cheapest at every error in every scene." : "Where Tumble loses: " + words + ".";
+  return words.empty() ? "Tumble is the cheapest at every error in every scene." : "Where Tumble loses, or misses its goal: " + words + ".";
 }
 
 /// Every engine's CPU time a simulated second at one step.
