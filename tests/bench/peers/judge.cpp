@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "framework/cli/read_truth.h"
-#include "tests/bench/peers/overlap.h"
+#include "tests/support/overlap.h"
 
 namespace tumble::peers {
 namespace {
@@ -58,7 +58,7 @@ double joint_opening(const World& world, const Observed& run) {
 
 double overlap(const World& world, const Observed& run) {
   double worst = 0.0;
-  for (const auto& poses : run.samples) worst = std::max(worst, deepest_overlap(world, poses));
+  for (const auto& poses : run.samples) worst = std::max(worst, testing::deepest_overlap(world, poses));
   return worst;
 }
 

@@ -5,10 +5,10 @@
 #include "framework/dynamics/world.h"
 #include "framework/trajectory/trajectory.h"
 
-namespace tumble::peers {
+namespace tumble::testing {
 
 /// The deepest overlap of any two bodies that may collide: balls, half-spaces and convex models. 0 where none overlap. [m]
 /// @param poses  by body of the world
 double deepest_overlap(const World& world, const std::vector<BodyPose>& poses);
 
-}  // namespace tumble::peers
+}  // namespace tumble::testing

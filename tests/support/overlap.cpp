@@ -1,10 +1,10 @@
-#include "tests/bench/peers/overlap.h"
+#include "tests/support/overlap.h"
 
 #include <algorithm>
 #include <limits>
 #include <set>
 
-namespace tumble::peers {
+namespace tumble::testing {
 namespace {
 
 /// A convex solid where it stands. World frame.
@@ -98,4 +98,4 @@ double deepest_overlap(const World& world, const std::vector<BodyPose>& poses) {
   return deepest;
 }
 
-}  // namespace tumble::peers
+}  // namespace tumble::testing
