@@ -10,6 +10,10 @@
 #include "tests/bench/peers/harness.h"
 #include "tests/engines/reference_laws.h"
 #include "tests/stability/methods.h"
+#if __has_include("framework/engines/timewarp/fast_timewarp.h")   // a tree without timewarp is measured as well
+#include "framework/engines/timewarp/fast_timewarp.h"
+#define TUMBLE_HAS_TIMEWARP
+#endif
 
 namespace tumble::peers {
 namespace {
@@ -45,16 +49,26 @@ class Clock final : public TrajectorySink {
   std::string stopped_by_;
 };
 
+engines::RunOptions options_of(const std::string& engine) {
+  engines::RunOptions options;
+  options.engine = engine;
+#ifdef TUMBLE_HAS_TIMEWARP
+  if (engine == "tw") options.timewarp = engines::fast_timewarp();
+#endif
+  return options;
+}
+
 Observed run(const BenchCase& bench, const Setting& setting, double& reached) {
   Laws laws = testing::reference_laws();
   laws.impulse_source = laws.integrator_source = laws.constraint_source = "reference";
   if (setting.method == kDormandPrince) laws.integrate_step = battery::dormand_prince(setting.tolerance);
   scene::Scene scene = bench.scene;
   if (setting.method == kLocated) scene.contact->plastic_impacts = scene::PlasticImpacts::kLocated;
-  engines::RunOptions options;
-  options.step_s = setting.step;
+  std::string engine = "rd";
   for (const auto& [word, method] : kEventEngines)
-    if (setting.method == method) options.engine = word;
+    if (setting.method == method) engine = word;
+  engines::RunOptions options = options_of(engine);
+  options.step_s = setting.step;
   options.frame_rate_hz = 1.0 / bench.sample_times.front();
   if (bench.watches_first_body) options.frame_rate_hz = 1.0 / bench.sample_times.back();
   Observed run;
@@ -68,11 +82,9 @@ Observed run(const BenchCase& bench, const Setting& setting, double& reached) {
 bool has_engine(const std::string& word) {
   scene::Scene scene = truths::empty_scene("nothing", 1e-3, 1e-3);
   scene.bodies = {truths::point_mass("point", 1.0, Vector3d::Zero(), Vector3d::Zero())};
-  engines::RunOptions options;
-  options.engine = word;
   TrajectoryRecorder recorder;
   try {
-    engines::run_scene(scene, testing::reference_laws(), options, recorder);
+    engines::run_scene(scene, testing::reference_laws(), options_of(word), recorder);
   } catch (const UserError&) {
     return false;
   }
