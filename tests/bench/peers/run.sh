@@ -18,6 +18,7 @@ while [ $# -gt 0 ]; do
 done
 out=out/peers; [ -z "$quick" ] || out=out/peers_quick
 mkdir -p "$out/rows"
+TUMBLE_TREE=$(git describe --always --dirty 2> /dev/null || echo "no commit"); export TUMBLE_TREE
 cmake -S . -B "$build" -G Ninja -DTUMBLE_PEERS=ON > "$out/configure.log" || { tail -5 "$out/configure.log" >&2; exit 2; }
 ninja -C "$build" bench_peers > "$out/build.log" || { grep -m5 -E 'error|FAILED' "$out/build.log" >&2; exit 2; }
 for engine in ${engines//,/ }; do

@@ -1,5 +1,6 @@
 // Tumble itself, through the entry that `tumble run` uses: run_scene with the laws of the reference modules. The clock starts when the
 // engine hands over its first frame, and stops when it ends: frames that it records are part of its price.
+#include <cstdlib>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -113,6 +114,7 @@ std::vector<std::vector<Setting>> ladders(const BenchCase& bench) {
 
 int main(int argc, char** argv) {
   using namespace tumble::peers;
-  return peer_main(argc, argv, {.name = "Tumble", .version = "this tree", .settings = "retroactive detection, the reference modules' laws; frames at the samples are part of the price",
+  const char* tree = std::getenv("TUMBLE_TREE");   // run.sh says which commit
+  return peer_main(argc, argv, {.name = "Tumble", .version = tree == nullptr ? "this tree" : tree, .settings = "retroactive detection, the reference modules' laws; frames at the samples are part of the price",
                                 .ladders = ladders, .build = {}, .run = run});
 }
