@@ -41,7 +41,7 @@ BenchCase free_top(bool quick) {
   BenchCase bench{.id = "S1", .name = "free top", .title = "A torque-free top turns over: moments 1, 2, 3, 60 s", .error_name = "error of the orientation after 60 s", .error_unit = "rad",
                   .truth = "tests/truths/free_top_asymmetric__dzhanibekov_123.json: Taylor series with 60 digits, checked against Jacobi's elliptic functions",
                   .goal = "1e-7 rad at 1/30 s",
-                  .note = "The middle moment is the unstable one: what is wrong early grows until the top turns over. Semi-implicit engines are of first order here, MuJoCo's RK4 of second: it turns the orientation by one angular velocity a stage.", .scene = empty_scene("S1", 60.0, 1e-3), .sample_times = times(10.0, 6), .steps = halvings(1.0 / 30, quick ? 3 : 9)};
+                  .note = "The middle moment is the unstable one: what is wrong early grows until the top turns over. Semi-implicit engines are of first order here, MuJoCo's RK4 of second: it adds its stages' angular velocities before it turns by their sum.", .scene = empty_scene("S1", 60.0, 1e-3), .sample_times = times(10.0, 6), .steps = halvings(1.0 / 30, quick ? 3 : 9)};
   BodySpec top = ball("top", 1.0, 0.1, Vector3d::Zero(), Vector3d::Zero(), 1.0);
   top.inertia_body_kg_m2 = Vector3d(1, 2, 3).asDiagonal();
   top.omega_world_rad_s = Vector3d(0.01, 1, 0.01);
@@ -134,7 +134,7 @@ BenchCase heavy_bob(bool quick) {
   BenchCase bench{.id = "S6", .name = "heavy bob", .title = "A bob of 10 kg swings on 10 links of 1 g, 10 s", .error_name = "energy or joints, the worse", .error_unit = "",
                   .truth = "energy and joints must stay: |E - E0| over the energy of the fall, opening of the joints over a link's length",
                   .goal = "energy 1e-9, joints 1e-10 m at 1/1920 s",
-                  .note = "A link of a gram under 90 N swings across at some 2,000 rad/s: an explicit step of 1/960 s is not stable. Tumble stops such a run and says so; the others go on with energies from nowhere.", .scene = chain_of_hinges("S6", 10, kBobLink, 0.01, 0.001, direction),
+                  .note = "A link of a gram under 90 N swings across at sqrt(12 T / (m l)), some 3,000 rad/s: an explicit step of 1/960 s is not stable. Tumble stops such a run and says so; the others go on with energies from nowhere.", .scene = chain_of_hinges("S6", 10, kBobLink, 0.01, 0.001, direction),
                   .sample_times = times(0.1, quick ? 5 : 100), .steps = halvings(1.0 / 960, quick ? 2 : 5)};
   BodySpec bob = ball("bob", 10.0, 0.12, 10 * kBobLink * direction, Vector3d::Zero(), 1.0);
   bob.collides = false;

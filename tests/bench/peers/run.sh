@@ -2,7 +2,7 @@
 # Tumble beside Bullet, ODE, MuJoCo, Simbody and DART: scenes S1 to S8, error against CPU time, one page.
 #   usage: tests/bench/peers/run.sh [--quick] [--cases S1,S5] [--engines tumble,ode] [--runs N] [--cap-s S] [--build DIR]
 # Writes out/peers/index.html, and the rows it is made of to out/peers/rows. A peer that is not installed is named and left out:
-# apt-get install $(sed 's/#.*//' tests/bench/peers/packages.txt). Rows of engines that this run leaves out stay as they were.
+# apt-get install $(sed 's/#.*//' tests/bench/peers/packages.txt). Rows of engines and cases that this run leaves out stay as they were.
 set -euo pipefail
 cd "$(dirname "$0")/../../.."
 build=build quick= engines=tumble,ode,bullet,mujoco,simbody,dart words=()
@@ -31,6 +31,10 @@ for engine in ${engines//,/ }; do
     continue
   fi
   "$program" --out "$out/rows/$engine.part" ${words[@]+"${words[@]}"}
+  if [ -e "$out/rows/$engine.tsv" ]; then   # rows of cases that were not asked for stay
+    awk -F'\t' 'NR == FNR { seen[$1] = 1; next } !($1 in seen)' "$out/rows/$engine.part" "$out/rows/$engine.tsv" > "$out/rows/$engine.kept"
+    cat "$out/rows/$engine.kept" >> "$out/rows/$engine.part"; rm "$out/rows/$engine.kept"
+  fi
   mv "$out/rows/$engine.part" "$out/rows/$engine.tsv"
 done
 "$build/bin/peers_page" "$out/rows" "$out/index.html" $quick
