@@ -84,7 +84,7 @@ BenchCase elastic_balls(int n, bool quick) {
   BenchCase bench{.id = "S3-" + std::to_string(n), .name = std::to_string(n) + " balls", .title = std::to_string(n) + " elastic balls in a box, 2 s", .error_name = "energy or overlap, the worse", .error_unit = "",
                   .truth = "elastic balls keep their energy and never overlap: |E - E0| / E0, deepest overlap over a radius",
                   .goal = n == 1000 ? "energy 1e-12, no overlap; 0.5 s, aim 0.1 s" : "energy 1e-12, no overlap",
-                  .note = "Steps decide how deep balls sink into each other before an engine notices; Tumble finds the instant, so that its step decides only the price. Who is content with overlaps of a tenth of a radius has them cheaper from the peers. MuJoCo has no restitution: its contacts are undamped springs.", .scene = empty_scene("S3", quick ? 0.5 : 2.0, 1e-3),
+                  .note = "Steps decide how deep balls sink into each other before an engine notices; Tumble finds the instant, so that its step decides only the price: by retroactive detection every impact takes all bodies back to it. Overlaps of a tenth of a radius are cheap from the peers. MuJoCo has no restitution: its contacts are undamped springs.", .scene = empty_scene("S3", quick ? 0.5 : 2.0, 1e-3),
                   .sample_times = times(0.1, quick ? 5 : 20), .steps = halvings(1.0 / 30, quick ? 2 : 7)};
   if (n == 1000) bench.goal_error = 1e-12, bench.goal_price_s = 0.5;
   Random random(static_cast<std::uint64_t>(n));

@@ -167,7 +167,7 @@ std::string cleaned(std::string words) {
 void write_row(std::ostream& file, const BenchCase& bench, const Engine& engine, const Setting& setting, const Outcome& outcome) {
   file << fmt::format("{}\t{}\t{}\t{:.17g}\t{:.17g}\t{:.6g}\t{:.6g}\t{}\t{}\n", bench.id, engine.name, setting.method, setting.step, setting.tolerance, outcome.cpu_s, outcome.error,
                       outcome.done ? "done" : "failed", cleaned(outcome.words)) << std::flush;
-  const std::string fineness = std::isfinite(setting.tolerance) ? fmt::format("tol {:g}", setting.tolerance) : fmt::format("1/{:g} s", 1 / setting.step);
+  const std::string fineness = std::isfinite(setting.tolerance) ? fmt::format("tol {:g}", setting.tolerance) : std::isfinite(setting.step) ? fmt::format("1/{:g} s", 1 / setting.step) : "no step";
   fmt::print(stderr, "{:8} {:8} {:34} {:10} {:>10.4g} s  error {:<10.3g} {}\n", bench.id, engine.name, setting.method, fineness, outcome.cpu_s, outcome.error, cleaned(outcome.words));
 }
 

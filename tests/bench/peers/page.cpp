@@ -32,7 +32,7 @@ constexpr const char* kRules[] = {
     "overlap). Where two things must hold, the worse counts. All engines are looked at at the same instants, by the same code, from places, orientations and velocities alone.",
     "Settings: what each engine's own manual recommends, over a ladder of steps (or of tolerances, where it controls its error). Of a pair the smaller friction and restitution count everywhere. Sleep and "
     "damping are off. A curve is one way to run an engine; of a peer with several only what no other of its own ways beats is drawn, and every row stands in the fold below the picture.",
-    "Tumble goes through run_scene, the entry that `tumble run` uses, with the laws of the course's reference modules: RK4 at a fixed step, and Dormand-Prince with error control from Boost.Odeint behind the same law.",
+    "Tumble goes through run_scene, the entry that `tumble run` uses, with the laws of the course's reference modules: retroactive detection with RK4 at a fixed step, or with Dormand-Prince (error control, from Boost.Odeint) behind the same law; and, where nothing but gravity and impacts acts and the tree has them, conservative advancement and timewarp, whose flights are closed forms.",
 };
 
 std::string seconds(double s) {
@@ -43,7 +43,7 @@ std::string seconds(double s) {
 
 std::string fineness(const Row& row) {
   if (std::isfinite(row.tolerance)) return fmt::format("tolerance {:.0e}", row.tolerance);
-  return fmt::format("1/{:g} s", std::round(1 / row.step));
+  return std::isfinite(row.step) ? fmt::format("1/{:g} s", std::round(1 / row.step)) : "no step";
 }
 
 /// What none of the same engine's rows beats in both price and error, by price.
