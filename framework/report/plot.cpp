@@ -23,7 +23,7 @@ constexpr double kMostDecades = 40.0;   // on a logarithmic axis: what lies deep
 struct Style {
   const char *colour, *dashes;
 };
-constexpr Style kStyles[] = {{"#00446b", ""}, {"#c14d00", "7 3"}, {"#007a57", "2 2.5"}, {"#9a4f86", "9 3 2 3"}, {"#3d8fc4", "4 2"}, {"#8a6d00", "1.5 4"}};
+constexpr Style kStyles[] = {{"#00446b", ""}, {"#c14d00", "7 3"}, {"#007a57", "2 2.5"}, {"#9a4f86", "9 3 2 3"}, {"#3d8fc4", "4 2"}, {"#8a6d00", "1.5 4"}, {"#222222", "12 4"}, {"#b5465f", "5 2 1.5 2 1.5 2"}};
 
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();

@@ -38,7 +38,7 @@ struct Limit {
 struct Plot {
   std::string title;
   Axis x, y;
-  std::vector<Curve> curves;    // told apart up to 6
+  std::vector<Curve> curves;    // told apart up to 8
   std::vector<Limit> limits;
   std::string caption = {};     // what to see in it
 };

@@ -1,0 +1,201 @@
+#include "tests/bench/peers/cases.h"
+
+#include <cmath>
+#include <numbers>
+
+#include "framework/core/random.h"
+#include "framework/engines/truths/memory_scene.h"
+
+namespace tumble::peers {
+namespace {
+
+using scene::BodySpec;
+using scene::Scene;
+using truths::ball;
+using truths::empty_scene;
+using truths::wall;
+
+const Vector3d kDown(0, 0, -kGravity);
+constexpr double kFloorFriction = 0.5;
+
+std::vector<double> times(double step, int count) {
+  std::vector<double> all;
+  for (int k = 1; k <= count; ++k) all.push_back(k * step);
+  return all;
+}
+
+/// first, first / 2, ... so many steps.
+std::vector<double> halvings(double first, int count) {
+  std::vector<double> all;
+  for (int k = 0; k < count; ++k) all.push_back(std::ldexp(first, -k));
+  return all;
+}
+
+BodySpec solid_box(const std::string& name, const Vector3d& half_extents, double mass, const Vector3d& position) {
+  BodySpec body = ball(name, mass, 1.0, position, Vector3d::Zero(), 0.0);
+  body.shape = scene::BoxSpec{half_extents};
+  return body;
+}
+
+BenchCase free_top(bool quick) {
+  BenchCase bench{.id = "S1", .name = "free top", .title = "A torque-free top turns over: moments 1, 2, 3, 60 s", .error_name = "error of the orientation after 60 s", .error_unit = "rad",
+                  .truth = "tests/truths/free_top_asymmetric__dzhanibekov_123.json: Taylor series with 60 digits, checked against Jacobi's elliptic functions",
+                  .goal = "1e-7 rad at 1/30 s",
+                  .note = "The middle moment is the unstable one: what is wrong early grows until the top turns over. Semi-implicit engines are of first order here, MuJoCo's RK4 of second: it adds its stages' angular velocities before it turns by their sum.", .scene = empty_scene("S1", 60.0, 1e-3), .sample_times = times(10.0, 6), .steps = halvings(1.0 / 30, quick ? 3 : 9)};
+  BodySpec top = ball("top", 1.0, 0.1, Vector3d::Zero(), Vector3d::Zero(), 1.0);
+  top.inertia_body_kg_m2 = Vector3d(1, 2, 3).asDiagonal();
+  top.omega_world_rad_s = Vector3d(0.01, 1, 0.01);
+  top.collides = false;
+  bench.scene.bodies = {top};
+  return bench;
+}
+
+/// Straight rods joined by hinges about y, the first to the world's origin. Nothing collides.
+Scene chain_of_hinges(const std::string& name, int links, double length, double width, double mass, const Vector3d& direction) {
+  Scene scene = empty_scene(name, 1.0, 1e-3);
+  scene.gravity_m_s2 = kDown;
+  scene.stabilisation = scene::StabilisationSpec{};
+  std::string above;
+  for (int k = 0; k < links; ++k) {
+    BodySpec link = solid_box("link" + std::to_string(k), Vector3d(length / 2, width / 2, width / 2), mass, (k + 0.5) * length * direction);
+    link.world_from_body = Quaterniond::FromTwoVectors(Vector3d::UnitX(), direction);
+    link.collides = false;
+    scene.bodies.push_back(link);
+    scene.joints.push_back({"joint" + std::to_string(k), scene::JointKind::kHinge, link.name, above, k * length * direction, Vector3d::UnitY()});
+    above = link.name;
+  }
+  return scene;
+}
+
+BenchCase chain(bool quick) {
+  BenchCase bench{.id = "S2", .name = "chain of 8", .title = "A chain of 8 rods swings from horizontal, 5 s", .error_name = "energy or joints, the worse", .error_unit = "",
+                  .truth = "energy and joints must stay: |E - E0| over the energy of the fall (m g L / 2), opening of the joints over a link's length",
+                  .goal = "energy 1e-7 at 1/960 s, joints 1e-10 m",
+                  .note = "MuJoCo, Simbody, DART and Bullet's btMultiBody have a hinge's angle as their coordinate, so joints cannot open and eight numbers are solved for; Tumble, ODE and Bullet's constraints have six a body, and the joints as 40 rows.", .scene = chain_of_hinges("S2", 8, kChainLink, 0.02, 1.0, Vector3d::UnitX()),
+                  .sample_times = times(0.1, quick ? 10 : 50), .steps = halvings(1.0 / 60, quick ? 3 : 8)};
+  bench.scene.duration_s = bench.sample_times.back();
+  return bench;
+}
+
+BenchCase elastic_balls(int n, bool quick) {
+  const double side = std::cbrt(n / 100.0);   // m: the same density for every number
+  const int cells = static_cast<int>(std::ceil(std::cbrt(n)));
+  const double cell = side / cells, room = 0.5 * cell - kBallRadius;
+  BenchCase bench{.id = "S3-" + std::to_string(n), .name = std::to_string(n) + " balls", .title = std::to_string(n) + " elastic balls in a box, 2 s", .error_name = "energy or overlap, the worse", .error_unit = "",
+                  .truth = "elastic balls keep their energy and never overlap: |E - E0| / E0, deepest overlap over a radius",
+                  .goal = n == 1000 ? "energy 1e-12, no overlap; 0.5 s, aim 0.1 s" : "energy 1e-12, no overlap",
+                  .note = "Steps decide how deep balls sink into each other before an engine notices; Tumble finds the instant, so that its step decides only the price: by retroactive detection every impact takes all bodies back to it. Overlaps of a tenth of a radius are cheap from the peers. MuJoCo has no restitution: its contacts are undamped springs.", .scene = empty_scene("S3", quick ? 0.5 : 2.0, 1e-3),
+                  .sample_times = times(0.1, quick ? 5 : 20), .steps = halvings(1.0 / 30, quick ? 2 : 7)};
+  if (n == 1000) bench.goal_error = 1e-12, bench.goal_price_s = 0.5;
+  Random random(static_cast<std::uint64_t>(n));
+  const auto jitter = [&](double size) { const double x = random.between(-size, size), y = random.between(-size, size), z = random.between(-size, size); return Vector3d(x, y, z); };
+  for (int k = 0; k < n; ++k) {
+    const Vector3d corner(k % cells, (k / cells) % cells, k / (cells * cells));
+    const Vector3d place = (corner + Vector3d::Constant(0.5)) * cell + jitter(0.9 * room);
+    bench.scene.bodies.push_back(ball("ball" + std::to_string(k), 1.0, kBallRadius, place, jitter(1.0), 1.0));
+  }
+  for (int axis = 0; axis < 3; ++axis)
+    for (const int sign : {-1, 1}) {
+      const Vector3d normal = -sign * Vector3d::Unit(axis);
+      bench.scene.bodies.push_back(wall("wall" + std::to_string(2 * axis + (sign + 1) / 2), sign > 0 ? Vector3d(side * Vector3d::Unit(axis)) : Vector3d::Zero(), normal, 1.0));
+    }
+  return bench;
+}
+
+BenchCase bouncing_ball(bool quick) {
+  BenchCase bench{.id = "S4", .name = "bounces", .title = "A ball bounces, e = 0.8, 5 s", .error_name = "error of the first ten bounces", .error_unit = "s",
+                  .truth = "tests/truths/bouncing_ball__e0.8.json: a geometric series", .goal = "1e-12 s; 0.5 ms",
+                  .note = "Of a stepped engine the instant of a bounce is where its last flight reaches the floor, not the end of the step.", .scene = empty_scene("S4", 5.0, 1e-3),
+                  .sample_times = {1.0, 2.0, 3.5, 5.0}, .steps = halvings(1.0 / 60, quick ? 3 : 8), .watches_first_body = true};
+  bench.goal_error = 1e-12, bench.goal_price_s = 0.5e-3;
+  constexpr double kRadius = 0.1;   // m
+  bench.scene.gravity_m_s2 = kDown;
+  bench.scene.bodies = {ball("ball", 1.0, kRadius, Vector3d(0, 0, 1.0 + kRadius), Vector3d::Zero(), 0.8), wall("floor", Vector3d::Zero(), Vector3d::UnitZ(), 0.8)};
+  return bench;
+}
+
+BenchCase stack(bool quick) {
+  BenchCase bench{.id = "S5", .name = "stack of 10", .title = "A stack of 10 boxes at rest, 10 s", .error_name = "way of the top box", .error_unit = "m", .truth = "static equilibrium: nothing moves",
+                  .goal = "1e-6 m at 1/60 s; 0.65 s, aim 0.1 s",
+                  .note = "ODE's direct stepper drops the stack at most steps (its solver reports internal errors). MuJoCo's default contacts give by 1 cm; harder ones hold the stack at some steps and let it fall at others, which a curve of the best does not show.", .scene = empty_scene("S5", quick ? 2.0 : 10.0, 1e-3), .sample_times = times(1.0, quick ? 2 : 10),
+                  .steps = halvings(1.0 / 60, quick ? 2 : 6)};
+  bench.scene.gravity_m_s2 = kDown;
+  bench.scene.contact.emplace();
+  bench.goal_error = 1e-6, bench.goal_price_s = 0.65;
+  for (int k = 0; k < 10; ++k) bench.scene.bodies.push_back(solid_box("box" + std::to_string(k), Vector3d::Constant(0.5), 1.0, Vector3d(0, 0, k + 0.5)));
+  bench.scene.bodies.push_back(wall("floor", Vector3d::Zero(), Vector3d::UnitZ(), 0.0));
+  for (BodySpec& body : bench.scene.bodies) body.friction = kFloorFriction;
+  return bench;
+}
+
+BenchCase heavy_bob(bool quick) {
+  constexpr double kAngle = 25 * std::numbers::pi / 180;
+  const Vector3d direction(std::sin(kAngle), 0, -std::cos(kAngle));
+  BenchCase bench{.id = "S6", .name = "heavy bob", .title = "A bob of 10 kg swings on 10 links of 1 g, 10 s", .error_name = "energy or joints, the worse", .error_unit = "",
+                  .truth = "energy and joints must stay: |E - E0| over the energy of the fall, opening of the joints over a link's length",
+                  .goal = "energy 1e-9, joints 1e-10 m at 1/1920 s",
+                  .note = "A link of a gram under 90 N swings across at sqrt(12 T / (m l)), some 3,000 rad/s: an explicit step of 1/960 s is not stable. Tumble stops such a run and says so; the others go on with energies from nowhere.", .scene = chain_of_hinges("S6", 10, kBobLink, 0.01, 0.001, direction),
+                  .sample_times = times(0.1, quick ? 5 : 100), .steps = halvings(1.0 / 960, quick ? 2 : 5)};
+  BodySpec bob = ball("bob", 10.0, 0.12, 10 * kBobLink * direction, Vector3d::Zero(), 1.0);
+  bob.collides = false;
+  bench.scene.joints.push_back({"last", scene::JointKind::kHinge, bob.name, bench.scene.bodies.back().name, bob.position_m, Vector3d::UnitY()});
+  bench.scene.bodies.push_back(bob);
+  bench.scene.duration_s = bench.sample_times.back();
+  return bench;
+}
+
+BenchCase bullet(double speed, const std::string& id, bool quick) {
+  const double end = 0.1;   // s
+  BenchCase bench{.id = id, .name = std::to_string(static_cast<int>(speed)) + " m/s", .title = "A bullet at " + std::to_string(static_cast<int>(speed)) + " m/s against a wall of 1 cm", .error_name = "error of the place after 0.1 s", .error_unit = "m",
+                  .truth = "closed form: there and back", .goal = "1e-9 m at any step",
+                  .note = "80 m (980 m at 5,000 m/s) is a bullet that went through the wall. With its continuous mode Bullet holds it, and lets it wait at the wall for the next step.", .scene = empty_scene("S7", end, 1e-3), .sample_times = {end}, .steps = halvings(1.0 / 60, quick ? 3 : 12)};
+  BodySpec wall = solid_box("wall", Vector3d(kBulletWall / 2, 2, 2), 1.0, Vector3d::Zero());
+  wall.mass_kg.reset();
+  wall.immovable = true;
+  wall.restitution = 1.0;
+  bench.scene.bodies = {ball("bullet", 0.1, kBulletRadius, Vector3d(kBulletStart, 0, 0), Vector3d(speed, 0, 0), 1.0), wall};
+  return bench;
+}
+
+BenchCase rocks(int n, double duration, bool quick) {
+  constexpr double kSlope = 30 * std::numbers::pi / 180, kApart = 1.1, kAbove = 0.7;   // m: rocks reach 0.52 m from their middles
+  BenchCase bench{.id = "S8", .name = "rocks", .title = std::to_string(n) + " rocks tumble down a slope of 30 degrees", .error_name = "deepest overlap", .error_unit = "m",
+                  .truth = "solids do not overlap: separating axes over all faces and edges of every near pair, at ten instants a second",
+                  .goal = "no overlap; at most 1.5 times Bullet's price",
+                  .note = "Tumble's two curves treat impacts that do not bounce with the step they fall into, or at their instants. DART's own collision detector has no hulls.", .scene = empty_scene("S8", duration, 1e-3),
+                  .sample_times = times(0.1, static_cast<int>(std::lround(duration * 10))), .steps = quick ? std::vector{1.0 / 120} : std::vector{1.0 / 60, 1.0 / 120, 1.0 / 240, 1.0 / 480}};
+  bench.scene.gravity_m_s2 = kDown;
+  bench.scene.contact.emplace();
+  bench.scene.contact->plastic_impacts = scene::PlasticImpacts::kInStep;
+  const Vector3d up(std::sin(kSlope), 0, std::cos(kSlope)), down(std::cos(kSlope), 0, -std::sin(kSlope)), across(0, 1, 0);
+  Random random(8);
+  for (int k = 0; k < n; ++k) {
+    const Vector3d place = (kAbove + kApart * (k / 100)) * up + kApart * (k % 10) * down + kApart * ((k / 10) % 10) * across;
+    BodySpec rock = ball("rock" + std::to_string(k), 1.0, 1.0, place, Vector3d::Zero(), 0.0);
+    rock.shape = scene::ModelSpec{"rock_2.3ds", "", 1.0};
+    rock.mass_kg.reset();
+    rock.density_kg_m3 = 2500.0;
+    rock.friction = kFloorFriction;
+    const double a = random.between(-1, 1), b = random.between(-1, 1), c = random.between(-1, 1), d = random.between(-1, 1);
+    rock.world_from_body = Quaterniond(a, b, c, d).normalized();
+    bench.scene.bodies.push_back(rock);
+  }
+  BodySpec slope = wall("slope", Vector3d::Zero(), up, 0.0);
+  slope.friction = kFloorFriction;
+  bench.scene.bodies.push_back(slope);
+  return bench;
+}
+
+}  // namespace
+
+double bullet_speed(const BenchCase& bench) { return bench.scene.bodies.front().velocity_m_s.x(); }
+
+std::vector<BenchCase> all_cases(bool quick) {
+  std::vector<BenchCase> all{free_top(quick), chain(quick), elastic_balls(100, quick)};
+  if (!quick) all.insert(all.end(), {elastic_balls(200, quick), elastic_balls(1000, quick)});
+  all.insert(all.end(), {bouncing_ball(quick), stack(quick), heavy_bob(quick), bullet(500, "S7-500", quick), bullet(5000, "S7-5000", quick)});
+  all.push_back(quick ? rocks(20, 0.5, quick) : rocks(300, 5.0, quick));
+  return all;
+}
+
+}  // namespace tumble::peers

@@ -1,0 +1,237 @@
+// The page of the peers: one table, one picture a scene, every row below it.  usage: peers_page ROWS_DIR PAGE.html [--quick]
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "framework/report/html.h"
+#include "tests/bench/peers/cases.h"
+#include "tests/bench/peers/rows.h"
+
+namespace tumble::peers {
+namespace {
+
+using report::Cell;
+using report::Look;
+
+const std::string kOurs = "Tumble";
+constexpr double kMarks[] = {1e-3, 1e-6, 1e-9};
+constexpr double kExact = 1e-17;      // an error of nothing at all is drawn here
+constexpr std::size_t kMostWays = 3;  // of running Tumble, in a picture
+constexpr double kBlownUp = 1e3;      // what is worse is in the table, not in the picture
+
+constexpr const char* kRules[] = {
+    "Price: CPU time of the process around the engine's steps only. Building the world, loading models and looking at the bodies are not in it, except for Tumble, whose frames at the "
+    "samples are part of its run. Each setting runs in a process of its own; runs shorter than half a second are repeated and the median counts. All engines ran on this machine one after "
+    "another, on one core each: ratios matter, not seconds.",
+    "Error: against a truth that comes from none of the engines: a closed form, a file of tests/truths (60 digits, two methods), or what physics forbids (energy that changes, joints that open, solids that "
+    "overlap). Where two things must hold, the worse counts. All engines are looked at at the same instants, by the same code, from places, orientations and velocities alone.",
+    "Settings: what each engine's own manual recommends, over a ladder of steps (or of tolerances, where it controls its error). Of a pair the smaller friction and restitution count everywhere. Sleep and "
+    "damping are off. A curve is one way to run an engine; of a peer with several only what no other of its own ways beats is drawn, and every row stands in the fold below the picture.",
+    "Tumble goes through run_scene, the entry that `tumble run` uses, with the laws of the course's reference modules: retroactive detection with RK4 at a fixed step, or with Dormand-Prince (error control, from Boost.Odeint) behind the same law; and, where nothing but gravity and impacts acts and the tree has them, conservative advancement and timewarp, whose flights are closed forms.",
+};
+
+std::string seconds(double s) {
+  const double rounded = std::stod(fmt::format("{:.1e}", s));   // prices are known to two digits
+  if (rounded < 1e-3) return fmt::format("{:g} µs", 1e6 * rounded);
+  return rounded < 1.0 ? fmt::format("{:g} ms", 1e3 * rounded) : fmt::format("{:g} s", rounded);
+}
+
+std::string fineness(const Row& row) {
+  if (std::isfinite(row.tolerance)) return fmt::format("tolerance {:.0e}", row.tolerance);
+  return std::isfinite(row.step) ? fmt::format("1/{:g} s", std::round(1 / row.step)) : "no step";
+}
+
+/// What none of the same engine's rows beats in both price and error, by price.
+std::vector<Row> not_beaten(const std::vector<Row>& rows) {
+  std::vector<Row> best;
+  for (const Row& row : rows) {
+    const bool beaten = std::any_of(rows.begin(), rows.end(), [&](const Row& other) { return other.cpu_s < row.cpu_s && other.error <= row.error; });
+    if (!beaten) best.push_back(row);
+  }
+  std::sort(best.begin(), best.end(), [](const Row& a, const Row& b) { return a.cpu_s < b.cpu_s; });
+  return best;
+}
+
+std::vector<Row> rows_of(const Measured& measured, const std::string& bench, const std::string& engine) {
+  std::vector<Row> rows;
+  for (const Row& row : measured.rows)
+    if (row.bench == bench && row.engine == engine && row.done && std::isfinite(row.error) && row.error < kBlownUp) rows.push_back(row);
+  return rows;
+}
+
+report::Curve curve_of(const std::string& name, const std::vector<Row>& rows) {
+  report::Curve curve{name, {}, {}, true};
+  for (const Row& row : rows) {
+    curve.x.push_back(row.cpu_s);
+    curve.y.push_back(std::max(row.error, kExact));
+  }
+  return curve;
+}
+
+std::vector<std::string> methods_of(const std::vector<Row>& rows) {
+  std::vector<std::string> methods;
+  for (const Row& row : rows)
+    if (std::find(methods.begin(), methods.end(), row.method) == methods.end()) methods.push_back(row.method);
+  return methods;
+}
+
+report::Plot plot_of(const BenchCase& bench, const Measured& measured) {
+  report::Plot plot{bench.id + ": " + bench.title, {"CPU time", "s", report::Scale::kLog}, {bench.error_name, bench.error_unit, report::Scale::kLog}, {}, {}, "Left is cheaper, down is more accurate. Truth: " + bench.truth + "."};
+  for (const EngineWords& engine : measured.engines) {
+    const std::vector<Row> rows = rows_of(measured, bench.id, engine.name);
+    if (engine.name != kOurs) {   // empty where it does not run: an engine looks the same in all pictures
+      plot.curves.push_back(curve_of(rows.empty() ? "" : engine.name, not_beaten(rows)));
+      continue;
+    }
+    for (std::size_t k = 0; k < kMostWays; ++k) {
+      const std::vector<std::string> methods = methods_of(rows);
+      std::vector<Row> of_method;
+      if (k < methods.size()) std::copy_if(rows.begin(), rows.end(), std::back_inserter(of_method), [&](const Row& row) { return row.method == methods[k]; });
+      plot.curves.push_back(curve_of(of_method.empty() ? "" : "Tumble, " + methods[k], of_method));
+    }
+  }
+  return plot;
+}
+
+/// Words that stay on one line.
+std::string unbroken(const std::string& words) {
+  std::string whole;
+  for (const char c : words) whole += c == ' ' ? std::string("\u00a0") : std::string(1, c);
+  return whole;
+}
+
+Cell price_cell(const Row* row, bool with_name, Look look) {
+  if (row == nullptr) return {"-", "", Look::kMuted};
+  return {(with_name ? row->engine + " " : "") + unbroken(seconds(row->cpu_s)), "", look};
+}
+
+report::Table overview(const std::vector<BenchCase>& cases, const Measured& measured) {
+  report::Table table;
+  table.caption = "What an error of at most 1e-3, 1e-6, 1e-9 costs: Tumble's CPU time, the cheapest peer's, and the first over the second. - : none gets there.";
+  table.columns = {{"Scene"}};
+  for (const double mark : kMarks) table.columns.insert(table.columns.end(), {{fmt::format("1e{:.0f}", std::log10(mark)), true}, {"peer", true}, {"×", true}});
+  for (const BenchCase& bench : cases) {
+    std::vector<Cell> cells{{unbroken(bench.id.substr(0, 2) + " " + bench.name), "#" + bench.id}};
+    for (const double mark : kMarks) {
+      const Row *ours = cheapest(measured.rows, bench.id, kOurs, false, mark), *theirs = cheapest(measured.rows, bench.id, kOurs, true, mark);
+      const bool wins = ours != nullptr && (theirs == nullptr || ours->cpu_s <= theirs->cpu_s);
+      cells.push_back(price_cell(ours, false, wins ? Look::kGood : Look::kPlain));
+      cells.push_back(price_cell(theirs, true, !wins && theirs != nullptr ? Look::kWarning : Look::kPlain));
+      const double ratio = ours && theirs ? ours->cpu_s / theirs->cpu_s : std::nan("");
+      cells.push_back(std::isfinite(ratio) ? Cell{ratio < 0.1 ? fmt::format("{:.1g}", ratio) : fmt::format("{:.2g}", ratio), "", ratio <= 1 ? Look::kGood : Look::kBad} : Cell{"-", "", Look::kMuted});
+    }
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+/// Where Tumble stands in this scene, in words made of the numbers.
+std::string verdict(const BenchCase& bench, const Measured& measured) {
+  std::string words;
+  for (const double mark : kMarks) {
+    const Row *ours = cheapest(measured.rows, bench.id, kOurs, false, mark), *theirs = cheapest(measured.rows, bench.id, kOurs, true, mark);
+    std::string sentence;
+    if (ours == nullptr && theirs == nullptr) sentence = "no engine gets there";
+    else if (ours == nullptr) sentence = fmt::format("Tumble does not get there; {} needs {}", theirs->engine, seconds(theirs->cpu_s));
+    else if (theirs == nullptr) sentence = fmt::format("Tumble needs {} ({}, {}); no peer gets there", seconds(ours->cpu_s), ours->method, fineness(*ours));
+    else if (ours->cpu_s <= theirs->cpu_s) sentence = fmt::format("Tumble needs {}, {} {:.1f} times as much", seconds(ours->cpu_s), theirs->engine, theirs->cpu_s / ours->cpu_s);
+    else sentence = fmt::format("Tumble loses: {} against {} of {} ({}, {}), {:.1f} times as much", seconds(ours->cpu_s), seconds(theirs->cpu_s), theirs->engine, theirs->method, fineness(*theirs), ours->cpu_s / theirs->cpu_s);
+    words += fmt::format("{}At {:.0e}: {}.", words.empty() ? "" : " ", mark, sentence);
+  }
+  const Row* closest = nullptr;   // of the peers
+  for (const Row& row : measured.rows)
+    if (row.bench == bench.id && row.engine != kOurs && row.done && std::isfinite(row.error) && (closest == nullptr || row.error < closest->error)) closest = &row;
+  if (closest != nullptr) words += fmt::format(" The least error of a peer is {:.1e}: {} ({}, {}), {}.", closest->error, closest->engine, closest->method, fineness(*closest), seconds(closest->cpu_s));
+  return words;
+}
+
+/// What of Tumble's ended early.
+std::string trouble(const BenchCase& bench, const Measured& measured) {
+  std::string words;
+  for (const Row& row : measured.rows)
+    if (row.bench == bench.id && row.engine == kOurs && !row.done) words += fmt::format("{}Tumble, {}, {}: {}.", words.empty() ? "" : " ", row.method, fineness(row), row.words.substr(0, std::min(row.words.find(" (integrator"), row.words.find(';'))));
+  return words;
+}
+
+/// Where Tumble is not the cheapest, in one paragraph.
+std::string losses(const std::vector<BenchCase>& cases, const Measured& measured) {
+  std::string words;
+  for (const BenchCase& bench : cases) {
+    double least = std::numeric_limits<double>::infinity(), most = 0.0;
+    for (const double mark : kMarks) {
+      const Row *ours = cheapest(measured.rows, bench.id, kOurs, false, mark), *theirs = cheapest(measured.rows, bench.id, kOurs, true, mark);
+      if (theirs == nullptr || (ours != nullptr && ours->cpu_s <= theirs->cpu_s)) continue;
+      const double factor = ours == nullptr ? std::numeric_limits<double>::infinity() : ours->cpu_s / theirs->cpu_s;
+      least = std::min(least, factor), most = std::max(most, factor);
+    }
+    const std::string what = bench.id + " (" + bench.name;
+    if (rows_of(measured, bench.id, kOurs).empty()) words += fmt::format("{}{}: it does not finish)", words.empty() ? "" : ", ", what);
+    else if (most > 0.0) words += fmt::format("{}{}: {} times the best peer's price)", words.empty() ? "" : ", ", what, most > 1.05 * least ? fmt::format("{:.1f} to {:.1f}", least, most) : fmt::format("{:.1f}", most));
+    const Row* good = cheapest(measured.rows, bench.id, kOurs, false, bench.goal_error);
+    if (good != nullptr && good->cpu_s > bench.goal_price_s) words += fmt::format("{}{}: {} where the goal is {})", words.empty() ? "" : ", ", what, seconds(good->cpu_s), seconds(bench.goal_price_s));
+  }
+  return words.empty() ? "Tumble is the cheapest at every error in every scene." : "Where Tumble loses, or misses its goal: " + words + ".";
+}
+
+/// Every engine's CPU time a simulated second at one step.
+std::string prices_at(const BenchCase& bench, const Measured& measured, double step) {
+  std::string words;
+  const double duration = bench.sample_times.back();
+  for (const Row& row : measured.rows)
+    if (row.bench == bench.id && row.done && std::abs(row.step - step) < 1e-9) words += fmt::format("{}{}, {}: {}, {} {:.1e} m", words.empty() ? "" : "; ", row.engine, row.method, seconds(row.cpu_s / duration), bench.error_name, row.error);
+  return fmt::format("CPU time a simulated second at 1/{:g} s: {}.", 1 / step, words);
+}
+
+std::string all_rows(const BenchCase& bench, const Measured& measured) {
+  std::string text;
+  for (const Row& row : measured.rows)
+    if (row.bench == bench.id)
+      text += fmt::format("{:8} {:36} {:16} {:>11}  {}\n", row.engine, row.method, fineness(row), row.done ? seconds(row.cpu_s) : "-", row.done ? fmt::format("error {:.2e}   {}", row.error, row.words) : row.words);
+  return text;
+}
+
+void write(const std::filesystem::path& rows, const std::filesystem::path& file, bool quick) {
+  const Measured measured = read_rows(rows);
+  std::vector<BenchCase> cases;
+  for (BenchCase& bench : all_cases(quick))
+    if (std::any_of(measured.rows.begin(), measured.rows.end(), [&](const Row& row) { return row.bench == bench.id; })) cases.push_back(std::move(bench));
+  report::Page page("What accuracy costs: Tumble beside the engines people use today", quick ? "Quick run: few steps, short scenes. Figures of a quick run prove nothing but that it runs." : "Scenes S1 to S8, error against CPU time");
+  page.table(overview(cases, measured));
+  page.paragraph(losses(cases, measured));
+  page.heading("How it was measured");
+  for (const char* rule : kRules) page.paragraph(rule);
+  report::Table engines{"", {{"Engine"}, {"Version"}, {"Settings"}}, {}};
+  for (const EngineWords& engine : measured.engines) engines.rows.push_back({{engine.name}, {engine.version}, {engine.settings}});
+  page.table(engines);
+  for (const BenchCase& bench : cases) {
+    page.heading(bench.id + ": " + bench.title, 2, bench.id);
+    page.paragraph(verdict(bench, measured) + " Goal: " + bench.goal + ".");
+    if (const std::string words = trouble(bench, measured); !words.empty()) page.paragraph(words, Look::kMuted);
+    if (bench.id == "S8" && !quick) page.paragraph(prices_at(bench, measured, 1.0 / 240));
+    page.plot(plot_of(bench, measured));
+    page.paragraph(bench.note, Look::kMuted);
+    page.fold("Every row", all_rows(bench, measured));
+  }
+  page.record("tests/bench/peers/run.sh");
+  page.write(file);
+}
+
+}  // namespace
+}  // namespace tumble::peers
+
+int main(int argc, char** argv) try {
+  if (argc < 3) {
+    std::fprintf(stderr, "usage: peers_page ROWS_DIR PAGE.html [--quick]\n");
+    return 2;
+  }
+  tumble::peers::write(argv[1], argv[2], argc > 3 && std::string(argv[3]) == "--quick");
+  return EXIT_SUCCESS;
+} catch (const std::exception& error) {
+  std::fprintf(stderr, "peers_page: %s\n", error.what());
+  return 2;
+}
