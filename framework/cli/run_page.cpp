@@ -114,12 +114,9 @@ void write_page(const Context& context, const scene::Scene& scene, const ChosenL
   options.root = context.root;
   std::vector<report::PlayedRun> runs;
   Second second;
-  if (words.beside.empty()) {
-    runs.push_back({run, ""});
-  } else {
-    second = second_run(context, scene, chosen, run, words);
-    runs = {{run, second.label_of_first}, {second.run, second.label}};
-  }
+  if (!words.beside.empty()) second = second_run(context, scene, chosen, run, words);
+  runs.push_back({run, second.label_of_first});
+  if (!words.beside.empty()) runs.push_back({second.run, second.label});
   const auto start = std::chrono::steady_clock::now();
   const std::size_t bytes = report::write_player(words.html, scene, runs, options);
   fmt::print(stderr, "wrote {} ({:.2f} MB) in {:.2f} s\n", words.html, 1e-6 * static_cast<double>(bytes), std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
