@@ -22,12 +22,13 @@ class Picture {
   constructor(player) {
     this.player = player;
     this.canvas = byId('picture');
-    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true, preserveDrawingBuffer: true });
+    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true });
     this.renderer.gammaOutput = true;
     this.renderer.gammaFactor = 2.2;
     this.renderer.shadowMap.enabled = true;
-    this.renderer.shadowMap.type = THREE.PCFSoftShadowMap;
+    this.renderer.shadowMap.type = THREE.PCFShadowMap;
     this.renderer.setScissorTest(true);
+    if (this.isSoftware()) player.shown.shadows = false;
     this.ratio = Math.min(2, window.devicePixelRatio || 1);
     this.stages = player.runs.map(run => new Stage(player.about, run));
     const first = this.stages[0];
@@ -116,11 +117,18 @@ class Picture {
     });
   }
 
-  // Where drawing takes more than a thirtieth of a second, shadows go first, then fine pixels.
+  // Drawn by the processor: shadows would take most of its time.
+  isSoftware() {
+    const gl = this.renderer.getContext(), info = gl.getExtension('WEBGL_debug_renderer_info');
+    return info !== null && /swiftshader|llvmpipe|software/i.test(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
+  }
+
+  // Where pictures come slower than 25 a second for a while, shadows go first, then fine pixels.
   adapt(milliseconds) {
-    this.slow = milliseconds > 30 ? (this.slow || 0) + 1 : 0;
-    if (this.slow < 12) return;
-    this.slow = 0;
+    this.times = milliseconds > 500 ? [] : [...(this.times || []), milliseconds].slice(-20);
+    const sum = this.times.reduce((a, b) => a + b, 0);
+    if (sum < 600 || sum / this.times.length < 40) return;
+    this.times = [];
     if (this.player.shown.shadows) {
       this.player.shown.shadows = false;
       const box = [...document.querySelectorAll('#options label')].find(label => label.textContent.includes('shadows'));
@@ -144,19 +152,21 @@ function addTabs(player) {
     byId('panes').append(box);
     return { tab, box, make, pane: null };
   });
-  let chosen = null;
+  let chosen = player.chosen;
   const open = at => {
     tabs.forEach((entry, i) => { entry.tab.setAttribute('aria-selected', String(i === at)); entry.box.hidden = i !== at; });
-    const entry = tabs[at];
-    if (!entry.pane) { entry.pane = entry.make(entry.box); chosen = null; }
+    tabs[at].pane = tabs[at].pane || tabs[at].make(tabs[at].box);
     update();
   };
   const update = () => {
-    if (player.chosen !== chosen) {
-      chosen = player.chosen;
-      for (const { pane } of tabs) if (pane && pane.choose) pane.choose(chosen);
+    const isNew = player.chosen !== chosen;
+    chosen = player.chosen;
+    if (isNew && chosen >= 0 && !tabs[0].box.hidden) return open(1);   // whoever chooses a body wants its curves
+    for (const { pane, box } of tabs) {
+      if (!pane || box.hidden) continue;
+      if (pane.choose && pane.body !== chosen) pane.choose(pane.body = chosen);
+      pane.follow(player.time);
     }
-    for (const { pane, box } of tabs) if (pane && !box.hidden) pane.follow(player.time);
   };
   tabs.forEach((entry, i) => entry.tab.addEventListener('click', () => open(i)));
   player.listeners.push(update);

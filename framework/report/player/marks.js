@@ -1,13 +1,14 @@
 // What a drawing adds to the bodies: impulses, forces, contact points, paths.
 
-const kFlashSeconds = 0.3;       // of watching: long enough to be noticed
+const kFlashSeconds = 0.25;      // of watching: long enough to be noticed
+const kMostFlashes = 40;         // the latest; more would hide the bodies
 const kColors = { impulse: 0xc14d00, force: 0x9a4f86, contact: 0x007a57, path: 0x00446b, spring: 0x1a212b, rod: 0x29313b, joint: 0x8a5a00 };
 
 // Any number of one geometry, from one moment to the next.
 class Pool {
   constructor(scene, geometry, color, opacity = 1) {
     this.scene = scene;
-    this.geometry = geometry;
+    this.geometry = sameGeometry(geometry);
     this.material = new THREE.MeshLambertMaterial({ color: new THREE.Color(color).convertGammaToLinear(2.2), transparent: opacity < 1, opacity });
     this.size = 0;
     this.mesh = null;
@@ -79,12 +80,12 @@ class Marks {
 
   addImpulses(t, speed) {
     const e = this.run.events, life = kFlashSeconds * speed, point = new THREE.Vector3(), normal = new THREE.Vector3();
-    for (let i = this.run.eventFrom(t + 1e-5) - 1, drawn = 0; i >= 0 && t - e.time[i] < life && drawn < 60; --i) {
+    for (let i = this.run.eventFrom(t + 1e-5) - 1, drawn = 0; i >= 0 && t - e.time[i] < life && drawn < kMostFlashes; --i) {
       if (e.kind[i] !== kCollision || !(e.impulse[i] > 0)) continue;
       const age = Math.max(0, t - e.time[i]) / life, share = Math.sqrt(e.impulse[i] / this.strongest.impulse);
       point.set(e.point[0][i], e.point[1][i], e.point[2][i]);
       normal.set(e.normal[0][i], e.normal[1][i], e.normal[2][i]);
-      this.flashes.add(ballAt(point, this.sight * (0.004 + 0.006 * age)));
+      this.flashes.add(ballAt(point, this.flashRadius(e.a[i], e.b[i]) * (0.6 + 0.4 * age)));
       for (const [body, sign] of [[e.a[i], 1], [e.b[i], -1]]) {
         const about = this.about.bodies[body];
         if (!about || about.immovable) continue;
@@ -94,6 +95,12 @@ class Marks {
       }
       ++drawn;
     }
+  }
+
+  // Smaller than what meets there.
+  flashRadius(a, b) {
+    const radii = [a, b].map(i => this.about.bodies[i]).filter(body => body && !body.immovable && body.radius > 0).map(body => 0.3 * body.radius);
+    return Math.min(0.009 * this.sight, ...radii);
   }
 
   // A force is an arrow that pushes: its head at the point, which moves with the body.
@@ -119,6 +126,9 @@ class Marks {
       point.set(c[2][i], c[3][i], c[4][i]);
       this.dots.add(ballAt(point, 0.0035 * this.sight));
       force.set(c[5][i], c[6][i], c[7][i]);
+      // Of the two equal forces the one on what moves; where both move, on what lies on top.
+      const a = this.about.bodies[c[0][i]], b = this.about.bodies[c[1][i]];
+      if (a.immovable || (!(b && b.immovable) && force.z < 0)) force.negate();
       const length = 0.1 * this.sight * Math.sqrt(force.length() / (this.strongest.contact || 1));
       const arrow = length > 2e-3 * this.sight && laidBetween(point, force.normalize().multiplyScalar(length).add(point), length);
       if (arrow) this.supports.add(arrow);

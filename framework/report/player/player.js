@@ -107,7 +107,7 @@ class Controls {
     click('home', resetView);
     for (const s of kSpeeds) byId('speed').append(html('option', { value: String(s) }, `${s} ×`));
     byId('speed').addEventListener('change', event => player.setSpeed(Number(event.target.value)));
-    byId('body').append(html('option', { value: '-1' }, 'none'));
+    byId('body').append(html('option', { value: '-1' }, 'choose body'));
     player.about.bodies.forEach((body, i) => byId('body').append(html('option', { value: String(i) }, body.name)));
     byId('body').addEventListener('change', event => player.choose(Number(event.target.value)));
     const scrub = byId('scrub');
@@ -187,11 +187,13 @@ class Controls {
       for (let i = 0; i < run.events.count; ++i) {
         const isCollision = run.events.kind[i] === kCollision, part = isCollision ? 1 : 0.5;
         g.fillStyle = isCollision ? '#c14d00' : '#5b6875';
+        g.globalAlpha = run.events.count > 400 ? 0.35 : 0.9;
         g.fillRect(x(run.events.time[i]) - 0.5, top + (1 - part) * size, 1, part * size);
       }
     });
     const difference = this.player.about.difference;
     if (!difference) return;
+    g.globalAlpha = 1;
     g.fillStyle = '#a82c00';
     g.beginPath();
     g.moveTo(x(difference.time), height);

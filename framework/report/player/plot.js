@@ -34,7 +34,7 @@ function decadesOf(low, high) {
 function short(value, digits = 4) {
   if (!Number.isFinite(value)) return '–';
   const size = Math.abs(value);
-  if (size !== 0 && (size < 1e-3 || size >= 1e5)) return value.toExponential(Math.max(0, digits - 2)).replace('e+', 'e');
+  if (size !== 0 && (size < 1e-3 || size >= 1e5)) return Number(value.toPrecision(Math.max(2, digits - 1))).toExponential().replace('e+', 'e');
   return String(Number(value.toPrecision(digits)));
 }
 

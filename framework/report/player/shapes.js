@@ -14,16 +14,18 @@ function geometryFrom(positions, normals, shades) {
   return geometry;
 }
 
-// Ball of radius 1; two of its quarters are darker, so that its turning is seen.
+// Ball of radius 1; two of its quarters are darker, so that its turning is seen. Few corners: drawing without a graphics card counts them.
 function ballGeometry(isQuartered, segments) {
-  const ball = new THREE.SphereBufferGeometry(1, segments, segments / 2).rotateX(Math.PI / 2).toNonIndexed();
-  const p = ball.attributes.position.array, shades = [];
-  for (let i = 0; i < p.length; i += 9) {
-    const x = p[i] + p[i + 3] + p[i + 6], y = p[i + 1] + p[i + 4] + p[i + 7];
-    for (let k = 0; k < 9; ++k) shades.push(isQuartered && x * y > 0 ? 0.45 : 1);
-  }
-  return geometryFrom(p, ball.attributes.normal.array, shades);
+  const quarter = k => {
+    const part = new THREE.SphereBufferGeometry(1, segments / 4, segments / 2, k * Math.PI / 2, Math.PI / 2).rotateX(Math.PI / 2);
+    part.setAttribute('color', new THREE.Float32BufferAttribute(Array.from(part.attributes.position.array, () => (isQuartered && k % 2 === 0 ? 0.45 : 1)), 3));
+    return part;
+  };
+  return merged([0, 1, 2, 3].map(quarter));
 }
+
+// So many segments that the outline of a ball is round at the distance at which the scene is seen first.
+function segmentsFor(radius, sight) { return radius < 0.012 * sight ? 12 : radius < 0.04 * sight ? 20 : 40; }
 
 // Faces that meet at less than 40 degrees are shaded as one smooth surface, others keep their edge: a corner's normal is the mean, weighted by
 // the faces' angles there, over the faces around it that lie within that of its own (Thuermer and Wuethrich 1998).
@@ -54,14 +56,32 @@ function meshGeometry(mesh) {
   return geometryFrom(positions, normals, positions.map(() => 1));
 }
 
+// The same buffers under another name: three.js r111 leaves the places of one instanced mesh bound for the next of the same geometry.
+function sameGeometry(geometry) {
+  const same = new THREE.BufferGeometry();
+  for (const [name, attribute] of Object.entries(geometry.attributes)) same.setAttribute(name, attribute);
+  if (geometry.index) same.setIndex(geometry.index);
+  return same;
+}
+
 function merged(parts) {
-  const join = name => [].concat(...parts.map(part => Array.from(part.attributes[name].array)));
-  return geometryFrom(join('position'), join('normal'));
+  const whole = new THREE.BufferGeometry(), index = [];
+  for (const name of Object.keys(parts[0].attributes).filter(key => key !== 'uv')) {
+    const joined = [].concat(...parts.map(part => Array.from(part.attributes[name].array)));
+    whole.setAttribute(name, new THREE.Float32BufferAttribute(joined, 3));
+  }
+  let first = 0;
+  for (const part of parts) {
+    for (const i of part.index.array) index.push(first + i);
+    first += part.attributes.position.count;
+  }
+  whole.setIndex(index);
+  return whole;
 }
 
 // Along z from 0 to 1: an arrow to be scaled, a rod of radius 1, a coil of radius 1.
 function arrowGeometry() {
-  const shaft = new THREE.CylinderBufferGeometry(0.035, 0.035, 0.72, 12).toNonIndexed(), head = new THREE.ConeBufferGeometry(0.1, 0.28, 16).toNonIndexed();
+  const shaft = new THREE.CylinderBufferGeometry(0.035, 0.035, 0.72, 12), head = new THREE.ConeBufferGeometry(0.1, 0.28, 16);
   shaft.rotateX(Math.PI / 2).translate(0, 0, 0.36);
   head.rotateX(Math.PI / 2).translate(0, 0, 0.86);
   return merged([shaft, head]);

@@ -48,23 +48,23 @@ class Stage {
 
   // Bodies of one geometry, colour and opacity are drawn by one call.
   addBodies() {
-    const groups = new Map(), meshes = this.about.meshes, many = this.about.bodies.length > 100;
+    const groups = new Map(), meshes = this.about.meshes;
     this.scales = this.about.bodies.map(body => scaleOf(body, this.sight));
     this.about.bodies.forEach((body, i) => {
       if (i === this.floor) return;
       const isQuartered = !body.immovable && body.shape.kind === 'sphere' && body.shape.radius > 0, color = colorOf(body, i), glass = this.isGlass(i);
-      const key = JSON.stringify([body.shape.kind, body.shape.mesh, isQuartered, color, glass]);
+      const key = JSON.stringify([body.shape.kind, body.shape.mesh, isQuartered, color, glass, segmentsFor(body.shape.radius || 0, this.sight)]);
       if (!groups.has(key)) groups.set(key, { body, color, glass, isQuartered, members: [] });
       groups.get(key).members.push(i);
     });
     this.groups = [...groups.values()];
     const geometries = new Map();
     for (const group of this.groups) {
-      const shape = group.body.shape, key = JSON.stringify([shape.kind, shape.mesh, group.isQuartered]);
-      if (!geometries.has(key)) geometries.set(key, geometryOf(shape, meshes, group.isQuartered, many ? 20 : 40));
+      const shape = group.body.shape, segments = segmentsFor(shape.radius || 0, this.sight), key = JSON.stringify([shape.kind, shape.mesh, group.isQuartered, segments]);
+      if (!geometries.has(key)) geometries.set(key, geometryOf(shape, meshes, group.isQuartered, segments));
       const material = new THREE.MeshLambertMaterial({ color: new THREE.Color(...group.color), vertexColors: THREE.VertexColors, transparent: group.glass > 0,
         opacity: group.glass || 1, depthWrite: !group.glass, side: shape.kind === 'plane' ? THREE.DoubleSide : THREE.FrontSide });
-      group.mesh = new THREE.InstancedMesh(geometries.get(key), material, group.members.length);
+      group.mesh = new THREE.InstancedMesh(sameGeometry(geometries.get(key)), material, group.members.length);
       group.mesh.frustumCulled = false;
       group.mesh.castShadow = !group.glass;
       group.mesh.receiveShadow = !group.glass;
@@ -119,9 +119,9 @@ class Stage {
     this.spacing = spacing;
     const sky = new THREE.Color(kSky).convertGammaToLinear(2.2), line = new THREE.Color(kLine).convertGammaToLinear(2.2), floor = new THREE.Color(kFloor).convertGammaToLinear(2.2);
     const cx = Math.round(this.target.x / spacing) * spacing, cy = Math.round(this.target.y / spacing) * spacing, reach = 2.6 * sight;
-    const fade = (from, r) => from.clone().lerp(this.floor >= 0 && from === line ? floor : sky, 0).lerp(sky, Math.min(1, r / reach));
+    const fade = (from, r) => from.clone().lerp(sky, Math.min(1, r / Math.min(reach, 60 * spacing)));
     this.ground = new THREE.Group();
-    const count = Math.min(120, Math.ceil(reach / spacing)), points = [], colors = [], parts = 16;
+    const count = Math.min(60, Math.ceil(reach / spacing)), points = [], colors = [], parts = 6;
     for (let i = -count; i <= count; ++i)
       for (let k = -parts; k < parts; ++k)
         for (const [x, y] of [[i * spacing, k], [i * spacing, k + 1]]) {
