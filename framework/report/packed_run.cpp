@@ -135,7 +135,7 @@ class RunPacker {
     add("energy", "kinetic", "J", [&](std::size_t k) { return frame(k).kinetic_energy; });
     add("energy", "potential", "J", [&](std::size_t k) { return frame(k).potential_energy; });
     add("energy", "total", "J", [&](std::size_t k) { return total(frame(k)); });
-    add("drift", "total energy less that at the start", "J", [&](std::size_t k) { return total(frame(k)) - at_start; });
+    add("drift", "E - E(0)", "J", [&](std::size_t k) { return total(frame(k)) - at_start; });
     for (int i = 0; i < 3; ++i) add("momentum", std::string(1, "xyz"[i]), "kg m/s", [&, i](std::size_t k) { return frame(k).momentum_world[i]; });
     for (int i = 0; i < 3; ++i) add("spin", std::string(1, "xyz"[i]), "kg m\u00b2/s", [&, i](std::size_t k) { return frame(k).angular_momentum_world[i]; });
     if (std::any_of(run_.frames.begin(), run_.frames.end(), [](const Frame& f) { return std::isfinite(f.smallest_gap); }))

@@ -10,7 +10,7 @@ class Player {
     this.end = Math.max(...runs.map(run => run.end));
     this.longest = runs.reduce((a, b) => (b.end > a.end ? b : a));
     this.time = 0;
-    this.speed = 1;
+    this.speed = [...kSpeeds].reverse().find(s => s <= 1 && s <= this.end / 3) || kSpeeds[0];   // a short run is watched slowly: three seconds at least
     this.isPlaying = false;
     this.chosen = -1;
     this.followed = -1;
