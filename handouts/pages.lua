@@ -41,9 +41,12 @@ local function code(element)
   return pandoc.RawInline('latex', '\\texttt{' .. text .. '}')
 end
 
--- Columns of a table share its width as their longest cells do, so that words break on paper.
+-- Columns of a table share its width as their longest cells do, so that words break on paper; a page lays them out itself.
 local function columns(element)
-  if not latex then return nil end
+  if not latex then
+    for i, spec in ipairs(element.colspecs) do element.colspecs[i] = { spec[1], nil } end
+    return element
+  end
   local longest = {}
   local function look(row)
     for i, cell in ipairs(row.cells or row[2]) do
