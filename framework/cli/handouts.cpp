@@ -78,6 +78,7 @@ void check_links(const std::vector<Handout>& handouts, const fs::path& figures) 
 
 // Draws the figures where the reference solutions are; a tree without them has the pictures that came with it.
 void make_figures(const Context& context, const fs::path& figures) {
+  fs::remove_all(figures);   // a picture from an earlier time would hide that nobody draws it any more
   fs::create_directories(figures);
   if (!fs::exists(context.root / "solutions_private")) {
     fs::copy(context.root / "handouts/figures", figures, fs::copy_options::overwrite_existing | fs::copy_options::recursive);
@@ -114,6 +115,7 @@ void write_index(const Context& context, const std::vector<Handout>& handouts, c
 
 void build_handouts(Context& context, const Options& options) {
   const fs::path out = fs::absolute(options.out), figures = out / "figures", folder = context.root / "handouts";
+  if (fs::weakly_canonical(out) == fs::weakly_canonical(folder)) throw UserError("--out " + options.out, "is where the handouts themselves stand", "Name another folder, for example out/handouts.");
   const std::vector<Handout> handouts = read_handouts(folder);
   make_figures(context, figures);
   check_links(handouts, figures);
