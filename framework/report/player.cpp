@@ -68,7 +68,10 @@ Json panels_json(const std::vector<PlayerPanel>& panels) {
 
 std::string record_of(const scene::Scene& scene, const std::vector<PlayedRun>& runs) {
   const TrajectoryInfo& info = runs.front().run.info;
-  return fmt::format("{} · Tumble {} · seed {} · scene {} {}", html_escape(info.command), html_escape(info.version), info.seed, html_escape(scene.name), html_escape(scene.hash));
+  std::string record;
+  for (const std::string& part : {info.command, "Tumble " + info.version, "seed " + std::to_string(info.seed), "scene " + scene.name + " " + scene.hash})
+    if (!part.empty()) record += (record.empty() ? "" : " · ") + html_escape(part);
+  return record;
 }
 
 void check(const scene::Scene& scene, const std::vector<PlayedRun>& runs) {

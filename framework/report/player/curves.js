@@ -20,6 +20,7 @@ function curvesOf(runs, pick) {
   const byPlot = new Map();
   runs.forEach(run => {
     for (const series of pick(run)) {
+      if (series.plot === 'apart' && !series.values.some(v => v > 0)) continue;   // the same throughout: said elsewhere
       if (!byPlot.has(series.plot)) byPlot.set(series.plot, { ...kPlots[series.plot], unit: series.unit, curves: [] });
       const name = runs.length > 1 && series.plot !== 'apart' ? `${series.name}, ${run.label}` : series.name;
       byPlot.get(series.plot).curves.push({ name, link: series.name, times: run.times, values: series.values, frameAt: t => run.frameAt(t).k });

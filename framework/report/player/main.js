@@ -60,6 +60,13 @@ class Picture {
     this.player.changed();
   }
 
+  // Where each run is seen: beside each other or one below the other, whichever shows a 4:3 picture larger. Shares of the canvas, y down.
+  views() {
+    const count = this.stages.length, size = (w, h) => Math.min(h, 0.75 * w);
+    const beside = size(this.width / count, this.height) >= size(this.width, this.height / count);
+    return this.stages.map((_, r) => (beside ? { x: r / count, y: 0, w: 1 / count, h: 1 } : { x: 0, y: r / count, w: 1, h: 1 / count }));
+  }
+
   resize() {
     const box = byId('scene'), width = Math.max(1, box.clientWidth), height = Math.max(1, box.clientHeight);
     this.renderer.setPixelRatio(this.ratio);
@@ -86,10 +93,10 @@ class Picture {
 
   draw() {
     this.isDirty = false;
-    const { player, stages, renderer, camera } = this, count = stages.length, width = this.width / count;
+    const { player, stages, renderer, camera } = this, views = this.views();
     this.follow();
     // The whole of a 4:3 picture is seen, however narrow the view.
-    const half = Math.tan(player.about.camera.fov * Math.PI / 360), aspect = width / this.height;
+    const half = Math.tan(player.about.camera.fov * Math.PI / 360), aspect = views[0].w * this.width / (views[0].h * this.height);
     camera.fov = 2 * Math.atan(half * Math.max(1, 4 / 3 / aspect)) * 180 / Math.PI;
     camera.aspect = aspect;
     camera.updateProjectionMatrix();
@@ -97,8 +104,9 @@ class Picture {
       if (stage.chosen !== player.chosen) stage.choose(player.chosen);
       stage.key.castShadow = player.shown.shadows;
       stage.show(Math.min(player.time, stage.run.end), player.speed, player.shown);
-      renderer.setViewport(r * width, 0, width, this.height);
-      renderer.setScissor(r * width, 0, width - (r + 1 < count ? 2 : 0), this.height);
+      const view = views[r], width = view.w * this.width, height = view.h * this.height, left = view.x * this.width, below = this.height - view.y * this.height - height;
+      renderer.setViewport(left, below, width, height);
+      renderer.setScissor(left, below + (view.y + view.h < 1 ? 2 : 0), width - (view.x + view.w < 1 ? 2 : 0), height - (view.y + view.h < 1 ? 2 : 0));
       const shift = r > 0 && player.followed >= 0 ? stage.placeOf(player.followed, player.time).sub(stages[0].placeOf(player.followed, player.time)) : null;
       if (shift) camera.position.add(shift);
       renderer.render(stage.scene, camera);
@@ -111,8 +119,9 @@ class Picture {
     this.canvas.addEventListener('pointerdown', event => { down = [event.clientX, event.clientY]; });
     this.canvas.addEventListener('pointerup', event => {
       if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 5 || event.button !== 0) return;
-      const box = this.canvas.getBoundingClientRect(), count = this.stages.length, x = (event.clientX - box.left) / box.width * count, r = Math.min(count - 1, Math.floor(x));
-      const spot = new THREE.Vector3(2 * (x - r) - 1, 1 - 2 * (event.clientY - box.top) / box.height, 0.5).unproject(this.camera);
+      const box = this.canvas.getBoundingClientRect(), x = (event.clientX - box.left) / box.width, y = (event.clientY - box.top) / box.height;
+      const r = Math.max(0, this.views().findIndex(v => x >= v.x && x < v.x + v.w && y >= v.y && y < v.y + v.h)), view = this.views()[r];
+      const spot = new THREE.Vector3(2 * (x - view.x) / view.w - 1, 1 - 2 * (y - view.y) / view.h, 0.5).unproject(this.camera);
       this.player.choose(this.stages[r].pick(this.camera.position.clone(), spot.sub(this.camera.position).normalize(), Math.min(this.player.time, this.stages[r].run.end)));
     });
   }
@@ -175,13 +184,20 @@ function addTabs(player) {
 }
 
 function addWords(player, picture) {
+  const labels = [];
   player.runs.forEach((run, r) => {
     const laws = [run.head.impulses, run.head.motion].filter(word => word && word !== 'none');
     const box = html('div', { className: 'label' }, html('b', {}, run.label || ''), html('span', {}, run.head.stopped ? ` stopped: ${run.head.stopped}` : ''));
-    box.style.left = `${100 * r / player.runs.length}%`;
+    labels.push(box);
     box.title = `engine ${run.head.engine}, step ${short(run.head.step)} s, laws: ${laws.join(', ')}`;
     byId('words').append(box);
   });
+  const place = () => (picture ? picture.views() : player.runs.map((_, r) => ({ x: r / player.runs.length, y: 0 }))).forEach((view, r) => {
+    labels[r].style.left = `${100 * view.x}%`;
+    labels[r].style.top = `calc(${100 * view.y}% + .4rem)`;
+  });
+  new ResizeObserver(place).observe(byId('scene'));
+  place();
   const notes = [];
   if (picture && picture.stages[0].spacing) notes.push(`grid ${short(picture.stages[0].spacing)} m`);
   for (const run of player.runs) if (run.head.stride > 1) notes.push(`every ${run.head.stride}th frame kept`);
