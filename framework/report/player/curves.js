@@ -65,7 +65,7 @@ class CurvePane {
       if (shown) this.plots.splice(this.plots.indexOf(shown), 1);
       inner.textContent = '';
       shown = this.add({ ...plot, curves: plot.curves.filter(curve => curve.link === select.value) }, inner);
-      shown.follow(this.player.time);
+      shown.follow(this.player.time, true);
     };
     select.addEventListener('change', show);
     holder.append(html('label', { className: 'choice' }, 'which: ', select), inner);
@@ -73,7 +73,7 @@ class CurvePane {
     show();
   }
 
-  follow(t) { for (const plot of this.plots) plot.follow(t); }
+  follow(t, isFull = true) { for (const plot of this.plots) plot.follow(t, isFull); }
 }
 
 // Curves of the body that is chosen.

@@ -63,7 +63,8 @@ class EventPane {
   }
 
   // The last event that has happened is marked, and kept in sight.
-  follow(t) {
+  follow(t, isFull = true) {
+    if (!isFull) return;
     let low = 0, high = this.rows.length;
     while (low < high) {
       const middle = (low + high) >> 1;

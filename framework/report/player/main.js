@@ -17,18 +17,27 @@ async function loadThree() {
   if (typeof THREE === 'undefined' || !THREE.OrbitControls) throw new Error('three.js did not load');
 }
 
+// Whether the processor draws, there being no graphics card.
+function drawsBySoftware() {
+  const gl = document.createElement('canvas').getContext('webgl', { antialias: false }), info = gl && gl.getExtension('WEBGL_debug_renderer_info');
+  const is = Boolean(info) && /swiftshader|llvmpipe|software|basic render/i.test(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
+  if (gl && gl.getExtension('WEBGL_lose_context')) gl.getExtension('WEBGL_lose_context').loseContext();
+  return is;
+}
+
 // The picture: one canvas, a view for each run, one eye for all.
 class Picture {
   constructor(player) {
     this.player = player;
     this.canvas = byId('picture');
-    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true });
+    const isSoftware = drawsBySoftware();   // then smooth edges and shadows would take most of the time
+    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: !isSoftware });
     this.renderer.gammaOutput = true;
     this.renderer.gammaFactor = 2.2;
     this.renderer.shadowMap.enabled = true;
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
     this.renderer.setScissorTest(true);
-    if (this.isSoftware()) player.shown.shadows = false;
+    if (isSoftware) player.shown.shadows = false;
     this.ratio = Math.min(2, window.devicePixelRatio || 1);
     this.stages = player.runs.map(run => new Stage(player.about, run));
     const first = this.stages[0];
@@ -100,9 +109,11 @@ class Picture {
     camera.fov = 2 * Math.atan(half * Math.max(1, 4 / 3 / aspect)) * 180 / Math.PI;
     camera.aspect = aspect;
     camera.updateProjectionMatrix();
+    const pixels = 0.5 * views[0].h * this.height * this.ratio / (Math.tan(camera.fov * Math.PI / 360) * camera.position.distanceTo(this.orbit.target));
     stages.forEach((stage, r) => {
       if (stage.chosen !== player.chosen) stage.choose(player.chosen);
       stage.key.castShadow = player.shown.shadows;
+      stage.refine(pixels);
       stage.show(Math.min(player.time, stage.run.end), player.speed, player.shown);
       const view = views[r], width = view.w * this.width, height = view.h * this.height, left = view.x * this.width, below = this.height - view.y * this.height - height;
       renderer.setViewport(left, below, width, height);
@@ -124,12 +135,6 @@ class Picture {
       const spot = new THREE.Vector3(2 * (x - view.x) / view.w - 1, 1 - 2 * (y - view.y) / view.h, 0.5).unproject(this.camera);
       this.player.choose(this.stages[r].pick(this.camera.position.clone(), spot.sub(this.camera.position).normalize(), Math.min(this.player.time, this.stages[r].run.end)));
     });
-  }
-
-  // Drawn by the processor: shadows would take most of its time.
-  isSoftware() {
-    const gl = this.renderer.getContext(), info = gl.getExtension('WEBGL_debug_renderer_info');
-    return info !== null && /swiftshader|llvmpipe|software/i.test(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
   }
 
   // Where pictures come slower than 25 a second for a while, shadows go first, then fine pixels.
@@ -174,7 +179,7 @@ function addTabs(player) {
     for (const { pane, box } of tabs) {
       if (!pane || box.hidden) continue;
       if (pane.choose && pane.body !== chosen) pane.choose(pane.body = chosen);
-      pane.follow(player.time);
+      pane.follow(player.time, player.isTimeToTell());
     }
   };
   tabs.forEach((entry, i) => entry.tab.addEventListener('click', () => open(i)));

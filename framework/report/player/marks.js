@@ -53,7 +53,7 @@ class Marks {
     this.run = run;
     this.about = about;
     this.sight = sight;
-    const arrow = arrowGeometry(), ball = ballGeometry(false, 12);
+    const arrow = arrowGeometry(), ball = ballGeometry(false, 8);
     this.arrows = new Pool(scene, arrow, kColors.impulse);
     this.flashes = new Pool(scene, ball, kColors.impulse, 0.75);
     this.pushes = new Pool(scene, arrow, kColors.force);

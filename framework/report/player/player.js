@@ -19,7 +19,10 @@ class Player {
     this.shown = { impulses: true, contacts: true, forces: true, links: true, path: true, halo: true, ground: true, shadows: true, loop: false };
   }
 
-  changed() { for (const tell of this.listeners) tell(this); }
+  changed() {
+    for (const tell of this.listeners) tell(this);
+    this.tenth = Math.floor(performance.now() / 100);
+  }
 
   seek(t) {
     this.time = Math.min(this.end, Math.max(0, t));
@@ -41,6 +44,11 @@ class Player {
   pause() {
     this.isPlaying = false;
     this.changed();
+  }
+
+  // Whether numbers should be written: while it plays ten times a second, which is as often as they can be read.
+  isTimeToTell() {
+    return !this.isPlaying || Math.floor(performance.now() / 100) !== this.tenth;
   }
 
   toggle() { this.isPlaying ? this.pause() : this.play(); }
@@ -164,9 +172,10 @@ class Controls {
 
   show() {
     const player = this.player;
+    byId('scrub').value = String(player.time);
+    if (!player.isTimeToTell()) return;
     byId('play').textContent = player.isPlaying ? 'Pause' : 'Play';
     byId('clock').textContent = `${player.time.toFixed(player.end < 1 ? 4 : 3)} s`;
-    byId('scrub').value = String(player.time);
     byId('scrub').setAttribute('aria-valuetext', `${player.time.toFixed(3)} seconds`);
     byId('speed').value = String(player.speed);
     byId('body').value = String(player.chosen);

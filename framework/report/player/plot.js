@@ -49,11 +49,12 @@ class TimePlot {
     this.svg = element('svg', { viewBox: `0 0 ${kFrame.width} ${kFrame.height}`, class: 'plot', role: 'img', 'aria-label': plot.title });
     this.drawFrame();
     plot.curves.forEach((curve, i) => this.drawCurve(curve, kStyles[i % kStyles.length]));
-    this.cursor = element('line', { y1: kFrame.top, y2: kFrame.bottom, class: 'cursor' });
-    this.svg.append(this.cursor);
+    // The cursor is laid over the drawing, not into it: moving it paints nothing anew.
+    this.cursor = html('div', { className: 'cursor' });
+    const holder = html('div', { className: 'holder' }, this.svg, this.cursor);
     const legend = html('figcaption', { className: 'legend' });
     plot.curves.forEach((curve, i) => legend.append(this.legendEntry(curve, kStyles[i % kStyles.length])));
-    this.box.append(html('h3', {}, plot.title), this.svg, legend);
+    this.box.append(html('h3', {}, plot.title), holder, legend);
     const toTime = event => {
       const box = this.svg.getBoundingClientRect(), x = (event.clientX - box.left) / box.width * kFrame.width;
       seek(Math.min(1, Math.max(0, (x - kFrame.left) / (kFrame.right - kFrame.left))) * this.end);
@@ -133,13 +134,12 @@ class TimePlot {
     return html('span', {}, key, ` ${curve.name} `, value);
   }
 
-  follow(t) {
-    const x = this.x(t).toFixed(1);
-    this.cursor.setAttribute('x1', x);
-    this.cursor.setAttribute('x2', x);
+  // @param isFull  the numbers as well, not the cursor alone
+  follow(t, isFull) {
+    this.cursor.style.transform = `translateX(${(100 * this.x(t) / kFrame.width).toFixed(3)}%)`;
+    if (!isFull) return;
     this.plot.curves.forEach((curve, i) => {
-      let k = curve.frameAt(t);
-      this.readouts[i].textContent = `${short(curve.values[k])} ${this.plot.unit}`;
+      this.readouts[i].textContent = `${short(curve.values[curve.frameAt(t)])} ${this.plot.unit}`;
     });
   }
 }

@@ -24,8 +24,8 @@ function ballGeometry(isQuartered, segments) {
   return merged([0, 1, 2, 3].map(quarter));
 }
 
-// So many segments that the outline of a ball is round at the distance at which the scene is seen first.
-function segmentsFor(radius, sight) { return radius < 0.012 * sight ? 12 : radius < 0.04 * sight ? 20 : 40; }
+// So many segments that a ball's outline looks round.
+function segmentsFor(pixels) { return pixels < 7 ? 8 : pixels < 16 ? 12 : pixels < 45 ? 20 : 40; }
 
 // Faces that meet at less than 40 degrees are shaded as one smooth surface, others keep their edge: a corner's normal is the mean, weighted by
 // the faces' angles there, over the faces around it that lie within that of its own (Thuermer and Wuethrich 1998).
@@ -81,7 +81,7 @@ function merged(parts) {
 
 // Along z from 0 to 1: an arrow to be scaled, a rod of radius 1, a coil of radius 1.
 function arrowGeometry() {
-  const shaft = new THREE.CylinderBufferGeometry(0.035, 0.035, 0.72, 12), head = new THREE.ConeBufferGeometry(0.1, 0.28, 16);
+  const shaft = new THREE.CylinderBufferGeometry(0.035, 0.035, 0.72, 8), head = new THREE.ConeBufferGeometry(0.1, 0.28, 10);
   shaft.rotateX(Math.PI / 2).translate(0, 0, 0.36);
   head.rotateX(Math.PI / 2).translate(0, 0, 0.86);
   return merged([shaft, head]);

@@ -53,18 +53,24 @@ class Stage {
     this.about.bodies.forEach((body, i) => {
       if (i === this.floor) return;
       const isQuartered = !body.immovable && body.shape.kind === 'sphere' && body.shape.radius > 0, color = colorOf(body, i), glass = this.isGlass(i);
-      const key = JSON.stringify([body.shape.kind, body.shape.mesh, isQuartered, color, glass, segmentsFor(body.shape.radius || 0, this.sight)]);
+      const key = JSON.stringify([body.shape.kind, body.shape.mesh, isQuartered, color, glass]);
       if (!groups.has(key)) groups.set(key, { body, color, glass, isQuartered, members: [] });
       groups.get(key).members.push(i);
     });
     this.groups = [...groups.values()];
     const geometries = new Map();
+    const made = (shape, isQuartered, segments) => {
+      const key = JSON.stringify([shape.kind, shape.mesh, isQuartered, segments]);
+      if (!geometries.has(key)) geometries.set(key, geometryOf(shape, meshes, isQuartered, segments));
+      return sameGeometry(geometries.get(key));
+    };
     for (const group of this.groups) {
-      const shape = group.body.shape, segments = segmentsFor(shape.radius || 0, this.sight), key = JSON.stringify([shape.kind, shape.mesh, group.isQuartered, segments]);
-      if (!geometries.has(key)) geometries.set(key, geometryOf(shape, meshes, group.isQuartered, segments));
+      const shape = group.body.shape, levels = new Map();
+      group.geometry = segments => levels.get(segments) || levels.set(segments, made(shape, group.isQuartered, segments)).get(segments);
+      group.radius = Math.max(...group.members.map(i => this.scales[i].x));
       const material = new THREE.MeshLambertMaterial({ color: new THREE.Color(...group.color), vertexColors: THREE.VertexColors, transparent: group.glass > 0,
         opacity: group.glass || 1, depthWrite: !group.glass, side: shape.kind === 'plane' ? THREE.DoubleSide : THREE.FrontSide });
-      group.mesh = new THREE.InstancedMesh(sameGeometry(geometries.get(key)), material, group.members.length);
+      group.mesh = new THREE.InstancedMesh(group.geometry(12), material, group.members.length);
       group.mesh.frustumCulled = false;
       group.mesh.castShadow = !group.glass;
       group.mesh.receiveShadow = !group.glass;
@@ -216,6 +222,11 @@ class Stage {
   choose(body) {
     this.chosen = body;
     this.marks.tracePath(body);
+  }
+
+  // Balls are as round as they look. @param pixels  of a metre, where the eye looks
+  refine(pixels) {
+    for (const group of this.groups) if (group.body.shape.kind === 'sphere') group.mesh.geometry = group.geometry(segmentsFor(group.radius * pixels));
   }
 
   // Everything at time t. @param speed  of watching: how long a flash lasts
