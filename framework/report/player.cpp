@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 // In the order in which they stand in the page: what is used stands above.
-constexpr const char* kScripts[] = {"decode.js", "model.js", "shapes.js", "marks.js", "pick.js", "stage.js", "plot.js", "curves.js", "events.js", "player.js", "main.js"};
+constexpr const char* kScripts[] = {"decode.js", "model.js", "shapes.js", "marks.js", "pick.js", "stage.js", "plot.js", "curves.js", "events.js", "player.js", "panel_virtual_times.js", "main.js"};
 
 std::string library(const fs::path& folder, const char* file) {
   std::ifstream in(folder / file, std::ios::binary);

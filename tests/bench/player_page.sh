@@ -15,7 +15,7 @@ sed -e 's/"duration_s": 5/"duration_s": 10/; s/\[20, 10, 1\]/[20, 15, 1]/; s/\[0
 events=$(grep -o 'events *.*' "$folder/said" | head -1)
 # A script of the bench's own says after 8 s what it saw; the browser's log brings it here.
 sed -i 's#</body>#<script>setTimeout(() => console.log("SAW ready=" + document.body.dataset.ready + " fps=" + document.body.dataset.fps + " error=" + (document.body.dataset.error || "")), 8000)</script></body>#' "$folder/page.html"
-timeout 14 chromium --headless --no-sandbox --disable-quic --no-first-run --disable-background-networking --disable-component-update --disable-sync --use-gl=angle \
+timeout 14 chromium --headless --no-sandbox --disable-quic --no-first-run --disable-background-networking --disable-component-update --disable-sync --disable-gpu \
   --enable-unsafe-swiftshader --window-size=1280,720 --user-data-dir="$folder/profile" --enable-logging=stderr "file://$folder/page.html#speed=1" 2>"$folder/log" >/dev/null || true
 saw=$(grep -o 'SAW ready=[0-9]* fps=[0-9.]* error=.*' "$folder/log" | head -1)
 [ -n "$saw" ] || { echo "the page did not come to life; the browser's log: " >&2; tail -5 "$folder/log" >&2; exit 1; }

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/render/camera.h"
+#include "framework/report/virtual_times_panel.h"
 #include "tests/report/browser.h"
 #include "tests/report/player_fixtures.h"
 
@@ -101,7 +102,7 @@ TEST_F(PlayerInBrowser, KeysPlayStepAndJump) {
       for (const [k, shift] of [['Home'], ['ArrowRight'], ['ArrowRight', true], ['ArrowLeft'], ['n'], ['p'], ['End'], ['ArrowDown'], [' ']]) { key(k, shift); say(); }
       document.body.dataset.said = said.join(' '); };
     wait();)";
-  const std::string elements = browser.elements(browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}}), script) + "#t=0.3");
+  const std::string elements = browser.elements(browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}}), script) + "#t=0.3&speed=1");
   EXPECT_EQ(body_data(elements, "said"),
             "0.0000 false 1 "     // Home
             "0.0167 false 1 "     // a frame on
@@ -120,6 +121,19 @@ TEST_F(PlayerInBrowser, TwoRunsNameTheirFirstDifference) {
   const std::string elements = browser.elements(browser.serve(player_page(thrown_ball(), {{wrong, "submission"}, {thrown_run(), "reference"}})) + "#t=0.4");
   EXPECT_EQ(body_data(elements, "error"), "");
   EXPECT_NE(elements.find("First difference at 0.4 s: collision of ball &lt;1&gt; and box: impulse 9 N s in submission, 6 N s in reference."), std::string::npos);
+}
+
+// A runs ahead to 0.4 s, B is found to hit it at 0.2 s: A goes back alone, then both are committed.
+VirtualTimes one_rollback() { return {{"A", "B"}, {{0, 0, 0.4, 0}, {1, 0, 0.2, 0.2}, {0, 0.4, 0.2, 0.2}, {0, 0.2, 0.5, 0.2}, {1, 0.2, 0.6, 0.5}}}; }
+
+TEST_F(PlayerInBrowser, VirtualTimesStandAtTheMoveThatCommittedTheCursor) {
+  report::PlayerOptions options;
+  options.panels = {report::virtual_times_panel(one_rollback())};
+  const std::string address = browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}}, options));
+  const std::string early = browser.elements(address + "#t=0.1&tab=virtual"), late = browser.elements(address + "#t=0.45&tab=virtual");
+  EXPECT_EQ(body_data(early, "error"), "");
+  EXPECT_NE(early.find("Move 2 of 5: B on from 0 to 0.2 s; global virtual time 0.2 s; 0 rollbacks so far"), std::string::npos);
+  EXPECT_NE(late.find("Move 5 of 5: B on from 0.2 to 0.6 s; global virtual time 0.5 s; 1 rollback so far"), std::string::npos);
 }
 
 TEST_F(PlayerInBrowser, WithoutWebglItSaysSoAndKeepsCurvesAndEvents) {

@@ -1,7 +1,5 @@
 // Puts the page together. What fails says so in the page, and leaves the rest standing.
 
-const panelKinds = {};   // charts of an engine's own, by kind: (element, data, player) => ({ at(time_s) {} }); panel_*.js put theirs here
-
 function complain(text) {
   byId('complaint').textContent = text;
   byId('complaint').hidden = false;
@@ -158,7 +156,7 @@ function addTabs(player) {
   const panes = [['Curves', box => { const pane = new CurvePane(box, player); pane.fill(curvesOf(player.runs, run => run.series)); return pane; }],
     ['Body', box => new BodyPane(box, player)], [`Events (${player.runs.reduce((sum, run) => sum + run.events.count, 0)})`, box => new EventPane(box, player)]];
   for (const panel of player.about.panels)
-    if (panelKinds[panel.kind]) panes.push([panel.title, box => { const made = panelKinds[panel.kind](box, panel.data, player); return { follow: t => made.at(t) }; }]);
+    if (panelKinds[panel.kind]) panes.push([panel.title, box => { const made = panelKinds[panel.kind](box, panel.data, player); return { follow: (t, isFull) => isFull && made.at(t) }; }]);
   const tabs = panes.map(([title, make], i) => {
     const tab = html('button', { role: 'tab', id: `tab${i}` }, title), box = html('div', { role: 'tabpanel', className: 'pane' });
     tab.setAttribute('role', 'tab');

@@ -1,3 +1,6 @@
+// Charts of an engine's own, by kind: (element, data, player) => ({ at(time_s) {} }). panel_*.js put theirs here.
+const panelKinds = {};
+
 // Plots over time, in the style of framework/report/plot.h: a frame, round ticks, units on both axes, curves that differ in lightness and dashes.
 
 const kStyles = [['#00446b', ''], ['#c14d00', '7 3'], ['#007a57', '2 2.5'], ['#9a4f86', '9 3 2 3'], ['#3d8fc4', '4 2'], ['#8a6d00', '1.5 4']];
