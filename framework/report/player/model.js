@@ -19,6 +19,41 @@ class Run {
     this.series = head.series.map(entry => ({ ...entry, values: reader.channel(n, Float64Array) }));
     this.readContacts(reader);
     this.readEvents(reader, head.events);
+    this.findBlows();
+  }
+
+  // By body: when it is struck. Between two frames it does not go straight then.
+  findBlows() {
+    const e = this.events;
+    this.blows = new Map();
+    for (let i = 0; i < e.count; ++i)
+      for (const body of e.kind[i] === kCollision ? [e.a[i], e.b[i]] : []) {
+        if (!this.moving.has(body)) continue;
+        if (!this.blows.has(body)) this.blows.set(body, []);
+        this.blows.get(body).push(e.time[i]);
+      }
+  }
+
+  // Where a struck body is between two frames: along its velocity after the first up to the first blow, along that before the second since the last, straight
+  // in between (gravity over a frame is left out: 1.4 mm at 60 frames a second). @return false where nothing strikes it between them
+  strike(body, at, place) {
+    const blows = this.blows.get(body), begin = this.times[at.k], end = this.times[at.k + 1];
+    if (!blows || at.part === 0) return false;
+    let low = 0, high = blows.length;
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (blows[middle] <= begin + 2e-6) low = middle + 1; else high = middle;
+    }
+    const first = blows[low];
+    if (!(first < end - 2e-6)) return false;
+    let last = first;
+    for (let i = low; i < blows.length && blows[i] < end - 2e-6; ++i) last = blows[i];
+    const c = this.moving.get(body), t = begin + at.part * (end - begin);
+    const before = (i, time) => c[i][at.k] + c[7 + i][at.k] * (time - begin), after = (i, time) => c[i][at.k + 1] - c[7 + i][at.k + 1] * (end - time);
+    const share = last > first ? (t - first) / (last - first) : 0;
+    const one = i => (t <= first ? before(i, t) : t >= last ? after(i, t) : (1 - share) * before(i, first) + share * after(i, last));
+    place.set(one(0), one(1), one(2));
+    return true;
   }
 
   readContacts(reader) {
@@ -60,7 +95,7 @@ class Run {
     }
     const k = at.k, u = at.part, n = Math.min(k + 1, this.times.length - 1), v = 1 - u;
     const sign = c[3][k] * c[3][n] + c[4][k] * c[4][n] + c[5][k] * c[5][n] + c[6][k] * c[6][n] < 0 ? -u : u;
-    place.set(v * c[0][k] + u * c[0][n], v * c[1][k] + u * c[1][n], v * c[2][k] + u * c[2][n]);
+    if (!this.strike(body, at, place)) place.set(v * c[0][k] + u * c[0][n], v * c[1][k] + u * c[1][n], v * c[2][k] + u * c[2][n]);
     turn.set(v * c[3][k] + sign * c[3][n], v * c[4][k] + sign * c[4][n], v * c[5][k] + sign * c[5][n], v * c[6][k] + sign * c[6][n]).normalize();
     return Number.isFinite(place.x + place.y + place.z + turn.x + turn.w);
   }
