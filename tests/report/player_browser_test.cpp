@@ -159,6 +159,16 @@ TEST_F(PlayerInBrowser, VirtualTimesStandAtTheMoveThatCommittedTheCursor) {
   EXPECT_NE(late.find("Move 5 of 5: B on from 0.2 to 0.6 s; global virtual time 0.5 s; 1 rollback so far"), std::string::npos);
 }
 
+TEST_F(PlayerInBrowser, DamagedDataLeaveThePlotsThatNeedNoScript) {
+  std::string page = player_page(thrown_ball(), {{thrown_run(), ""}});
+  page.replace(page.find("id=\"run0\">") + 10, 40, std::string(40, 'A'));
+  const std::string elements = browser.elements(browser.serve(page));
+  EXPECT_NE(body_data(elements, "error").find("the data in this page are damaged"), std::string::npos);
+  EXPECT_EQ(body_data(elements, "ready"), "");
+  EXPECT_EQ(elements.find("class=\"alive\""), std::string::npos);   // which hides them
+  EXPECT_NE(elements.find("<svg class=\"plot\""), std::string::npos);
+}
+
 TEST_F(PlayerInBrowser, WithoutWebglItSaysSoAndKeepsCurvesAndEvents) {
   const std::string elements = browser.elements(browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}})) + "#t=0.4&tab=events", "--disable-3d-apis");
   EXPECT_NE(elements.find("The motion cannot be drawn here"), std::string::npos);

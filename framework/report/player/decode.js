@@ -7,7 +7,11 @@ async function openedBytes(id) {
   for (let i = 0; i < text.length; ++i) packed[i] = text.charCodeAt(i);
   if (typeof DecompressionStream === 'undefined') throw new Error('this browser cannot unpack the page\'s data (DecompressionStream is missing: browsers have had it since 2023)');
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'));
-  return new Uint8Array(await new Response(stream).arrayBuffer());
+  try {
+    return new Uint8Array(await new Response(stream).arrayBuffer());
+  } catch (error) {
+    throw new Error('the data in this page are damaged; write it again');
+  }
 }
 
 class ChannelReader {

@@ -263,4 +263,7 @@ async function main() {
   runLoop(player, picture);
 }
 
-main().catch(error => complain(`This page's script failed: ${error.message}. Plots and events stand below.`));
+main().catch(error => {
+  document.documentElement.classList.remove('alive');
+  complain(`This page's script failed: ${error.message}. Plots and events stand below.`);
+});
