@@ -5,7 +5,7 @@ const kPlots = {
   energy: { title: 'Energy', axis: 'energy' },
   drift: { title: 'Change of the total energy', axis: 'E − E(0)' },
   momentum: { title: 'Momentum of all that moves', axis: 'momentum' },
-  spin: { title: 'Angular momentum about the origin', axis: 'angular momentum' },
+  spin: { title: 'Angular momentum about the origin', axis: 'ang. momentum' },
   gap: { title: 'Smallest gap between two bodies', axis: 'gap' },
   springs: { title: 'Forces of springs (pull > 0)', axis: 'force', isChosen: true },
   rods: { title: 'Tensions of rods (pull > 0)', axis: 'tension', isChosen: true },

@@ -115,7 +115,7 @@ class Controls {
     click('home', resetView);
     for (const s of kSpeeds) byId('speed').append(html('option', { value: String(s) }, `${s} ×`));
     byId('speed').addEventListener('change', event => player.setSpeed(Number(event.target.value)));
-    byId('body').append(html('option', { value: '-1' }, 'choose body'));
+    byId('body').append(html('option', { value: '-1' }, 'body …'));
     player.about.bodies.forEach((body, i) => byId('body').append(html('option', { value: String(i) }, body.name)));
     byId('body').addEventListener('change', event => player.choose(Number(event.target.value)));
     const scrub = byId('scrub');
@@ -180,6 +180,7 @@ class Controls {
     byId('speed').value = String(player.speed);
     byId('body').value = String(player.chosen);
     byId('follow').disabled = player.chosen < 0;
+    byId('back').disabled = byId('next').disabled = player.events.length === 0;
     byId('follow').setAttribute('aria-pressed', String(player.followed >= 0));
   }
 

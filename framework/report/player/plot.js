@@ -76,7 +76,8 @@ class TimePlot {
       const room = Math.pow(10, 0.06 * Math.max(0.5, Math.log10(high / low)));
       [this.low, this.high] = [low / room, high * room];
     } else {
-      const size = Math.max(high - low, 1e-9 * Math.max(Math.abs(low), Math.abs(high))), room = size > 0 ? 0.07 * size : 1;
+      // What stays the same to six digits is drawn as a straight line, whose ticks can be told apart.
+      const least = 1e-4 * Math.max(Math.abs(low), Math.abs(high)), room = high > low || least > 0 ? Math.max(0.07 * (high - low), 0.5 * (least - (high - low))) : 1;
       [this.low, this.high] = [low - room, high + room];
     }
   }

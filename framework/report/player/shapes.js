@@ -87,7 +87,7 @@ function arrowGeometry() {
   return merged([shaft, head]);
 }
 
-function rodGeometry() { return new THREE.CylinderBufferGeometry(1, 1, 1, 12).rotateX(Math.PI / 2).translate(0, 0, 0.5); }
+function rodGeometry(sides) { return new THREE.CylinderBufferGeometry(1, 1, 1, sides).rotateX(Math.PI / 2).translate(0, 0, 0.5); }
 
 function coilGeometry(turns) {
   class Helix extends THREE.Curve {

@@ -173,8 +173,9 @@ class Stage {
   addLinks() {
     const at = { k: 0, part: 0 };
     const slim = (share, anchors) => Math.min(share * this.sight, ...anchors.filter(a => a.body >= 0 && this.about.bodies[a.body].radius > 0).map(a => 0.4 * this.about.bodies[a.body].radius));
-    const metal = new Pool(this.scene, rodGeometry(), kColors.rod), balls = new Pool(this.scene, ballGeometry(false, 16), kColors.rod);
-    const joints = new Pool(this.scene, ballGeometry(false, 16), kColors.joint), pins = new Pool(this.scene, rodGeometry(), kColors.joint);
+    const isMany = this.about.rods.length + this.about.joints.length > 150, sides = isMany ? 5 : 12, segments = isMany ? 8 : 16;
+    const metal = new Pool(this.scene, rodGeometry(sides), kColors.rod), balls = new Pool(this.scene, ballGeometry(false, segments), kColors.rod);
+    const joints = new Pool(this.scene, ballGeometry(false, segments), kColors.joint), pins = new Pool(this.scene, rodGeometry(sides), kColors.joint);
     const coils = [10, 20, 40].map(turns => new Pool(this.scene, coilGeometry(turns), kColors.spring));
     this.pools = [metal, balls, joints, pins, ...coils];
     this.links = [];
