@@ -143,6 +143,8 @@ TEST_F(PlayerInBrowser, TwoRunsNameTheirFirstDifference) {
   wrong.events[0].impulse = 9.0;
   const std::string elements = browser.elements(browser.serve(player_page(thrown_ball(), {{wrong, "submission"}, {thrown_run(), "reference"}})) + "#t=0.4");
   EXPECT_EQ(body_data(elements, "error"), "");
+  EXPECT_NE(elements.find("ball &lt;1&gt; – box: 9 N s, -3 → 1.5 m/s"), std::string::npos);   // beside the picture of the one,
+  EXPECT_NE(elements.find("ball &lt;1&gt; – box: 6 N s, -3 → 1.5 m/s"), std::string::npos);   // and of the other
   EXPECT_NE(elements.find("First difference at 0.4 s: collision of ball &lt;1&gt; and box: impulse 9 N s in submission, 6 N s in reference."), std::string::npos);
 }
 

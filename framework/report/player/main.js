@@ -186,11 +186,23 @@ function addTabs(player) {
   return { open, names: tabs.map(entry => entry.tab.textContent) };
 }
 
+// What an arrow in the picture says, in words: the blow that was just now, pushes that last.
+function happeningIn(player, run) {
+  const e = run.events, i = run.eventFrom(player.time + 1e-5) - 1, names = player.about.bodies, words = [];
+  if (i >= 0 && player.time - e.time[i] < kFlashSeconds * player.speed && e.kind[i] === kCollision)
+    words.push(`${[e.a[i], e.b[i]].filter(b => b >= 0).map(b => names[b].name).join(' – ')}: ${short(e.impulse[i], 3)} N s, ${short(e.before[i], 3)} → ${short(e.after[i], 3)} m/s`);
+  for (const push of player.about.forces)
+    if (player.time >= push.start - 1e-6 && player.time <= push.start + push.duration) words.push(`push on ${names[push.body].name}: ${short(Math.hypot(...push.force), 3)} N`);
+  return words.join(' · ');
+}
+
 function addWords(player, picture) {
   const labels = [];
   player.runs.forEach((run, r) => {
     const laws = [run.head.impulses, run.head.motion].filter(word => word && word !== 'none');
-    const box = html('div', { className: 'label' }, html('b', {}, run.label || ''), html('span', {}, run.head.stopped ? ` stopped: ${run.head.stopped}` : ''));
+    const now = html('p', { className: 'now' });
+    const box = html('div', { className: 'label' }, html('b', {}, run.label || ''), html('span', {}, run.head.stopped ? ` stopped: ${run.head.stopped}` : ''), now);
+    player.listeners.push(() => { if (player.isTimeToTell()) now.textContent = happeningIn(player, run); });
     labels.push(box);
     box.title = `engine ${run.head.engine}, step ${short(run.head.step)} s, laws: ${laws.join(', ')}`;
     byId('words').append(box);
