@@ -1,9 +1,12 @@
 #!/usr/bin/env bash
 # The pictures of the handouts, drawn by the framework with the reference solutions. The same tree gives the same bytes.
+# Usage: make_figures.sh [FOLDER]     FOLDER: where they are put; default: handouts/figures, which is what the repository shows
 set -euo pipefail
+folder=$(realpath -m "${1:-$(dirname "${BASH_SOURCE[0]}")/figures}")
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+mkdir -p "$folder"
 for scene in collide_off_centre_e05 bullet_thin_wall t_handle; do
-  ./tumble run "$scene" --modules a1=reference,a2=reference --sheet "handouts/figures/$scene.png"
+  ./tumble run "$scene" --modules a1=reference,a2=reference --sheet "$folder/$scene.png"
 done
-./tumble run newtons_cradle_springs --modules a1=reference,a2=reference,a3=reference --sheet handouts/figures/newtons_cradle_springs.png
-./tumble run arch --modules a1=reference,a2=reference,a3=reference --png handouts/figures/arch.png
+./tumble run newtons_cradle_springs --modules a1=reference,a2=reference,a3=reference --sheet "$folder/newtons_cradle_springs.png"
+./tumble run arch --modules a1=reference,a2=reference,a3=reference --png "$folder/arch.png"

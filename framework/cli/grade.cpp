@@ -79,7 +79,7 @@ void add_grade(CLI::App& app, Context& context) {
   verb->add_option("--out", words->out, "Where results go; default out/grade_ID. A run that was ended goes on from there")->type_name("FOLDER");
   verb->add_option("--jobs", words->jobs, "Submissions at a time")->check(CLI::Range(1, 256))->capture_default_str();
   verb->add_option("--budget-s", words->budget_s, "Time for all tests of one submission together; tests after it are out of time, not run")->check(CLI::PositiveNumber)->capture_default_str();
-  verb->add_flag("--no-media", words->no_media, "Without pictures and videos: seconds instead of minutes a submission");
+  verb->add_flag("--no-media", words->no_media, "Without pictures, videos and pages that play: seconds instead of minutes a submission");
   verb->footer("Exit: 0 all graded, 2 something to repair, 3 the grader failed somewhere (those scores are blank; run it again).");
   verb->callback([&context, words] { grade(context, *words); });
 }

@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/cli/judgement_table.h"
+#include "framework/cli/run_page.h"
 #include "framework/cli/scene_pictures.h"
 #include "framework/core/nearest_word.h"
 #include "framework/engines/judge.h"
@@ -152,6 +153,7 @@ void add_run_words(CLI::App& verb, RunWords& words) {
   verb.add_option("--sheet", words.sheet, "Write a contact sheet (.png)")->type_name("FILE");
   verb.add_option("--video", words.video, "Write a video (.mp4)")->type_name("FILE");
   verb.add_option("--trajectory", words.trajectory, "Write the recorded run, every frame and event")->type_name("FILE");
+  add_page_words(verb, words);
   verb.add_option("--speed", words.speed, "Seconds of the run in a second of video: 0.25 is slow motion")->check(CLI::Range(1e-6, 1e6))->capture_default_str();
   verb.add_option("--size", words.size, "Of pictures and video, in pixels")->type_name("WxH")->capture_default_str();
   verb.add_flag("--json", words.json, "For machines");
@@ -193,6 +195,7 @@ scene::Scene find_scene(const Context& context, const std::string& word) {
 
 void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const RunWords& words, const std::string& extra) {
   const PictureSize size = parse_size(words.size);   // refused before the run, not after it
+  check_page_words(context, words);
   engines::RunOptions options;
   options.engine = words.engine;
   options.step_s = words.step_s;
@@ -224,6 +227,7 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
     fmt::print(stderr, "wrote {}\n", words.trajectory);
   }
   if (!run.frames.empty()) write_pictures(context, scene, run, words, size);
+  if (!run.frames.empty()) write_page(context, scene, chosen, run, words);
 
   bool passed = run.stopped_by.empty();
   for (const auto& check : checks) passed = passed && check.passed;

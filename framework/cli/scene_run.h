@@ -16,7 +16,8 @@ struct RunWords {
   std::string modules;
   std::string engine = "rd";
   std::optional<double> step_s, duration_s;
-  std::string png, sheet, video, trajectory;   // files to write; empty: none
+  std::string png, sheet, video, trajectory, html;   // files to write; empty: none
+  std::string beside;                  // how a second run in the page differs; see run_page.h
   double at_s = -1.0;                  // of the PNG; negative: the end
   double speed = 1.0;                  // of the video: 0.25 is slow motion
   std::string size = "640x480";

@@ -30,6 +30,7 @@ void add_check(CLI::App& app, Context& context);
 void add_demo(CLI::App& app, Context& context);
 void add_explain(CLI::App& app, Context& context);
 void add_grade(CLI::App& app, Context& context);
+void add_handouts(CLI::App& app, Context& context);
 void add_inspect(CLI::App& app, Context& context);
 void add_poke(CLI::App& app, Context& context);
 void add_release(CLI::App& app, Context& context);

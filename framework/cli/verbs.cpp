@@ -13,6 +13,7 @@ void add_verbs(CLI::App& app, Context& context) {
   add_grade(app, context);
   add_audit(app, context);
   add_inspect(app, context);
+  add_handouts(app, context);
   add_release(app, context);
   add_truths(app, context);
   add_battery(app, context);

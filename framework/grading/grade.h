@@ -6,7 +6,7 @@
 ///   OUT/NAME/index.html            scores, stories, pictures
 ///   OUT/NAME/results.json          in Gradescope's format
 ///   OUT/NAME/record.json           the ledger's entry; written last, so a folder that has it is whole
-///   OUT/NAME/media/...             SCENE.png, SCENE.mp4
+///   OUT/NAME/media/...             SCENE.png, SCENE.mp4, SCENE.html (plays the run)
 ///   OUT/times.json                 how long things took; the one file that differs between two equal runs
 #pragma once
 

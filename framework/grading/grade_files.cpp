@@ -52,7 +52,7 @@ Json media_json(const SceneMedia& media) {
     checks.push_back({{"kind", c.kind}, {"subject", c.subject}, {"value", c.value}, {"threshold", c.threshold}, {"unit", c.unit}, {"passed", c.passed},
                       {"why", c.why}, {"at_least", c.at_least}, {"detail", c.detail}});
   return {{"scene", media.scene}, {"title", media.title}, {"about", media.about}, {"picture", media.picture.string()}, {"video", media.video.string()},
-          {"story", media.story}, {"attempted", media.attempted}, {"checks", checks}};
+          {"story", media.story}, {"attempted", media.attempted}, {"checks", checks}, {"page", media.page.string()}};
 }
 
 // JSON has no infinities: they became null.
@@ -67,6 +67,7 @@ SceneMedia media_of(const Json& json) {
   media.video = json.at("video").get<std::string>();
   media.story = json.at("story");
   media.attempted = json.at("attempted");
+  media.page = json.value("page", std::string());
   for (const Json& c : json.at("checks"))
     media.checks.push_back({c.at("kind"), c.at("subject"), number_of(c.at("value")), number_of(c.at("threshold")), c.at("unit"), c.at("passed"), c.at("why"),
                             c.at("at_least"), c.at("detail")});

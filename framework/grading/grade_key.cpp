@@ -39,7 +39,7 @@ std::string grader_digest(const Course& course, const std::string& id, double bu
 std::string pictures_digest(const Course& course, const std::string& id, const GradeOptions& options) {
   if (!options.media) return "";
   const MediaOptions& m = options.media_options;
-  std::string text = fmt::format("{} {} {} {} {} ", m.width, m.height, m.samples, m.rate_hz, m.video);
+  std::string text = fmt::format("{} {} {} {} {} {} ", m.width, m.height, m.samples, m.rate_hz, m.video, m.page);
   for (const fs::path& scene : options.scenes.empty() ? scenes_of(course, id) : options.scenes) text += scene.filename().string() + digest_of_file(scene) + ' ';
   return digest(text + digest_of_file(built_module(course, id, "reference")));
 }

@@ -126,6 +126,7 @@ void add_media(report::Page& page, const std::vector<SceneMedia>& media, const s
       figure.caption = scene.about;
       page.figures({figure});
     }
+    if (!scene.page.empty()) page.links({{"Play it: turn it, step through it, see its curves and where it first differs", report::link_to(folder / scene.page)}});
     if (scene.checks.empty()) continue;
     report::Table table;
     table.columns = {{"Judged by"}, {"Of"}, {"Verdict"}, {"Reached and allowed", true}, {"Where"}};

@@ -4,8 +4,10 @@
 
 #include "framework/engines/run.h"
 #include "framework/grading/call_log.h"
+#include "framework/grading/plain_text.h"
 #include "framework/modules/load.h"
 #include "framework/render/picture.h"
+#include "framework/report/player.h"
 #include "framework/scene/load_scene.h"
 
 namespace tumble::grading {
@@ -72,7 +74,7 @@ Run run(const scene::Scene& scene, const Laws& laws) {
   }
   result.trajectory = recorder.trajectory();
   if (result.story.empty()) result.story = result.trajectory.stopped_by;
-  else result.trajectory.stopped_by = result.story;
+  else result.trajectory.stopped_by = plain_text(result.story);   // it may be a submission's own words
   return result;
 }
 
@@ -103,6 +105,16 @@ void draw(const scene::Scene& scene, const std::vector<render::LabelledRun>& run
   render::write_side_by_side_video(folder / media.video, scene, runs, picture);
 }
 
+// Run and reference in one page that plays them, with the first difference.
+void write_page(const scene::Scene& scene, const std::vector<render::LabelledRun>& runs, const fs::path& folder, const Course& course, SceneMedia& media) {
+  report::PlayerOptions player;
+  player.root = course.root;
+  std::vector<report::PlayedRun> played;
+  for (const render::LabelledRun& run : runs) played.push_back({run.trajectory, run.label});
+  media.page = scene.name + ".html";
+  report::write_player(folder / media.page, scene, played, player);
+}
+
 }  // namespace
 
 std::vector<SceneMedia> make_media(const Course& course, const std::string& id, const std::vector<fs::path>& scenes, const fs::path& submission,
@@ -129,6 +141,7 @@ std::vector<SceneMedia> make_media(const Course& course, const std::string& id, 
     MediaOptions own = options;
     own.video = options.video && theirs.attempted;  // nothing moves by what is not there: a picture says that as well
     if (!runs.empty()) draw(scene, runs, folder, own, course, media);
+    if (!runs.empty() && options.page && theirs.attempted) write_page(scene, runs, folder, course, media);
     all.push_back(std::move(media));
   }
   return all;

@@ -257,13 +257,14 @@ TEST_F(Folder, PagesWriteOutWhatHidesInANameOrAStory) {
 TEST_F(Folder, ARecordIsReadAsItWasWritten) {
   Grade grade = graded("x", {{result("S.Open", Verdict::kCrashed, "SIGSEGV"), result("S.Shut", Verdict::kRight)}, ""});
   grade.notes = {"a note"};
-  grade.media = {{"pong", "Pong", "about", "pong.png", "pong.mp4", "", true, {{"gap", "all", INFINITY, 0.0, "m", false, "why", true, "at 1 s"}}}};
+  grade.media = {{"pong", "Pong", "about", "pong.png", "pong.mp4", "", true, {{"gap", "all", INFINITY, 0.0, "m", false, "why", true, "at 1 s"}}, "pong.html"}};
   put("x/record.json", record_json(grade, {"s", "g", "p"}, "r"));
   const auto record = read_record(root / "x/record.json");
   ASSERT_TRUE(record);
   EXPECT_EQ(record_json(record->grade, record->key, record->results_digest), record_json(grade, {"s", "g", "p"}, "r"));
   EXPECT_EQ(record->grade.folder, "x");
   EXPECT_TRUE(std::isinf(record->grade.media[0].checks[0].value));
+  EXPECT_EQ(record->grade.media[0].page, "pong.html");
   put("x/record.json", "{\"half\": ");
   EXPECT_FALSE(read_record(root / "x/record.json"));
 }

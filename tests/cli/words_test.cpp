@@ -100,6 +100,28 @@ TEST_F(CommandLine, AnUnknownEngineOrAStepOfZeroIsAMistakeToRepair) {
   EXPECT_EQ(type("run t_handle --size 12").code, 2);
 }
 
+TEST_F(CommandLine, APagePlaysARunBesideAnotherOrBesideARecording) {
+  const Said alone = type("run t_handle --modules library --duration-s 0.5 --trajectory first.run --html alone.html");
+  EXPECT_TRUE(holds(alone.err, "wrote alone.html")) << alone.err;
+  const Said beside = type("run t_handle --modules library --duration-s 0.5 --step-s 0.02 --beside step-s=0.01 --html beside.html");
+  const std::string page = contents_of(folder_ / "beside.html");
+  EXPECT_TRUE(holds(page, "\"label\":\"step 0.02 s\"") && holds(page, "\"label\":\"step 0.01 s\"")) << beside.err;
+  const Said recorded = type("run t_handle --modules library --duration-s 0.5 --beside recording=first.run --html recorded.html");
+  const std::string same = contents_of(folder_ / "recorded.html");
+  EXPECT_TRUE(holds(same, "\"label\":\"first\"") && holds(same, "\"difference\":null")) << recorded.err;   // the recording is of the same run
+}
+
+TEST_F(CommandLine, BesideThatCannotBeIsRefusedBeforeAnythingRuns) {
+  for (const auto& [words, part] : {std::pair{"--beside reference", "Add --html"}, {"--html f.html --beside step-s=fast", "'fast'"}, {"--html f.html --beside recording=nowhere.run", "nowhere.run"},
+                                    {"--html f.html --beside recording=a.run,engine=rd", "as it was made"}, {"--html f.html --beside a9=reference", "a9"}}) {
+    const Said said = type(std::string("run t_handle --modules library ") + words);
+    EXPECT_EQ(said.code, 2) << words;
+    EXPECT_EQ(said.out, "") << words;
+    EXPECT_TRUE(holds(said.err, part)) << said.err;
+  }
+  EXPECT_TRUE(left_nothing());
+}
+
 TEST_F(CommandLine, AModelThatIsNoFileIsToldByName) {
   const Said said = type("inspect nowhere.3ds");
   EXPECT_EQ(said.code, 2);

@@ -1,0 +1,125 @@
+#include "framework/cli/run_page.h"
+
+#include <chrono>
+#include <cstdlib>
+#include <set>
+#include <sstream>
+
+#include <fmt/format.h>
+
+#include "framework/engines/run.h"
+#include "framework/grading/worker_connection.h"
+#include "framework/report/player.h"
+
+namespace tumble::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kExample = "For example --beside reference, --beside a1=reference, --beside step-s=0.001 or --beside recording=FILE.";
+
+struct Second {
+  Trajectory run;
+  std::string label, label_of_first;
+};
+
+std::string short_name(const std::string& source) { return source.find('/') == source.npos && source.find('.') == source.npos ? source : fs::path(source).stem().string(); }
+
+/// Whose laws a run has, as far as the other run has others; else its engine or step.
+std::string label_of(const ChosenLaws& mine, const ChosenLaws& others, const TrajectoryInfo& info, const TrajectoryInfo& other) {
+  std::set<std::string> names;
+  for (const ChosenModule& module : mine.modules)
+    for (const ChosenModule& theirs : others.modules)
+      if (module.id == theirs.id && module.source != theirs.source) names.insert(short_name(module.source));
+  std::string label;
+  for (const std::string& name : names) label += (label.empty() ? "" : ", ") + name;
+  if (info.engine != other.engine) label += (label.empty() ? "" : ", ") + ("engine " + info.engine);
+  if (info.step_s != other.step_s) label += (label.empty() ? "" : ", ") + fmt::format("step {:.4g} s", info.step_s);
+  return label;
+}
+
+ModuleWords with_changes(ModuleWords words, const ModuleWords& changes) {
+  if (changes.contains("")) words.clear();
+  for (const auto& [id, word] : changes) words[id] = word;
+  return words;
+}
+
+Second recorded(const std::string& file) {
+  Second second{read_trajectory(file), fs::path(file).stem().string(), "this run"};
+  return second;
+}
+
+Second second_run(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const Trajectory& first, const RunWords& words) {
+  const BesideWords beside = parse_beside(words.beside);
+  if (!beside.recording.empty()) return recorded(beside.recording);
+  const ModuleWords mine = parse_module_words(words.modules, context.registry);
+  const ChosenLaws other = choose_laws(context, scene, with_changes(mine, parse_module_words(beside.modules, context.registry)));
+  engines::RunOptions options;
+  options.engine = beside.engine.empty() ? words.engine : beside.engine;
+  options.step_s = beside.step_s ? beside.step_s : words.step_s;
+  options.duration_s = words.duration_s;
+  options.command = context.command_line;
+  TrajectoryRecorder recorder;
+  std::string ended;
+  try {
+    engines::run_scene(scene, other.laws, options, recorder);
+  } catch (const grading::CallEnded& error) {
+    ended = error.what();
+  }
+  Second second{recorder.trajectory(), "", ""};
+  if (!ended.empty()) second.run.stopped_by = ended;
+  second.label_of_first = label_of(chosen, other, first.info, second.run.info);
+  second.label = label_of(other, chosen, second.run.info, first.info);
+  if (second.label.empty()) second.label_of_first = "first", second.label = "second, alike";
+  return second;
+}
+
+}  // namespace
+
+void add_page_words(CLI::App& verb, RunWords& words) {
+  verb.add_option("--html", words.html, "Write a page that plays the run: motion, curves, events; opens in any browser, needs no network")->type_name("FILE");
+  verb.add_option("--beside", words.beside, "Show a second run in the page, and where the two first differ: whose laws (as --modules), engine=, step-s=, or recording=FILE")->type_name("WORDS");
+}
+
+BesideWords parse_beside(const std::string& text) {
+  BesideWords beside;
+  std::stringstream parts(text);
+  for (std::string part; std::getline(parts, part, ',');) {
+    const auto value = [&](const char* key) { return part.starts_with(key) ? part.substr(std::string(key).size()) : ""; };
+    if (part.starts_with("engine=")) beside.engine = value("engine=");
+    else if (part.starts_with("recording=")) beside.recording = value("recording=");
+    else if (part.starts_with("step-s=")) {
+      char* end = nullptr;
+      const std::string number = value("step-s=");
+      beside.step_s = std::strtod(number.c_str(), &end);
+      if (number.empty() || *end != '\0' || !(*beside.step_s > 0)) throw UserError("--beside " + text, "a step must be a positive number of seconds, not '" + number + "'", kExample);
+    } else beside.modules += (beside.modules.empty() ? "" : ",") + part;
+  }
+  if (!beside.recording.empty() && (!beside.modules.empty() || !beside.engine.empty() || beside.step_s))
+    throw UserError("--beside " + text, "a recording is as it was made: nothing can be chosen for it", kExample);
+  return beside;
+}
+
+void check_page_words(const Context& context, const RunWords& words) {
+  if (words.beside.empty()) return;
+  if (words.html.empty()) throw UserError("--beside " + words.beside, "shows a second run in a page, and no page was asked for", "Add --html FILE.");
+  const BesideWords beside = parse_beside(words.beside);
+  parse_module_words(beside.modules, context.registry);
+  if (!beside.recording.empty() && !fs::exists(beside.recording)) throw UserError(beside.recording, "there is no such recording", "Make one with --trajectory FILE.");
+}
+
+void write_page(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const Trajectory& run, const RunWords& words) {
+  if (words.html.empty()) return;
+  report::PlayerOptions options;
+  options.root = context.root;
+  std::vector<report::PlayedRun> runs;
+  Second second;
+  if (!words.beside.empty()) second = second_run(context, scene, chosen, run, words);
+  runs.push_back({run, second.label_of_first});
+  if (!words.beside.empty()) runs.push_back({second.run, second.label});
+  const auto start = std::chrono::steady_clock::now();
+  const std::size_t bytes = report::write_player(words.html, scene, runs, options);
+  fmt::print(stderr, "wrote {} ({:.2f} MB) in {:.2f} s\n", words.html, 1e-6 * static_cast<double>(bytes), std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+}
+
+}  // namespace tumble::cli

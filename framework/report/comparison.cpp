@@ -1,0 +1,107 @@
+#include "framework/report/comparison.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "framework/core/error.h"
+
+namespace tumble::report {
+namespace {
+
+constexpr double kSameInstant = 1e-9;   // s: frames are recorded at the same multiples of a rate, however the times were summed
+
+// |x_a - x_b| + r |turn|, an upper bound of how far a point of the body is from its place in the other run.
+double apart(const BodyPose& a, const BodyPose& b, double radius_m) {
+  const double shift = (a.com_world - b.com_world).norm();
+  if (!std::isfinite(radius_m)) return shift;
+  return shift + radius_m * a.world_from_body.angularDistance(b.world_from_body);
+}
+
+std::string bodies_of(const Event& event, const Trajectory& run) {
+  const auto name = [&](int body) { return run.bodies[static_cast<std::size_t>(body)].name; };
+  if (event.body_a < 0) return "";
+  return event.body_b < 0 ? " of " + name(event.body_a) : " of " + name(event.body_a) + " and " + name(event.body_b);
+}
+
+bool differ(double a, double b, double scale) { return std::abs(a - b) > kEventShare * std::max({std::abs(a), std::abs(b), scale}); }
+
+// What is not the same in two events; empty: nothing.
+std::string difference_of(const Event& a, const Event& b, double impulse_scale, const Trajectory& run_a, const Trajectory& run_b, const std::string& label_a,
+                          const std::string& label_b) {
+  const std::string head = std::string(name_of_event(a.kind)) + bodies_of(a, run_a);
+  if (a.kind != b.kind || a.body_a != b.body_a || a.body_b != b.body_b)
+    return fmt::format("{} at {:.6g} s in {}, {}{} at {:.6g} s in {}", head, a.time, label_a, name_of_event(b.kind), bodies_of(b, run_b), b.time, label_b);
+  if (differ(a.time, b.time, 1.0)) return fmt::format("{}: at {:.6g} s in {}, at {:.6g} s in {}", head, a.time, label_a, b.time, label_b);
+  if (differ(a.impulse, b.impulse, impulse_scale)) return fmt::format("{}: impulse {:.6g} N s in {}, {:.6g} N s in {}", head, a.impulse, label_a, b.impulse, label_b);
+  return "";
+}
+
+std::optional<Difference> first_event(const Trajectory& a, const std::string& label_a, const Trajectory& b, const std::string& label_b) {
+  double strongest = 0.0;
+  for (const Trajectory* run : {&a, &b})
+    for (const Event& event : run->events) strongest = std::max(strongest, std::isfinite(event.impulse) ? std::abs(event.impulse) : 0.0);
+  const std::size_t both = std::min(a.events.size(), b.events.size());
+  for (std::size_t i = 0; i < both; ++i) {
+    const std::string what = difference_of(a.events[i], b.events[i], 1e-6 * strongest, a, b, label_a, label_b);
+    if (!what.empty()) return Difference{std::min(a.events[i].time, b.events[i].time), what, a.events[i].body_a};
+  }
+  if (a.events.size() == b.events.size()) return std::nullopt;
+  const bool a_has_more = a.events.size() > both;
+  const Trajectory& more = a_has_more ? a : b;
+  const Event& event = more.events[both];
+  const Trajectory& other = a_has_more ? b : a;
+  if (other.frames.empty() || other.frames.back().time < event.time) return std::nullopt;   // it ended before: no difference of the motion
+  return Difference{event.time, fmt::format("{}{} only in {}", name_of_event(event.kind), bodies_of(event, more), a_has_more ? label_a : label_b), event.body_a};
+}
+
+}  // namespace
+
+const char* name_of_event(EventKind kind) {
+  switch (kind) {
+    case EventKind::kCollision: return "collision";
+    case EventKind::kRest: return "comes to rest";
+    case EventKind::kForceOn: return "force on";
+    case EventKind::kForceOff: return "force off";
+    case EventKind::kContact: return "contact begins";
+    case EventKind::kBreak: return "contact ends";
+    case EventKind::kStick: return "sticks";
+    case EventKind::kSlide: return "slides";
+    case EventKind::kSleep: return "falls asleep";
+    case EventKind::kWake: return "wakes";
+    case EventKind::kControl: return "control";
+  }
+  return "event";
+}
+
+Comparison compare(const scene::Scene& scene, const std::vector<double>& radius_m, const Trajectory& a, const std::string& label_a, const Trajectory& b,
+                   const std::string& label_b) {
+  require(a.bodies.size() == b.bodies.size() && a.bodies.size() == radius_m.size(), "compare: both runs must be of the same scene");
+  const double threshold = kApart * (scene.camera.eye_m - scene.camera.target_m).norm();
+  Comparison result;
+  std::optional<Difference> moved;
+  std::size_t at = 0;
+  for (const Frame& frame : a.frames) {
+    while (at < b.frames.size() && b.frames[at].time < frame.time - kSameInstant) ++at;
+    if (at == b.frames.size() || b.frames[at].time > frame.time + kSameInstant) {
+      result.apart_m.push_back(std::numeric_limits<double>::quiet_NaN());
+      continue;
+    }
+    double farthest = 0.0;
+    int body = -1;
+    for (std::size_t i = 0; i < radius_m.size(); ++i) {
+      const double distance = apart(frame.poses[i], b.frames[at].poses[i], radius_m[i]);
+      if (distance > farthest || (std::isnan(distance) && body < 0)) farthest = distance, body = static_cast<int>(i);
+    }
+    result.apart_m.push_back(farthest);
+    if (!moved && !(farthest <= threshold))
+      moved = Difference{frame.time, fmt::format("{} is {:.2g} m from where it is in {}", a.bodies[static_cast<std::size_t>(body)].name, farthest, label_b), body};
+  }
+  result.first = first_event(a, label_a, b, label_b);
+  if (moved && (!result.first || moved->time_s < result.first->time_s)) result.first = moved;
+  return result;
+}
+
+}  // namespace tumble::report

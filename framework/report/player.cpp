@@ -1,0 +1,121 @@
+#include "framework/report/player.h"
+
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "framework/core/error.h"
+#include "framework/core/files.h"
+#include "framework/report/channels.h"
+#include "framework/report/comparison.h"
+#include "framework/report/html.h"
+#include "framework/report/packed_run.h"
+#include "framework/report/player_files.h"
+#include "framework/report/player_scene.h"
+#include "framework/report/player_still.h"
+#include "framework/scene/build_shape.h"
+
+namespace tumble::report {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+// In the order in which they stand in the page: what is used stands above.
+constexpr const char* kScripts[] = {"decode.js", "model.js", "shapes.js", "marks.js", "pick.js", "stage.js", "plot.js", "curves.js", "events.js", "player.js", "panel_virtual_times.js", "main.js"};
+
+std::string library(const fs::path& folder, const char* file) {
+  std::ifstream in(folder / file, std::ios::binary);
+  if (!in) throw UserError((folder / file).string(), "three.js is not there, and a page that plays a run is made of it", "Install Debian's package libjs-three.");
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string script_text() {
+  std::string text = "'use strict';\n(() => {\n";
+  for (const char* name : kScripts) text += std::string(player_file(name)) + "\n";
+  return text + "})();\n";
+}
+
+// Data in a script element ends at "</": in JSON a slash or a less-than sign may be written otherwise.
+std::string json_text(const Json& json) {
+  std::string text;
+  for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) c == '<' ? text += "\\u003c" : text += c;
+  return text;
+}
+
+std::string data_element(const std::string& id, const std::string& deflated_bytes) {
+  return "<script type=\"application/octet-stream\" id=\"" + id + "\">" + base64(deflated_bytes) + "</script>\n";
+}
+
+std::string filled(std::string_view page, const std::map<std::string, std::string>& words) {
+  std::string text;
+  for (;;) {
+    const std::size_t open = page.find("{{"), close = open == page.npos ? page.npos : page.find("}}", open);
+    if (close == page.npos) return text + std::string(page);
+    text += page.substr(0, open);
+    text += words.at(std::string(page.substr(open + 2, close - open - 2)));
+    page.remove_prefix(close + 2);
+  }
+}
+
+Json panels_json(const std::vector<PlayerPanel>& panels) {
+  Json all = Json::array();
+  for (const PlayerPanel& panel : panels) all.push_back({{"kind", panel.kind}, {"title", panel.title}, {"data", Json::parse(panel.data_json)}});
+  return all;
+}
+
+std::string record_of(const scene::Scene& scene, const std::vector<PlayedRun>& runs) {
+  const TrajectoryInfo& info = runs.front().run.info;
+  std::string record;
+  for (const std::string& part : {info.command, "Tumble " + info.version, "seed " + std::to_string(info.seed), "scene " + scene.name + " " + scene.hash})
+    if (!part.empty()) record += (record.empty() ? "" : " · ") + html_escape(part);
+  return record;
+}
+
+void check(const scene::Scene& scene, const std::vector<PlayedRun>& runs) {
+  require(runs.size() == 1 || runs.size() == 2, "report: a page plays one run or two");
+  for (const PlayedRun& played : runs) {
+    if (played.run.frames.empty()) throw UserError(scene.name, "the run has no frame to show", played.run.stopped_by);
+    if (played.run.bodies.size() != scene.bodies.size())
+      throw UserError(scene.name, fmt::format("the run has {} bodies and the scene {}", played.run.bodies.size(), scene.bodies.size()), "Show a run with the scene that it was made from.");
+  }
+}
+
+}  // namespace
+
+std::string player_page(const scene::Scene& scene, const std::vector<PlayedRun>& runs, const PlayerOptions& options) {
+  check(scene, runs);
+  const std::string three = library(options.three, "three.min.js"), controls = library(options.three, "examples/js/controls/OrbitControls.js");
+  std::vector<Shape> shapes;
+  for (const scene::Solid& solid : scene::build_solids(scene, options.root)) shapes.push_back(solid.shape);
+
+  Json head = player_scene(scene, shapes, runs.front().run.frames.front());
+  Comparison comparison;
+  if (runs.size() == 2) {
+    comparison = compare(scene, radii_of(shapes), runs[0].run, runs[0].label, runs[1].run, runs[1].label);
+    head["difference"] = comparison.first ? Json{{"time", comparison.first->time_s}, {"what", comparison.first->what}, {"body", comparison.first->body}} : Json();
+  }
+  const double sight_m = (scene.camera.eye_m - scene.camera.target_m).norm();
+  std::vector<PackedRun> packed;
+  std::string data = data_element("three", deflated(three + "\n" + controls));
+  head["runs"] = Json::array();
+  for (std::size_t r = 0; r < runs.size(); ++r) {
+    packed.push_back(pack_run(scene, runs[r], r == 0 ? comparison.apart_m : std::vector<double>{}, sight_m, options));
+    head["runs"].push_back(packed.back().head);
+    data += data_element("run" + std::to_string(r), packed.back().channels);
+  }
+  head["panels"] = panels_json(options.panels);
+  return filled(player_file("page.html"), {{"title", html_escape(scene.title.empty() ? scene.name : scene.title)}, {"about", html_escape(scene.about)},
+                                           {"style", std::string(player_file("player.css"))}, {"script", script_text()}, {"head", json_text(head)}, {"data", data},
+                                           {"still", player_still(runs, packed)}, {"record", record_of(scene, runs)}});
+}
+
+std::size_t write_player(const fs::path& file, const scene::Scene& scene, const std::vector<PlayedRun>& runs, const PlayerOptions& options) {
+  const std::string page = player_page(scene, runs, options);
+  write_whole(file, page);
+  return page.size();
+}
+
+}  // namespace tumble::report

@@ -1,0 +1,92 @@
+// The panes of curves: of the whole run, and of the body that is chosen. Each plot follows the cursor and can be dragged along.
+
+const kPlots = {
+  apart: { title: 'How far apart the two runs are', axis: 'distance', isLog: true },
+  energy: { title: 'Energy', axis: 'energy' },
+  drift: { title: 'Change of the total energy', axis: 'E − E(0)' },
+  momentum: { title: 'Momentum of all that moves', axis: 'momentum' },
+  spin: { title: 'Angular momentum about the origin', axis: 'ang. momentum' },
+  gap: { title: 'Smallest gap between two bodies', axis: 'gap' },
+  springs: { title: 'Forces of springs (pull > 0)', axis: 'force', isChosen: true },
+  rods: { title: 'Tensions of rods (pull > 0)', axis: 'tension', isChosen: true },
+  joints: { title: 'Forces in joints', axis: 'force', isChosen: true },
+  place: { title: 'Centre of mass', axis: 'place' },
+  velocity: { title: 'Velocity', axis: 'velocity' },
+  omega: { title: 'Angular velocity, world', axis: 'ω' },
+};
+const kMostLinks = 4;   // curves in one plot; of more links one is chosen
+
+function curvesOf(runs, pick) {
+  const byPlot = new Map();
+  runs.forEach(run => {
+    for (const series of pick(run)) {
+      if (series.plot === 'apart' && !series.values.some(v => v > 0)) continue;   // the same throughout: said elsewhere
+      if (!byPlot.has(series.plot)) byPlot.set(series.plot, { ...kPlots[series.plot], unit: series.unit, curves: [] });
+      const name = runs.length > 1 && series.plot !== 'apart' ? `${series.name}, ${run.label}` : series.name;
+      byPlot.get(series.plot).curves.push({ name, link: series.name, times: run.times, values: series.values, frameAt: t => run.frameAt(t).k });
+    }
+  });
+  return [...byPlot.values()].sort((a, b) => Object.values(kPlots).findIndex(p => p.title === a.title) - Object.values(kPlots).findIndex(p => p.title === b.title));
+}
+
+class CurvePane {
+  constructor(box, player) {
+    this.box = box;
+    this.player = player;
+    this.plots = [];
+  }
+
+  fill(plots) {
+    this.box.textContent = '';
+    this.plots = [];
+    for (const plot of plots) {
+      const links = [...new Set(plot.curves.map(curve => curve.link))];
+      if (plot.isChosen && links.length > kMostLinks) this.addChoice(plot, links);
+      else this.add(plot, this.box);
+    }
+    this.follow(this.player.time);
+  }
+
+  add(plot, box) {
+    const made = new TimePlot(plot, this.player.end, t => this.player.seek(t));
+    this.plots.push(made);
+    box.append(made.box);
+    return made;
+  }
+
+  // One of many links: at first the one that pulls hardest.
+  addChoice(plot, links) {
+    const strength = name => Math.max(...plot.curves.filter(curve => curve.link === name).map(curve => curve.values.reduce((most, v) => Math.max(most, Math.abs(v) || 0), 0)));
+    const strengths = links.map(strength), select = html('select', { ariaLabel: plot.title }), holder = html('div'), inner = html('div');
+    links.forEach(name => select.append(html('option', { value: name }, name)));
+    select.selectedIndex = strengths.indexOf(Math.max(...strengths));
+    let shown = null;
+    const show = () => {
+      if (shown) this.plots.splice(this.plots.indexOf(shown), 1);
+      inner.textContent = '';
+      shown = this.add({ ...plot, curves: plot.curves.filter(curve => curve.link === select.value) }, inner);
+      shown.follow(this.player.time, true);
+    };
+    select.addEventListener('change', show);
+    holder.append(html('label', { className: 'choice' }, 'which: ', select), inner);
+    this.box.append(holder);
+    show();
+  }
+
+  follow(t, isFull = true) { for (const plot of this.plots) plot.follow(t, isFull); }
+}
+
+// Curves of the body that is chosen.
+class BodyPane extends CurvePane {
+  choose(body) {
+    if (body < 0) {
+      this.box.textContent = 'Choose a body: click it in the picture, or take it from the list below the picture.';
+      this.plots = [];
+      return;
+    }
+    const about = this.player.about.bodies[body];
+    this.fill(curvesOf(this.player.runs, run => run.bodySeries(body)));
+    const note = this.plots.length === 0 ? (about.immovable ? ' is immovable.' : ' never moves.') : '';
+    this.box.prepend(html('h2', {}, about.name), ...(note ? [html('p', {}, about.name + note)] : []));
+  }
+}

@@ -1,0 +1,281 @@
+// Puts the page together. What fails says so in the page, and leaves the rest standing.
+
+function complain(text) {
+  byId('complaint').textContent = text;
+  byId('complaint').hidden = false;
+  document.body.dataset.error = text;
+}
+
+window.addEventListener('error', event => complain(`This page's script failed: ${event.message}. Plots and events stand below.`));
+window.addEventListener('unhandledrejection', event => complain(`This page's script failed: ${event.reason && event.reason.message || event.reason}. Plots and events stand below.`));
+
+async function loadThree() {
+  const bytes = await openedBytes('three');
+  document.head.append(html('script', { textContent: new TextDecoder().decode(bytes) }));
+  if (typeof THREE === 'undefined' || !THREE.OrbitControls) throw new Error('three.js did not load');
+}
+
+// Whether the processor draws, there being no graphics card.
+function drawsBySoftware() {
+  const gl = document.createElement('canvas').getContext('webgl', { antialias: false }), info = gl && gl.getExtension('WEBGL_debug_renderer_info');
+  const is = Boolean(info) && /swiftshader|llvmpipe|software|basic render/i.test(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
+  if (gl && gl.getExtension('WEBGL_lose_context')) gl.getExtension('WEBGL_lose_context').loseContext();
+  return is;
+}
+
+// The picture: one canvas, a view for each run, one eye for all.
+class Picture {
+  constructor(player) {
+    this.player = player;
+    this.canvas = byId('picture');
+    const isSoftware = drawsBySoftware();   // then smooth edges and shadows would take most of the time
+    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: !isSoftware });
+    this.renderer.gammaOutput = true;
+    this.renderer.gammaFactor = 2.2;
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = THREE.PCFShadowMap;
+    this.renderer.setScissorTest(true);
+    if (isSoftware) player.shown.shadows = false;
+    this.ratio = Math.min(2, window.devicePixelRatio || 1);
+    this.stages = player.runs.map(run => new Stage(player.about, run));
+    const first = this.stages[0];
+    this.camera = new THREE.PerspectiveCamera(player.about.camera.fov, 1, 0.01 * first.sight, 40 * first.sight + 2 * first.extent.getSize(new THREE.Vector3()).length());
+    this.camera.up.set(0, 0, 1);
+    this.orbit = new THREE.OrbitControls(this.camera, this.canvas);
+    this.orbit.enableKeys = false;
+    this.orbit.screenSpacePanning = true;
+    this.orbit.addEventListener('change', () => { this.isDirty = true; });
+    player.listeners.push(() => { this.isDirty = true; });
+    new ResizeObserver(() => this.resize()).observe(byId('scene'));
+    this.addPicking();
+    this.reset();
+    this.resize();
+  }
+
+  reset() {
+    const about = this.player.about, first = this.stages[0];
+    this.camera.position.copy(first.eye);
+    this.orbit.target.copy(first.target);
+    // As seen from straight above, y is up: a camera whose up is its sight turns to nothing.
+    if (Math.hypot(first.eye.x - first.target.x, first.eye.y - first.target.y) < 1e-6 * first.sight) this.camera.position.y -= 1e-3 * first.sight;
+    this.followedAt = null;
+    if (about.camera.follow >= 0 && this.player.followed < 0) {
+      this.player.chosen = this.player.followed = about.camera.follow;
+      this.followedAt = first.placeOf(about.camera.follow, 0);
+    }
+    this.orbit.update();
+    this.player.changed();
+  }
+
+  // Where each run is seen: beside each other or one below the other, whichever shows a 4:3 picture larger. Shares of the canvas, y down.
+  views() {
+    const count = this.stages.length, size = (w, h) => Math.min(h, 0.75 * w);
+    const beside = size(this.width / count, this.height) >= size(this.width, this.height / count);
+    return this.stages.map((_, r) => (beside ? { x: r / count, y: 0, w: 1 / count, h: 1 } : { x: 0, y: r / count, w: 1, h: 1 / count }));
+  }
+
+  resize() {
+    const box = byId('scene'), width = Math.max(1, box.clientWidth), height = Math.max(1, box.clientHeight);
+    this.renderer.setPixelRatio(this.ratio);
+    this.renderer.setSize(width, height, false);
+    this.width = width;
+    this.height = height;
+    this.isDirty = true;
+  }
+
+  // What the eye goes along with.
+  follow() {
+    const body = this.player.followed;
+    if (body !== this.following) { this.followedAt = this.following === undefined ? this.followedAt : null; this.following = body; }
+    if (body < 0) return;
+    const now = this.stages[0].placeOf(body, this.player.time);
+    if (!this.followedAt) this.followedAt = now.clone();   // from here on
+    const shift = now.clone().sub(this.followedAt);
+    if (!Number.isFinite(shift.x)) return;
+    this.camera.position.add(shift);
+    this.orbit.target.add(shift);
+    this.followedAt.copy(now);
+    this.orbit.update();
+  }
+
+  draw() {
+    this.isDirty = false;
+    const { player, stages, renderer, camera } = this, views = this.views();
+    this.follow();
+    // The whole of a 4:3 picture is seen, however narrow the view.
+    const half = Math.tan(player.about.camera.fov * Math.PI / 360), aspect = views[0].w * this.width / (views[0].h * this.height);
+    camera.fov = 2 * Math.atan(half * Math.max(1, 4 / 3 / aspect)) * 180 / Math.PI;
+    camera.aspect = aspect;
+    camera.updateProjectionMatrix();
+    const pixels = 0.5 * views[0].h * this.height * this.ratio / (Math.tan(camera.fov * Math.PI / 360) * camera.position.distanceTo(this.orbit.target));
+    stages.forEach((stage, r) => {
+      if (stage.chosen !== player.chosen) stage.choose(player.chosen);
+      stage.key.castShadow = player.shown.shadows;
+      stage.refine(pixels);
+      stage.show(Math.min(player.time, stage.run.end), player.speed, player.shown);
+      const view = views[r], width = view.w * this.width, height = view.h * this.height, left = view.x * this.width, below = this.height - view.y * this.height - height;
+      renderer.setViewport(left, below, width, height);
+      renderer.setScissor(left, below + (view.y + view.h < 1 ? 2 : 0), width - (view.x + view.w < 1 ? 2 : 0), height - (view.y + view.h < 1 ? 2 : 0));
+      const shift = r > 0 && player.followed >= 0 ? stage.placeOf(player.followed, player.time).sub(stages[0].placeOf(player.followed, player.time)) : null;
+      if (shift) camera.position.add(shift);
+      renderer.render(stage.scene, camera);
+      if (shift) camera.position.sub(shift);
+    });
+  }
+
+  addPicking() {
+    let down = null;
+    this.canvas.addEventListener('pointerdown', event => { down = [event.clientX, event.clientY]; });
+    this.canvas.addEventListener('pointerup', event => {
+      if (!down || Math.hypot(event.clientX - down[0], event.clientY - down[1]) > 5 || event.button !== 0) return;
+      const box = this.canvas.getBoundingClientRect(), x = (event.clientX - box.left) / box.width, y = (event.clientY - box.top) / box.height;
+      const r = Math.max(0, this.views().findIndex(v => x >= v.x && x < v.x + v.w && y >= v.y && y < v.y + v.h)), view = this.views()[r];
+      const spot = new THREE.Vector3(2 * (x - view.x) / view.w - 1, 1 - 2 * (y - view.y) / view.h, 0.5).unproject(this.camera);
+      this.player.choose(this.stages[r].pick(this.camera.position.clone(), spot.sub(this.camera.position).normalize(), Math.min(this.player.time, this.stages[r].run.end)));
+    });
+  }
+
+  // Where pictures come slower than 25 a second for a while, shadows go first, then fine pixels.
+  adapt(milliseconds) {
+    this.times = milliseconds > 500 ? [] : [...(this.times || []), milliseconds].slice(-20);
+    const sum = this.times.reduce((a, b) => a + b, 0);
+    if (sum < 600 || sum / this.times.length < 40) return;
+    this.times = [];
+    if (this.player.shown.shadows) {
+      this.player.shown.shadows = false;
+      const box = [...document.querySelectorAll('#options label')].find(label => label.textContent.includes('shadows'));
+      if (box) box.querySelector('input').checked = false;
+    } else if (this.ratio > 0.6) {
+      this.ratio = Math.max(0.5, 0.7 * this.ratio);
+      this.resize();
+    }
+  }
+}
+
+function addTabs(player) {
+  const panes = [['Curves', box => { const pane = new CurvePane(box, player); pane.fill(curvesOf(player.runs, run => run.series)); return pane; }],
+    ['Body', box => new BodyPane(box, player)], [`Events (${player.runs.reduce((sum, run) => sum + run.events.count, 0)})`, box => new EventPane(box, player)]];
+  for (const panel of player.about.panels)
+    if (panelKinds[panel.kind]) panes.push([panel.title, box => { const made = panelKinds[panel.kind](box, panel.data, player); return { follow: (t, isFull) => isFull && made.at(t) }; }]);
+  const tabs = panes.map(([title, make], i) => {
+    const tab = html('button', { role: 'tab', id: `tab${i}` }, title), box = html('div', { role: 'tabpanel', className: 'pane' });
+    tab.setAttribute('role', 'tab');
+    byId('tabs').append(tab);
+    byId('panes').append(box);
+    return { tab, box, make, pane: null };
+  });
+  let chosen = player.chosen;
+  const open = at => {
+    tabs.forEach((entry, i) => { entry.tab.setAttribute('aria-selected', String(i === at)); entry.box.hidden = i !== at; });
+    tabs[at].pane = tabs[at].pane || tabs[at].make(tabs[at].box);
+    update();
+  };
+  const update = () => {
+    const isNew = player.chosen !== chosen;
+    chosen = player.chosen;
+    if (isNew && chosen >= 0 && !tabs[0].box.hidden) return open(1);   // whoever chooses a body wants its curves
+    for (const { pane, box } of tabs) {
+      if (!pane || box.hidden) continue;
+      if (pane.choose && pane.body !== chosen) pane.choose(pane.body = chosen);
+      pane.follow(player.time, player.isTimeToTell());
+    }
+  };
+  tabs.forEach((entry, i) => entry.tab.addEventListener('click', () => open(i)));
+  player.listeners.push(update);
+  open(0);
+  return { open, names: tabs.map(entry => entry.tab.textContent) };
+}
+
+// What an arrow in the picture says, in words: the blow that was just now, pushes that last.
+function happeningIn(player, run) {
+  const e = run.events, i = run.eventFrom(player.time + 1e-5) - 1, names = player.about.bodies, words = [];
+  if (i >= 0 && player.time - e.time[i] < kFlashSeconds * player.speed && e.kind[i] === kCollision)
+    words.push(`${[e.a[i], e.b[i]].filter(b => b >= 0).map(b => names[b].name).join(' – ')}: ${short(e.impulse[i], 3)} N s, ${short(e.before[i], 3)} → ${short(e.after[i], 3)} m/s`);
+  for (const push of player.about.forces)
+    if (player.time >= push.start - 1e-6 && player.time <= push.start + push.duration) words.push(`push on ${names[push.body].name}: ${short(Math.hypot(...push.force), 3)} N`);
+  return words.join(' · ');
+}
+
+function addWords(player, picture) {
+  const labels = [];
+  player.runs.forEach((run, r) => {
+    const laws = [run.head.impulses, run.head.motion].filter(word => word && word !== 'none');
+    const now = html('p', { className: 'now' });
+    const box = html('div', { className: 'label' }, html('b', {}, run.label || ''), html('span', {}, run.head.stopped ? ` stopped: ${run.head.stopped}` : ''), now);
+    player.listeners.push(() => { if (player.isTimeToTell()) now.textContent = happeningIn(player, run); });
+    labels.push(box);
+    box.title = `engine ${run.head.engine}, step ${short(run.head.step)} s, laws: ${laws.join(', ')}`;
+    byId('words').append(box);
+  });
+  const place = () => (picture ? picture.views() : player.runs.map((_, r) => ({ x: r / player.runs.length, y: 0 }))).forEach((view, r) => {
+    labels[r].style.left = `${100 * view.x}%`;
+    labels[r].style.top = `calc(${100 * view.y}% + .4rem)`;
+  });
+  new ResizeObserver(place).observe(byId('scene'));
+  place();
+  const notes = [];
+  if (picture && picture.stages[0].spacing) notes.push(`grid ${short(picture.stages[0].spacing)} m`);
+  for (const run of player.runs) if (run.head.stride > 1) notes.push(`every ${run.head.stride}th frame kept`);
+  byId('words').append(html('div', { className: 'note' }, notes.join(' · ')));
+}
+
+function readHash(player, tabs) {
+  const words = new URLSearchParams(location.hash.slice(1));
+  if (words.has('bare')) document.body.classList.add('bare');
+  if (words.has('body')) player.choose(player.about.bodies.findIndex(body => body.name === words.get('body')));
+  if (words.has('follow')) player.follow(true);
+  if (words.has('tab')) tabs.open(Math.max(0, tabs.names.findIndex(name => name.toLowerCase().startsWith(words.get('tab')))));
+  if (words.has('speed')) player.setSpeed(Number(words.get('speed')) || 1);
+  if (words.has('t')) player.goTo(Number(words.get('t')));
+  else if (!window.matchMedia('(prefers-reduced-motion: reduce)').matches) player.play();
+}
+
+function runLoop(player, picture) {
+  let frames = 0, since, lastTime;
+  const loop = now => {
+    player.tick(now);
+    if (picture && picture.isDirty) {
+      picture.draw();
+      if (player.isPlaying && lastTime !== undefined) picture.adapt(now - lastTime);
+    }
+    lastTime = now;
+    if (!player.isPlaying) since = undefined;
+    else if (since === undefined) [since, frames] = [now, 0];
+    else if (++frames && now - since > 1000) {
+      document.body.dataset.fps = (frames * 1000 / (now - since)).toFixed(1);
+      [since, frames] = [now, 0];
+    }
+    requestAnimationFrame(loop);
+  };
+  requestAnimationFrame(loop);
+}
+
+async function main() {
+  const about = JSON.parse(byId('about-run').textContent);
+  const runs = await Promise.all(about.runs.map(async (head, r) => new Run(head, await openedBytes(`run${r}`))));
+  const player = new Player(about, runs);
+  byId('player').hidden = byId('side').hidden = false;
+  let picture = null;
+  try {
+    await loadThree();
+    picture = new Picture(player);
+    byId('complaint').hidden = true;
+  } catch (error) {
+    complain(`The motion cannot be drawn here (${error.message}). Curves and events work.`);
+    document.body.classList.add('flat');
+  }
+  new Controls(player, () => picture && picture.reset());
+  const tabs = addTabs(player);
+  addWords(player, picture);
+  byId('still').hidden = true;
+  readHash(player, tabs);
+  if (picture) picture.draw();
+  document.body.dataset.ready = performance.now().toFixed(0);
+  window.tumble = { player, picture };   // for whoever looks from the browser's console
+  runLoop(player, picture);
+}
+
+main().catch(error => {
+  document.documentElement.classList.remove('alive');
+  complain(`This page's script failed: ${error.message}. Plots and events stand below.`);
+});

@@ -1,0 +1,149 @@
+// Charts of an engine's own, by kind: (element, data, player) => ({ at(time_s) {} }). panel_*.js put theirs here.
+const panelKinds = {};
+
+// Plots over time, in the style of framework/report/plot.h: a frame, round ticks, units on both axes, curves that differ in lightness and dashes.
+
+const kStyles = [['#00446b', ''], ['#c14d00', '7 3'], ['#007a57', '2 2.5'], ['#9a4f86', '9 3 2 3'], ['#3d8fc4', '4 2'], ['#8a6d00', '1.5 4']];
+const kFrame = { width: 480, height: 190, left: 66, right: 470, top: 10, bottom: 152 };
+
+function element(name, attributes = {}, text) {
+  const made = document.createElementNS('http://www.w3.org/2000/svg', name);
+  for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+  if (text !== undefined) made.textContent = text;
+  return made;
+}
+
+function html(name, attributes = {}, ...children) {
+  const made = document.createElement(name);
+  for (const [key, value] of Object.entries(attributes)) key in made && key !== 'list' ? made[key] = value : made.setAttribute(key, value);
+  made.append(...children);
+  return made;
+}
+
+function ticksOf(low, high, most = 6) {
+  const rough = (high - low) / most, power = Math.pow(10, Math.floor(Math.log10(rough))), part = rough / power;
+  const spacing = (part > 5 ? 10 : part > 2 ? 5 : part > 1 ? 2 : 1) * power, ticks = [];
+  for (let i = Math.ceil(low / spacing - 1e-9); i * spacing <= high + 1e-9 * spacing; ++i) ticks.push(i * spacing);
+  return ticks;
+}
+
+function decadesOf(low, high) {
+  const first = Math.ceil(Math.log10(low) - 1e-9), last = Math.floor(Math.log10(high) + 1e-9), stride = Math.max(1, Math.floor((last - first + 5) / 5)), ticks = [];
+  for (let power = first; power <= last; power += stride) ticks.push(Math.pow(10, power));
+  return ticks;
+}
+
+// A few digits: 0.0123, 12.3, 1.2e-9.
+function short(value, digits = 4) {
+  if (!Number.isFinite(value)) return '–';
+  const size = Math.abs(value);
+  if (size !== 0 && (size < 1e-3 || size >= 1e5)) return Number(value.toPrecision(Math.max(2, digits - 1))).toExponential().replace('e+', 'e');
+  return String(Number(value.toPrecision(digits)));
+}
+
+class TimePlot {
+  // @param plot {title, axis, unit, isLog, curves: [{name, times, values}]}; seek(t) is called on a click or drag
+  constructor(plot, end, seek) {
+    this.plot = plot;
+    this.end = end > 0 ? end : 1;
+    this.box = html('figure', { className: 'curve' });
+    this.readouts = [];
+    this.find();
+    this.svg = element('svg', { viewBox: `0 0 ${kFrame.width} ${kFrame.height}`, class: 'plot', role: 'img', 'aria-label': plot.title });
+    this.drawFrame();
+    plot.curves.forEach((curve, i) => this.drawCurve(curve, kStyles[i % kStyles.length]));
+    // The cursor is laid over the drawing, not into it: moving it paints nothing anew.
+    this.cursor = html('div', { className: 'cursor' });
+    const holder = html('div', { className: 'holder' }, this.svg, this.cursor);
+    const legend = html('figcaption', { className: 'legend' });
+    plot.curves.forEach((curve, i) => legend.append(this.legendEntry(curve, kStyles[i % kStyles.length])));
+    this.box.append(html('h3', {}, plot.title), holder, legend);
+    const toTime = event => {
+      const box = this.svg.getBoundingClientRect(), x = (event.clientX - box.left) / box.width * kFrame.width;
+      seek(Math.min(1, Math.max(0, (x - kFrame.left) / (kFrame.right - kFrame.left))) * this.end);
+    };
+    this.svg.addEventListener('pointerdown', event => { this.svg.setPointerCapture(event.pointerId); toTime(event); });
+    this.svg.addEventListener('pointermove', event => { if (event.buttons) toTime(event); });
+  }
+
+  find() {
+    let low = Infinity, high = -Infinity;
+    for (const { values } of this.plot.curves)
+      for (const v of values) if (Number.isFinite(v) && (!this.plot.isLog || v > 0)) { low = Math.min(low, v); high = Math.max(high, v); }
+    this.isEmpty = !(low <= high);
+    if (this.isEmpty) [low, high] = this.plot.isLog ? [0.1, 1] : [0, 1];
+    if (this.plot.isLog) {
+      const room = Math.pow(10, 0.06 * Math.max(0.5, Math.log10(high / low)));
+      [this.low, this.high] = [low / room, high * room];
+    } else {
+      // What stays the same to six digits is drawn as a straight line, whose ticks can be told apart.
+      const least = 1e-4 * Math.max(Math.abs(low), Math.abs(high)), room = high > low || least > 0 ? Math.max(0.07 * (high - low), 0.5 * (least - (high - low))) : 1;
+      [this.low, this.high] = [low - room, high + room];
+    }
+  }
+
+  x(t) { return kFrame.left + t / this.end * (kFrame.right - kFrame.left); }
+
+  y(v) {
+    const part = this.plot.isLog ? Math.log(Math.max(v, this.low) / this.low) / Math.log(this.high / this.low) : (v - this.low) / (this.high - this.low);
+    return kFrame.bottom - part * (kFrame.bottom - kFrame.top);
+  }
+
+  drawFrame() {
+    const { left, right, top, bottom } = kFrame, ups = this.plot.isLog ? decadesOf(this.low, this.high) : ticksOf(this.low, this.high, 5);
+    const step = ups.length > 1 ? ups[1] - ups[0] : 1;
+    for (const v of ups) {
+      const y = this.y(v), isTiny = !this.plot.isLog && Math.abs(v) < 1e-9 * step;
+      this.svg.append(element('line', { x1: left, x2: right, y1: y, y2: y, class: 'grid' }),
+        element('text', { x: left - 6, y: y + 4, 'text-anchor': 'end' }, isTiny ? '0' : this.plot.isLog ? (v < 1e-3 || v > 9999 ? `1e${Math.round(Math.log10(v))}` : short(v)) : short(v, 6)));
+    }
+    for (const t of ticksOf(0, this.end, 6)) {
+      this.svg.append(element('line', { x1: this.x(t), x2: this.x(t), y1: top, y2: bottom, class: 'grid' }),
+        element('text', { x: this.x(t), y: bottom + 15, 'text-anchor': 'middle' }, short(t, 6)));
+    }
+    this.svg.append(element('rect', { x: left, y: top, width: right - left, height: bottom - top, fill: 'none', stroke: '#5b6875' }),
+      element('text', { x: (left + right) / 2, y: bottom + 31, 'text-anchor': 'middle' }, 'time [s]'),
+      element('text', { transform: `translate(12 ${(top + bottom) / 2}) rotate(-90)`, 'text-anchor': 'middle' }, `${this.plot.axis} [${this.plot.unit}]`));
+    if (this.isEmpty) this.svg.append(element('text', { x: (left + right) / 2, y: (top + bottom) / 2, 'text-anchor': 'middle' }, this.plot.isLog ? 'nowhere above 0' : 'nothing to draw'));
+  }
+
+  // Of many points the least and the largest of each column of a screen.
+  drawCurve(curve, [colour, dashes]) {
+    const n = curve.values.length, parts = Math.min(n, 500);
+    let path = '', down = false;
+    const to = i => {
+      const v = curve.values[i];
+      if (!Number.isFinite(v) || (this.plot.isLog && !(v > 0))) { down = false; return; }
+      path += `${down ? 'L' : 'M'}${this.x(curve.times[i]).toFixed(1)} ${this.y(v).toFixed(1)}`;
+      down = true;
+    };
+    for (let part = 0; part < parts; ++part) {
+      const from = Math.floor(part * n / parts), until = Math.floor((part + 1) * n / parts);
+      let least = from, largest = from;
+      for (let i = from; i < until; ++i) {
+        if (curve.values[i] < curve.values[least]) least = i;
+        if (curve.values[i] > curve.values[largest]) largest = i;
+      }
+      to(Math.min(least, largest));
+      if (least !== largest) to(Math.max(least, largest));
+    }
+    this.svg.append(element('path', { d: path, fill: 'none', stroke: colour, 'stroke-width': 1.7, 'stroke-linejoin': 'round', 'stroke-dasharray': dashes }));
+  }
+
+  legendEntry(curve, [colour, dashes]) {
+    const key = element('svg', { viewBox: '0 0 28 8', class: 'key', 'aria-hidden': 'true' });
+    key.append(element('line', { x1: 0, x2: 28, y1: 4, y2: 4, stroke: colour, 'stroke-width': 2.4, 'stroke-dasharray': dashes }));
+    const value = html('b', {}, '');
+    this.readouts.push(value);
+    return html('span', {}, key, ` ${curve.name} `, value);
+  }
+
+  // @param isFull  the numbers as well, not the cursor alone
+  follow(t, isFull) {
+    this.cursor.style.transform = `translateX(${(100 * this.x(t) / kFrame.width).toFixed(3)}%)`;
+    if (!isFull) return;
+    this.plot.curves.forEach((curve, i) => {
+      this.readouts[i].textContent = `${short(curve.values[curve.frameAt(t)])} ${this.plot.unit}`;
+    });
+  }
+}

@@ -1,0 +1,117 @@
+#include "framework/report/player_scene.h"
+
+#include <cmath>
+#include <map>
+
+namespace tumble::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json triple(const Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
+
+/// Meshes used twice are told once.
+class Meshes {
+ public:
+  std::size_t index_of(const TriangleMesh& mesh) {
+    for (std::size_t i = 0; i < meshes_.size(); ++i)
+      if (meshes_[i]->vertices == mesh.vertices && meshes_[i]->faces == mesh.faces) return i;
+    meshes_.push_back(&mesh);
+    return meshes_.size() - 1;
+  }
+  Json json() const {
+    Json all = Json::array();
+    for (const TriangleMesh* mesh : meshes_) {
+      Json vertices = Json::array(), faces = Json::array();
+      for (const Vector3d& vertex : mesh->vertices)
+        for (int i = 0; i < 3; ++i) vertices.push_back(static_cast<float>(vertex[i]));
+      for (const Face& face : mesh->faces)
+        for (const int corner : face) faces.push_back(corner);
+      all.push_back({{"vertices", std::move(vertices)}, {"faces", std::move(faces)}});
+    }
+    return all;
+  }
+
+ private:
+  std::vector<const TriangleMesh*> meshes_;
+};
+
+Json shape_json(const Shape& shape, const scene::BodySpec& spec, Meshes& meshes) {
+  if (const auto* sphere = std::get_if<Sphere>(&shape)) return {{"kind", "sphere"}, {"radius", sphere->radius}};
+  if (const auto* box = std::get_if<Box>(&shape)) return {{"kind", "box"}, {"half", triple(box->half_extents_body)}};
+  if (const auto* solid = std::get_if<MeshSolid>(&shape)) return {{"kind", "mesh"}, {"mesh", meshes.index_of(solid->mesh_body)}};
+  const auto* plane = std::get_if<scene::PlaneSpec>(&spec.shape);
+  return {{"kind", "plane"}, {"extent", plane != nullptr ? plane->drawn_half_extent_m : 5.0}};
+}
+
+/// Anchors by body index, -1 for the world.
+class Anchors {
+ public:
+  Anchors(const scene::Scene& scene, const Frame& first) : first_(first) {
+    for (std::size_t i = 0; i < scene.bodies.size(); ++i) index_[scene.bodies[i].name] = static_cast<int>(i);
+  }
+  int body(const std::string& name) const { return name.empty() ? -1 : index_.at(name); }
+  Json of(const scene::AnchorSpec& spec) const { return {{"body", body(spec.body)}, {"point", triple(spec.point_m)}}; }
+  /// A point given in the world at the start.
+  Json fixed(const std::string& name, const Vector3d& point_world) const {
+    const int index = body(name);
+    if (index < 0) return {{"body", -1}, {"point", triple(point_world)}};
+    const BodyPose& pose = first_.poses[static_cast<std::size_t>(index)];
+    return {{"body", index}, {"point", triple(pose.world_from_body.conjugate() * (point_world - pose.com_world))}};
+  }
+
+ private:
+  const Frame& first_;
+  std::map<std::string, int> index_;
+};
+
+void add_links(const scene::Scene& scene, const Anchors& anchors, Json& page) {
+  page["springs"] = page["rods"] = page["joints"] = page["forces"] = Json::array();
+  for (const auto& spring : scene.springs)
+    page["springs"].push_back({{"name", spring.name}, {"a", anchors.of(spring.a)}, {"b", anchors.of(spring.b)}, {"rest", spring.rest_length_m}});
+  for (const auto& rod : scene.rods) page["rods"].push_back({{"name", rod.name}, {"a", anchors.of(rod.a)}, {"b", anchors.of(rod.b)}});
+  for (const auto& joint : scene.joints) {
+    const bool is_hinge = joint.kind == scene::JointKind::kHinge;
+    // Of a joint with the world, body_a is the one that moves.
+    Json entry{{"name", joint.name}, {"kind", is_hinge ? "hinge" : joint.kind == scene::JointKind::kBall ? "ball" : "weld"}};
+    entry["a"] = anchors.fixed(joint.body_a, joint.point_m);
+    if (is_hinge) entry["b"] = anchors.fixed(joint.body_a, joint.point_m + joint.axis.normalized());
+    page["joints"].push_back(std::move(entry));
+  }
+  for (const auto& force : scene.point_forces)
+    page["forces"].push_back({{"body", anchors.body(force.body)}, {"force", triple(force.force_n)}, {"point", triple(force.point_m)},
+                              {"start", force.start_s}, {"duration", force.duration_s}});
+}
+
+}  // namespace
+
+std::vector<double> radii_of(const std::vector<Shape>& shapes) {
+  std::vector<double> radii;
+  for (const Shape& shape : shapes) radii.push_back(bounding_radius(shape));
+  return radii;
+}
+
+Json player_scene(const scene::Scene& scene, const std::vector<Shape>& shapes, const Frame& first) {
+  const Anchors anchors(scene, first);
+  Json page;
+  page["scene"] = scene.name;
+  page["title"] = scene.title.empty() ? scene.name : scene.title;
+  page["about"] = scene.about;
+  page["camera"] = {{"eye", triple(scene.camera.eye_m)}, {"target", triple(scene.camera.target_m)}, {"fov", scene.camera.field_of_view_deg},
+                    {"follow", scene.camera.follow ? anchors.body(*scene.camera.follow) : -1}};
+  page["grid"] = {{"spacing", scene.grid_spacing_m ? Json(*scene.grid_spacing_m) : Json()}, {"height", scene.grid_height_m}};
+  Meshes meshes;
+  page["bodies"] = Json::array();
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const scene::BodySpec& spec = scene.bodies[i];
+    const double radius = bounding_radius(shapes[i]);
+    Json body{{"name", spec.name}, {"immovable", spec.immovable}, {"shape", shape_json(shapes[i], spec, meshes)}, {"radius", std::isfinite(radius) ? Json(radius) : Json()}};
+    if (spec.color) body["color"] = triple(*spec.color);
+    page["bodies"].push_back(std::move(body));
+  }
+  page["meshes"] = meshes.json();
+  add_links(scene, anchors, page);
+  return page;
+}
+
+}  // namespace tumble::report

@@ -1,0 +1,21 @@
+/// What a player's page knows of a scene before anything moves. Internal to framework/report.
+#pragma once
+
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "framework/geometry/shape.h"
+#include "framework/scene/scene.h"
+#include "framework/trajectory/trajectory.h"
+
+namespace tumble::report {
+
+/// By body: radius of a ball about its origin that holds it; infinite for planes. [m]
+std::vector<double> radii_of(const std::vector<Shape>& shapes);
+
+/// Bodies (shape, colour), links with their anchors, camera, ground, pushes. SI units, world and body frames as in scene.h.
+/// @param first  the run's first frame: joints are given in the world at the start
+nlohmann::ordered_json player_scene(const scene::Scene& scene, const std::vector<Shape>& shapes, const Frame& first);
+
+}  // namespace tumble::report

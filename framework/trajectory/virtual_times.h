@@ -1,0 +1,20 @@
+/// What a timewarp scheduler did, in the order in which it did it: the way of every local virtual time. An engine may record it; pages draw it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace tumble {
+
+struct VirtualTimes {
+  /// One process (body, group, multibody) integrated on, or rolled back where `to_s` lies before `from_s`.
+  struct Move {
+    int process;
+    double from_s, to_s;              // its local virtual time before and after
+    double global_virtual_time_s;     // after the move; never falls
+  };
+  std::vector<std::string> processes;
+  std::vector<Move> moves;
+};
+
+}  // namespace tumble

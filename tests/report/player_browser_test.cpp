@@ -1,0 +1,183 @@
+// The player's page in a real browser: bodies are drawn where the numbers say, data come back, keys work, and where there is no WebGL it says so.
+#include <cmath>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "framework/render/camera.h"
+#include "framework/report/virtual_times_panel.h"
+#include "tests/report/browser.h"
+#include "tests/report/player_fixtures.h"
+
+namespace tumble::testing {
+namespace {
+
+using report::player_page;
+
+class PlayerInBrowser : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!Browser::is_installed()) GTEST_SKIP() << "chromium is not installed, so no page is looked at; with it: apt-get install chromium";
+  }
+  Browser browser;
+};
+
+struct Spot {
+  double x = 0, y = 0, pixels = 0;
+};
+
+/// Middle and size of what is coloured: `is` tells by (r, g, b).
+template <class Is>
+Spot spot_of(const Screen& screen, const Is& is) {
+  Spot spot;
+  for (int y = 0; y < screen.height; ++y)
+    for (int x = 0; x < screen.width; ++x) {
+      const std::uint8_t* p = screen.at(x, y);
+      if (is(p[0], p[1], p[2])) spot.x += x + 0.5, spot.y += y + 0.5, spot.pixels += 1;
+    }
+  spot.x /= spot.pixels;
+  spot.y /= spot.pixels;
+  return spot;
+}
+
+bool is_red(int r, int g, int b) { return r > g + 60 && r > b + 60; }
+bool is_blue(int r, int g, int b) { return b > r + 50 && b > g + 50; }
+
+TEST_F(PlayerInBrowser, BodiesAreWhereTheNumbersSay) {
+  constexpr int kWidth = 640, kHeight = 480;
+  const scene::Scene scene = thrown_ball();
+  const std::string address = browser.serve(player_page(scene, {{thrown_run(), ""}}));
+  const render::View view = render::view_of(scene.camera);
+  for (const double t : {0.1, 0.65}) {
+    const Screen screen = browser.screenshot(address + "#bare&t=" + std::to_string(t), kWidth, kHeight);
+    ASSERT_EQ(screen.width, kWidth);
+    const Spot ball = spot_of(screen, is_red), box = spot_of(screen, is_blue);
+    const auto expected = render::project(view, kWidth, kHeight, ball_place(t)), box_expected = render::project(view, kWidth, kHeight, box_pose(t).com_world);
+    const double radius = 0.25 / render::metres_per_pixel(view, kHeight, ball_place(t));   // 21 pixels
+    // A ball off the middle of a picture is an ellipse whose middle lies some percent of its radius from the centre's image; linear between frames: 0.3 mm.
+    EXPECT_NEAR(ball.x, expected->x(), 0.1 * radius) << t;
+    EXPECT_NEAR(ball.y, expected->y(), 0.1 * radius) << t;
+    EXPECT_NEAR(ball.pixels, M_PI * radius * radius, 0.08 * M_PI * radius * radius) << t;   // a polygon of 20 corners has 0.984 of its circle
+    EXPECT_NEAR(box.x, box_expected->x(), 4.0) << t;
+    EXPECT_NEAR(box.y, box_expected->y(), 4.0) << t;
+  }
+}
+
+TEST_F(PlayerInBrowser, DataComeBackAsTheyWere) {
+  const std::string script = R"(
+    const wait = () => { if (!document.body.dataset.ready) return setTimeout(wait, 20);
+      const run = tumble.player.runs[0], place = new THREE.Vector3(), turn = new THREE.Quaternion(), found = [];
+      for (const [body, t] of [[0, 0], [0, 0.5], [1, 0.5]]) { run.pose(body, run.frameAt(t), place, turn); found.push(...place.toArray(), turn.x, turn.y, turn.z, turn.w); }
+      found.push(run.events.time[0], run.events.impulse[0], run.events.before[0], Number.isNaN(run.events.before[1]) ? 1 : 0, run.series.find(s => s.name === 'total').values[30], run.contacts[7][0]);
+      document.body.dataset.found = found.join(' '); };
+    wait();)";
+  const std::string elements = browser.elements(browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}}), script) + "#t=0");
+  EXPECT_EQ(body_data(elements, "error"), "");
+  std::istringstream found(body_data(elements, "found"));
+  const Trajectory run = thrown_run();
+  const auto expect = [&](double value, double tolerance, const char* what) {
+    double number = std::nan("");
+    found >> number;
+    EXPECT_NEAR(number, value, tolerance) << what;
+  };
+  constexpr double kPlaceQuantum = 8.1e-6, kTurnQuantum = 3.1e-5;   // a millionth of the sight, 8.06 m; 1/32768. Half of it is allowed, and float32 on top.
+  for (const auto& [body, k] : {std::pair{0u, 0u}, {0u, 30u}, {1u, 30u}}) {
+    const BodyPose& pose = run.frames[k].poses[body];
+    for (int i = 0; i < 3; ++i) expect(pose.com_world[i], kPlaceQuantum, "place");
+    for (int i = 0; i < 4; ++i) expect(pose.world_from_body.coeffs()[i], kTurnQuantum, "orientation");
+  }
+  expect(0.4, 1e-6, "time of the event");
+  expect(6.0, 6e-6, "impulse");
+  expect(-3.0, 3e-6, "velocity before");
+  expect(1, 0, "a velocity that is not known stays unknown");
+  expect(run.frames[30].kinetic_energy + run.frames[30].potential_energy, 1.3e-5, "energy");
+  expect(kGravity, 1e-2, "contact force");
+}
+
+TEST_F(PlayerInBrowser, ABodyIsAtTheWallWhenItHitsIt) {
+  Trajectory bullet = thrown_run(2 / kRate);
+  const double hit = 0.6 / kRate, speed = 300.0;   // m/s: between the first two frames it goes 3 m on and 2 m back
+  for (Frame& frame : bullet.frames) {
+    const bool flies_back = frame.time > hit;
+    frame.poses[0].com_world = {speed * (flies_back ? 2 * hit - frame.time : frame.time), 0, 1};
+    frame.poses[0].velocity_world = {flies_back ? -speed : speed, 0, 0};
+  }
+  bullet.events = {{hit, EventKind::kCollision, 0, 2, {3, 0, 1}, {-1, 0, 0}, 6.0, -speed, speed}};
+  const std::string script = R"(
+    const wait = () => { if (!document.body.dataset.ready) return setTimeout(wait, 20);
+      const run = tumble.player.runs[0], place = new THREE.Vector3(), turn = new THREE.Quaternion();
+      document.body.dataset.found = [0.3, 0.6, 0.8].map(k => (run.pose(0, run.frameAt(k / 60), place, turn), place.x)).join(' '); };
+    wait();)";
+  std::istringstream found(body_data(browser.elements(browser.serve(player_page(thrown_ball(), {{bullet, ""}}), script) + "#t=0"), "found"));
+  // Times are kept to 5e-7 s, in which it flies 1.5e-4 m; speeds to 1.5e-5 of themselves, 5e-5 m over a frame. A straight line would be off by 2.4 m.
+  for (const double expected : {1.5, 3.0, 2.0}) {
+    double x = std::nan("");
+    found >> x;
+    EXPECT_NEAR(x, expected, 4e-4);
+  }
+}
+
+TEST_F(PlayerInBrowser, KeysPlayStepAndJump) {
+  const std::string script = R"(
+    const key = (k, shiftKey = false) => window.dispatchEvent(new KeyboardEvent('keydown', { key: k, shiftKey })), said = [];
+    const say = () => { const p = tumble.player; said.push(p.time.toFixed(4), p.isPlaying, p.speed); };
+    const wait = () => { if (!document.body.dataset.ready) return setTimeout(wait, 20);
+      for (const [k, shift] of [['Home'], ['ArrowRight'], ['ArrowRight', true], ['ArrowLeft'], ['n'], ['p'], ['End'], ['ArrowDown'], [' ']]) { key(k, shift); say(); }
+      document.body.dataset.said = said.join(' '); };
+    wait();)";
+  const std::string elements = browser.elements(browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}}), script) + "#t=0.3&speed=1");
+  EXPECT_EQ(body_data(elements, "said"),
+            "0.0000 false 1 "     // Home
+            "0.0167 false 1 "     // a frame on
+            "0.1833 false 1 "     // ten more
+            "0.1667 false 1 "     // one back
+            "0.4000 false 1 "     // next event
+            "0.4000 false 1 "     // there is none before it
+            "0.8000 false 1 "     // End
+            "0.8000 false 0.5 "   // slower
+            "0.0000 true 0.5");   // played from the start again
+}
+
+TEST_F(PlayerInBrowser, TwoRunsNameTheirFirstDifference) {
+  Trajectory wrong = thrown_run();
+  wrong.events[0].impulse = 9.0;
+  const std::string elements = browser.elements(browser.serve(player_page(thrown_ball(), {{wrong, "submission"}, {thrown_run(), "reference"}})) + "#t=0.4");
+  EXPECT_EQ(body_data(elements, "error"), "");
+  EXPECT_NE(elements.find("ball &lt;1&gt; – box: 9 N s, -3 → 1.5 m/s"), std::string::npos);   // beside the picture of the one,
+  EXPECT_NE(elements.find("ball &lt;1&gt; – box: 6 N s, -3 → 1.5 m/s"), std::string::npos);   // and of the other
+  EXPECT_NE(elements.find("First difference at 0.4 s: collision of ball &lt;1&gt; and box: impulse 9 N s in submission, 6 N s in reference."), std::string::npos);
+}
+
+// A runs ahead to 0.4 s, B is found to hit it at 0.2 s: A goes back alone, then both are committed.
+VirtualTimes one_rollback() { return {{"A", "B"}, {{0, 0, 0.4, 0}, {1, 0, 0.2, 0.2}, {0, 0.4, 0.2, 0.2}, {0, 0.2, 0.5, 0.2}, {1, 0.2, 0.6, 0.5}}}; }
+
+TEST_F(PlayerInBrowser, VirtualTimesStandAtTheMoveThatCommittedTheCursor) {
+  report::PlayerOptions options;
+  options.panels = {report::virtual_times_panel(one_rollback())};
+  const std::string address = browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}}, options));
+  const std::string early = browser.elements(address + "#t=0.1&tab=virtual"), late = browser.elements(address + "#t=0.45&tab=virtual");
+  EXPECT_EQ(body_data(early, "error"), "");
+  EXPECT_NE(early.find("Move 2 of 5: B on from 0 to 0.2 s; global virtual time 0.2 s; 0 rollbacks so far"), std::string::npos);
+  EXPECT_NE(late.find("Move 5 of 5: B on from 0.2 to 0.6 s; global virtual time 0.5 s; 1 rollback so far"), std::string::npos);
+}
+
+TEST_F(PlayerInBrowser, DamagedDataLeaveThePlotsThatNeedNoScript) {
+  std::string page = player_page(thrown_ball(), {{thrown_run(), ""}});
+  page.replace(page.find("id=\"run0\">") + 10, 40, std::string(40, 'A'));
+  const std::string elements = browser.elements(browser.serve(page));
+  EXPECT_NE(body_data(elements, "error").find("the data in this page are damaged"), std::string::npos);
+  EXPECT_EQ(body_data(elements, "ready"), "");
+  EXPECT_EQ(elements.find("class=\"alive\""), std::string::npos);   // which hides them
+  EXPECT_NE(elements.find("<svg class=\"plot\""), std::string::npos);
+}
+
+TEST_F(PlayerInBrowser, WithoutWebglItSaysSoAndKeepsCurvesAndEvents) {
+  const std::string elements = browser.elements(browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}})) + "#t=0.4&tab=events", "--disable-3d-apis");
+  EXPECT_NE(elements.find("The motion cannot be drawn here"), std::string::npos);
+  EXPECT_NE(body_data(elements, "ready"), "");
+  EXPECT_NE(elements.find("ball &lt;1&gt; – box"), std::string::npos);   // a row of the list of events
+  EXPECT_NE(elements.find("Change of the total energy"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace tumble::testing
