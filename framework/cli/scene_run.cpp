@@ -17,6 +17,7 @@
 #include "framework/core/nearest_word.h"
 #include "framework/engines/judge.h"
 #include "framework/engines/run.h"
+#include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/grading/worker_connection.h"
 #include "framework/scene/load_scene.h"
 
@@ -145,7 +146,7 @@ scene::Scene judged_part(scene::Scene scene, const RunWords& words) {
 void add_run_words(CLI::App& verb, RunWords& words) {
   verb.add_option("scene", words.scene, "A scene file, or the bare name of one under assignments/*/scenes")->required()->type_name("SCENE");
   verb.add_option("--modules", words.modules, "Whose laws: student, reference, library, or a submission (PATH.cpp, PATH.so, a folder: in the sandbox); for all or each: a1=student,a2=library")->type_name("WORDS");
-  verb.add_option("--engine", words.engine, "rd: retroactive detection with fixed step")->capture_default_str();
+  verb.add_option("--engine", words.engine, "rd: retroactive detection with fixed step; ca: conservative advancement; tw: timewarp; ordered: event by event, the reference")->capture_default_str();
   verb.add_option("--step-s", words.step_s, "Step of the integrator [s] instead of the scene's")->check(CLI::PositiveNumber);
   verb.add_option("--png", words.png, "Write one picture")->type_name("FILE");
   verb.add_option("--at-s", words.at_s, "Instant of the picture [s]; default the end")->check(CLI::NonNegativeNumber);
@@ -195,6 +196,7 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   const PictureSize size = parse_size(words.size);   // refused before the run, not after it
   engines::RunOptions options;
   options.engine = words.engine;
+  options.timewarp = engines::fast_timewarp();
   options.step_s = words.step_s;
   options.duration_s = words.duration_s;
   options.command = context.command_line;

@@ -51,6 +51,7 @@ MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters)
 bool MovingWorld::may_collide(int a, int b) const {
   const WorldBody &first = world_.bodies[a], &second = world_.bodies[b];
   if ((first.immovable() && second.immovable()) || !first.collides || !second.collides) return false;
+  if (first.passes_movable && second.passes_movable && !first.immovable() && !second.immovable()) return false;
   return world_.apart.empty() || !std::binary_search(world_.apart.begin(), world_.apart.end(), std::pair(std::min(a, b), std::max(a, b)));
 }
 
