@@ -16,6 +16,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // A pair whose gap would be bridged by a bound this part of the step or less is searched for its impact: creeping on would
 // move all bodies once a bound, and a bound gains a fixed part of what is left.
 constexpr double kWorthCreeping = 0.1;
+constexpr double kTouching = 1e-9;  // of a pair's size: so near, the sign of the gap is rounding's, and is judged in one place, by the search
 constexpr double kShy = 1e-9;       // of a bound, taken off: rounding may have made it later than the impact
 constexpr double kSlack = 1e-9;     // of coordinates, on boxes: pairs that just touch are looked at
 
@@ -97,8 +98,8 @@ class AdvancementRun {
       const auto motion = [&](int i) { return world.motion_at(i, flights_[i], time_); };
       const double left = end_ - time_;
       const auto bound = collision::bound_time_apart(world.shape(a), motion(a), world.bounds(a, flights_[a]), world.shape(b), motion(b), world.bounds(b, flights_[b]), left);
-      if (bound.duration >= left) return;
-      is_exact = bound.duration < kWorthCreeping * run_.step();
+      if (bound.duration >= left && bound.gap >= kTouching * std::min(world.radius(a), world.radius(b))) return;
+      is_exact = bound.duration < kWorthCreeping * run_.step() || bound.gap < kTouching * std::min(world.radius(a), world.radius(b));
       due = is_exact ? run_.impacts().first_impact(a, flights_[a], b, flights_[b], time_, end_, run_.cost) : time_ + (1 - kShy) * bound.duration;
     }
     if (!(due < end_)) return;
@@ -116,10 +117,11 @@ class AdvancementRun {
       flights_[body] = *flight;
       boxes_[body] = box_of(body);
     }
+    look_ahead(a, b);
     for (const int body : {a, b})
       if (run_.world().can_move(body))
         for (int other = 0; other < run_.world().size(); ++other)
-          if (other != body && !(other == a && body == b) && touches(body, other)) look_ahead(body, other);
+          if (other != a && other != b && touches(body, other)) look_ahead(body, other);
   }
 
   // What the body sweeps until the step's end: a parabola leaves the box of its ends by at most a s^2 / 8.

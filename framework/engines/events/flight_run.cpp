@@ -32,7 +32,9 @@ Meeting FlightRun::meet(const EventKey& key, const Flight& f, const Flight& g) {
 }
 
 void FlightRun::commit(const EventKey& key, const Event& first, const std::vector<Event>& more) {
-  require(last_ < key, "events are committed in their order");
+  if (!(last_ < key))
+    throw PreconditionError(fmt::format("events are committed in their order: {} and {} at {:.17g} s ({}) after {} and {} at {:.17g} s ({})", name(key.body_a), name(key.body_b), key.time, key.generation,
+                                        name(last_.body_a), name(last_.body_b), last_.time, last_.generation));
   last_ = key;
   ++counters.discontinuities;
   sink_.event(first);

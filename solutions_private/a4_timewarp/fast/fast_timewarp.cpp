@@ -174,7 +174,7 @@ void FastTimewarp::loop() {
 Due FastTimewarp::next_legal() {
   const double latest = queue_.front().key.time + trial_.disorder_s;
   std::vector<Due> taken;
-  const std::uint64_t most = 1 + random_.below(16);
+  const std::uint64_t most = 1 + random_.below(256);
   while (taken.size() < most && !queue_.empty() && queue_.front().key.time <= latest && queue_.front().key.time <= run_.duration()) taken.push_back(queue_.pop());
   const std::size_t chosen = random_.below(taken.size());
   for (std::size_t k = 0; k < taken.size(); ++k)
@@ -305,6 +305,8 @@ void FastTimewarp::collide(const Due& due) {
   for (int side = 0; side < 2; ++side) {
     const int body = bodies[side];
     if (!world.can_move(body)) continue;
+    // Rolled back since the event was found: on the way there something else may come first. It will be found again.
+    if (processes_[body].horizon < due.key.time) return;
     const FlightHistory& history = histories_[body];
     places[side] = history.find(serials[side]);
     if (places[side] == history.size()) return;                                                                     // taken back
