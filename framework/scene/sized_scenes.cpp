@@ -68,7 +68,7 @@ BodySpec ball_at(const std::string& name, double radius, const Vector3d& positio
 
 BodySpec molecule_at(const std::string& name, const Vector3d& position, Random& random) {
   BodySpec body = ball_at(name, 1.0, position, kSpeed * direction(random), 0);
-  body.shape = ModelSpec{"water_molecule.3ds", "", kMolecule};
+  body.shape = ModelSpec{"water_hull.3ds", "", kMolecule};
   body.color = Vector3d(0.75, 0.85, 0.95);
   body.world_from_body = Quaterniond(Eigen::AngleAxisd(random.between(0.0, 3.0), direction(random)));
   body.omega_world_rad_s = kSpin * direction(random);
