@@ -10,7 +10,6 @@
 #include "framework/collision/gap.h"
 #include "framework/collision/sweep.h"
 #include "framework/core/error.h"
-#include "framework/dynamics/rotation_bounds.h"
 
 namespace tumble::engines {
 namespace {
@@ -71,6 +70,7 @@ FlightWorld::FlightWorld(const scene::Scene& scene, const std::string& engine) {
     if (moves) movers_.push_back(i);
     else if (body.collides) obstacles_.push_back(i);
   }
+  turning_.resize(first_.size());
   refuse_overlap(scene);
 }
 
@@ -116,7 +116,32 @@ void FlightWorld::refuse_overlap(const scene::Scene& scene) {
 Spin FlightWorld::spin(int body, const Flight& flight, double t) const {
   // Most balls do not turn at all, and what rests turns evenly (it is a ball, or it does not turn).
   if (!facts_[body].can_move || t == flight.begin || flight.omega_body.isZero(0.0)) return {flight.world_from_body, flight.omega_body};
-  return rotations_[body].after({flight.world_from_body, flight.omega_body}, t - flight.begin);
+  const Spin start{flight.world_from_body, flight.omega_body};
+  if (!rotations_[body].is_asymmetric()) return rotations_[body].after(start, t - flight.begin);
+  Turning& now = turning(body, flight);
+  const std::int64_t k = static_cast<std::int64_t>((t - flight.begin) / now.reach);
+  const auto begin_of = [&](std::int64_t part) { return static_cast<double>(part) * now.reach; };
+  if (k <= now.newest - static_cast<std::int64_t>(now.series.size())) now.newest = -1;   // gone: from the start
+  while (now.newest < k) {
+    const Spin next = now.newest < 0 ? start : now.series[static_cast<std::size_t>(now.newest) % now.series.size()].at(now.reach);
+    ++now.newest;
+    now.series[static_cast<std::size_t>(now.newest) % now.series.size()] = SpinSeries(rotations_[body].moments(), rotations_[body].body_from_principal(), next);
+  }
+  return now.series[static_cast<std::size_t>(k) % now.series.size()].at(t - flight.begin - begin_of(k));
+}
+
+FlightWorld::Turning& FlightWorld::turning(int body, const Flight& flight) const {
+  Turning& now = turning_[body];
+  if (now.begin == flight.begin && now.omega_body == flight.omega_body && now.world_from_body.coeffs() == flight.world_from_body.coeffs()) return now;
+  now.begin = flight.begin;
+  now.omega_body = flight.omega_body;
+  now.world_from_body = flight.world_from_body;
+  now.newest = -1;
+  RigidBodyState state{Vector3d::Zero(), flight.world_from_body, Vector3d::Zero(), Vector3d::Zero()};
+  state.angular_momentum_world = flight.world_from_body * (world_.bodies[body].inertia.inertia_body * flight.omega_body);
+  now.bounds = bound_rotation(state, world_.bodies[body].inertia, {0.0});   // undisturbed: for all time
+  now.reach = SpinSeries::reach(now.bounds.angular_speed);
+  return now;
 }
 
 collision::MotionState FlightWorld::motion_at(int body, const Flight& flight, double t) const {
@@ -133,9 +158,9 @@ collision::MotionBounds FlightWorld::bounds(int body, const Flight& flight) cons
     return bounds;
   }
   if (is_ball(body) || flight.omega_body.isZero(0.0)) return bounds;   // however it turns, it looks the same
-  const RotationBounds turning = bound_rotation(state(body, flight, flight.begin), world_.bodies[body].inertia, {0.0});   // free: for all time
-  bounds.angular_speed = turning.angular_speed;
-  bounds.angular_acceleration = turning.angular_acceleration;
+  const RotationBounds& turns = turning(body, flight).bounds;
+  bounds.angular_speed = turns.angular_speed;
+  bounds.angular_acceleration = turns.angular_acceleration;
   return bounds;
 }
 

@@ -4,11 +4,13 @@
 /// process and are never rolled back.
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
 #include "framework/collision/motion.h"
-#include "framework/dynamics/free_rotation.h"
+#include "framework/dynamics/rotation_bounds.h"
+#include "framework/dynamics/spin_series.h"
 #include "framework/dynamics/world.h"
 #include "framework/engines/events/flight.h"
 
@@ -68,6 +70,19 @@ class FlightWorld {
     bool can_move, is_ball, is_still, is_half_space, collides, passes;
   };
 
+  // How a body turns on the flight that was asked about last: what questions about one flight share. No answer depends on it. Not to be
+  // shared between threads.
+  struct Turning {
+    double begin = kUnset;               // of the flight; unset: of none yet
+    Quaterniond world_from_body = Quaterniond::Identity();
+    Vector3d omega_body = Vector3d::Zero();
+    RotationBounds bounds{};
+    double reach = 0.0;                  // of a series [s]
+    std::int64_t newest = -1;            // series of [begin + k reach, begin + (k + 1) reach] are kept up to this k
+    std::array<SpinSeries, 4> series;    // of the last ones, by k modulo 4
+  };
+  Turning& turning(int body, const Flight& flight) const;
+
   void refuse_overlap(const scene::Scene& scene);
   void draw_apart();
 
@@ -75,6 +90,7 @@ class FlightWorld {
   Vector3d gravity_world_ = Vector3d::Zero();
   std::vector<collision::CollisionShape> shapes_;   // equal ones once
   std::vector<FreeRotation> rotations_;             // by body; of immovable ones none is asked
+  mutable std::vector<Turning> turning_;            // by body
   std::vector<Facts> facts_;
   std::vector<int> movers_, obstacles_;
   std::vector<Flight> first_;
