@@ -15,6 +15,7 @@ struct RunWords {
   std::string scene;                   // a path, or a bare name
   std::string modules;
   std::string engine = "rd";
+  std::optional<int> n;                // of a scene whose size is a parameter
   std::optional<double> step_s, duration_s;
   std::string png, sheet, video, trajectory;   // files to write; empty: none
   double at_s = -1.0;                  // of the PNG; negative: the end
@@ -37,8 +38,10 @@ PictureSize parse_size(const std::string& text);
 Vector3d parse_vector(const std::string& flag, const std::string& text);
 
 /// @param word  path of a scene file, or the bare name of one under assignments/*/scenes
-/// @throws UserError naming the scenes there are
-scene::Scene find_scene(const Context& context, const std::string& word);
+///              or the name of a scene whose size is a parameter
+/// @param n     that size; nothing: its default
+/// @throws UserError naming the scenes there are, or that a scene has one size only
+scene::Scene find_scene(const Context& context, const std::string& word, std::optional<int> n = std::nullopt);
 
 /// Runs the scene, writes the files asked for, prints the summary and sets context.exit.
 /// @param extra  a line of talk that stands in the summary under the title (may be empty)

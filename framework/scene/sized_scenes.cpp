@@ -211,6 +211,12 @@ const std::vector<SizedScene>& sized_scenes() {
   return scenes;
 }
 
+const SizedScene* sized_scene_named(const std::string& name) {
+  for (const SizedScene& sized : sized_scenes())
+    if (sized.name == name) return &sized;
+  return nullptr;
+}
+
 Scene make_sized_scene(const std::string& name, int n) {
   std::vector<std::string> names;
   for (const SizedScene& sized : sized_scenes()) names.push_back(sized.name);

@@ -21,6 +21,9 @@ struct SizedScene {
 /// All of them, in the order in which they are listed.
 const std::vector<SizedScene>& sized_scenes();
 
+/// Nothing where no scene with a size has that name.
+const SizedScene* sized_scene_named(const std::string& name);
+
 /// @param name  of sized_scenes()
 /// @param n     >= 1; the room grows with it
 /// @throws UserError for a name that is none of them, or an n that is out of range
