@@ -185,13 +185,13 @@ Vector3d parse_vector(const std::string& flag, const std::string& text) {
 }
 
 scene::Scene find_scene(const Context& context, const std::string& word, std::optional<int> n) {
-  if (const scene::SizedScene* sized = scene::sized_scene_named(word); sized != nullptr && !fs::exists(word)) {
+  if (const scene::SizedScene* sized = scene::sized_scene_named(word); sized != nullptr && !fs::is_regular_file(word)) {
     scene::Scene made = scene::make_sized_scene(word, n.value_or(sized->default_n));
     made.file = context.root / "models" / word;   // models are looked for beside it
     return made;
   }
   if (n) throw UserError("--n " + std::to_string(*n), "'" + word + "' has one size", "Sizes are parameters of " + sized_names() + ".");
-  if (fs::exists(word)) return scene::load_scene(word);
+  if (fs::is_regular_file(word)) return scene::load_scene(word);
   if (word.ends_with(".json") || word.find('/') != std::string::npos) throw UserError(word, "there is no such file", "Check the path, or give a scene's bare name: " + listing(context));
   std::vector<fs::path> beginning;   // a name may be cut short where that is clear
   std::vector<std::string> names_there;

@@ -67,23 +67,22 @@ void write_engines_page(const std::string& title, const std::string& about, cons
   Page page("Engines side by side", title);
   page.paragraph(about);
   const auto quickest = std::min_element(rows.begin(), rows.end(), [](const EngineRow& x, const EngineRow& y) { return (x.stopped_by.empty() ? x.cpu_s : 1e300) < (y.stopped_by.empty() ? y.cpu_s : 1e300); });
+  // One column an engine: there are few of them.
   Table table;
-  table.columns = {{"Engine"}};
-  for (const auto& [name, heading] : compared_counts()) table.columns.push_back({heading, true});
-  table.columns.insert(table.columns.end(), {{"w h", true}, {"Time, against the quickest", true}, {"Agreement"}});
-  for (const EngineRow& row : rows) {
-    std::vector<Cell> cells{{row.engine + ": " + row.meaning}};
-    if (!row.stopped_by.empty() && row.counts.empty()) {
-      cells.resize(table.columns.size() - 1);
-      cells.push_back({row.stopped_by, "", Look::kMuted});
-      table.rows.push_back(std::move(cells));
-      continue;
-    }
-    for (const auto& [name, heading] : compared_counts()) cells.push_back({std::to_string(count_of(row, name))});
-    cells.push_back({fmt::format("{:.3g}", row.w_h)});
-    cells.push_back({fmt::format("{:.2f}", row.cpu_s / quickest->cpu_s)});
-    cells.push_back({row.stopped_by.empty() ? row.agreement : "stopped " + row.stopped_by, "", row.stopped_by.empty() ? Look::kPlain : Look::kBad});
+  table.columns = {{""}};
+  for (const EngineRow& row : rows) table.columns.push_back({row.engine + ": " + row.meaning, true});
+  const auto line = [&](const std::string& name, const auto& cell_of) {
+    std::vector<Cell> cells{{name}};
+    for (const EngineRow& row : rows) cells.push_back(row.counts.empty() ? Cell{"\u2013", "", Look::kMuted} : cell_of(row));
     table.rows.push_back(std::move(cells));
+  };
+  for (const auto& [name, heading] : compared_counts()) line(heading, [&](const EngineRow& row) { return Cell{std::to_string(count_of(row, name))}; });
+  line("w h", [](const EngineRow& row) { return Cell{fmt::format("{:.3g}", row.w_h)}; });
+  line("Time, against the quickest", [&](const EngineRow& row) { return Cell{fmt::format("{:.2f}", row.cpu_s / quickest->cpu_s)}; });
+  table.rows.push_back({{"Agreement"}});
+  for (const EngineRow& row : rows) {
+    const bool is_well = row.stopped_by.empty();
+    table.rows.back().push_back({is_well ? row.agreement : row.counts.empty() ? "not run: " + row.stopped_by : "stopped " + row.stopped_by, "", is_well ? Look::kPlain : row.counts.empty() ? Look::kMuted : Look::kBad});
   }
   page.table(table);
   page.paragraph("An integration takes one body from one time to another; undone ones were taken back. A pair check looks for the first impact of one pair in an interval. w h is the number of "

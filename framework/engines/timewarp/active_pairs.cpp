@@ -22,8 +22,15 @@ ActivePairs::ActivePairs(int bodies, double cell) : cell_(cell), entries_(static
   buckets_.resize(heads);
 }
 
+// Two cells of a box may share a bucket: a body stands in each bucket once.
 void ActivePairs::enter(int body, std::size_t bucket) {
   std::size_t at = bucket;
+  for (;; at = static_cast<std::size_t>(buckets_[at].next)) {
+    const Bucket& b = buckets_[at];
+    for (std::int32_t place = 0; place < b.count; ++place)
+      if (b.bodies[static_cast<std::size_t>(place)] == body) return;
+    if (b.next < 0) break;
+  }
   while (buckets_[at].count == kInABucket) {
     if (buckets_[at].next < 0) {
       if (free_.empty()) {
@@ -46,6 +53,7 @@ void ActivePairs::leave(int body, std::size_t bucket) {
     const Bucket& b = buckets_[at];
     for (place = 0; place < b.count && b.bodies[static_cast<std::size_t>(place)] != body; ++place) {}
     if (place < b.count) break;
+    if (b.next < 0) return;   // gone with another cell
   }
   std::size_t last = bucket;
   while (buckets_[last].next >= 0) {

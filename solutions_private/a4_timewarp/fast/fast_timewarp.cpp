@@ -93,6 +93,7 @@ class FastTimewarp {
   std::vector<Due> found_;             // of advance
   double now_ = kInfinity;             // of the event that is worked at: it is in the queue no more, but not done [s]
   double committed_ = 0.0;             // everything before is committed [s]
+  std::size_t commit_at_ = kCommitAfter;   // size of executed_ at which global virtual time is looked at
   std::uint64_t worked_at_ = 0;
 };
 
@@ -165,7 +166,10 @@ void FastTimewarp::loop() {
     work_at(due);
     now_ = kInfinity;
     const double gvt = queue_.empty() ? kInfinity : queue_.front().key.time;
-    if (executed_.size() >= kCommitAfter || run_.next_frame() < gvt) commit_before(std::min(gvt, run_.duration()));
+    if (executed_.size() >= commit_at_ || run_.next_frame() < gvt) {
+      commit_before(std::min(gvt, run_.duration()));
+      commit_at_ = executed_.size() + kCommitAfter;
+    }
   }
   commit_before(kInfinity);
 }
