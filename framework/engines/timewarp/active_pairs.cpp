@@ -99,6 +99,7 @@ void ActivePairs::set_box(int body, const Box& box) {
     entry.box = box;
     return;
   }
+  for_each_cell(next, [&](std::size_t bucket) { __builtin_prefetch(&buckets_[bucket]); });
   take_out(body);
   entry = next;
   entry.is_in_grid = true;

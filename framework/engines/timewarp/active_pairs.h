@@ -43,6 +43,12 @@ class ActivePairs {
   void set_box(int body, const Box& box);
   const Box& box(int body) const { return entries_[static_cast<std::size_t>(body)].box; }
 
+  /// Begins to bring what is known of a body from memory.
+  void fetch(int body) const {
+    __builtin_prefetch(&entries_[static_cast<std::size_t>(body)]);
+    __builtin_prefetch(reinterpret_cast<const char*>(&entries_[static_cast<std::size_t>(body)]) + 64);
+  }
+
   /// Calls `found(other)` once for each body whose box overlaps this body's.
   template <class Found>
   void for_each_partner(int body, const Found& found) const {
@@ -54,6 +60,9 @@ class ActivePairs {
         if (other != body && entries_[static_cast<std::size_t>(other)].is_in_grid && own.box.overlaps(entries_[static_cast<std::size_t>(other)].box)) found(other);
       return;
     }
+    for_each_cell(own, [&](std::size_t bucket) {
+      for (std::int32_t place = 0; place < buckets_[bucket].count; ++place) fetch(buckets_[bucket].bodies[static_cast<std::size_t>(place)]);
+    });
     for (std::int32_t i = own.low[0]; i <= own.high[0]; ++i)
       for (std::int32_t j = own.low[1]; j <= own.high[1]; ++j)
         for (std::int32_t k = own.low[2]; k <= own.high[2]; ++k)

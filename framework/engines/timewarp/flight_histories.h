@@ -46,6 +46,13 @@ class FlightHistories {
 
   const FlightHistory& operator[](int body) const { return histories_[static_cast<std::size_t>(body)]; }
 
+  /// Begins to bring a body's flights from memory.
+  void fetch(int body) const {
+    __builtin_prefetch(&histories_[static_cast<std::size_t>(body)]);
+    const char* slots = reinterpret_cast<const char*>(&slab_[static_cast<std::size_t>(body) * kFirstSlots]);
+    for (std::size_t at = 0; at < kFirstSlots * sizeof(Flight); at += 64) __builtin_prefetch(slots + at);
+  }
+
   void push(int body, const Flight& flight) {
     FlightHistory& history = histories_[static_cast<std::size_t>(body)];
     if (history.count_ == history.mask_ + 1) grow(static_cast<std::size_t>(body));
