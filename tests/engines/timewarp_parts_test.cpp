@@ -61,22 +61,37 @@ TEST(FlightHistories, AreTheSameBytesAfterOneToFiftyFlightsAndARollback) {
   }
 }
 
+// Whatever the width of its bins: one heap, some in a bin, most bins empty, all far ahead.
 TEST(EventQueue, GivesKeysInTheirOrderWhateverTheOrderTheyCameIn) {
   struct Item {
     engines::EventKey key;
   };
-  Random random(5);
-  engines::EventQueue<Item> queue;
-  for (int k = 0; k < 2000; ++k) {
-    const int a = static_cast<int>(random.below(50));
-    queue.push({{0.25 * static_cast<double>(random.below(8)), static_cast<std::uint32_t>(random.below(3)), engines::EventClass::kCollision, a, a + 1 + static_cast<int>(random.below(50))}});
-    if (k % 3 == 2) queue.pop();
-  }
-  engines::EventKey last = queue.front().key;
-  while (!queue.empty()) {
-    const engines::EventKey next = queue.pop().key;
-    EXPECT_FALSE(next < last);
-    last = next;
+  for (const double width : {std::numeric_limits<double>::infinity(), 0.7, 1e-3, 1e-7}) {
+    Random random(5);
+    engines::EventQueue<Item> queue(width);
+    std::multiset<std::tuple<double, std::uint32_t, int, int>> expected;
+    const auto content = [](const Item& item) { return std::tuple(item.key.time, item.key.generation, item.key.body_a, item.key.body_b); };
+    double now = 0.0;
+    for (int k = 0; k < 6000; ++k) {
+      if (k < 4000) {
+        const int a = static_cast<int>(random.below(50));
+        const double time = random.below(3) == 0 ? now : now + 0.25 * static_cast<double>(random.below(40)) * (random.below(9) == 0 ? 100.0 : 1.0);
+        const Item item{{time, static_cast<std::uint32_t>(random.below(3)), engines::EventClass::kCollision, a, a + 1 + static_cast<int>(random.below(50))}};
+        queue.push(item);
+        expected.insert(content(item));
+        if (random.below(20) == 0) {   // a rollback: earlier than what was popped last
+          const Item early{{0.5 * now, 0, engines::EventClass::kCollision, 1, 2}};
+          queue.push(early);
+          expected.insert(content(early));
+        }
+      }
+      if (k % 3 != 2 && !queue.empty()) {
+        ASSERT_EQ(content(queue.front()), *expected.begin()) << "width " << width;
+        now = queue.pop().key.time;
+        expected.erase(expected.begin());
+      }
+      ASSERT_EQ(queue.size(), expected.size());
+    }
   }
 }
 

@@ -60,32 +60,42 @@ class ActivePairs {
         if (other != body && entries_[static_cast<std::size_t>(other)].is_in_grid && own.box.overlaps(entries_[static_cast<std::size_t>(other)].box)) found(other);
       return;
     }
-    for_each_cell(own, [&](std::size_t bucket) {
-      for (std::int32_t place = 0; place < buckets_[bucket].count; ++place) fetch(buckets_[bucket].bodies[static_cast<std::size_t>(place)]);
-    });
+    const SmallBox small = small_of(own.box);
     for (std::int32_t i = own.low[0]; i <= own.high[0]; ++i)
       for (std::int32_t j = own.low[1]; j <= own.high[1]; ++j)
         for (std::int32_t k = own.low[2]; k <= own.high[2]; ++k)
           for (std::int32_t at = static_cast<std::int32_t>(bucket_of(i, j, k)); at >= 0; at = buckets_[static_cast<std::size_t>(at)].next) {
             const Bucket& bucket = buckets_[static_cast<std::size_t>(at)];
             for (std::int32_t place = 0; place < bucket.count; ++place) {
-              const int other = bucket.bodies[static_cast<std::size_t>(place)];
-              if (other == body) continue;
-              const Entry& entry = entries_[static_cast<std::size_t>(other)];
+              const Slot& slot = bucket.slots[static_cast<std::size_t>(place)];
+              if (!small.overlaps(slot.box) || slot.body == body) continue;
+              const Entry& entry = entries_[static_cast<std::size_t>(slot.body)];
               // The lowest cell that both touch: also tells apart cells that share a bucket.
               const bool here = (i == std::max(own.low[0], entry.low[0])) & (j == std::max(own.low[1], entry.low[1])) & (k == std::max(own.low[2], entry.low[2]));
-              if (here && own.box.overlaps(entry.box)) found(other);
+              if (here && own.box.overlaps(entry.box)) found(slot.body);
             }
           }
   }
 
  private:
-  static constexpr std::int32_t kInABucket = 6;
+  static constexpr std::int32_t kInABucket = 4;   // two lines of the cache
   static constexpr double kMostCells = 1000;   // of a box in the grid
 
+  // A box in single precision, never smaller: most that share a cell do not overlap, and are told apart without looking further.
+  struct SmallBox {
+    float low[3], high[3];
+    bool overlaps(const SmallBox& other) const {
+      return (low[0] <= other.high[0]) & (other.low[0] <= high[0]) & (low[1] <= other.high[1]) & (other.low[1] <= high[1]) & (low[2] <= other.high[2]) & (other.low[2] <= high[2]);
+    }
+  };
+  static SmallBox small_of(const Box& box);
+  struct Slot {
+    std::int32_t body;
+    SmallBox box;
+  };
   struct Bucket {
     std::int32_t count = 0, next = -1;
-    std::array<std::int32_t, kInABucket> bodies{};
+    std::array<Slot, kInABucket> slots;
   };
   struct Entry {
     Box box;
@@ -98,7 +108,7 @@ class ActivePairs {
     // Primes of M. Teschner et al., "Optimized spatial hashing for collision detection of deformable objects", VMV 2003.
     return (u(i) * 73856093u ^ u(j) * 19349663u ^ u(k) * 83492791u) & mask_;
   }
-  void enter(int body, std::size_t bucket);
+  void enter(int body, const SmallBox& box, std::size_t bucket);
   void leave(int body, std::size_t bucket);
   template <class Work>
   void for_each_cell(const Entry& entry, const Work& work) const {

@@ -53,6 +53,7 @@ struct Executed {
 };
 
 // How far a ball goes in one go, and how large cells are: measured on gases of 10^2 to 10^5 balls, either may be off by half.
+constexpr double kCells = 1.4;
 struct Lengths {
   double way, cell;   // [m]
 };
@@ -68,7 +69,16 @@ Lengths lengths_for(const FlightWorld& world) {
   const double size = 2 * radii[radii.size() * 9 / 10];
   const Vector3d extent = (all.high - all.low).cwiseMax(Vector3d::Constant(size));
   const double apart = std::cbrt(extent.prod() / static_cast<double>(world.movers().size()));
-  return {std::max(apart - size, 0.25 * size), std::max(1.5 * size, 2 * apart)};
+  return {std::max(apart - size, 0.25 * size), std::max(1.5 * size, kCells * apart)};
+}
+
+// A bin of the queue should hold some hundred events: a process has one each time it goes on.
+double bin_for(const FlightWorld& world, double way, double duration) {
+  constexpr double kInABin = 100.0;
+  double speed = 0.0;
+  for (const int i : world.movers()) speed += world.first_flight(i).velocity_world.norm() + std::sqrt(0.5 * world.gravity_world().norm() * way);
+  const double bin = kInABin * way / speed;   // speed: of all together
+  return bin > 0 && bin < duration ? bin : std::max(1e-3 * duration, 1e-12);
 }
 
 class FastTimewarp {
@@ -119,7 +129,7 @@ class FastTimewarp {
 
 FastTimewarp::FastTimewarp(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink)
     : run_(scene, laws, options, sink), trial_(options.trial), random_(options.trial.seed), histories_(static_cast<std::size_t>(run_.world().size())),
-      processes_(static_cast<std::size_t>(run_.world().size())), lengths_(lengths_for(run_.world())), pairs_(run_.world().size(), lengths_.cell) {
+      processes_(static_cast<std::size_t>(run_.world().size())), lengths_(lengths_for(run_.world())), pairs_(run_.world().size(), lengths_.cell), queue_(bin_for(run_.world(), lengths_.way, run_.duration())) {
   const FlightWorld& world = run_.world();
   for (const int i : world.movers()) histories_.push(i, world.first_flight(i));
   for (const int i : world.obstacles()) {
