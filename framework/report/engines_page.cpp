@@ -70,7 +70,7 @@ void write_engines_page(const std::string& title, const std::string& about, cons
   // One column an engine: there are few of them.
   Table table;
   table.columns = {{""}};
-  for (const EngineRow& row : rows) table.columns.push_back({row.engine + ": " + row.meaning, true});
+  for (const EngineRow& row : rows) table.columns.push_back({row.engine, true});
   const auto line = [&](const std::string& name, const auto& cell_of) {
     std::vector<Cell> cells{{name}};
     for (const EngineRow& row : rows) cells.push_back(row.counts.empty() ? Cell{"\u2013", "", Look::kMuted} : cell_of(row));
@@ -79,12 +79,12 @@ void write_engines_page(const std::string& title, const std::string& about, cons
   for (const auto& [name, heading] : compared_counts()) line(heading, [&](const EngineRow& row) { return Cell{std::to_string(count_of(row, name))}; });
   line("w h", [](const EngineRow& row) { return Cell{fmt::format("{:.3g}", row.w_h)}; });
   line("Time, against the quickest", [&](const EngineRow& row) { return Cell{fmt::format("{:.2f}", row.cpu_s / quickest->cpu_s)}; });
-  table.rows.push_back({{"Agreement"}});
-  for (const EngineRow& row : rows) {
-    const bool is_well = row.stopped_by.empty();
-    table.rows.back().push_back({is_well ? row.agreement : row.counts.empty() ? "not run: " + row.stopped_by : "stopped " + row.stopped_by, "", is_well ? Look::kPlain : row.counts.empty() ? Look::kMuted : Look::kBad});
-  }
   page.table(table);
+  for (const EngineRow& row : rows) {
+    const std::string what = row.engine + " (" + row.meaning + "): ";
+    if (row.stopped_by.empty()) page.paragraph(what + row.agreement + ".");
+    else page.paragraph(what + (row.counts.empty() ? "not run: " : "stopped ") + row.stopped_by, row.counts.empty() ? Look::kMuted : Look::kBad);
+  }
   page.paragraph("An integration takes one body from one time to another; undone ones were taken back. A pair check looks for the first impact of one pair in an interval. w h is the number of "
                  "discontinuities a body and largest step: where n w h is above 2, engines whose bodies all stop at each discontinuity begin to pay for every other body.", Look::kMuted);
   if (!ladder.empty()) {

@@ -131,7 +131,8 @@ Spin FlightWorld::spin(int body, const Flight& flight, double t) const {
 }
 
 FlightWorld::Turning& FlightWorld::turning(int body, const Flight& flight) const {
-  Turning& now = turning_[body];
+  if (!turning_[body]) turning_[body] = std::make_unique<Turning>();
+  Turning& now = *turning_[body];
   if (now.begin == flight.begin && now.omega_body == flight.omega_body && now.world_from_body.coeffs() == flight.world_from_body.coeffs()) return now;
   now.begin = flight.begin;
   now.omega_body = flight.omega_body;

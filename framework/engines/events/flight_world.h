@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -90,7 +91,7 @@ class FlightWorld {
   Vector3d gravity_world_ = Vector3d::Zero();
   std::vector<collision::CollisionShape> shapes_;   // equal ones once
   std::vector<FreeRotation> rotations_;             // by body; of immovable ones none is asked
-  mutable std::vector<Turning> turning_;            // by body
+  mutable std::vector<std::unique_ptr<Turning>> turning_;   // by body; made where a solid turns
   std::vector<Facts> facts_;
   std::vector<int> movers_, obstacles_;
   std::vector<Flight> first_;
