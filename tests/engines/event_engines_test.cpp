@@ -166,6 +166,16 @@ TEST(Engines, FollowAShakenPlaneAndABallAtRest) {
   EXPECT_EQ(difference(reference, run_by("ca", scene)), "");
 }
 
+// A point has no size to measure a grid by; nothing else is in its way but a floor.
+TEST(Engines, TakeOneBodyNoneAndOneWithoutSize) {
+  for (const char* engine : kEventEngines) {
+    EXPECT_EQ(run_by(engine, scene_of({plane("floor", {0, 0, 0}, {0, 0, 1})}, 0.5)).frames.size(), 31U) << engine;
+    const Trajectory run = run_by(engine, scene_of({plane("floor", {0, 0, 0}, {0, 0, 1}), ball("point", 0.0, 1.0, {0, 0, 1}, Vector3d::Zero())}, 1.0, Vector3d(0, 0, -9.81)));
+    ASSERT_EQ(run.events.size(), 1U) << engine;
+    EXPECT_NEAR(run.events[0].time, std::sqrt(2.0 / 9.81), 1e-15) << engine;
+  }
+}
+
 TEST(Engines, RefuseWhatNoFlightFollowsAndSayWhich) {
   scene::Scene scene = scene_of({ball("ball", 0.1, 1.0, {0, 0, 1}, Vector3d::Zero())}, 1.0);
   scene.drags.push_back({"ball", 0.1, 0.0});

@@ -10,6 +10,7 @@
 #include "framework/engines/timewarp/active_pairs.h"
 #include "framework/engines/timewarp/event_queue.h"
 #include "framework/engines/timewarp/flight_histories.h"
+#include "solutions_private/a4_timewarp/fast/lengths.h"
 
 namespace tumble::a4 {
 namespace {
@@ -51,35 +52,6 @@ struct Executed {
   Event first;
   std::vector<Event> more;
 };
-
-// How far a ball goes in one go, and how large cells are: measured on gases of 10^2 to 10^5 balls, either may be off by half.
-constexpr double kCells = 1.4;
-struct Lengths {
-  double way, cell;   // [m]
-};
-Lengths lengths_for(const FlightWorld& world) {
-  if (world.movers().empty()) return {1.0, 1.0};
-  Box all;
-  std::vector<double> radii;
-  for (const int i : world.movers()) {
-    all.take_in({world.first_flight(i).com_world, world.first_flight(i).com_world});
-    radii.push_back(world.radius(i));
-  }
-  std::nth_element(radii.begin(), radii.begin() + static_cast<std::ptrdiff_t>(radii.size() * 9 / 10), radii.end());
-  const double size = 2 * radii[radii.size() * 9 / 10];
-  const Vector3d extent = (all.high - all.low).cwiseMax(Vector3d::Constant(size));
-  const double apart = std::cbrt(extent.prod() / static_cast<double>(world.movers().size()));
-  return {std::max(apart - size, 0.25 * size), std::max(1.5 * size, kCells * apart)};
-}
-
-// A bin of the queue should hold some hundred events: a process has one each time it goes on.
-double bin_for(const FlightWorld& world, double way, double duration) {
-  constexpr double kInABin = 100.0;
-  double speed = 0.0;
-  for (const int i : world.movers()) speed += world.first_flight(i).velocity_world.norm() + std::sqrt(0.5 * world.gravity_world().norm() * way);
-  const double bin = kInABin * way / speed;   // speed: of all together
-  return bin > 0 && bin < duration ? bin : std::max(1e-3 * duration, 1e-12);
-}
 
 class FastTimewarp {
  public:
