@@ -67,6 +67,7 @@ FlightWorld::FlightWorld(const scene::Scene& scene, const std::string& engine) {
     }
     facts_.push_back({shape.bounding_radius(), found->second, moves, shape.is_ball(), !moves && !is_driven(body.motion), shape.is_half_space(), body.collides, moves && body.passes_movable});
     first_.push_back(flight);
+    matter_.push_back({body.inertia, body.restitution});
     if (moves) movers_.push_back(i);
     else if (body.collides) obstacles_.push_back(i);
   }
@@ -177,7 +178,7 @@ RigidBodyState FlightWorld::state(int body, const Flight& flight, double t) cons
 
 Body FlightWorld::body_at(int body, const Flight& flight, double t) const {
   const Spin now = spin(body, flight, t);
-  return {world_.bodies[body].inertia, position(body, flight, t), now.world_from_body, velocity(body, flight, t), now.world_from_body * now.omega_body};
+  return {inertia(body), position(body, flight, t), now.world_from_body, velocity(body, flight, t), now.world_from_body * now.omega_body};
 }
 
 }  // namespace tumble::engines

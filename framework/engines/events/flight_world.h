@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "framework/collision/motion.h"
+#include "framework/core/large_pages.h"
 #include "framework/dynamics/rotation_bounds.h"
 #include "framework/dynamics/spin_series.h"
 #include "framework/dynamics/world.h"
@@ -33,6 +34,8 @@ class FlightWorld {
   const std::vector<int>& obstacles() const { return obstacles_; }
   bool can_move(int body) const { return facts_[body].can_move; }
   bool is_ball(int body) const { return facts_[body].is_ball; }
+  const Inertia& inertia(int body) const { return matter_[body].inertia; }
+  double restitution(int body) const { return matter_[body].restitution; }
   bool collides(int body) const { return facts_[body].collides; }
   /// Immovable and without a motion of its own.
   bool is_still(int body) const { return facts_[body].is_still; }
@@ -71,6 +74,11 @@ class FlightWorld {
     bool can_move, is_ball, is_still, is_half_space, collides, passes;
   };
 
+  struct Matter {         // what an impact asks of a body; apart from the rest of what is known of it, which is large
+    Inertia inertia;
+    double restitution;
+  };
+
   // How a body turns on the flight that was asked about last: what questions about one flight share. No answer depends on it. Not to be
   // shared between threads.
   struct Turning {
@@ -92,7 +100,8 @@ class FlightWorld {
   std::vector<collision::CollisionShape> shapes_;   // equal ones once
   std::vector<FreeRotation> rotations_;             // by body; of immovable ones none is asked
   mutable std::vector<std::unique_ptr<Turning>> turning_;   // by body; made where a solid turns
-  std::vector<Facts> facts_;
+  std::vector<Facts, LargePages<Facts>> facts_;
+  std::vector<Matter, LargePages<Matter>> matter_;  // by body
   std::vector<int> movers_, obstacles_;
   std::vector<Flight> first_;
 };

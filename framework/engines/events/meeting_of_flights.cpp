@@ -71,7 +71,7 @@ void MeetingOfFlights::push(Work& work, const Contact& contact, double impulse) 
 // The middle counts first, so that a flat landing does not tip over its corners in turn; then the corner that approaches fastest.
 void MeetingOfFlights::collide(Work& work) const {
   const int a = work.result.key.body_a, b = work.result.key.body_b;
-  const double restitution = std::min(world_.world().bodies[a].restitution, world_.world().bodies[b].restitution);
+  const double restitution = std::min(world_.restitution(a), world_.restitution(b));
   double sliding = 0.0;
   const auto look = [&](const Vector3d& point) {
     work.fastest = std::max(work.fastest, std::abs(laws_.relative_normal_velocity(work.contact_at(point), work.a, work.b)));
@@ -127,7 +127,7 @@ bool MeetingOfFlights::settle(Work& work, int body, int support) const {
   if (!(gravity.dot(up) < 0) || (gravity - gravity.dot(up) * up).norm() > kLevel * gravity.norm()) return false;
   const Matrix3d& inertia = mover.inertia.inertia_body;
   if (!mover.omega_world.isZero(0.0) && (inertia - inertia(0, 0) * Matrix3d::Identity()).norm() > kNoTurn * inertia.norm()) return false;
-  const double restitution = std::min(world_.world().bodies[body].restitution, world_.world().bodies[support].restitution);
+  const double restitution = std::min(world_.restitution(body), world_.restitution(support));
   if (!(mover.velocity_world.norm() < rules_.rest_speed && mover.velocity_world.dot(up) <= restitution * rules_.rest_speed + kRoundOffOfSliding * work.fastest)) return false;
   mover.velocity_world.setZero();
   mover.com_world -= work.gap.distance * up;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "framework/collision/collision_shape.h"
+#include "framework/core/large_pages.h"
 
 namespace tumble::engines {
 
@@ -120,9 +121,9 @@ class ActivePairs {
 
   double cell_;
   std::uint32_t mask_;
-  std::vector<Bucket> buckets_;             // the first mask_ + 1 are heads, the others continue one
+  std::vector<Bucket, LargePages<Bucket>> buckets_;             // the first mask_ + 1 are heads, the others continue one
   std::vector<std::int32_t> free_;          // continuations not in use
-  std::vector<Entry> entries_;              // by body
+  std::vector<Entry, LargePages<Entry>> entries_;              // by body
   std::vector<int> wide_;                   // ascending
 };
 

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "framework/core/large_pages.h"
 #include "framework/engines/events/flight.h"
 
 namespace tumble::engines {
@@ -37,7 +38,7 @@ class FlightHistory {
 
 class FlightHistories {
  public:
-  explicit FlightHistories(std::size_t bodies) : histories_(bodies), grown_(bodies), slab_(std::make_unique<Flight[]>(bodies * kFirstSlots)) {
+  explicit FlightHistories(std::size_t bodies) : histories_(bodies), grown_(bodies), slab_(bodies * kFirstSlots) {
     for (std::size_t i = 0; i < bodies; ++i) {
       histories_[i].slots_ = &slab_[i * kFirstSlots];
       histories_[i].mask_ = kFirstSlots - 1;
@@ -90,9 +91,9 @@ class FlightHistories {
     history.mask_ = slots - 1;
   }
 
-  std::vector<FlightHistory> histories_;
+  std::vector<FlightHistory, LargePages<FlightHistory>> histories_;
   std::vector<std::unique_ptr<Flight[]>> grown_;
-  std::unique_ptr<Flight[]> slab_;
+  std::vector<Flight, LargePages<Flight>> slab_;
   std::size_t kept_ = 0, most_kept_ = 0;
 };
 

@@ -85,7 +85,7 @@ class FastTimewarp {
   engines::TimewarpTrial trial_;
   Random random_;
   FlightHistories histories_;
-  std::vector<Process> processes_;     // by body
+  std::vector<Process, LargePages<Process>> processes_;     // by body
   std::vector<int> planes_;            // half-spaces
   Lengths lengths_;
   ActivePairs pairs_;
