@@ -1,6 +1,8 @@
 // What each engine pays for the same scenes: one table, one row a size and engine; ratios are of times in this very run.
 //   bench_engines [--scene NAME] [--n N,N,...] [--engines rd,ca,tw] [--duration-s T]
 // Without words: the table of TIMEWARP's figures (gas of balls from 10^2 to 10^5 bodies, atoms of 300, balls alone).
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
@@ -27,7 +29,10 @@ double cpu_seconds() {
 class Tally final : public TrajectorySink {
  public:
   void begin(const TrajectoryInfo&, const std::vector<TrajectoryBody>&) override {}
-  void frame(const Frame&) override {}
+  void frame(const Frame& frame) override {
+    if (!(energy_at_0 > 0)) energy_at_0 = frame.kinetic_energy + frame.potential_energy;
+    energy_error = std::max(energy_error, std::abs(frame.kinetic_energy + frame.potential_energy - energy_at_0) / energy_at_0);
+  }
   void event(const Event& event) override { collisions += event.kind == EventKind::kCollision ? 1 : 0; }
   void end(const Counters& counters, const std::string& stopped) override {
     counts = counters.counts;
@@ -36,12 +41,15 @@ class Tally final : public TrajectorySink {
   std::map<std::string, std::uint64_t> counts;
   std::string stopped_by;
   std::uint64_t collisions = 0;
+  double energy_at_0 = 0.0, energy_error = 0.0;   // [J]; of the first
 };
 
 struct Row {
   double seconds;
   Tally tally;
 };
+
+constexpr double kShort = 1.0;   // [s] of CPU: what takes longer is run once
 
 Row measure(const scene::Scene& scene, const std::string& engine, double duration) {
   engines::RunOptions options;
@@ -60,11 +68,15 @@ Row measure(const scene::Scene& scene, const std::string& engine, double duratio
 void table(const std::string& name, int n, const std::vector<std::string>& engines, double duration) {
   const scene::Scene scene = scene::make_sized_scene(name, n);
   std::map<std::string, double> seconds;
-  const double start = cpu_seconds();
-  measure(scene, engines.back(), 1e-9);   // reading models, building shapes
-  const double building = cpu_seconds() - start;
+  // The best of several: what a neighbour's work on the machine adds is no engine's.
+  const auto best_of = [&](int runs, const std::string& engine, double simulated) {
+    Row best = measure(scene, engine, simulated);
+    for (int k = 1; k < runs && best.seconds < kShort; ++k) best.seconds = std::min(best.seconds, measure(scene, engine, simulated).seconds);
+    return best;
+  };
+  const double building = best_of(5, engines.back(), 1e-9).seconds;   // reading models, building shapes: the same for all
   for (const std::string& engine : engines) {
-    const Row row = measure(scene, engine, duration);
+    const Row row = best_of(5, engine, duration);
     const auto count = [&](const char* what) { return static_cast<double>(row.tally.counts.at(what)); };
     seconds[engine] = std::max(1e-6, row.seconds - building);
     const double bodies = static_cast<double>(n), w = 2 * static_cast<double>(row.tally.collisions) / (bodies * duration);
@@ -76,6 +88,18 @@ void table(const std::string& name, int n, const std::vector<std::string>& engin
   if (seconds.contains("tw"))
     for (const auto& [engine, time] : seconds)
       if (engine != "tw") std::printf("%-8s %8d %s/tw %.2f in time\n", name.c_str(), n, engine.c_str(), time / seconds["tw"]);
+}
+
+/// Elastic collisions lose nothing: over a million of them only roundings add up.
+void energy_over_a_million() {
+  engines::RunOptions options;
+  options.engine = "tw";
+  options.timewarp = engines::fast_timewarp();
+  options.duration_s = 2800.0;
+  options.frame_rate_hz = 0.1;
+  Tally tally;
+  engines::run_scene(scene::make_sized_scene("gas", 300), test_laws(), options, tally);
+  std::printf("gas of 300: %llu collisions, energy off by %.1e of itself at most (allowed 1e-10)\n", static_cast<unsigned long long>(tally.collisions), tally.energy_error);
 }
 
 std::vector<std::string> parts(const std::string& text) {
@@ -112,4 +136,5 @@ int main(int argc, char** argv) {
   for (const int n : {100, 300}) table("gas", n, {"rd", "ca", "tw"}, 2.0);
   for (const int n : {1000, 10000, 100000}) table("gas", n, {"tw"}, n > 10000 ? 0.5 : 2.0);
   table("atoms", 300, {"rd", "ca", "tw"}, 2.0);
+  tumble::testing::energy_over_a_million();
 }
