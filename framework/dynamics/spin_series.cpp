@@ -1,5 +1,8 @@
 #include "framework/dynamics/spin_series.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace tumble {
 
 SpinSeries::SpinSeries(const Vector3d& moments, const Quaterniond& body_from_principal, const Spin& start) : principal_from_body_(body_from_principal.conjugate()) {
@@ -30,6 +33,16 @@ SpinSeries::SpinSeries(const Vector3d& moments, const Quaterniond& body_from_pri
     qy[k + 1] = 0.5 * n * sy;
     qz[k + 1] = 0.5 * n * sz;
   }
+}
+
+double SpinSeries::reach(const Vector3d& moments, double largest_speed) {
+  constexpr double kLeftOut = 5e-18, kTerms = kOrder + 1;
+  double c = 1e-3;   // nothing is gained below
+  for (int i = 0; i < 3; ++i) c = std::max(c, std::abs(moments[(i + 1) % 3] - moments[(i + 2) % 3]) / moments[i]);
+  double product = 1.0;
+  for (std::size_t j = 0; j <= kOrder; ++j) product *= (0.5 + c * static_cast<double>(j)) / static_cast<double>(j + 1);
+  const double of_w = std::pow(kLeftOut, 1 / kTerms) / c, of_q = std::pow(kLeftOut / product, 1 / kTerms);
+  return std::min(of_w, of_q) / largest_speed;
 }
 
 Spin SpinSeries::at(double t) const {

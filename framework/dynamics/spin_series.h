@@ -22,9 +22,11 @@ class SpinSeries {
   /// A time t after the start. @return right to some 1e-16 for 0 <= t <= reach(largest speed)
   Spin at(double t) const;
 
-  /// How far the series reaches where the body never turns faster than this [s]. The coefficients grow at most as (speed)^k, because
-  /// |I_i - I_j| <= I_k of any solid: at 0.15 / speed the first that is left out is 0.15^21 = 5e-18 of the first one.
-  static double reach(double largest_speed) { return 0.15 / largest_speed; }
+  /// How far the series reaches where a body never turns faster than this [s]: the first coefficients that are left out are then below
+  /// 5e-18 of the first ones. With c the largest |I_i - I_j| / I_k (at most 1) and W the speed, majorants of (F.1) are
+  ///   w' = c w^2:      w_k <= W (c W)^k,               q' = w q / 2:   q_k <= W^k prod_{j<k} (1/2 + c j) / (j + 1)
+  /// @param moments  principal, > 0 [kg m^2];  @param largest_speed  > 0 [rad/s]
+  static double reach(const Vector3d& moments, double largest_speed);
 
  private:
   static constexpr std::size_t kOrder = 20;

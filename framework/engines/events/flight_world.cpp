@@ -142,7 +142,7 @@ FlightWorld::Turning& FlightWorld::turning(int body, const Flight& flight) const
   RigidBodyState state{Vector3d::Zero(), flight.world_from_body, Vector3d::Zero(), Vector3d::Zero()};
   state.angular_momentum_world = flight.world_from_body * (world_.bodies[body].inertia.inertia_body * flight.omega_body);
   now.bounds = bound_rotation(state, world_.bodies[body].inertia, {0.0});   // undisturbed: for all time
-  now.reach = SpinSeries::reach(now.bounds.angular_speed);
+  now.reach = SpinSeries::reach(rotations_[body].moments(), now.bounds.angular_speed);
   return now;
 }
 
