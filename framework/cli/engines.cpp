@@ -42,6 +42,8 @@ std::string meaning_of(const std::string& engine) {
 }
 
 constexpr double kFrameRate = 10.0;   // [1/s], of a run of its own: enough to see the energy
+constexpr int kShortRuns = 4;
+constexpr double kShort = 0.5;        // [s] of CPU: what takes longer is timed once
 constexpr double kNoFrames = 1e-6;    // [1/s], where time is taken: pictures are no part of the comparison
 
 // Before chaos: how far apart in time the first collisions of each body are at most.
@@ -84,11 +86,18 @@ EngineRow run_one(const Context& context, const scene::Scene& scene, const Chose
     options.frame_rate_hz = kNoFrames;
     engines::RunOptions nothing = options;
     nothing.duration_s = 1e-9 * scene.step_s;
-    const double before = cpu_seconds();
-    engines::run_scene(scene, chosen.laws, nothing, unused);
-    const double begin = cpu_seconds();
-    engines::run_scene(scene, chosen.laws, options, timed);
-    row.cpu_s = std::max(1e-6, (cpu_seconds() - begin) - (begin - before));
+    const auto seconds_of = [&](const engines::RunOptions& how, TrajectoryRecorder& sink) {
+      const double begin = cpu_seconds();
+      engines::run_scene(scene, chosen.laws, how, sink);
+      return cpu_seconds() - begin;
+    };
+    double building = seconds_of(nothing, unused), whole = seconds_of(options, timed);
+    for (int k = 1; k < kShortRuns && whole < kShort; ++k) {   // the best of several: the least disturbed
+      TrajectoryRecorder again;
+      building = std::min(building, seconds_of(nothing, unused));
+      whole = std::min(whole, seconds_of(options, again));
+    }
+    row.cpu_s = std::max(1e-6, whole - building);
     options.frame_rate_hz = kFrameRate;
     engines::run_scene(scene, chosen.laws, options, recorder);
   } catch (const UserError& error) {
