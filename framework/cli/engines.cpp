@@ -21,7 +21,7 @@ namespace {
 using report::EngineRow;
 
 struct EnginesWords {
-  std::string scene, modules, engines = "rd,ca,tw", out = "out/engines";
+  std::string scene, modules, engines = "rd,ca,tw", out = "out/engines", propagator;
   std::vector<int> sizes;
   std::optional<int> n;
   std::optional<double> duration_s, step_s;
@@ -72,6 +72,7 @@ std::string agreement_of(const Trajectory& reference, const Trajectory& run) {
 EngineRow run_one(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const EnginesWords& words, const std::string& engine, Trajectory& run) {
   engines::RunOptions options;
   options.engine = engine;
+  if (engine == "rd") options.propagator = words.propagator;
   options.timewarp = engines::fast_timewarp();
   options.step_s = words.step_s;
   options.duration_s = words.duration_s;
@@ -188,6 +189,7 @@ void add_engines(CLI::App& app, Context& context) {
   verb->add_option("--n", words->n, "Size of a scene whose size is a parameter");
   verb->add_option("--sizes", words->sizes, "Sizes to run one after the other: draws work and time against n, e.g. --sizes 50,100,200")->delimiter(',');
   verb->add_option("--engines", words->engines, "Which, with commas between them; ordered is the reference that goes event by event")->capture_default_str();
+  verb->add_option("--propagator", words->propagator, "Of rd: laws, or auto (closed forms, as the other engines have)")->type_name("WORD");
   verb->add_option("--modules", words->modules, "Whose laws, as for tumble run")->type_name("WORDS");
   verb->add_option("--duration-s", words->duration_s, "Simulated time [s] instead of the scene's")->check(CLI::PositiveNumber);
   verb->add_option("--step-s", words->step_s, "Largest step [s] instead of the scene's")->check(CLI::PositiveNumber);

@@ -14,7 +14,7 @@ namespace tumble::cli {
 struct RunWords {
   std::string scene;                   // a path, or a bare name
   std::string modules;
-  std::string engine = "rd";
+  std::string engine = "rd", propagator;
   std::optional<int> n;                // of a scene whose size is a parameter
   std::optional<double> step_s, duration_s;
   std::string png, sheet, video, trajectory;   // files to write; empty: none

@@ -30,6 +30,7 @@ class RetroactiveRun {
       : scene_(scene), laws_(guarded(laws)), sink_(sink), step_(options.step_s.value_or(scene.step_s)),
         duration_(options.duration_s.value_or(scene.duration_s)), moving_(build_world(scene), laws_, counters_), meetings_(moving_, laws_, counters_),
         impacts_(laws_, {scene.rest_speed_m_s, step_ / 100}, counters_), recorder_(options.frame_rate_hz, duration_, sink) {
+    if (options.propagator == "auto") moving_.go_in_closed_form();
     if (!built::kContact || !moving_.world().contact) return;
     contacts_.emplace(moving_, laws_, *moving_.world().contact, scene.rest_speed_m_s, counters_, sink);
     impacts_.use_contact_rules(scene.rest_speed_m_s, moving_.world().contact->impact_law);

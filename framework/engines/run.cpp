@@ -75,6 +75,10 @@ const std::vector<std::pair<std::string, std::string>>& engine_words() {
 
 void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink) {
   const Engine engine = engine_of(options);
+  if (!options.propagator.empty() && options.propagator != "laws" && options.propagator != "auto")
+    throw UserError("--propagator " + options.propagator, "expected laws (the laws' integration) or auto (closed forms where nothing but gravity acts)", "For example --propagator auto.");
+  if (options.propagator == "laws" && options.engine != "rd")
+    throw UserError("--propagator laws", "--engine " + options.engine + " moves bodies in closed form only", "Use --engine rd to see a method of integration at work.");
   const double step = options.step_s.value_or(scene.step_s), duration = options.duration_s.value_or(scene.duration_s);
   if (!(step > 0) || !std::isfinite(step)) throw UserError(scene.name, "the step must be a positive time", "give \"step_s\" in seconds");
   if (!(duration >= 0) || !std::isfinite(duration)) throw UserError(scene.name, "the duration must not be negative", "give \"duration_s\" in seconds");

@@ -31,6 +31,8 @@ struct RunOptions {
   std::string engine = "rd";               // a word of engine_words()
   TimewarpTrial trial;
   Engine timewarp;                         // what "tw" is; empty: nobody has written a scheduler
+  std::string propagator;                  // "laws": bodies go by the laws' integration; "auto": in closed form where nothing but gravity acts.
+                                           // Empty: laws for rd, which shows a student's work; the others know closed forms only
   std::optional<double> step_s;            // overrides the scene's
   std::optional<double> duration_s;        // overrides the scene's
   double frame_rate_hz = 60.0;             // of recorded frames

@@ -1,4 +1,5 @@
 // What each engine pays for the same scenes: one table, one row a size and engine; ratios are of times in this very run.
+// rd_auto is rd in closed form, as the other two go.
 //   bench_engines [--scene NAME] [--n N,N,...] [--engines rd,ca,tw] [--duration-s T]
 // Without words: the table of TIMEWARP's figures (gas of balls from 10^2 to 10^5 bodies, atoms of 300, balls alone).
 #include <algorithm>
@@ -53,7 +54,8 @@ constexpr double kShort = 1.0;   // [s] of CPU: what takes longer is run once
 
 Row measure(const scene::Scene& scene, const std::string& engine, double duration) {
   engines::RunOptions options;
-  options.engine = engine;
+  options.engine = engine == "rd_auto" ? "rd" : engine;
+  options.propagator = engine == "rd_auto" ? "auto" : "";
   options.timewarp = engines::fast_timewarp();
   options.duration_s = duration;
   options.frame_rate_hz = 1e-3;   // one frame: pictures are no part of this
@@ -117,7 +119,7 @@ std::vector<std::string> parts(const std::string& text) {
 int main(int argc, char** argv) {
   using tumble::testing::parts;
   using tumble::testing::table;
-  std::string scene, sizes = "300", engines = "rd,ca,tw";
+  std::string scene, sizes = "300", engines = "rd,rd_auto,ca,tw";
   double duration = 2.0;
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string flag = argv[i];
@@ -133,8 +135,8 @@ int main(int argc, char** argv) {
     return 0;
   }
   for (const int n : {1, 2}) table("gas", n, {"rd", "ca", "tw"}, 200.0);
-  for (const int n : {100, 300}) table("gas", n, {"rd", "ca", "tw"}, 2.0);
+  for (const int n : {100, 300}) table("gas", n, {"rd", "rd_auto", "ca", "tw"}, 2.0);
   for (const int n : {1000, 10000, 100000}) table("gas", n, {"tw"}, n > 10000 ? 0.5 : 2.0);
-  table("atoms", 300, {"rd", "ca", "tw"}, 2.0);
+  table("atoms", 300, {"rd", "rd_auto", "ca", "tw"}, 2.0);
   tumble::testing::energy_over_a_million();
 }

@@ -245,6 +245,9 @@ TEST_F(CommandLine, AnEngineAndASizeThatThereAreNotAreRefusedWithWhatThereIs) {
   const Said engine = type("run gas --n 5 --engine timewarp --modules a1=reference");
   EXPECT_EQ(engine.code, 2);
   EXPECT_TRUE(holds(engine.err, "there is no engine of that name") && holds(engine.err, "tw (timewarp)")) << engine.err;
+  const Said propagator = type("run gas --n 5 --engine tw --propagator laws --modules a1=reference");
+  EXPECT_EQ(propagator.code, 2);
+  EXPECT_TRUE(holds(propagator.err, "closed form only")) << propagator.err;
   const Said size = type("run bouncing_ball --n 5");
   EXPECT_EQ(size.code, 2);
   EXPECT_TRUE(holds(size.err, "has one size") && holds(size.err, "atoms")) << size.err;
