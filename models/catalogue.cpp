@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "framework/core/random.h"
+#include "framework/geometry/shape.h"
 #include "models/surfaces.h"
 
 namespace tumble::models {
@@ -98,6 +99,21 @@ TriangleMesh water_molecule() {
   return star_shaped(radius, 4);
 }
 
+/// The hull of the same three balls, each by 42 points: as many collisions a second as balls have are not to be had with thousands of faces.
+TriangleMesh water_hull() {
+  constexpr double kScale = 0.25, kOxygen = 1.52, kHydrogen = 1.10, kBond = 0.9584, kHalfAngle = 104.45 / 2.0 * kPi / 180.0;
+  const double x = kScale * kBond * std::sin(kHalfAngle), z = -kScale * kBond * std::cos(kHalfAngle);
+  std::vector<Vector3d> points;
+  // Turned differently, so that no four points lie in a plane: a hull of triangles is unique then.
+  const auto turned = [](double angle) { return Quaterniond(Eigen::AngleAxisd(angle, Vector3d(1, 2, 3).normalized())); };
+  for (const Vector3d& p : subdivided_sphere(1).vertices) {
+    points.push_back(kScale * kOxygen * (turned(0.3) * p));
+    points.push_back(kScale * kHydrogen * (turned(0.7) * p) + Vector3d(x, 0.0, z));
+    points.push_back(kScale * kHydrogen * (turned(1.1) * p) + Vector3d(-x, 0.0, z));
+  }
+  return convex_hull(rounded({points, {}}).vertices);
+}
+
 TriangleMesh dumbbell() {
   constexpr double kBall = 0.2, kBar = 0.05, kApart = 0.35;
   const double meeting = std::asin(kBar / kBall);  // angle at which the bar enters a ball, from the axis
@@ -176,6 +192,7 @@ std::vector<Model> catalogue() {
       {"rock_2.3ds", {{"rock_2", rock(2, 24, {0.45, 0.45, 0.4})}}},
       {"rock_3.3ds", {{"rock_3", rock(3, 48, {0.6, 0.35, 0.25})}}},
       {"water_molecule.3ds", {{"water", water_molecule()}}},
+      {"water_hull.3ds", {{"water_hull", water_hull()}}},
       {"dumbbell.3ds", {{"dumbbell", dumbbell()}}},
       {"chess_pawn.3ds", {{"chess_pawn", chess_pawn()}}},
       {"gear.3ds", {{"gear", gear()}}},

@@ -12,7 +12,7 @@ void add_run(CLI::App& app, Context& context) {
   verb->add_option("--duration-s", words->duration_s, "Simulated time [s] instead of the scene's")->check(CLI::PositiveNumber);
   verb->footer("Example: tumble run t_handle --modules a2=reference --sheet t_handle.png\nExit: 0 every check right, 1 one wrong, 2 something to repair, 4 not attempted.");
   verb->callback([&context, words] {
-    const scene::Scene scene = find_scene(context, words->scene);
+    const scene::Scene scene = find_scene(context, words->scene, words->n);
     run_and_tell(context, scene, choose_laws(context, scene, parse_module_words(words->modules, context.registry)), *words);
   });
 }

@@ -18,8 +18,10 @@
 #include "framework/core/nearest_word.h"
 #include "framework/engines/judge.h"
 #include "framework/engines/run.h"
+#include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/grading/worker_connection.h"
 #include "framework/scene/load_scene.h"
+#include "framework/scene/sized_scenes.h"
 
 namespace tumble::cli {
 namespace {
@@ -131,7 +133,14 @@ std::string listing(const Context& context) {
     }
     lines += fmt::format("\n  {:<24} {}", file.stem().string(), title);
   }
+  for (const scene::SizedScene& sized : scene::sized_scenes()) lines += fmt::format("\n  {:<24} {} (--n {}: {})", sized.name, sized.title, sized.default_n, sized.counts);
   return lines;
+}
+
+std::string sized_names() {
+  std::string names;
+  for (const scene::SizedScene& sized : scene::sized_scenes()) names += (names.empty() ? "" : ", ") + sized.name;
+  return names;
 }
 
 /// A run that was asked to be shorter than the scene is not judged by what it cannot have reached.
@@ -146,7 +155,9 @@ scene::Scene judged_part(scene::Scene scene, const RunWords& words) {
 void add_run_words(CLI::App& verb, RunWords& words) {
   verb.add_option("scene", words.scene, "A scene file, or the bare name of one under assignments/*/scenes")->required()->type_name("SCENE");
   verb.add_option("--modules", words.modules, "Whose laws: student, reference, library, or a submission (PATH.cpp, PATH.so, a folder: in the sandbox); for all or each: a1=student,a2=library")->type_name("WORDS");
-  verb.add_option("--engine", words.engine, "rd: retroactive detection with fixed step")->capture_default_str();
+  verb.add_option("--engine", words.engine, "rd: retroactive detection with fixed step; ca: conservative advancement; tw: timewarp; ordered: event by event, the reference")->capture_default_str();
+  verb.add_option("--propagator", words.propagator, "laws: bodies go by the laws' integration (rd's default); auto: in closed form where nothing but gravity acts")->type_name("WORD");
+  verb.add_option("--n", words.n, "Size of a scene whose size is a parameter: atoms, gas, pong, pong_ghosts")->check(CLI::PositiveNumber);
   verb.add_option("--step-s", words.step_s, "Step of the integrator [s] instead of the scene's")->check(CLI::PositiveNumber);
   verb.add_option("--png", words.png, "Write one picture")->type_name("FILE");
   verb.add_option("--at-s", words.at_s, "Instant of the picture [s]; default the end")->check(CLI::NonNegativeNumber);
@@ -176,8 +187,14 @@ Vector3d parse_vector(const std::string& flag, const std::string& text) {
   return v;
 }
 
-scene::Scene find_scene(const Context& context, const std::string& word) {
-  if (fs::exists(word)) return scene::load_scene(word);
+scene::Scene find_scene(const Context& context, const std::string& word, std::optional<int> n) {
+  if (const scene::SizedScene* sized = scene::sized_scene_named(word); sized != nullptr && !fs::is_regular_file(word)) {
+    scene::Scene made = scene::make_sized_scene(word, n.value_or(sized->default_n));
+    made.file = context.root / "models" / word;   // models are looked for beside it
+    return made;
+  }
+  if (n) throw UserError("--n " + std::to_string(*n), "'" + word + "' has one size", "Sizes are parameters of " + sized_names() + ".");
+  if (fs::is_regular_file(word)) return scene::load_scene(word);
   if (word.ends_with(".json") || word.find('/') != std::string::npos) throw UserError(word, "there is no such file", "Check the path, or give a scene's bare name: " + listing(context));
   std::vector<fs::path> beginning;   // a name may be cut short where that is clear
   std::vector<std::string> names_there;
@@ -198,6 +215,8 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   check_page_words(context, words);
   engines::RunOptions options;
   options.engine = words.engine;
+  options.propagator = words.propagator;
+  options.timewarp = engines::fast_timewarp();
   options.step_s = words.step_s;
   options.duration_s = words.duration_s;
   options.command = context.command_line;

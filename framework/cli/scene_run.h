@@ -14,7 +14,8 @@ namespace tumble::cli {
 struct RunWords {
   std::string scene;                   // a path, or a bare name
   std::string modules;
-  std::string engine = "rd";
+  std::string engine = "rd", propagator;
+  std::optional<int> n;                // of a scene whose size is a parameter
   std::optional<double> step_s, duration_s;
   std::string png, sheet, video, trajectory, html;   // files to write; empty: none
   std::string beside;                  // how a second run in the page differs; see run_page.h
@@ -38,8 +39,10 @@ PictureSize parse_size(const std::string& text);
 Vector3d parse_vector(const std::string& flag, const std::string& text);
 
 /// @param word  path of a scene file, or the bare name of one under assignments/*/scenes
-/// @throws UserError naming the scenes there are
-scene::Scene find_scene(const Context& context, const std::string& word);
+///              or the name of a scene whose size is a parameter
+/// @param n     that size; nothing: its default
+/// @throws UserError naming the scenes there are, or that a scene has one size only
+scene::Scene find_scene(const Context& context, const std::string& word, std::optional<int> n = std::nullopt);
 
 /// Runs the scene, writes the files asked for, prints the summary and sets context.exit.
 /// @param extra  a line of talk that stands in the summary under the title (may be empty)

@@ -9,6 +9,7 @@ void add_verbs(CLI::App& app, Context& context) {
   add_watch(app, context);
   add_run(app, context);
   add_poke(app, context);
+  add_engines(app, context);
   add_explain(app, context);
   add_grade(app, context);
   add_audit(app, context);

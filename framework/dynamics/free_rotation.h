@@ -37,6 +37,11 @@ class FreeRotation {
   /// Cost: spherical and symmetric tops O(1); others O(|w| t) up to a few periods of the tumbling, then O(period)
   Spin after(const Spin& start, double t) const;
 
+  /// Whether all three moments differ: turning has no closed form in sines and cosines then.
+  bool is_asymmetric() const { return kind_ == Kind::kAsymmetric; }
+  const Vector3d& moments() const { return moments_; }
+  const Quaterniond& body_from_principal() const { return body_from_principal_; }
+
   /// Modulus and period of the tumbling. Spherical and symmetric tops have modulus 0.
   /// @param omega_body  (3), body frame [rad/s]
   Tumbling tumbling(const Vector3d& omega_body) const;

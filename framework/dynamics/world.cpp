@@ -17,6 +17,7 @@ WorldBody build_body(const scene::BodySpec& spec, scene::Solid solid) {
   body.restitution = spec.restitution;
   body.friction = spec.friction;
   body.collides = spec.collides;
+  body.passes_movable = spec.passes_movable;
   body.com_at_0_world = spec.position_m;
   body.inertia = solid.is_immovable() ? infinite_inertia() : finite_inertia(solid.mass_kg, solid.inertia_body_kg_m2);
   if (spec.motion) body.motion = *spec.motion;

@@ -22,6 +22,7 @@ struct WorldBody {
   double restitution = 1.0;
   double friction = 0.0;
   bool collides = true;
+  bool passes_movable = false;                    // two movable bodies that both do never meet
   RigidBodyState state;                           // of a movable body
   scene::PrescribedMotion motion;                 // of an immovable one, about com_at_0
   Vector3d com_at_0_world = Vector3d::Zero();     // [m]

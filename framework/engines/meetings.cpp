@@ -25,6 +25,7 @@ Meetings::Meetings(MovingWorld& moving, const Laws& laws, RunCounters& counters)
 std::optional<Earliest> Meetings::earliest(const std::vector<Pair>& pairs) {
   const StageTimer timer(counters_.collision_seconds);
   apart_at_target_ = false;
+  counters_.pair_checks += pairs.size();
   const auto found = find_earliest(pairs);
   return found ? found : find_missed(pairs, moving_.target());
 }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "framework/core/error.h"
+#include "framework/dynamics/rotation_bounds.h"
 #include "framework/engines/guarded_laws.h"
 
 namespace tumble::engines {
@@ -51,6 +52,7 @@ MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters)
 bool MovingWorld::may_collide(int a, int b) const {
   const WorldBody &first = world_.bodies[a], &second = world_.bodies[b];
   if ((first.immovable() && second.immovable()) || !first.collides || !second.collides) return false;
+  if (first.passes_movable && second.passes_movable && !first.immovable() && !second.immovable()) return false;
   return world_.apart.empty() || !std::binary_search(world_.apart.begin(), world_.apart.end(), std::pair(std::min(a, b), std::max(a, b)));
 }
 
@@ -169,7 +171,37 @@ void MovingWorld::add_point_forces(int body, const RigidBodyState& state, Wrench
   }
 }
 
+void MovingWorld::go_in_closed_form() {
+  for (const WorldBody& body : world_.bodies) rotations_.emplace_back(body.immovable() ? Matrix3d(Matrix3d::Identity()) : body.inertia.inertia_body);
+  path_bend_ = 1.0;
+}
+
+bool MovingWorld::flies_freely(int body) const {
+  return !rotations_.empty() && std::none_of(active_forces_.begin(), active_forces_.end(), [&](int force) { return world_.point_forces[force].body == body; });
+}
+
+// x + v t + g t^2 / 2, and the free turning: by a series of the step where it reaches, which is asked many times in a search for an impact.
+RigidBodyState MovingWorld::fly(int body, double duration, const VectorXd& start) {
+  ++counters_.integrations;
+  ++integrations_in_step_;
+  const Inertia& inertia = world_.bodies[body].inertia;
+  RigidBodyState state = unpack(start);
+  const Vector3d gravity_world = world_.gravity_world ? *world_.gravity_world : Vector3d(Vector3d::Zero());
+  state.com_world += duration * (inertia.inverse_mass * state.momentum_world + (0.5 * duration) * gravity_world);
+  state.momentum_world += duration * inertia.mass * gravity_world;
+  if (state.angular_momentum_world.isZero(0.0)) return state;
+  const Spin spin{state.world_from_body, inertia.inverse_inertia_body * (state.world_from_body.conjugate() * state.angular_momentum_world)};
+  std::optional<SpinSeries>& turning = paths_[body].turning;
+  if (rotations_[body].is_asymmetric() && !turning && duration == target_ - time_) {
+    const double fastest = bound_rotation(state, inertia, {0.0}).angular_speed;
+    if (duration <= SpinSeries::reach(rotations_[body].moments(), fastest)) turning.emplace(rotations_[body].moments(), rotations_[body].body_from_principal(), spin);
+  }
+  state.world_from_body = turning ? turning->at(duration).world_from_body : rotations_[body].after(spin, duration).world_from_body;
+  return state;
+}
+
 RigidBodyState MovingWorld::integrate(int body, double duration, double start_time, const VectorXd& start) {
+  if (flies_freely(body)) return fly(body, duration, start);
   const Inertia& inertia = world_.bodies[body].inertia;
   const OdeFunction derivative = [&](double, const VectorXd& y) {
     ++counters_.derivative_evaluations;
@@ -197,6 +229,7 @@ void MovingWorld::begin_step(double target) {
     path.bounds.reset();
     path.memo_time = path.measured_duration = kUnset;
     path.smooth.reset();
+    path.turning.reset();
     if (!can_move(i) || group_of_[i] >= 0) continue;
     path.start = pack(states_[i]);
     path.acceleration_world.setZero();

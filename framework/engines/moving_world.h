@@ -11,6 +11,7 @@
 #include "framework/collision/first_impact.h"
 #include "framework/collision/sweep.h"
 #include "framework/dynamics/laws.h"
+#include "framework/dynamics/spin_series.h"
 #include "framework/dynamics/world.h"
 #include "framework/engines/effects_built.h"
 #include "framework/engines/linked_bodies.h"
@@ -31,6 +32,9 @@ class MovingWorld {
   MovingWorld(World world, const Laws& laws, RunCounters& counters);
   MovingWorld(const MovingWorld&) = delete;
   MovingWorld& operator=(const MovingWorld&) = delete;
+
+  /// From here on bodies that nothing but gravity acts on go in closed form instead of along the laws' integration.
+  void go_in_closed_form();
 
   const World& world() const { return world_; }
   int size() const { return static_cast<int>(world_.bodies.size()); }
@@ -107,8 +111,11 @@ class MovingWorld {
     RigidBodyState memo;
     double measured_duration, turning_error;   // see turning_error
     std::optional<SmoothPath> smooth;
+    std::optional<SpinSeries> turning;         // of a body in closed form, from the step's start
   };
 
+  bool flies_freely(int body) const;
+  RigidBodyState fly(int body, double duration, const VectorXd& start);
   RigidBodyState integrate(int body, double duration, double start_time, const VectorXd& start);
   Wrench wrench_on(int body, const RigidBodyState& state);
   void add_point_forces(int body, const RigidBodyState& state, Wrench& sum);
@@ -137,6 +144,7 @@ class MovingWorld {
   double time_ = 0.0, target_ = 0.0;
   double path_bend_ = 1.0;   // how much of a constant acceleration the laws' integration puts into a path: 1 for order >= 2, 0 for Euler
   std::uint64_t integrations_in_step_ = 0;
+  std::vector<FreeRotation> rotations_;          // by body; empty: the laws integrate
 };
 
 }  // namespace tumble::engines

@@ -54,6 +54,7 @@ double MovingWorld::torque_bound(int body) const {
 
 // Bounds |rate of the path - omega of its states| on a path of this duration. [rad/s]
 double MovingWorld::turning_error(int body, double duration) {
+  if (flies_freely(body)) return 0.0;
   Path& path = paths_[body];
   if (duration == path.measured_duration) return path.turning_error;
   const Inertia& inertia = world_.bodies[body].inertia;

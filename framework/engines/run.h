@@ -1,8 +1,12 @@
 /// Runs a scene by the laws given: the one entry to the engines.
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "framework/dynamics/laws.h"
 #include "framework/scene/scene.h"
@@ -10,13 +14,33 @@
 
 namespace tumble::engines {
 
+/// Makes a scheduler's life hard, for tests: none of it may change what is committed.
+struct TimewarpTrial {
+  std::uint64_t seed = 0;
+  bool shuffle = false;          // processes begin in an order drawn by lot
+  double disorder_s = 0.0;       // events up to so far ahead of global virtual time are taken in an order drawn by lot
+  int rollback_every = 0;        // before every so many events a process drawn by lot is rolled back; 0: never
+  double rollback_s = 0.0;       // by up to this
+};
+
+struct RunOptions;
+/// An engine that stands outside the framework: timewarp, whose scheduler is an assignment's (see framework/README.md).
+using Engine = std::function<void(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink)>;
+
 struct RunOptions {
-  std::string engine = "rd";               // retroactive detection with fixed step
+  std::string engine = "rd";               // a word of engine_words()
+  TimewarpTrial trial;
+  Engine timewarp;                         // what "tw" is; empty: nobody has written a scheduler
+  std::string propagator;                  // "laws": bodies go by the laws' integration; "auto": in closed form where nothing but gravity acts.
+                                           // Empty: laws for rd, which shows a student's work; the others know closed forms only
   std::optional<double> step_s;            // overrides the scene's
   std::optional<double> duration_s;        // overrides the scene's
   double frame_rate_hz = 60.0;             // of recorded frames
   std::string command;                     // for the record
 };
+
+/// What --engine knows, with what each is: rd, ca, tw, ordered.
+const std::vector<std::pair<std::string, std::string>>& engine_words();
 
 /// Runs a scene and pushes frames and events into the sink. A run that meets NaN or runaway energy ends early with
 /// `stopped_by` set; what was recorded before stays.

@@ -50,6 +50,7 @@ struct BodySpec {
   double restitution = 1.0;                        // of a pair: the smaller of the two
   double friction = 0.0;                           // Coulomb's coefficient; of a pair: the smaller of the two
   bool collides = true;                            // false: nothing touches it and no collision code looks at it
+  bool passes_movable = false;                     // meets immovable bodies only, where the other one passes too
   std::optional<Vector3d> color;                   // linear RGB in [0, 1]
   std::string pointer{};                           // JSON pointer of its entry, for messages; empty: made in memory
 };

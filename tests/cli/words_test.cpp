@@ -254,6 +254,29 @@ TEST_F(CommandLine, PokeWantsOneWayToPoint) {
   EXPECT_EQ(type("poke poked_box --pixel 320 --force 0,40,0 --duration-s 0.2").code, 2);
   EXPECT_EQ(type("poke poked_box --pixel 320,240 --force up --duration-s 0.2").code, 2);
 }
+
+TEST_F(CommandLine, EnginesAreComparedInATableAndOnAPage) {
+  const Said said = type("engines gas --sizes 10,20 --duration-s 0.5 --modules a1=reference");
+  EXPECT_EQ(said.code, 0) << said.out << said.err;
+  for (const char* words : {"n = 10", "n = 20", "Anti-messages", "same trace, bit for bit", "out/engines/index.html"}) EXPECT_TRUE(holds(said.out, words)) << words << "\n" << said.out;
+  const std::string page = contents_of(folder_ / "out/engines/index.html");
+  for (const char* words : {"conservative advancement", "Average integration step", "Error of the energy"}) EXPECT_TRUE(holds(page, words)) << words;
+}
+
+TEST_F(CommandLine, AnEngineAndASizeThatThereAreNotAreRefusedWithWhatThereIs) {
+  const Said engine = type("run gas --n 5 --engine timewarp --modules a1=reference");
+  EXPECT_EQ(engine.code, 2);
+  EXPECT_TRUE(holds(engine.err, "there is no engine of that name") && holds(engine.err, "tw (timewarp)")) << engine.err;
+  const Said propagator = type("run gas --n 5 --engine tw --propagator laws --modules a1=reference");
+  EXPECT_EQ(propagator.code, 2);
+  EXPECT_TRUE(holds(propagator.err, "closed form only")) << propagator.err;
+  const Said size = type("run bouncing_ball --n 5");
+  EXPECT_EQ(size.code, 2);
+  EXPECT_TRUE(holds(size.err, "has one size") && holds(size.err, "atoms")) << size.err;
+  const Said scene = type("run newtons_cradle --engine tw --modules reference");
+  EXPECT_EQ(scene.code, 2);
+  EXPECT_TRUE(holds(scene.err, "rod") && holds(scene.err, "use --engine rd")) << scene.err;
+}
 #endif
 
 // What students get: the stub, which is not attempted and no error of anybody.

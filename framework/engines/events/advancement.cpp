@@ -1,0 +1,161 @@
+#include "framework/engines/events/advancement.h"
+
+#include <algorithm>
+#include <limits>
+#include <queue>
+
+#include "framework/collision/sweep.h"
+#include "framework/collision/time_bound.h"
+#include "framework/engines/events/flight_run.h"
+#include "framework/engines/guarded_laws.h"
+
+namespace tumble::engines {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+// A pair whose gap would be bridged by a bound this part of the step or less is searched for its impact: creeping on would
+// move all bodies once a bound, and a bound gains a fixed part of what is left.
+constexpr double kWorthCreeping = 0.1;
+constexpr double kTouching = 1e-9;  // of a pair's size: so near, the sign of the gap is rounding's, and is judged in one place, by the search
+constexpr double kShy = 1e-9;       // of a bound, taken off: rounding may have made it later than the impact
+constexpr double kSlack = 1e-9;     // of coordinates, on boxes: pairs that just touch are looked at
+
+struct Bound {
+  EventKey key;                     // when it falls due; of an impact where it is exact
+  bool is_exact;
+  std::uint32_t serial_a, serial_b; // of the flights that it is about
+};
+struct Later {
+  // Impacts at one instant in their order; a bound that is not exact first, for its impact may be at that very instant.
+  bool operator()(const Bound& x, const Bound& y) const {
+    if (x.key.time == y.key.time && x.is_exact != y.is_exact) return x.is_exact;
+    return y.key < x.key;
+  }
+};
+
+class AdvancementRun {
+ public:
+  AdvancementRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink) : run_(scene, laws, options, sink) {
+    for (int i = 0; i < run_.world().size(); ++i) flights_.push_back(run_.world().first_flight(i));
+    now_.resize(flights_.size());
+  }
+
+  void run() {
+    std::string stopped_by;
+    try {
+      while (time_ < run_.duration()) step();
+    } catch (const StoppedRun& stop) {
+      stopped_by = stop.what();
+    }
+    if (stopped_by.empty()) draw_before(kInfinity);
+    run_.end(stopped_by);
+  }
+
+ private:
+  // From now to the end of the largest step, or as far as the duration.
+  void step() {
+    ++run_.counters.steps;
+    end_ = run_.impacts().window_end(time_);
+    queue_ = {};
+    boxes_.clear();
+    for (int i = 0; i < run_.world().size(); ++i) boxes_.push_back(box_of(i));
+    for (const auto& [a, b] : collision::overlapping_pairs(boxes_)) look_ahead(a, b);
+    while (!queue_.empty() && queue_.top().key.time < end_ && queue_.top().key.time <= run_.duration()) {
+      const Bound bound = queue_.top();
+      queue_.pop();
+      const int a = bound.key.body_a, b = bound.key.body_b;
+      if (flights_[a].serial != bound.serial_a || flights_[b].serial != bound.serial_b) continue;
+      advance_all(bound.key.time);
+      if (bound.is_exact) collide(bound.key);
+      else look_ahead(a, b);
+    }
+    advance_all(std::min(end_, run_.duration()));
+    if (end_ > run_.duration()) time_ = run_.duration();
+  }
+
+  // The world stands at one time: every body is taken there.
+  void advance_all(double t) {
+    if (t == time_) return;
+    draw_before(t);
+    const StageTimer timer(run_.counters.integration_seconds);
+    for (const int i : run_.world().movers()) now_[i] = run_.world().motion_at(i, flights_[i], t);
+    run_.counters.integrations += run_.world().movers().size();
+    time_ = t;
+  }
+
+  // A new lower bound on the pair's impact, if it lies within the step.
+  void look_ahead(int a, int b) {
+    const FlightWorld& world = run_.world();
+    if (!world.may_collide(a, b)) return;
+    const StageTimer timer(run_.counters.collision_seconds);
+    double due;
+    bool is_exact = true;
+    if (run_.impacts().has_closed_form(a, flights_[a], b, flights_[b])) {
+      due = run_.impacts().first_impact(a, flights_[a], b, flights_[b], time_, end_, run_.cost);
+    } else {
+      ++run_.cost.pair_checks;
+      ++run_.cost.narrow.gap_evaluations;
+      const auto motion = [&](int i) { return world.motion_at(i, flights_[i], time_); };
+      const double left = end_ - time_;
+      const auto bound = collision::bound_time_apart(world.shape(a), motion(a), world.bounds(a, flights_[a]), world.shape(b), motion(b), world.bounds(b, flights_[b]), left);
+      if (bound.duration >= left && bound.gap >= kTouching * std::min(world.radius(a), world.radius(b))) return;
+      is_exact = bound.duration < kWorthCreeping * run_.step() || bound.gap < kTouching * std::min(world.radius(a), world.radius(b));
+      due = is_exact ? run_.impacts().first_impact(a, flights_[a], b, flights_[b], time_, end_, run_.cost) : time_ + (1 - kShy) * bound.duration;
+    }
+    if (!(due < end_)) return;
+    EventKey key = key_of_impact(a, flights_[a], b, flights_[b], due);
+    queue_.push({key, is_exact, flights_[key.body_a].serial, flights_[key.body_b].serial});
+  }
+
+  void collide(const EventKey& key) {
+    const int a = key.body_a, b = key.body_b;
+    Meeting meeting = run_.meet(key, flights_[a], flights_[b]);
+    run_.commit(meeting);
+    for (const auto& [body, flight] : {std::pair{a, &meeting.a}, std::pair{b, &meeting.b}}) {
+      if (!run_.world().can_move(body)) continue;
+      flight->serial = ++serial_;
+      flights_[body] = *flight;
+      boxes_[body] = box_of(body);
+    }
+    look_ahead(a, b);
+    for (const int body : {a, b})
+      if (run_.world().can_move(body))
+        for (int other = 0; other < run_.world().size(); ++other)
+          if (other != a && other != b && touches(body, other)) look_ahead(body, other);
+  }
+
+  // What the body sweeps until the step's end: a parabola leaves the box of its ends by at most a s^2 / 8.
+  collision::SweptBox box_of(int body) const {
+    const FlightWorld& world = run_.world();
+    const Flight& flight = flights_[body];
+    const bool moves = world.can_move(body) || !world.is_still(body);
+    const Vector3d from = world.position(body, flight, time_), to = world.position(body, flight, end_);
+    double bulge = world.acceleration(body, flight).norm();
+    if (!world.can_move(body)) {
+      const scene::PrescribedMotion& m = world.world().bodies[body].motion;
+      bulge = m.amplitude_m.norm() * m.angular_frequency_rad_s * m.angular_frequency_rad_s;
+    }
+    const double s = end_ - time_;
+    const Vector3d margin = Vector3d::Constant(world.radius(body) * (1 + kSlack) + bulge * s * s / 8) + kSlack * (from - to).cwiseAbs() + 1e-14 * from.cwiseAbs();
+    return {from.cwiseMin(to) - margin, from.cwiseMax(to) + margin, moves};
+  }
+  bool touches(int a, int b) const { return (boxes_[a].low.array() <= boxes_[b].high.array()).all() && (boxes_[b].low.array() <= boxes_[a].high.array()).all(); }
+
+  void draw_before(double t) {
+    while (run_.next_frame() < t) run_.commit_frame([this](int body) -> const Flight& { return flights_[body]; });
+  }
+
+  FlightRun run_;
+  std::vector<Flight> flights_;                        // by body
+  std::vector<collision::MotionState> now_;            // by body: where the world stands
+  std::vector<collision::SweptBox> boxes_;             // by body, until the step's end
+  std::priority_queue<Bound, std::vector<Bound>, Later> queue_;
+  double time_ = 0.0, end_ = 0.0;                      // [s]
+  std::uint32_t serial_ = 0;
+};
+
+}  // namespace
+
+void run_advancement(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink) { AdvancementRun(scene, laws, options, sink).run(); }
+
+}  // namespace tumble::engines

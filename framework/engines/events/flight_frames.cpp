@@ -1,0 +1,74 @@
+#include "framework/engines/events/flight_frames.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "framework/collision/gap.h"
+#include "framework/collision/sweep.h"
+
+namespace tumble::engines {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr std::size_t kFew = 200;      // movers: pairs of so few are all looked at
+constexpr double kFirstReach = 0.05;   // of the largest mover's radius: how far boxes reach at first where there are many
+
+double smaller_gap(const FlightWorld& world, const std::vector<RigidBodyState>& states, int i, int j, double smallest) {
+  if (!world.may_collide(i, j)) return smallest;
+  const double reach = smallest + world.radius(i) + world.radius(j);
+  if (reach < kInfinity && (states[i].com_world - states[j].com_world).squaredNorm() > reach * reach) return smallest;
+  const auto pose = [&](int k) { return collision::Pose{states[k].com_world, states[k].world_from_body}; };
+  return std::min(smallest, collision::gap_distance(world.shape(i), pose(i), world.shape(j), pose(j)));
+}
+
+// Balls around bodies that are no farther apart than `reach` have boxes that overlap, each drawn out by half of it.
+double gap_of_many(const FlightWorld& world, const std::vector<RigidBodyState>& states) {
+  double largest = 0.0;
+  for (const int i : world.movers()) largest = std::max(largest, world.radius(i));
+  for (double reach = kFirstReach * largest;; reach *= 4) {
+    std::vector<collision::SweptBox> boxes;
+    for (int i = 0; i < world.size(); ++i) {
+      const Vector3d half = Vector3d::Constant(world.radius(i) + 0.5 * reach);
+      boxes.push_back({states[i].com_world - half, states[i].com_world + half, world.can_move(i)});
+    }
+    double smallest = kInfinity;
+    const auto pairs = collision::overlapping_pairs(boxes);
+    for (const auto& [i, j] : pairs) smallest = smaller_gap(world, states, i, j, smallest);
+    if (smallest <= reach || pairs.size() > 50 * world.movers().size()) return smallest;
+  }
+}
+
+double smallest_gap(const FlightWorld& world, const std::vector<RigidBodyState>& states) {
+  if (world.movers().size() > kFew) return gap_of_many(world, states);
+  double smallest = kInfinity;
+  for (int i = 0; i < world.size(); ++i)
+    for (int j = i + 1; j < world.size(); ++j) smallest = smaller_gap(world, states, i, j, smallest);
+  return smallest;
+}
+
+}  // namespace
+
+Frame frame_of(const FlightWorld& world, double t, const FlightOf& flight_of) {
+  Frame frame;
+  frame.time = t;
+  std::vector<RigidBodyState> states;
+  for (int i = 0; i < world.size(); ++i) {
+    const Flight& flight = flight_of(i);
+    const collision::MotionState now = world.motion_at(i, flight, t);
+    frame.poses.push_back({now.pose.com_world, now.pose.world_from_body, now.velocity_world, now.omega_world});
+    states.push_back({now.pose.com_world, now.pose.world_from_body, Vector3d::Zero(), Vector3d::Zero()});
+    if (!world.can_move(i)) continue;
+    const Inertia& inertia = world.world().bodies[i].inertia;
+    states.back().momentum_world = inertia.mass * now.velocity_world;
+    states.back().angular_momentum_world = now.pose.world_from_body * (inertia.inertia_body * (now.pose.world_from_body.conjugate() * now.omega_world));
+  }
+  const Invariants sums = invariants_of(world.world(), states);
+  frame.kinetic_energy = sums.kinetic_energy;
+  frame.potential_energy = sums.potential_energy;
+  frame.momentum_world = sums.momentum_world;
+  frame.angular_momentum_world = sums.angular_momentum_world;
+  frame.smallest_gap = smallest_gap(world, states);
+  return frame;
+}
+
+}  // namespace tumble::engines

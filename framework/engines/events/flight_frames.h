@@ -1,0 +1,16 @@
+/// Frames of a run whose bodies are on flights; the smallest gap among all of them, without looking at every pair where there are many.
+#pragma once
+
+#include <functional>
+
+#include "framework/engines/events/flight_world.h"
+#include "framework/trajectory/trajectory.h"
+
+namespace tumble::engines {
+
+/// The flight that a body is on at the frame's time.
+using FlightOf = std::function<const Flight&(int body)>;
+
+Frame frame_of(const FlightWorld& world, double t, const FlightOf& flight_of);
+
+}  // namespace tumble::engines

@@ -1,0 +1,60 @@
+/// What every event-ordered engine shares: the world on flights, the check of an interval, what an impact does, and the one place
+/// where events and frames are committed, in order.
+#pragma once
+
+#include "framework/engines/events/flight_frames.h"
+#include "framework/engines/events/impacts_of_flights.h"
+#include "framework/engines/events/meeting_of_flights.h"
+#include "framework/engines/run.h"
+#include "framework/engines/run_counters.h"
+
+namespace tumble::engines {
+
+/// Events at one instant, each caused by the last, before a run is stopped: no chain of touching bodies is as long.
+constexpr std::uint32_t kMostGenerations = 100000;
+
+class FlightRun {
+ public:
+  /// @throws UserError where the scene has what no flight follows
+  FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink);
+  FlightRun(const FlightRun&) = delete;
+  FlightRun& operator=(const FlightRun&) = delete;
+
+  const FlightWorld& world() const { return world_; }
+  const ImpactsOfFlights& impacts() const { return impacts_; }
+  double duration() const { return duration_; }
+  /// The engine's largest step: how far a scheduler looks ahead at most where it has no reason of its own. [s]
+  double step() const { return step_; }
+
+  /// What the impact of two flights does. Stops the run (StoppedRun, with time and names) where the laws fail.
+  Meeting meet(const EventKey& key, const Flight& f, const Flight& g);
+
+  /// Commits an impact. @pre keys come in order
+  void commit(const EventKey& key, const Event& first, const std::vector<Event>& more);
+  void commit(const Meeting& meeting) { commit(meeting.key, meeting.first, meeting.more); }
+  /// The next frame that is not committed yet; infinite when there is none. [s]
+  double next_frame() const { return frame_time(next_) <= duration_ ? frame_time(next_) : std::numeric_limits<double>::infinity(); }
+  /// Commits the frame at next_frame(). @pre every event before it is committed, none after it
+  void commit_frame(const FlightOf& flight_of);
+
+  /// Ends the run: frames that are left are pushed by the caller before. `stopped_by` is empty where all is well.
+  void end(const std::string& stopped_by);
+
+  CheckCost cost;
+  RunCounters counters;
+
+ private:
+  double frame_time(long k) const { return static_cast<double>(k) / rate_; }
+  std::string name(int body) const { return "'" + world_.world().bodies[body].name + "'"; }
+
+  FlightWorld world_;
+  const Laws laws_;   // guarded
+  double step_, duration_, rate_;
+  ImpactsOfFlights impacts_;
+  MeetingOfFlights meetings_;
+  TrajectorySink& sink_;
+  EventKey last_{-1.0, 0, EventClass::kCollision, -1, -1};
+  long next_ = 0;
+};
+
+}  // namespace tumble::engines

@@ -1,0 +1,184 @@
+#include "framework/engines/events/flight_world.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "framework/collision/gap.h"
+#include "framework/collision/sweep.h"
+#include "framework/core/error.h"
+
+namespace tumble::engines {
+namespace {
+
+// Contacts closer than this many roundings of their coordinates touch at the start (as meetings.h).
+constexpr double kTouching = 64 * std::numeric_limits<double>::epsilon();
+constexpr double kRounding = 1e-14;   // of coordinates, so that bodies that just touch are looked at
+constexpr int kMostNudges = 20;       // a few roundings are taken back in as many rounds
+
+// Shapes that many bodies share are prepared once: equal balls, boxes, and models of the same file at the same scale.
+std::string recipe_of(const scene::BodySpec& body, int index) {
+  if (const auto* sphere = std::get_if<scene::SphereSpec>(&body.shape)) return fmt::format("sphere {:a}", sphere->radius_m);
+  if (const auto* box = std::get_if<scene::BoxSpec>(&body.shape))
+    return fmt::format("box {:a} {:a} {:a}", box->half_extents_m.x(), box->half_extents_m.y(), box->half_extents_m.z());
+  if (const auto* model = std::get_if<scene::ModelSpec>(&body.shape)) return fmt::format("model {} {} {:a}", model->file, model->object, model->metres_per_unit);
+  return fmt::format("alone {}", index);
+}
+
+bool is_driven(const scene::PrescribedMotion& m) { return !m.velocity_m_s.isZero(0.0) || (m.angular_frequency_rad_s != 0.0 && !m.amplitude_m.isZero(0.0)); }
+
+}  // namespace
+
+std::string unfollowed_entry(const scene::Scene& scene) {
+  const auto named = [](const char* kind, const std::string& name) { return fmt::format("the {} '{}'", kind, name); };
+  if (!scene.springs.empty()) return named("spring", scene.springs.front().name);
+  if (!scene.rods.empty()) return named("rod", scene.rods.front().name);
+  if (!scene.joints.empty()) return named("joint", scene.joints.front().name);
+  if (!scene.motors.empty()) return named("motor in hinge", scene.motors.front().joint);
+  if (!scene.drags.empty()) return named("drag on", scene.drags.front().body);
+  if (!scene.point_forces.empty()) return named("point force on", scene.point_forces.front().body);
+  if (scene.contact) return "\"contact\" (bodies that lie, slide, roll and are stacked)";
+  return "";
+}
+
+FlightWorld::FlightWorld(const scene::Scene& scene, const std::string& engine) {
+  const std::string where = scene.file.empty() ? scene.name : scene.file.string();
+  if (const std::string entry = unfollowed_entry(scene); !entry.empty())
+    throw UserError(where, fmt::format("{} is not followed by --engine {}, which moves bodies that nothing but gravity and impacts act on", entry, engine), "use --engine rd");
+  world_ = build_world(scene);
+  if (world_.gravity_world) gravity_world_ = *world_.gravity_world;
+  std::map<std::string, int> known;
+  for (int i = 0; i < size(); ++i) {
+    const WorldBody& body = world_.bodies[i];
+    const auto [found, is_new] = known.try_emplace(recipe_of(scene.bodies[i], i), static_cast<int>(shapes_.size()));
+    if (is_new) shapes_.emplace_back(body.shape);
+    const collision::CollisionShape& shape = shapes_[found->second];
+    const bool moves = !body.immovable();
+    rotations_.emplace_back(moves ? body.inertia.inertia_body : Matrix3d(Matrix3d::Identity()));
+    Flight flight;
+    flight.com_world = body.state.com_world;
+    flight.world_from_body = body.state.world_from_body;
+    if (moves) {
+      flight.velocity_world = scene.bodies[i].velocity_m_s;
+      flight.omega_body = flight.world_from_body.conjugate() * scene.bodies[i].omega_world_rad_s;
+    }
+    facts_.push_back({shape.bounding_radius(), found->second, moves, shape.is_ball(), !moves && !is_driven(body.motion), shape.is_half_space(), body.collides, moves && body.passes_movable});
+    first_.push_back(flight);
+    matter_.push_back({body.inertia, body.restitution});
+    if (moves) movers_.push_back(i);
+    else if (body.collides) obstacles_.push_back(i);
+  }
+  turning_.resize(first_.size());
+  refuse_overlap(scene);
+}
+
+bool FlightWorld::may_collide(int a, int b) const {
+  const Facts &first = facts_[a], &second = facts_[b];
+  if (!(first.can_move || second.can_move) || !first.collides || !second.collides || (first.passes && second.passes)) return false;
+  return world_.apart.empty() || !std::binary_search(world_.apart.begin(), world_.apart.end(), std::pair(std::min(a, b), std::max(a, b)));
+}
+
+// Bodies that overlap by more than roundings are refused; by roundings, they are drawn apart.
+void FlightWorld::refuse_overlap(const scene::Scene& scene) {
+  std::vector<collision::SweptBox> boxes;
+  for (int i = 0; i < size(); ++i) {
+    const Vector3d margin = Vector3d::Constant(radius(i) * (1 + kRounding)) + kRounding * first_[i].com_world.cwiseAbs();
+    boxes.push_back({first_[i].com_world - margin, first_[i].com_world + margin, can_move(i)});
+  }
+  auto pairs = collision::overlapping_pairs(boxes);
+  std::erase_if(pairs, [&](const auto& pair) { return !may_collide(pair.first, pair.second); });
+  const auto pose = [&](int k) { return collision::Pose{first_[k].com_world, first_[k].world_from_body}; };
+  for (const auto& [a, b] : pairs) {
+    const double allowance = kTouching * collision::gap_scale(shape(a), pose(a), shape(b), pose(b));
+    if (!collision::overlapping(shape(a), pose(a), shape(b), pose(b), allowance)) continue;
+    const double depth = -collision::compute_gap(shape(a), pose(a), shape(b), pose(b)).distance;
+    const std::string both = fmt::format("bodies '{}' and '{}'", world_.bodies[a].name, world_.bodies[b].name);
+    throw UserError(scene.file.empty() ? scene.name : scene.file.string(),
+                    depth > 0 ? fmt::format("{} overlap at the start, by about {:.3g} m", both, depth) : fmt::format("at the start one of the {} is inside the other", both),
+                    "move one of them away (\"position_m\") until they are apart or just touch");
+  }
+  for (int round = 0; round < kMostNudges; ++round) {
+    bool clean = true;
+    for (const auto& [a, b] : pairs) {
+      const collision::Gap gap = collision::compute_gap(shape(a), pose(a), shape(b), pose(b));
+      if (gap.distance >= 0) continue;
+      clean = false;
+      const int mover = can_move(a) ? a : b;
+      const double way = -gap.distance + round * std::numeric_limits<double>::epsilon() * first_[mover].com_world.cwiseAbs().maxCoeff();
+      first_[mover].com_world += (mover == a ? way : -way) * gap.normal_b_to_a_world;
+    }
+    if (clean) return;
+  }
+}
+
+Spin FlightWorld::spin(int body, const Flight& flight, double t) const {
+  // Most balls do not turn at all, and what rests turns evenly (it is a ball, or it does not turn).
+  if (!facts_[body].can_move || t == flight.begin || flight.omega_body.isZero(0.0)) return {flight.world_from_body, flight.omega_body};
+  const Spin start{flight.world_from_body, flight.omega_body};
+  if (!rotations_[body].is_asymmetric()) return rotations_[body].after(start, t - flight.begin);
+  Turning& now = turning(body, flight);
+  const std::int64_t k = static_cast<std::int64_t>((t - flight.begin) / now.reach);
+  const auto begin_of = [&](std::int64_t part) { return static_cast<double>(part) * now.reach; };
+  if (k <= now.newest - static_cast<std::int64_t>(now.series.size())) now.newest = -1;   // gone: from the start
+  while (now.newest < k) {
+    const Spin next = now.newest < 0 ? start : now.series[static_cast<std::size_t>(now.newest) % now.series.size()].at(now.reach);
+    ++now.newest;
+    now.series[static_cast<std::size_t>(now.newest) % now.series.size()] = SpinSeries(rotations_[body].moments(), rotations_[body].body_from_principal(), next);
+  }
+  return now.series[static_cast<std::size_t>(k) % now.series.size()].at(t - flight.begin - begin_of(k));
+}
+
+FlightWorld::Turning& FlightWorld::turning(int body, const Flight& flight) const {
+  if (!turning_[body]) turning_[body] = std::make_unique<Turning>();
+  Turning& now = *turning_[body];
+  if (now.begin == flight.begin && now.omega_body == flight.omega_body && now.world_from_body.coeffs() == flight.world_from_body.coeffs()) return now;
+  now.begin = flight.begin;
+  now.omega_body = flight.omega_body;
+  now.world_from_body = flight.world_from_body;
+  now.newest = -1;
+  RigidBodyState state{Vector3d::Zero(), flight.world_from_body, Vector3d::Zero(), Vector3d::Zero()};
+  state.angular_momentum_world = flight.world_from_body * (world_.bodies[body].inertia.inertia_body * flight.omega_body);
+  now.bounds = bound_rotation(state, world_.bodies[body].inertia, {0.0});   // undisturbed: for all time
+  now.reach = SpinSeries::reach(rotations_[body].moments(), now.bounds.angular_speed);
+  return now;
+}
+
+collision::MotionState FlightWorld::motion_at(int body, const Flight& flight, double t) const {
+  const Spin now = spin(body, flight, t);
+  return {{position(body, flight, t), now.world_from_body}, velocity(body, flight, t), now.world_from_body * now.omega_body};
+}
+
+collision::MotionBounds FlightWorld::bounds(int body, const Flight& flight) const {
+  collision::MotionBounds bounds;
+  bounds.acceleration_world = acceleration(body, flight);
+  if (!facts_[body].can_move) {
+    const scene::PrescribedMotion& m = world_.bodies[body].motion;
+    bounds.acceleration_deviation = m.amplitude_m.norm() * m.angular_frequency_rad_s * m.angular_frequency_rad_s;
+    return bounds;
+  }
+  if (is_ball(body) || flight.omega_body.isZero(0.0)) return bounds;   // however it turns, it looks the same
+  const RotationBounds& turns = turning(body, flight).bounds;
+  bounds.angular_speed = turns.angular_speed;
+  bounds.angular_acceleration = turns.angular_acceleration;
+  return bounds;
+}
+
+RigidBodyState FlightWorld::state(int body, const Flight& flight, double t) const {
+  const Spin now = spin(body, flight, t);
+  RigidBodyState state{position(body, flight, t), now.world_from_body, Vector3d::Zero(), Vector3d::Zero()};
+  if (!facts_[body].can_move) return state;
+  const Inertia& inertia = world_.bodies[body].inertia;
+  state.momentum_world = inertia.mass * velocity(body, flight, t);
+  state.angular_momentum_world = now.world_from_body * (inertia.inertia_body * now.omega_body);
+  return state;
+}
+
+Body FlightWorld::body_at(int body, const Flight& flight, double t) const {
+  const Spin now = spin(body, flight, t);
+  return {inertia(body), position(body, flight, t), now.world_from_body, velocity(body, flight, t), now.world_from_body * now.omega_body};
+}
+
+}  // namespace tumble::engines

@@ -1,0 +1,112 @@
+/// The bodies of a scene as event-ordered engines see them: each alone, on flights in closed form.
+///
+/// Sources: ballistic flight; free rotation by dynamics/free_rotation.h. Immovable bodies go by their prescribed motion: they have no
+/// process and are never rolled back.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "framework/collision/motion.h"
+#include "framework/core/large_pages.h"
+#include "framework/dynamics/rotation_bounds.h"
+#include "framework/dynamics/spin_series.h"
+#include "framework/dynamics/world.h"
+#include "framework/engines/events/flight.h"
+
+namespace tumble::engines {
+
+class FlightWorld {
+ public:
+  /// @param engine  named where the scene is refused
+  /// @throws UserError naming the scene's entry that moves bodies other than along free flights, or two bodies that overlap at the start
+  FlightWorld(const scene::Scene& scene, const std::string& engine);
+  FlightWorld(const FlightWorld&) = delete;
+  FlightWorld& operator=(const FlightWorld&) = delete;
+
+  int size() const { return static_cast<int>(world_.bodies.size()); }
+  const World& world() const { return world_; }
+  const Vector3d& gravity_world() const { return gravity_world_; }
+  /// Movable bodies, ascending; immovable ones that may be hit, ascending.
+  const std::vector<int>& movers() const { return movers_; }
+  const std::vector<int>& obstacles() const { return obstacles_; }
+  bool can_move(int body) const { return facts_[body].can_move; }
+  bool is_ball(int body) const { return facts_[body].is_ball; }
+  const Inertia& inertia(int body) const { return matter_[body].inertia; }
+  double restitution(int body) const { return matter_[body].restitution; }
+  bool collides(int body) const { return facts_[body].collides; }
+  /// Immovable and without a motion of its own.
+  bool is_still(int body) const { return facts_[body].is_still; }
+  bool is_half_space(int body) const { return facts_[body].is_half_space; }
+  bool may_collide(int a, int b) const;
+  /// Of the ball around the body; infinite for a half-space. [m]
+  double radius(int body) const { return facts_[body].radius; }
+  const collision::CollisionShape& shape(int body) const { return shapes_[facts_[body].shape]; }
+
+  /// The flight of a body at the start of the run, touching bodies drawn apart by what rounding made them overlap.
+  const Flight& first_flight(int body) const { return first_[body]; }
+
+  Vector3d acceleration(int body, const Flight& flight) const { return facts_[body].can_move && !flight.is_resting ? gravity_world_ : Vector3d(Vector3d::Zero()); }
+  /// @pre t >= flight.begin
+  Vector3d position(int body, const Flight& flight, double t) const {
+    if (!facts_[body].can_move) return facts_[body].is_still ? flight.com_world : prescribed_position(world_.bodies[body], t);
+    const double tau = t - flight.begin;
+    if (flight.is_resting || tau == 0.0) return flight.com_world;
+    return flight.com_world + tau * (flight.velocity_world + (0.5 * tau) * gravity_world_);
+  }
+  Vector3d velocity(int body, const Flight& flight, double t) const {
+    if (!facts_[body].can_move) return prescribed_velocity(world_.bodies[body], t);
+    return flight.is_resting ? flight.velocity_world : Vector3d(flight.velocity_world + (t - flight.begin) * gravity_world_);
+  }
+  Spin spin(int body, const Flight& flight, double t) const;
+  collision::MotionState motion_at(int body, const Flight& flight, double t) const;
+  collision::MotionBounds bounds(int body, const Flight& flight) const;
+  RigidBodyState state(int body, const Flight& flight, double t) const;
+  /// As impulses need it.
+  Body body_at(int body, const Flight& flight, double t) const;
+
+ private:
+  struct Facts {          // what the hot loop asks of a body
+    double radius;
+    int shape;
+    bool can_move, is_ball, is_still, is_half_space, collides, passes;
+  };
+
+  struct Matter {         // what an impact asks of a body; apart from the rest of what is known of it, which is large
+    Inertia inertia;
+    double restitution;
+  };
+
+  // How a body turns on the flight that was asked about last: what questions about one flight share. No answer depends on it. Not to be
+  // shared between threads.
+  struct Turning {
+    double begin = kUnset;               // of the flight; unset: of none yet
+    Quaterniond world_from_body = Quaterniond::Identity();
+    Vector3d omega_body = Vector3d::Zero();
+    RotationBounds bounds{};
+    double reach = 0.0;                  // of a series [s]
+    std::int64_t newest = -1;            // series of [begin + k reach, begin + (k + 1) reach] are kept up to this k
+    std::array<SpinSeries, 4> series;    // of the last ones, by k modulo 4
+  };
+  Turning& turning(int body, const Flight& flight) const;
+
+  void refuse_overlap(const scene::Scene& scene);
+  void draw_apart();
+
+  World world_;
+  Vector3d gravity_world_ = Vector3d::Zero();
+  std::vector<collision::CollisionShape> shapes_;   // equal ones once
+  std::vector<FreeRotation> rotations_;             // by body; of immovable ones none is asked
+  mutable std::vector<std::unique_ptr<Turning>> turning_;   // by body; made where a solid turns
+  std::vector<Facts, LargePages<Facts>> facts_;
+  std::vector<Matter, LargePages<Matter>> matter_;  // by body
+  std::vector<int> movers_, obstacles_;
+  std::vector<Flight> first_;
+};
+
+/// The first entry of a scene that event-ordered engines cannot follow, in words; empty: they can.
+std::string unfollowed_entry(const scene::Scene& scene);
+
+}  // namespace tumble::engines

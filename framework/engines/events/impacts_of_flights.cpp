@@ -1,0 +1,139 @@
+#include "framework/engines/events/impacts_of_flights.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "framework/collision/time_bound.h"
+
+namespace tumble::engines {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kSlack = 1e-9;   // of lengths: pairs this much out of reach are still searched, whatever rounding does
+
+// A root in closed form is off by roundings: it is taken back until the gap is not negative, first by one spacing of the time, then
+// by twice as much each round.
+template <class Gap>
+double last_instant_apart(double begin, double time, const Gap& gap) {
+  double stride = std::nextafter(time, kInfinity) - time;
+  while (time > begin && gap(time) < 0) {
+    time = std::max(begin, time - stride);
+    stride *= 2;
+  }
+  return time;
+}
+
+}  // namespace
+
+EventKey key_of_impact(int a, const Flight& f, int b, const Flight& g, double time) {
+  std::uint32_t generation = 0;
+  if (time == f.begin) generation = f.generation + 1;
+  if (time == g.begin) generation = std::max(generation, g.generation + 1);
+  return {time, generation, EventClass::kCollision, std::min(a, b), std::max(a, b)};
+}
+
+std::int64_t ImpactsOfFlights::window_of(double t) const {
+  std::int64_t k = static_cast<std::int64_t>(std::floor(t / window_));   // the division rounds: windows begin at k * window_
+  while (window_begin(k + 1) <= t) ++k;
+  while (window_begin(k) > t) --k;
+  return k;
+}
+
+bool ImpactsOfFlights::has_closed_form(int a, const Flight& f, int b, const Flight& g) const {
+  if (world_.is_half_space(a) || world_.is_half_space(b)) {
+    const int plane = world_.is_half_space(a) ? a : b, other = world_.is_half_space(a) ? b : a;
+    return world_.is_ball(other) && world_.is_still(plane);
+  }
+  if (!world_.is_ball(a) || !world_.is_ball(b)) return false;
+  if (!(world_.can_move(a) || world_.is_still(a)) || !(world_.can_move(b) || world_.is_still(b))) return false;
+  return falls(a, f) == falls(b, g) || world_.gravity_world().isZero(0.0);
+}
+
+double ImpactsOfFlights::first_impact(int a, const Flight& f, int b, const Flight& g, double from, double to, CheckCost& cost) const {
+  // A resting ball and its support do not meet.
+  if ((f.is_resting && (g.is_resting || !world_.can_move(b))) || (g.is_resting && !world_.can_move(a))) return kInfinity;
+  if (!has_closed_form(a, f, b, g)) return in_windows(a, f, b, g, from, to, cost);
+  ++cost.pair_checks;
+  if (world_.is_half_space(a)) return of_ball_and_plane(b, g, f);
+  if (world_.is_half_space(b)) return of_ball_and_plane(a, f, g);
+  return of_balls(a, f, b, g);
+}
+
+// |d + u tau|^2 = R^2 with d.d - R^2 = c:   tau = c / (-d.u + sqrt((d.u)^2 - u.u c)), the first root, without cancellation.
+double ImpactsOfFlights::of_balls(int a, const Flight& f, int b, const Flight& g) const {
+  const double begin = std::max(f.begin, g.begin), reach = world_.radius(a) + world_.radius(b);
+  const Vector3d d = world_.position(a, f, begin) - world_.position(b, g, begin);
+  const Vector3d u = world_.velocity(a, f, begin) - world_.velocity(b, g, begin);
+  const double approach = d.dot(u);
+  if (!(approach < 0)) return kInfinity;
+  const double excess = d.squaredNorm() - reach * reach;
+  if (excess <= 0) return begin;
+  const double discriminant = approach * approach - u.squaredNorm() * excess;
+  if (!(discriminant >= 0)) return kInfinity;
+  const double time = begin + excess / (-approach + std::sqrt(discriminant));
+  if (!(time < kInfinity)) return kInfinity;
+  return last_instant_apart(begin, time, [&](double t) { return (world_.position(a, f, t) - world_.position(b, g, t)).norm() - reach; });
+}
+
+// h + c tau + q tau^2 = 0 with the height h over the plane, its rate c, and half the gravity along the normal q.
+double ImpactsOfFlights::of_ball_and_plane(int ball, const Flight& f, const Flight& plane) const {
+  if (f.is_resting) return kInfinity;
+  const Vector3d normal = plane.world_from_body * Vector3d::UnitZ();
+  const auto height = [&](double t) { return normal.dot(world_.position(ball, f, t) - plane.com_world) - world_.radius(ball); };
+  const double h = height(f.begin), c = normal.dot(f.velocity_world), q = 0.5 * normal.dot(world_.gravity_world());
+  if (h <= 0 && c < 0) return f.begin;
+  if (h <= 0 && c == 0 && q < 0) return f.begin;
+  double after;
+  if (q == 0) after = c < 0 ? h / -c : kInfinity;
+  else if (h <= 0) after = q < 0 && c > 0 ? c / -q : kInfinity;   // it has just left the plane
+  else after = collision::first_root_of_quadratic(h, c, q);
+  if (!(f.begin + after < kInfinity)) return kInfinity;
+  return last_instant_apart(f.begin, f.begin + after, height);
+}
+
+// Whether the balls around the two come within reach in [low, high]: their relative path leaves its chord by at most |a| s^2 / 8.
+bool ImpactsOfFlights::may_meet(int a, const Flight& f, int b, const Flight& g, double low, double high) const {
+  const auto driven = [&](int body) { return !world_.can_move(body) && !world_.is_still(body); };
+  if (driven(a) || driven(b)) return true;
+  const double s = high - low, bulge = (world_.acceleration(a, f) - world_.acceleration(b, g)).norm() * s * s / 8;
+  if (world_.is_half_space(a) || world_.is_half_space(b)) {
+    const bool a_is_plane = world_.is_half_space(a);
+    const int body = a_is_plane ? b : a;
+    const Flight &flight = a_is_plane ? g : f, &plane = a_is_plane ? f : g;
+    const Vector3d normal = plane.world_from_body * Vector3d::UnitZ();
+    const auto height = [&](double t) { return normal.dot(world_.position(body, flight, t) - plane.com_world); };
+    return std::min(height(low), height(high)) - bulge <= world_.radius(body) * (1 + kSlack);
+  }
+  const Vector3d from = world_.position(a, f, low) - world_.position(b, g, low), way = world_.position(a, f, high) - world_.position(b, g, high) - from;
+  const double length = way.squaredNorm(), part = length > 0 ? std::clamp(-from.dot(way) / length, 0.0, 1.0) : 0.0;
+  return (from + part * way).norm() <= (world_.radius(a) + world_.radius(b)) * (1 + kSlack) + bulge;
+}
+
+double ImpactsOfFlights::in_windows(int a, const Flight& f, int b, const Flight& g, double from, double to, CheckCost& cost) const {
+  if (a > b) return in_windows(b, g, a, f, from, to, cost);   // one order, so that the answer has one rounding
+  const double begin = std::max(f.begin, g.begin);
+  struct Mover {
+    const FlightWorld& world;
+    int body;
+    const Flight& flight;
+  };
+  const Mover mover_a{world_, a, f}, mover_b{world_, b, g};
+  std::optional<collision::Motion> motion_a, motion_b;
+  const collision::ImpactOptions options{root_finder_};
+  for (std::int64_t k = window_of(std::max(from, begin)); window_begin(k) < to; ++k) {
+    const double low = std::max(begin, window_begin(k)), high = window_begin(k + 1);
+    ++cost.pair_checks;
+    if (!may_meet(a, f, b, g, low, high)) continue;
+    if (!motion_a) {
+      const auto motion_of = [](const Mover* m) { return collision::Motion{[m](double t) { return m->world.motion_at(m->body, m->flight, t); }, m->world.bounds(m->body, m->flight)}; };
+      motion_a = motion_of(&mover_a);
+      motion_b = motion_of(&mover_b);
+    }
+    const auto impact = collision::first_impact(world_.shape(a), *motion_a, world_.shape(b), *motion_b, low, high, options, &cost.narrow);
+    if (impact) return impact->time;
+  }
+  return kInfinity;
+}
+
+}  // namespace tumble::engines

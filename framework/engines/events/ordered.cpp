@@ -1,0 +1,88 @@
+#include "framework/engines/events/ordered.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "framework/engines/events/flight_run.h"
+#include "framework/engines/guarded_laws.h"
+
+namespace tumble::engines {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr EventKey kNever{kInfinity, 0, EventClass::kCollision, -1, -1};
+
+class OrderedRun {
+ public:
+  OrderedRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink) : run_(scene, laws, options, sink) {
+    for (int i = 0; i < run_.world().size(); ++i) flights_.push_back(run_.world().first_flight(i));
+    first_of_.assign(flights_.size(), kNever);
+  }
+
+  void run() {
+    std::string stopped_by;
+    try {
+      for (double begin = 0.0; begin < run_.duration(); begin = end_) look_through_window(begin);
+    } catch (const StoppedRun& stop) {
+      stopped_by = stop.what();
+    }
+    if (stopped_by.empty()) draw_before(kInfinity);
+    run_.end(stopped_by);
+  }
+
+ private:
+  void look_through_window(double begin) {
+    end_ = run_.impacts().window_end(begin);
+    begin_ = begin;
+    for (const int a : run_.world().movers()) first_of_[a] = first_among_all(a);
+    for (;;) {
+      EventKey next = kNever;
+      for (const int a : run_.world().movers())
+        if (first_of_[a] < next) next = first_of_[a];
+      if (!(next.time < end_) || next.time > run_.duration()) return;
+      draw_before(next.time);
+      process(next);
+    }
+  }
+
+  void process(const EventKey& key) {
+    const Meeting meeting = run_.meet(key, flights_[key.body_a], flights_[key.body_b]);
+    run_.commit(meeting);
+    if (run_.world().can_move(key.body_a)) flights_[key.body_a] = meeting.a;
+    if (run_.world().can_move(key.body_b)) flights_[key.body_b] = meeting.b;
+    begin_ = key.time;
+    const auto hit = [&](int body) { return body == key.body_a || body == key.body_b; };
+    for (const int c : run_.world().movers()) {
+      if (hit(c) || hit(first_of_[c].body_a) || hit(first_of_[c].body_b)) first_of_[c] = first_among_all(c);
+      else
+        for (const int body : {key.body_a, key.body_b}) first_of_[c] = std::min(first_of_[c], impact_of(c, body));
+    }
+  }
+
+  EventKey impact_of(int a, int b) {
+    if (a == b || !run_.world().may_collide(a, b)) return kNever;
+    const double time = run_.impacts().first_impact(a, flights_[a], b, flights_[b], begin_, end_, run_.cost);
+    return time < kInfinity ? key_of_impact(a, flights_[a], b, flights_[b], time) : kNever;
+  }
+
+  EventKey first_among_all(int a) {
+    EventKey first = kNever;
+    for (int b = 0; b < run_.world().size(); ++b) first = std::min(first, impact_of(a, b));
+    return first;
+  }
+
+  void draw_before(double t) {
+    while (run_.next_frame() < t) run_.commit_frame([this](int body) -> const Flight& { return flights_[body]; });
+  }
+
+  FlightRun run_;
+  std::vector<Flight> flights_;       // by body
+  std::vector<EventKey> first_of_;    // by body: the first impact it takes part in, in this window
+  double begin_ = 0.0, end_ = 0.0;    // what is looked through [s]
+};
+
+}  // namespace
+
+void run_ordered(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink) { OrderedRun(scene, laws, options, sink).run(); }
+
+}  // namespace tumble::engines

@@ -1,0 +1,130 @@
+/// Which bodies can meet: boxes around what each sweeps from global virtual time to its local virtual time, in a hashed grid.
+///
+/// A box is entered in every cell that it touches; two boxes that overlap share a cell, and the pair is told in the lowest of those they
+/// share, so once. A box that touches very many cells stands in a list of its own instead, which is tried with every other.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "framework/collision/collision_shape.h"
+#include "framework/core/large_pages.h"
+
+namespace tumble::engines {
+
+/// Axis-aligned. World frame. [m]
+struct Box {
+  Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity());
+  Vector3d high = Vector3d::Constant(-std::numeric_limits<double>::infinity());
+
+  void take_in(const Box& other) {
+    low = low.cwiseMin(other.low);
+    high = high.cwiseMax(other.high);
+  }
+  bool overlaps(const Box& other) const {
+    // All six without a branch: which of them tells two boxes apart cannot be foreseen.
+    return (low.x() <= other.high.x()) & (other.low.x() <= high.x()) & (low.y() <= other.high.y()) & (other.low.y() <= high.y()) & (low.z() <= other.high.z()) &
+           (other.low.z() <= high.z());
+  }
+};
+
+/// Around a solid that is turned like this, about its centre of mass; infinite for a half-space.
+Box box_around(const collision::CollisionShape& shape, const Quaterniond& world_from_body);
+
+class ActivePairs {
+ public:
+  /// @param bodies  indices in use are below this
+  /// @param cell    edge of a cell [m], > 0: about the size of most boxes
+  ActivePairs(int bodies, double cell);
+
+  /// Enters a body's box, in place of the one it had.
+  void set_box(int body, const Box& box);
+  const Box& box(int body) const { return entries_[static_cast<std::size_t>(body)].box; }
+
+  /// Begins to bring what is known of a body from memory.
+  void fetch(int body) const {
+    __builtin_prefetch(&entries_[static_cast<std::size_t>(body)]);
+    __builtin_prefetch(reinterpret_cast<const char*>(&entries_[static_cast<std::size_t>(body)]) + 64);
+  }
+
+  /// Calls `found(other)` once for each body whose box overlaps this body's.
+  template <class Found>
+  void for_each_partner(int body, const Found& found) const {
+    const Entry& own = entries_[static_cast<std::size_t>(body)];
+    for (const int other : wide_)
+      if (other != body && own.box.overlaps(entries_[static_cast<std::size_t>(other)].box)) found(other);
+    if (own.is_wide) {
+      for (int other = 0; other < static_cast<int>(entries_.size()); ++other)
+        if (other != body && entries_[static_cast<std::size_t>(other)].is_in_grid && own.box.overlaps(entries_[static_cast<std::size_t>(other)].box)) found(other);
+      return;
+    }
+    const SmallBox small = small_of(own.box);
+    for (std::int32_t i = own.low[0]; i <= own.high[0]; ++i)
+      for (std::int32_t j = own.low[1]; j <= own.high[1]; ++j)
+        for (std::int32_t k = own.low[2]; k <= own.high[2]; ++k)
+          for (std::int32_t at = static_cast<std::int32_t>(bucket_of(i, j, k)); at >= 0; at = buckets_[static_cast<std::size_t>(at)].next) {
+            const Bucket& bucket = buckets_[static_cast<std::size_t>(at)];
+            for (std::int32_t place = 0; place < bucket.count; ++place) {
+              const Slot& slot = bucket.slots[static_cast<std::size_t>(place)];
+              if (!small.overlaps(slot.box) || slot.body == body) continue;
+              const Entry& entry = entries_[static_cast<std::size_t>(slot.body)];
+              // The lowest cell that both touch: also tells apart cells that share a bucket.
+              const bool here = (i == std::max(own.low[0], entry.low[0])) & (j == std::max(own.low[1], entry.low[1])) & (k == std::max(own.low[2], entry.low[2]));
+              if (here && own.box.overlaps(entry.box)) found(slot.body);
+            }
+          }
+  }
+
+ private:
+  static constexpr std::int32_t kInABucket = 4;   // two lines of the cache
+  static constexpr double kMostCells = 1000;   // of a box in the grid
+
+  // A box in single precision, never smaller: most that share a cell do not overlap, and are told apart without looking further.
+  struct SmallBox {
+    float low[3], high[3];
+    bool overlaps(const SmallBox& other) const {
+      return (low[0] <= other.high[0]) & (other.low[0] <= high[0]) & (low[1] <= other.high[1]) & (other.low[1] <= high[1]) & (low[2] <= other.high[2]) & (other.low[2] <= high[2]);
+    }
+  };
+  static SmallBox small_of(const Box& box);
+  struct Slot {
+    std::int32_t body;
+    SmallBox box;
+  };
+  struct Bucket {
+    std::int32_t count = 0, next = -1;
+    std::array<Slot, kInABucket> slots;
+  };
+  struct Entry {
+    Box box;
+    std::array<std::int32_t, 3> low{0, 0, 0}, high{-1, -1, -1};   // cells
+    bool is_in_grid = false, is_wide = false;
+  };
+
+  std::size_t bucket_of(std::int32_t i, std::int32_t j, std::int32_t k) const {
+    const auto u = [](std::int32_t v) { return static_cast<std::uint32_t>(v); };
+    // Primes of M. Teschner et al., "Optimized spatial hashing for collision detection of deformable objects", VMV 2003.
+    return (u(i) * 73856093u ^ u(j) * 19349663u ^ u(k) * 83492791u) & mask_;
+  }
+  void enter(int body, const SmallBox& box, std::size_t bucket);
+  void leave(int body, std::size_t bucket);
+  template <class Work>
+  void for_each_cell(const Entry& entry, const Work& work) const {
+    for (std::int32_t i = entry.low[0]; i <= entry.high[0]; ++i)
+      for (std::int32_t j = entry.low[1]; j <= entry.high[1]; ++j)
+        for (std::int32_t k = entry.low[2]; k <= entry.high[2]; ++k) work(bucket_of(i, j, k));
+  }
+  void take_out(int body);
+
+  double cell_;
+  std::uint32_t mask_;
+  std::vector<Bucket, LargePages<Bucket>> buckets_;             // the first mask_ + 1 are heads, the others continue one
+  std::vector<std::int32_t> free_;          // continuations not in use
+  std::vector<Entry, LargePages<Entry>> entries_;              // by body
+  std::vector<int> wide_;                   // ascending
+};
+
+}  // namespace tumble::engines

@@ -1,0 +1,100 @@
+/// The state queues of timewarp: of every body the flights from global virtual time on, oldest first, in ring buffers.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include "framework/core/large_pages.h"
+#include "framework/engines/events/flight.h"
+
+namespace tumble::engines {
+
+/// One body's flights. The first is the one that global virtual time lies in, the last the one that its local virtual time lies in.
+class FlightHistory {
+ public:
+  std::size_t size() const { return count_; }
+  const Flight& operator[](std::size_t k) const { return slots_[(first_ + k) & mask_]; }
+  const Flight& back() const { return (*this)[count_ - 1]; }
+  /// Place of the flight with this serial; size() where it is gone.
+  std::size_t find(std::uint32_t serial) const {
+    for (std::size_t k = count_; k-- > 0;)
+      if ((*this)[k].serial == serial) return k;
+    return count_;
+  }
+  /// Place of the flight that the body is on at time t. @pre the first flight began at t or before
+  std::size_t at(double t) const {
+    std::size_t k = count_ - 1;
+    while (k > 0 && (*this)[k].begin > t) --k;
+    return k;
+  }
+
+ private:
+  friend class FlightHistories;
+  Flight* slots_ = nullptr;
+  std::size_t first_ = 0, count_ = 0, mask_ = 0;
+};
+
+class FlightHistories {
+ public:
+  explicit FlightHistories(std::size_t bodies) : histories_(bodies), grown_(bodies), slab_(bodies * kFirstSlots) {
+    for (std::size_t i = 0; i < bodies; ++i) {
+      histories_[i].slots_ = &slab_[i * kFirstSlots];
+      histories_[i].mask_ = kFirstSlots - 1;
+    }
+  }
+
+  const FlightHistory& operator[](int body) const { return histories_[static_cast<std::size_t>(body)]; }
+
+  /// Begins to bring a body's flights from memory.
+  void fetch(int body) const {
+    __builtin_prefetch(&histories_[static_cast<std::size_t>(body)]);
+    const char* slots = reinterpret_cast<const char*>(&slab_[static_cast<std::size_t>(body) * kFirstSlots]);
+    for (std::size_t at = 0; at < kFirstSlots * sizeof(Flight); at += 64) __builtin_prefetch(slots + at);
+  }
+
+  void push(int body, const Flight& flight) {
+    FlightHistory& history = histories_[static_cast<std::size_t>(body)];
+    if (history.count_ == history.mask_ + 1) grow(static_cast<std::size_t>(body));
+    history.slots_[(history.first_ + history.count_++) & history.mask_] = flight;
+    most_kept_ = std::max(most_kept_, ++kept_);
+  }
+  /// Drops the last flight: a rollback.
+  void pop(int body) {
+    --histories_[static_cast<std::size_t>(body)].count_;
+    --kept_;
+  }
+  /// Drops flights that ended before t: nothing before global virtual time is asked for again.
+  void purge(int body, double t) {
+    FlightHistory& history = histories_[static_cast<std::size_t>(body)];
+    while (history.count_ > 1 && history[1].begin < t) {
+      history.first_ = (history.first_ + 1) & history.mask_;
+      --history.count_;
+      --kept_;
+    }
+  }
+  std::size_t kept() const { return kept_; }
+  std::size_t most_kept() const { return most_kept_; }
+
+ private:
+  static constexpr std::size_t kFirstSlots = 2;   // a power of two
+
+  void grow(std::size_t body) {
+    FlightHistory& history = histories_[body];
+    const std::size_t slots = 2 * (history.mask_ + 1);
+    auto larger = std::make_unique<Flight[]>(slots);
+    for (std::size_t k = 0; k < history.count_; ++k) larger[k] = history[k];
+    grown_[body] = std::move(larger);
+    history.slots_ = grown_[body].get();
+    history.first_ = 0;
+    history.mask_ = slots - 1;
+  }
+
+  std::vector<FlightHistory, LargePages<FlightHistory>> histories_;
+  std::vector<std::unique_ptr<Flight[]>> grown_;
+  std::vector<Flight, LargePages<Flight>> slab_;
+  std::size_t kept_ = 0, most_kept_ = 0;
+};
+
+}  // namespace tumble::engines

@@ -1,0 +1,8 @@
+// What a tree without solutions links: no scheduler but the one that a student writes.
+#include "framework/engines/timewarp/fast_timewarp.h"
+
+namespace tumble::engines {
+
+Engine fast_timewarp() { return {}; }
+
+}  // namespace tumble::engines

@@ -1,0 +1,40 @@
+/// The page that puts engines side by side on one scene: what each counted, how long it took against the others, whether they agree.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "framework/report/plot.h"
+
+namespace tumble::report {
+
+/// One engine's run of one scene.
+struct EngineRow {
+  std::string engine, meaning;                 // "tw", "timewarp"
+  int bodies = 0;                              // movable
+  double simulated_s = 0.0, cpu_s = 0.0;
+  double w_h = 0.0;                            // discontinuities a body and step
+  std::map<std::string, std::uint64_t> counts; // of the run's counters
+  std::vector<double> frame_times, energy_error;   // |E - E0| / scale, by frame
+  std::string agreement;                       // with the first engine that goes event by event, in words
+  std::string stopped_by;                      // also why it did not run
+};
+
+/// The counts that are compared, in order: name in Counters, heading.
+const std::vector<std::pair<std::string, std::string>>& compared_counts();
+
+/// Of a ladder of sizes: work and time against the number of bodies, a curve an engine; steps are counted as integrations.
+std::vector<Plot> plots_against_n(const std::vector<std::vector<EngineRow>>& ladder);
+/// Error of the energy against time, a curve an engine.
+Plot plot_of_energy(const std::vector<EngineRow>& rows);
+
+/// @param rows    of the scene that the page is about
+/// @param ladder  rows of other sizes of the scene, ascending; empty where it has one size
+/// @throws UserError when the file cannot be written
+void write_engines_page(const std::string& title, const std::string& about, const std::vector<EngineRow>& rows, const std::vector<std::vector<EngineRow>>& ladder, const std::string& record,
+                        const std::filesystem::path& file);
+
+}  // namespace tumble::report

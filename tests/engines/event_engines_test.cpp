@@ -1,0 +1,211 @@
+// What the event-ordered engines make of scenes whose outcome is known: ties, cradles, Zeno, chains of events at one instant, elastic gas.
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "framework/core/error.h"
+#include "framework/core/random.h"
+#include "tests/engines/event_scenes.h"
+
+namespace tumble::testing {
+namespace {
+
+const char* const kEventEngines[] = {"ordered", "ca", "tw"};
+
+// Rows along x in which every other ball rests and is hit from both sides at the same instant; numbers are exact in binary.
+scene::Scene lattice(int nx, int ny, int nz, double duration) {
+  std::vector<scene::BodySpec> bodies;
+  for (int i = 0; i < nx; ++i)
+    for (int j = 0; j < ny; ++j)
+      for (int k = 0; k < nz; ++k) {
+        const double velocity = i % 4 == 0 ? 0.5 : i % 4 == 2 ? -0.5 : 0.0;
+        bodies.push_back(ball("ball", 0.0625, 1.0, {0.25 * i, 0.25 * j, 0.25 * k}, {velocity, 0, 0}));
+        bodies.back().name += std::to_string(bodies.size());
+      }
+  return scene_of(std::move(bodies), duration);
+}
+
+TEST(Ties, OfALatticeThatCollidesAtOnceEndTheSameInEveryOrder) {
+  const scene::Scene scene = lattice(10, 10, 10, 0.8);
+  const Trajectory reference = run_by("ordered", scene, {}, 5.0);
+  const auto at_once = std::count_if(reference.events.begin(), reference.events.end(), [&](const Event& event) { return event.time == reference.events.front().time; });
+  ASSERT_GE(at_once, 700);
+  ASSERT_EQ(difference(reference, run_by("ca", scene, {}, 5.0)), "");
+  for (std::uint64_t seed = 1; seed <= 100; ++seed) {
+    const Trajectory run = run_by("tw", scene, {seed, true, seed % 2 == 0 ? 0.1 : 0.0, 0, 0.0}, 5.0);
+    ASSERT_EQ(difference(reference, run), "") << "seed " << seed;
+    EXPECT_LT((run.frames.back().momentum_world - run.frames.front().momentum_world).norm(), 1e-12);   // N s; a thousand balls of 1 kg, 0.5 m/s
+  }
+}
+
+TEST(Cradle, WithGapsPassesTheBlowOnInOrder) {
+  for (const int n : {5, 12, 50}) {
+    std::vector<scene::BodySpec> bodies;
+    for (int i = 0; i < n; ++i) bodies.push_back(ball("ball" + std::to_string(i), 0.1, 1.0, {i * (0.2 + 1e-9), 0, 0}, Vector3d::Zero()));
+    bodies[0].position_m.x() = -1.0;
+    bodies[0].velocity_m_s.x() = 2.0;
+    for (const char* engine : kEventEngines) {
+      const Trajectory run = run_by(engine, scene_of(bodies, 1.0));
+      ASSERT_EQ(run.events.size(), static_cast<std::size_t>(n - 1)) << engine << ", " << n << " balls";
+      for (int i = 0; i + 1 < n; ++i) EXPECT_EQ(run.events[static_cast<std::size_t>(i)].body_a, i);
+      EXPECT_NEAR(run.frames.back().poses.back().velocity_world.x(), 2.0, 1e-9);   // m/s: 50 roundings are 1e-14
+    }
+  }
+}
+
+TEST(Cradle, ThatTouchesPassesTheBlowOnInOneInstantByGenerations) {
+  std::vector<scene::BodySpec> bodies;
+  for (int i = 0; i < 8; ++i) bodies.push_back(ball("ball" + std::to_string(i), 0.125, 1.0, {0.25 * i, 0, 0}, Vector3d::Zero()));
+  bodies[0].position_m.x() = -1.0;
+  bodies[0].velocity_m_s.x() = 2.0;
+  for (const char* engine : kEventEngines) {
+    const Trajectory run = run_by(engine, scene_of(bodies, 1.0));
+    ASSERT_EQ(run.events.size(), 7U) << engine;
+    for (const Event& event : run.events) EXPECT_EQ(event.time, run.events.front().time);
+    EXPECT_EQ(run.frames.back().poses.back().velocity_world.x(), 2.0) << engine;
+    for (std::size_t i = 0; i < 7; ++i) EXPECT_EQ(run.frames.back().poses[i].velocity_world.x(), 0.0) << engine;
+  }
+}
+
+// Bounces of a ball with e = 0.5 from 1 m end at sqrt(2 h / g) (1 + e) / (1 - e) = 1.3546 s.
+TEST(Zeno, ComesToRestInFiniteTimeAndFewEvents) {
+  std::vector<scene::BodySpec> bodies{plane("floor", {0, 0, 0}, {0, 0, 1}), ball("ball", 0.1, 1.0, {0, 0, 1.1}, Vector3d::Zero())};
+  bodies[1].restitution = 0.5;
+  for (const char* engine : kEventEngines) {
+    const Trajectory run = run_by(engine, scene_of(bodies, 3.0, Vector3d(0, 0, -9.81)));
+    EXPECT_EQ(run.stopped_by, "") << engine;
+    ASSERT_LT(run.events.size(), 60U) << engine;
+    ASSERT_EQ(run.events.back().kind, EventKind::kRest) << engine;
+    EXPECT_NEAR(run.events.back().time, std::sqrt(2.0 / 9.81) * 3.0, 1e-3) << engine;   // s: what bounces below the rest speed of 1e-3 m/s would still take is 4e-4
+    EXPECT_EQ(run.frames.back().poses[1].velocity_world.norm(), 0.0);
+    EXPECT_NEAR(run.frames.back().poses[1].com_world.z(), 0.1, 1e-12);
+  }
+}
+
+TEST(ZeroLookAhead, IsOrderedByGenerationAndAnEndlessChainIsReported) {
+  // A ball that fills the room between two walls bounces to and fro without time passing.
+  std::vector<scene::BodySpec> bodies{plane("left", {-0.125, 0, 0}, {1, 0, 0}), plane("right", {0.125, 0, 0}, {-1, 0, 0}), ball("ball", 0.125, 1.0, {0, 0, 0}, {1, 0, 0})};
+  for (const char* engine : kEventEngines) {
+    const Trajectory run = run_by(engine, scene_of(bodies, 1.0));
+    EXPECT_NE(run.stopped_by.find("time stands still"), std::string::npos) << engine << ": " << run.stopped_by;
+    EXPECT_NE(run.stopped_by.find("'ball'"), std::string::npos) << engine << ": " << run.stopped_by;
+  }
+}
+
+// Nothing is pushed into the sink that lies before what was pushed already: what is shown stays.
+class OrderOfCommits final : public TrajectorySink {
+ public:
+  void begin(const TrajectoryInfo&, const std::vector<TrajectoryBody>&) override {}
+  void frame(const Frame& frame) override { take(frame.time); }
+  void event(const Event& event) override { take(event.time); }
+  void end(const Counters&, const std::string&) override {}
+  double last = 0.0;
+  long backward = 0, taken = 0;
+
+ private:
+  void take(double t) {
+    backward += t < last ? 1 : 0;
+    last = std::max(last, t);
+    ++taken;
+  }
+};
+
+TEST(CommitSafety, NothingIsShownThatIsTakenBack) {
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    OrderOfCommits sink;
+    engines::RunOptions options;
+    options.engine = "tw";
+    options.timewarp = engines::fast_timewarp();
+    options.trial = {seed, true, 0.3, 7, 0.2};
+    engines::run_scene(sized("gas", 100, 2.0), test_laws(), options, sink);
+    EXPECT_GT(sink.taken, 400);
+    EXPECT_EQ(sink.backward, 0) << "seed " << seed;
+  }
+}
+
+TEST(ElasticGas, KeepsItsEnergyAndNothingOverlapsAtAnyRedraw) {
+  const Trajectory run = run_by("tw", sized("gas", 300, 250.0), {}, 1.0);
+  ASSERT_GT(run.events.size(), 100000U);
+  const double energy = run.frames.front().kinetic_energy;
+  // Each collision rounds two velocities: a random walk of 1e5 steps of eps is 4e-14, a drift always one way 1e-11.
+  for (const Frame& frame : run.frames) ASSERT_NEAR(frame.kinetic_energy, energy, 1e-10 * energy);
+  for (std::size_t k = 0; k < run.frames.size(); k += 25) {
+    const Frame& frame = run.frames[k];
+    double smallest = 1.0;
+    for (std::size_t i = 6; i < frame.poses.size(); ++i)   // after the six walls
+      for (std::size_t j = i + 1; j < frame.poses.size(); ++j) smallest = std::min(smallest, (frame.poses[i].com_world - frame.poses[j].com_world).norm() - 0.2);
+    EXPECT_GE(smallest, 0.0);
+    EXPECT_LE(frame.smallest_gap, smallest);
+    EXPECT_GE(frame.smallest_gap, 0.0);
+  }
+}
+
+// Retroactive detection steps by the laws' own integrator; before chaos it meets the same impacts.
+TEST(Engines, AgreeOverTheFirstFiveCollisionsOfEachBody) {
+  const scene::Scene scene = sized("gas", 60, 2.0);
+  const Trajectory by_events = run_by("tw", scene), by_steps = run_by("rd", scene);
+  std::vector<std::vector<double>> expected(by_events.bodies.size()), found = expected;
+  for (const auto& [run, times] : {std::pair{&by_events, &expected}, std::pair{&by_steps, &found}})
+    for (const Event& event : run->events)
+      for (const int body : {event.body_a, event.body_b}) (*times)[static_cast<std::size_t>(body)].push_back(event.time);
+  std::size_t compared = 0;
+  for (std::size_t i = 6; i < expected.size(); ++i)
+    for (std::size_t k = 0; k < std::min({expected[i].size(), found[i].size(), std::size_t{5}}); ++k, ++compared) EXPECT_NEAR(expected[i][k], found[i][k], 1e-6) << "collision " << k << " of body " << i;
+  EXPECT_GT(compared, 200U);
+}
+
+// In closed form retroactive detection goes the same flights: molecules that tumble meet at the same instants, far beyond what RK4 keeps.
+TEST(Engines, AgreeOnTumblingSolidsWhereRetroactiveDetectionGoesInClosedFormToo) {
+  const scene::Scene scene = sized("atoms", 30, 1.0);
+  const Trajectory expected = run_by("tw", scene);
+  TrajectoryRecorder recorder;
+  engines::RunOptions options;
+  options.propagator = "auto";
+  engines::run_scene(scene, test_laws(), options, recorder);
+  const Trajectory& found = recorder.trajectory();
+  ASSERT_GE(expected.events.size(), 60U);
+  for (std::size_t k = 0; k < 60; ++k) {
+    EXPECT_NEAR(found.events[k].time, expected.events[k].time, 1e-9) << "event " << k;   // s: roundings, grown tenfold a collision at most
+    EXPECT_EQ(found.events[k].body_a, expected.events[k].body_a) << "event " << k;
+    EXPECT_EQ(found.events[k].body_b, expected.events[k].body_b) << "event " << k;
+  }
+}
+
+TEST(Engines, FollowAShakenPlaneAndABallAtRest) {
+  std::vector<scene::BodySpec> bodies{plane("shaken", {0, 0, 0}, {0, 0, 1}), plane("still", {0, 0, -3}, {0, 0, 1})};
+  bodies[0].motion = scene::PrescribedMotion{Vector3d::Zero(), Vector3d(0, 0, 0.02), 20.0};
+  for (int i = 0; i < 4; ++i) bodies.push_back(ball("ball" + std::to_string(i), 0.1, 1.0, {0.5 * i, 0, 0.4 + 0.1 * i}, Vector3d::Zero()));
+  const scene::Scene scene = scene_of(bodies, 3.0, Vector3d(0, 0, -9.81));
+  const Trajectory reference = run_by("ordered", scene);
+  ASSERT_GT(reference.events.size(), 10U);
+  EXPECT_EQ(difference(reference, run_by("tw", scene)), "");
+  EXPECT_EQ(difference(reference, run_by("ca", scene)), "");
+}
+
+// A point has no size to measure a grid by; nothing else is in its way but a floor.
+TEST(Engines, TakeOneBodyNoneAndOneWithoutSize) {
+  for (const char* engine : kEventEngines) {
+    EXPECT_EQ(run_by(engine, scene_of({plane("floor", {0, 0, 0}, {0, 0, 1})}, 0.5)).frames.size(), 31U) << engine;
+    const Trajectory run = run_by(engine, scene_of({plane("floor", {0, 0, 0}, {0, 0, 1}), ball("point", 0.0, 1.0, {0, 0, 1}, Vector3d::Zero())}, 1.0, Vector3d(0, 0, -9.81)));
+    ASSERT_EQ(run.events.size(), 1U) << engine;
+    EXPECT_NEAR(run.events[0].time, std::sqrt(2.0 / 9.81), 1e-15) << engine;
+  }
+}
+
+TEST(Engines, RefuseWhatNoFlightFollowsAndSayWhich) {
+  scene::Scene scene = scene_of({ball("ball", 0.1, 1.0, {0, 0, 1}, Vector3d::Zero())}, 1.0);
+  scene.drags.push_back({"ball", 0.1, 0.0});
+  for (const char* engine : kEventEngines) {
+    try {
+      run_by(engine, scene);
+      FAIL() << engine << " took a scene with drag";
+    } catch (const UserError& error) {
+      EXPECT_NE(std::string(error.what()).find("the drag on 'ball'"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("--engine rd"), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace tumble::testing

@@ -1,0 +1,42 @@
+/// What tests of the event-ordered engines share: runs by engine, and the sentence that says where a trace leaves the reference.
+#pragma once
+
+#include <string>
+
+#include "framework/engines/events/trace.h"
+#include "framework/engines/timewarp/fast_timewarp.h"
+#include "framework/scene/sized_scenes.h"
+#include "tests/engines/scenes.h"
+
+namespace tumble::testing {
+
+inline Trajectory run_by(const std::string& engine, const scene::Scene& scene, const engines::TimewarpTrial& trial = {}, double frame_rate_hz = 60.0) {
+  TrajectoryRecorder recorder;
+  engines::RunOptions options;
+  options.engine = engine;
+  options.timewarp = engines::fast_timewarp();
+  options.trial = trial;
+  options.frame_rate_hz = frame_rate_hz;
+  engines::run_scene(scene, test_laws(), options, recorder);
+  return recorder.trajectory();
+}
+
+/// Empty where two runs committed the same, frames included; else where they first part.
+inline std::string difference(const Trajectory& reference, const Trajectory& run) {
+  if (const auto parted = engines::compare_traces(reference, run)) return parted->story;
+  if (reference.stopped_by != run.stopped_by) return "one stopped: '" + reference.stopped_by + "' and '" + run.stopped_by + "'";
+  if (reference.frames.size() != run.frames.size()) return "frames: " + std::to_string(reference.frames.size()) + " and " + std::to_string(run.frames.size());
+  for (std::size_t k = 0; k < reference.frames.size(); ++k)
+    for (std::size_t i = 0; i < reference.bodies.size(); ++i)
+      if (reference.frames[k].poses[i].com_world != run.frames[k].poses[i].com_world || reference.frames[k].poses[i].world_from_body.coeffs() != run.frames[k].poses[i].world_from_body.coeffs())
+        return "frame " + std::to_string(k) + ": body " + reference.bodies[i].name + " is elsewhere";
+  return "";
+}
+
+inline scene::Scene sized(const std::string& name, int n, double duration) {
+  scene::Scene scene = scene::make_sized_scene(name, n);
+  scene.duration_s = duration;
+  return scene;
+}
+
+}  // namespace tumble::testing

@@ -1,0 +1,120 @@
+// Timewarp commits what the reference commits, to the last bit, whatever order its processes work in.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/engines/event_scenes.h"
+
+namespace tumble::testing {
+namespace {
+
+using engines::TimewarpTrial;
+using engines::trace_hash;
+
+TEST(CommittedTrace, OfGasIsTheReferencesInTimewarpAndInConservativeAdvancement) {
+  const scene::Scene scene = sized("gas", 300, 3.0);
+  const Trajectory reference = run_by("ordered", scene);
+  ASSERT_GT(reference.events.size(), 1000U);
+  EXPECT_EQ(difference(reference, run_by("tw", scene)), "");
+  EXPECT_EQ(difference(reference, run_by("ca", scene)), "");
+}
+
+TEST(CommittedTrace, OfPongAmongBoxesIsTheReferences) {
+  const scene::Scene scene = sized("pong", 60, 5.0);
+  const Trajectory reference = run_by("ordered", scene);
+  ASSERT_GT(reference.events.size(), 200U);
+  EXPECT_EQ(difference(reference, run_by("tw", scene)), "");
+  EXPECT_EQ(difference(reference, run_by("ca", scene)), "");
+}
+
+TEST(CommittedTrace, OfTumblingBoxesUnderGravityIsTheReferences) {
+  std::vector<scene::BodySpec> bodies{plane("floor", {0, 0, 0}, {0, 0, 1}), plane("left", {-2, 0, 0}, {1, 0, 0}), plane("right", {2, 0, 0}, {-1, 0, 0})};
+  for (int i = 0; i < 12; ++i) {
+    bodies.push_back(box("box" + std::to_string(i), {0.1, 0.15, 0.2}, 1.0, {-1.2 + 0.8 * (i % 4), 0.3 * (i % 3), 0.8 + 0.6 * (i / 4)}, {0.7 - 0.2 * i, 0.1 * i - 0.5, 0.0}));
+    bodies.back().omega_world_rad_s = {1.0, 0.3 * i, -2.0};
+  }
+  const scene::Scene scene = scene_of(bodies, 0.8, Vector3d(0, 0, -9.81));
+  const Trajectory reference = run_by("ordered", scene);
+  ASSERT_GT(reference.events.size(), 20U);
+  EXPECT_EQ(difference(reference, run_by("tw", scene)), "");
+  EXPECT_EQ(difference(reference, run_by("ca", scene)), "");
+}
+
+// Processes take their turns in an order drawn by lot, up to a quarter of a second ahead of global virtual time.
+TEST(AdversarialOrder, LeavesTheTraceAsItIs) {
+  const scene::Scene scene = sized("gas", 60, 1.5);
+  const Trajectory reference = run_by("ordered", scene);
+  ASSERT_GT(reference.events.size(), 100U);
+  std::uint64_t rollbacks = 0, anti_messages = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    const Trajectory run = run_by("tw", scene, {seed, true, 0.25, 0, 0.0});
+    ASSERT_EQ(difference(reference, run), "") << "seed " << seed;
+    rollbacks += run.counters.counts.at("rollbacks");
+    anti_messages += run.counters.counts.at("anti_messages");
+  }
+  // The lot was hard enough: effects on others were taken back many times a run.
+  EXPECT_GT(rollbacks, 200U * 10);
+  EXPECT_GT(anti_messages, 200U * 10);
+}
+
+TEST(ForcedRollback, LeavesTheTraceAsItIs) {
+  const scene::Scene scene = sized("gas", 100, 2.0);
+  const Trajectory reference = run_by("ordered", scene);
+  const double three_steps = 3 * scene.step_s;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    const Trajectory run = run_by("tw", scene, {seed, false, three_steps, 10, three_steps});
+    ASSERT_EQ(difference(reference, run), "") << "seed " << seed;
+    EXPECT_GT(run.counters.counts.at("rollbacks"), 10U);
+  }
+}
+
+TEST(ForcedRollback, CostsAtMostThreeTimesAsMuch) {
+  const scene::Scene scene = sized("gas", 100, 2.0);
+  const double three_steps = 3 * scene.step_s;
+  const auto plain = run_by("tw", scene).counters.counts, forced = run_by("tw", scene, {3, false, 0.0, 10, three_steps}).counters.counts;
+  for (const char* what : {"integrations", "pair_checks"}) EXPECT_LE(forced.at(what), 3 * plain.at(what)) << what;
+  EXPECT_LE(100 * plain.at("undone_integrations"), 15 * plain.at("integrations"));
+}
+
+// Solids without closed forms, gravity, walls that are boxes, and a plane that is shaken: every kind of check, out of order.
+TEST(AdversarialOrder, OfTumblingSolidsLeavesTheTraceAsItIs) {
+  std::vector<scene::BodySpec> bodies{plane("shaken", {0, 0, 0}, {0, 0, 1}), box("wall", {0.05, 3, 3}, 1.0, {1.6, 0, 0}, Vector3d::Zero())};
+  bodies[0].motion = scene::PrescribedMotion{Vector3d::Zero(), Vector3d(0, 0, 0.01), 15.0};
+  bodies[1].immovable = true;
+  bodies[1].mass_kg.reset();
+  for (int i = 0; i < 6; ++i) {
+    bodies.push_back(box("box" + std::to_string(i), {0.1, 0.15, 0.2}, 1.0, {-0.8 + 0.8 * (i % 3), 0.5 * (i / 3), 0.4}, {0.9 - 0.3 * i, 0.2, 0.0}));
+    bodies.back().omega_world_rad_s = {1.0, 0.3 * i, -2.0};
+    bodies.push_back(ball("ball" + std::to_string(i), 0.1, 0.5, {-0.8 + 0.8 * (i % 3), 0.5 * (i / 3), 1.0}, {0.2 * i - 0.5, -0.3, -0.5}));
+  }
+  const scene::Scene scene = scene_of(bodies, 0.6, Vector3d(0, 0, -9.81));
+  const Trajectory reference = run_by("ordered", scene);
+  ASSERT_GT(reference.events.size(), 15U);
+  std::uint64_t rollbacks = 0;
+  for (std::uint64_t seed = 1; seed <= 15; ++seed) {
+    const Trajectory run = run_by("tw", scene, {seed, true, 0.2, 9, 0.05});
+    ASSERT_EQ(difference(reference, run), "") << "seed " << seed;
+    rollbacks += run.counters.counts.at("rollbacks");
+  }
+  EXPECT_GT(rollbacks, 30U);
+}
+
+TEST(CommittedTrace, OfBallsAndMoleculesIsTheReferences) {
+  const scene::Scene scene = sized("atoms", 45, 0.7);
+  const Trajectory reference = run_by("ordered", scene);
+  ASSERT_GT(reference.events.size(), 50U);
+  EXPECT_EQ(difference(reference, run_by("tw", scene)), "");
+  EXPECT_EQ(difference(reference, run_by("ca", scene)), "");
+}
+
+TEST(CommittedTrace, OfBallsThatIgnoreEachOtherHoldsNoneOfTheirCollisions) {
+  const scene::Scene scene = sized("pong_ghosts", 40, 2.0);
+  const Trajectory reference = run_by("ordered", scene);
+  ASSERT_GT(reference.events.size(), 10U);
+  for (const Event& event : reference.events) EXPECT_LT(event.body_a, 4);   // a wall
+  EXPECT_EQ(difference(reference, run_by("tw", scene)), "");
+  EXPECT_EQ(run_by("rd", scene).events.size(), reference.events.size());
+}
+
+}  // namespace
+}  // namespace tumble::testing
