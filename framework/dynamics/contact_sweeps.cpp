@@ -5,18 +5,24 @@
 namespace tumble::contacts {
 namespace {
 
+double normal_velocity(const ContactBlock& c, const std::vector<Vector6d>& y) {
+  double v = c.base[0];
+  if (c.body_a != kFixed) v += c.g_a.row(0).dot(y[c.body_a]);
+  if (c.body_b != kFixed) v += c.g_b.row(0).dot(y[c.body_b]);
+  return v;
+}
+
 double relax_contact(const ContactBlock& block, const LocalContact& local, Vector3d& impulse, std::vector<Vector6d>& y) {
   if (!(block.give > 0)) return 0;
-  const Vector3d velocity = contact_velocity(block, y);
   if (!block.is_frictional()) {
     const double before = impulse[0];
-    impulse[0] = std::max(0.0, before - velocity[0] / local.w_nn);
+    impulse[0] = std::max(0.0, before - normal_velocity(block, y) / local.w_nn);
     const double change = impulse[0] - before;
     if (change != 0) push(block, Vector3d(change, 0, 0), y);
     return block.give * std::abs(change);
   }
-  if (impulse[0] == 0 && velocity[0] >= 0) return 0;  // open, and stays so
-  const Vector3d before = impulse;
+  if (impulse[0] == 0 && normal_velocity(block, y) >= 0) return 0;  // open, and stays so
+  const Vector3d velocity = contact_velocity(block, y), before = impulse;
   impulse = solve_local(local, velocity - local.w * before, block.friction);
   const Vector3d change = impulse - before;
   push(block, change, y);

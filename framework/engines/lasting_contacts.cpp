@@ -180,9 +180,7 @@ std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidat
       group.pile = is_pile(group);
       for (const Pair& pair : group.pairs) points_.emplace(pair, group.pile ? Points{} : points_at(pair, moving_.states(), reach(pair)));
     }
-  for (Group& group : groups_)
-    for (const Pair& pair : candidates)
-      if (std::binary_search(group.bodies.begin(), group.bodies.end(), pair.first) || std::binary_search(group.bodies.begin(), group.bodies.end(), pair.second)) group.near.push_back(pair);
+  note_near_pairs(candidates);
   next_warm_.clear();
   next_stuck_.clear();
   for (const Group& group : groups_)
@@ -190,6 +188,17 @@ std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidat
   warm_ = std::move(next_warm_);
   stuck_ = std::move(next_stuck_);
   return std::nullopt;
+}
+
+void LastingContacts::note_near_pairs(const std::vector<Pair>& candidates) {
+  std::vector<Group*> group_of(moving_.size(), nullptr);
+  for (Group& group : groups_)
+    for (const int body : group.bodies) group_of[body] = &group;
+  for (const Pair& pair : candidates) {
+    Group *const a = group_of[pair.first], *const b = group_of[pair.second];
+    if (a) a->near.push_back(pair);
+    if (b && b != a) b->near.push_back(pair);
+  }
 }
 
 // Of the fastest point of the group's bodies. [m/s]

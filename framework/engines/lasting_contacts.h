@@ -111,6 +111,7 @@ class LastingContacts {
   double distance_of(Pair pair, const std::vector<RigidBodyState>& states) const;
   double least_gap_of(Pair pair, const std::vector<RigidBodyState>& states) const;
   std::vector<Group> groups(const std::vector<Pair>& touching);
+  void note_near_pairs(const std::vector<Pair>& candidates);
   std::vector<Touch> touches_of(const Group& group);
   ContactProblem problem_of(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& states, double h);
   ContactSolution solve(const Group& group, const ContactProblem& problem, double h);
