@@ -176,11 +176,7 @@ TEST(Engines, FollowAShakenPlaneAndABallAtRest) {
   std::vector<scene::BodySpec> bodies{plane("shaken", {0, 0, 0}, {0, 0, 1}), plane("still", {0, 0, -3}, {0, 0, 1})};
   bodies[0].motion = scene::PrescribedMotion{Vector3d::Zero(), Vector3d(0, 0, 0.02), 20.0};
   for (int i = 0; i < 4; ++i) bodies.push_back(ball("ball" + std::to_string(i), 0.1, 1.0, {0.5 * i, 0, 0.4 + 0.1 * i}, Vector3d::Zero()));
-  const scene::Scene scene = scene_of(bodies, 3.0, Vector3d(0, 0, -9.81));
-  const Trajectory reference = run_by("ordered", scene);
-  ASSERT_GT(reference.events.size(), 10U);
-  EXPECT_EQ(difference(reference, run_by("tw", scene)), "");
-  EXPECT_EQ(difference(reference, run_by("ca", scene)), "");
+  expect_the_references_trace(scene_of(bodies, 3.0, Vector3d(0, 0, -9.81)), 10);
 }
 
 // A point has no size to measure a grid by; nothing else is in its way but a floor.

@@ -39,4 +39,12 @@ inline scene::Scene sized(const std::string& name, int n, double duration) {
   return scene;
 }
 
+/// Timewarp and conservative advancement commit what the reference commits, which is more than `least` events.
+inline void expect_the_references_trace(const scene::Scene& scene, std::size_t least) {
+  const Trajectory reference = run_by("ordered", scene);
+  ASSERT_GT(reference.events.size(), least);
+  EXPECT_EQ(difference(reference, run_by("tw", scene)), "");
+  EXPECT_EQ(difference(reference, run_by("ca", scene)), "");
+}
+
 }  // namespace tumble::testing

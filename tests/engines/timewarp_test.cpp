@@ -12,19 +12,11 @@ using engines::TimewarpTrial;
 using engines::trace_hash;
 
 TEST(CommittedTrace, OfGasIsTheReferencesInTimewarpAndInConservativeAdvancement) {
-  const scene::Scene scene = sized("gas", 300, 3.0);
-  const Trajectory reference = run_by("ordered", scene);
-  ASSERT_GT(reference.events.size(), 1000U);
-  EXPECT_EQ(difference(reference, run_by("tw", scene)), "");
-  EXPECT_EQ(difference(reference, run_by("ca", scene)), "");
+  expect_the_references_trace(sized("gas", 300, 3.0), 1000);
 }
 
 TEST(CommittedTrace, OfPongAmongBoxesIsTheReferences) {
-  const scene::Scene scene = sized("pong", 60, 5.0);
-  const Trajectory reference = run_by("ordered", scene);
-  ASSERT_GT(reference.events.size(), 200U);
-  EXPECT_EQ(difference(reference, run_by("tw", scene)), "");
-  EXPECT_EQ(difference(reference, run_by("ca", scene)), "");
+  expect_the_references_trace(sized("pong", 60, 5.0), 200);
 }
 
 TEST(CommittedTrace, OfTumblingBoxesUnderGravityIsTheReferences) {
@@ -33,11 +25,7 @@ TEST(CommittedTrace, OfTumblingBoxesUnderGravityIsTheReferences) {
     bodies.push_back(box("box" + std::to_string(i), {0.1, 0.15, 0.2}, 1.0, {-1.2 + 0.8 * (i % 4), 0.3 * (i % 3), 0.8 + 0.6 * (i / 4)}, {0.7 - 0.2 * i, 0.1 * i - 0.5, 0.0}));
     bodies.back().omega_world_rad_s = {1.0, 0.3 * i, -2.0};
   }
-  const scene::Scene scene = scene_of(bodies, 0.8, Vector3d(0, 0, -9.81));
-  const Trajectory reference = run_by("ordered", scene);
-  ASSERT_GT(reference.events.size(), 20U);
-  EXPECT_EQ(difference(reference, run_by("tw", scene)), "");
-  EXPECT_EQ(difference(reference, run_by("ca", scene)), "");
+  expect_the_references_trace(scene_of(bodies, 0.8, Vector3d(0, 0, -9.81)), 20);
 }
 
 // Processes take their turns in an order drawn by lot, up to a quarter of a second ahead of global virtual time.
@@ -100,11 +88,7 @@ TEST(AdversarialOrder, OfTumblingSolidsLeavesTheTraceAsItIs) {
 }
 
 TEST(CommittedTrace, OfBallsAndMoleculesIsTheReferences) {
-  const scene::Scene scene = sized("atoms", 45, 0.7);
-  const Trajectory reference = run_by("ordered", scene);
-  ASSERT_GT(reference.events.size(), 50U);
-  EXPECT_EQ(difference(reference, run_by("tw", scene)), "");
-  EXPECT_EQ(difference(reference, run_by("ca", scene)), "");
+  expect_the_references_trace(sized("atoms", 45, 0.7), 50);
 }
 
 TEST(CommittedTrace, OfBallsThatIgnoreEachOtherHoldsNoneOfTheirCollisions) {
