@@ -1,0 +1,29 @@
+#include "framework/core/order.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "framework/core/error.h"
+
+namespace tumble {
+namespace {
+
+constexpr double kClear = 10.0;       // of the floor: the order is then off by at most log2(1.1 / 0.9) / 1, a third
+constexpr std::size_t kMostPairs = 3;
+
+}  // namespace
+
+std::optional<FittedOrder> fit_order(const std::vector<double>& h, const std::vector<double>& error, double floor, double largest) {
+  require(h.size() == error.size(), "core: a ladder needs as many errors as steps");
+  const auto shows = [&](std::size_t i) { return std::isfinite(error[i]) && error[i] > 0.0 && error[i] > kClear * floor && error[i] < largest; };
+  std::vector<double> slopes;   // from the fine end
+  for (std::size_t i = h.size(); i-- > 1 && slopes.size() < kMostPairs;)
+    if (shows(i) && shows(i - 1) && h[i - 1] > h[i]) slopes.push_back(std::log(error[i - 1] / error[i]) / std::log(h[i - 1] / h[i]));
+  if (slopes.empty()) return std::nullopt;
+  std::sort(slopes.begin(), slopes.end());
+  const std::size_t n = slopes.size();
+  const double median = n % 2 == 1 ? slopes[n / 2] : 0.5 * (slopes[n / 2 - 1] + slopes[n / 2]);
+  return FittedOrder{median, slopes.back() - slopes.front(), static_cast<int>(n)};
+}
+
+}  // namespace tumble
