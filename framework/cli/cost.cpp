@@ -144,9 +144,9 @@ void tell(Context& context, const scene::Scene& scene, const std::vector<Ladder>
 
 void run_cost(Context& context, const CostWords& words) {
   engines::CostOptions options;
-  options.duration_s = words.duration_s;
   options.timewarp = engines::fast_timewarp();
   const CostSubject subject = find_subject(context, words);
+  options.duration_s = words.duration_s ? words.duration_s : subject.duration_s;
   fmt::print(stderr, "tumble: the truth of {}\n", subject.scene.name);
   const CostTruth truth = engines::find_truth(subject.scene, subject.truth_laws, options);
   const std::vector<Ladder> ladders = run_all(subject.scene, subject.ways, truth, words, options);

@@ -18,7 +18,11 @@ namespace {
 using engines::CostWay;
 
 /// Where an assignment's module is measured, unless --on says something else.
-const std::map<std::string, std::string> kShowcases = {{"a1", "ball_against_wall"}, {"a2", "t_handle"}, {"a3", "double_pendulum"}};
+struct Showcase {
+  std::string scene;
+  double duration_s;   // long enough to see an order, short enough for Euler's method to show one
+};
+const std::map<std::string, Showcase> kShowcases = {{"a1", {"pong_1", 3.0}}, {"a2", {"t_handle", 1.0}}, {"a3", {"double_pendulum", 1.0}}};
 
 bool is_none(const std::vector<std::string>& words) { return words.size() == 1 && words.front() == "none"; }
 
@@ -84,7 +88,8 @@ std::vector<std::string> engines_for(const scene::Scene& scene, const CostWords&
 }
 
 CostSubject of_scene(const Context& context, const CostWords& words) {
-  CostSubject subject{find_scene(context, words.scene, words.n), "", {}, {}, {}};
+  CostSubject subject;
+  subject.scene = find_scene(context, words.scene, words.n);
   const ChosenLaws chosen = choose_laws(context, subject.scene, parse_module_words(words.modules, context.registry));
   for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
   subject.title = subject.scene.title;
@@ -133,7 +138,8 @@ CostSubject of_assignment(const Context& context, const modules::ModuleKind& kin
   CostSubject subject;
   const auto showcase = kShowcases.find(kind.id);
   if (words.on.empty() && showcase == kShowcases.end()) throw UserError("tumble cost " + kind.id, "no scene is known on which this assignment is measured", "Name one: --on SCENE.");
-  subject.scene = find_scene(context, words.on.empty() ? showcase->second : words.on, words.n);
+  subject.scene = find_scene(context, words.on.empty() ? showcase->second.scene : words.on, words.n);
+  if (words.on.empty()) subject.duration_s = showcase->second.duration_s;
   const bool has_reference = std::filesystem::exists(context.build / "modules" / (kind.id + "_reference.so"));
   const ChosenLaws right = choose_laws(context, subject.scene, parse_module_words(has_reference ? "reference" : "", context.registry));
   subject.truth_laws = right.laws;

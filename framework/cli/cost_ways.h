@@ -30,6 +30,7 @@ struct CostWords {
 struct CostSubject {
   scene::Scene scene;
   std::string title;
+  std::optional<double> duration_s;      // that suits it; empty: the scene's
   Laws truth_laws;
   std::vector<engines::CostWay> ways;
   std::vector<std::shared_ptr<void>> connections;   // to sandboxes

@@ -13,7 +13,8 @@ struct FittedOrder {
 };
 
 /// Slope of log(error) over log(h) at the fine end of a ladder: the median of the last three pairs of neighbours whose errors are both
-/// finite, below `largest` (coarser ones do not yet follow the power law) and well above the floor.
+/// finite, below `largest` (coarser ones do not yet follow the power law) and well above the floor, or above the least error where
+/// finer rungs got worse again: that is round-off.
 /// @param h        of each rung, > 0, falling: steps, or 1 / evaluations
 /// @param error    of each rung, >= 0
 /// @param floor    what the truth itself, or round-off, is wrong by: rungs within ten times of it show nothing

@@ -22,12 +22,12 @@ Plot drawn(const CostPage& page, Axis across, const std::string& title, double (
     for (const CostPoint& point : curve.points) {
       if (!point.stopped_by.empty() || !(point.error < page.scale) || !(x(point) > 0)) continue;
       line.x.push_back(x(point));
-      line.y.push_back(std::max(point.error, kExact));
+      line.y.push_back(std::max({point.error, page.floor, kExact}));   // below the floor nothing can be told
     }
     if (line.x.empty()) line.name.clear();   // its place stays, so that a method looks the same in all pictures
     plot.curves.push_back(std::move(line));
   }
-  if (page.floor > 0) plot.limits.push_back({page.floor, "floor: the truth's own error"});
+  if (page.floor > 0) plot.limits.push_back({page.floor, "the truth's own error"});
   return plot;
 }
 

@@ -16,6 +16,8 @@ constexpr double kShort = 0.1;            // s: longer runs are not repeated
 constexpr double kCoarsest = 4.0;         // of the scene's own step: where a ladder begins
 constexpr int kMostRungs = 14;
 constexpr double kNearFloor = 3.0;        // of the truth's floor: finer runs show nothing
+constexpr double kGood = 1e-3;            // of the scale: below it, errors that do not fall are round-off
+constexpr int kMostWorse = 2;             // rungs in a row that are no better than the best
 constexpr double kGrowth = 2.2;           // price of a rung over the one before, as expected
 
 /// Samples, energies and the clock.
@@ -119,6 +121,8 @@ std::vector<CostRung> run_ladder(const scene::Scene& scene, const CostWay& way, 
   const std::vector<double>& asked = way.controlled ? tolerances : steps_s;
   const std::size_t most = !way.has_ladder ? 1 : asked.empty() ? kMostRungs : asked.size();
   std::vector<CostRung> rungs;
+  double least = std::numeric_limits<double>::infinity();
+  int worse = 0;
   for (std::size_t k = 0; k < most; ++k) {
     const double begun = cpu_seconds();
     long steps = first_steps(scene, truth) << std::min<std::size_t>(k, 20);
@@ -128,7 +132,9 @@ std::vector<CostRung> run_ladder(const scene::Scene& scene, const CostWay& way, 
     rungs.push_back(run_rung(scene, way, truth, steps, tolerance, options));
     told(rungs.back());
     const double spent = cpu_seconds() - begun;
-    const bool reached = rungs.back().error_m <= kNearFloor * truth.floor_m;
+    worse = rungs.back().error_m < least ? 0 : worse + 1;
+    least = std::min(least, std::isfinite(rungs.back().error_m) ? rungs.back().error_m : least);
+    const bool reached = rungs.back().error_m <= kNearFloor * truth.floor_m || (worse >= kMostWorse && least < kGood * truth.scale_m);
     if (asked.empty() && (reached || cpu_seconds() + kGrowth * spent > until)) break;
   }
   return rungs;

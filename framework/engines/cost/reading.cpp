@@ -13,6 +13,7 @@ constexpr double kAnswer = 0.1;          // of the scale: coarser runs do not fo
 constexpr double kAsPromised = 0.25;     // off the order by less: terms of the next order at steps this coarse
 constexpr double kSettled = 0.5;         // slopes that lie farther apart show no order
 constexpr double kNoOrder = 0.3;         // a slope below this is no convergence
+constexpr double kSame = 0.05;           // errors that differ by less are one
 constexpr double kWrongLimit = 100.0;    // floors: what does not shrink above this is wrong, not finished
 
 double least_error(const std::vector<CostRung>& rungs) {
@@ -22,8 +23,19 @@ double least_error(const std::vector<CostRung>& rungs) {
   return least;
 }
 
+/// Whether the last three errors are the same.
+bool stays(const std::vector<CostRung>& rungs) {
+  if (rungs.size() < 3) return false;
+  const double last = rungs.back().error_m;
+  return std::all_of(rungs.end() - 3, rungs.end(), [last](const CostRung& rung) { return rung.stopped_by.empty() && std::abs(rung.error_m - last) <= kSame * last; });
+}
+
 std::string of_stopped(const CostWay& way, const std::vector<CostRung>& rungs) {
   return fmt::format("{} does not get through at any {}: {}", way.name, way.controlled ? "tolerance" : "step", rungs.empty() ? "nothing was run" : rungs.back().stopped_by);
+}
+
+std::string of_wrong_limit(const CostWay& way, double least) {
+  return fmt::format("{} does not converge: its error stays at {:.1e} m however small the step. What it computes is not this motion (a wrong law, or a term left out).", way.name, least);
 }
 
 std::string of_order(const CostWay& way, const FittedOrder& fit, bool smooth) {
@@ -51,13 +63,15 @@ std::optional<FittedOrder> order_of(const CostWay& way, const std::vector<CostRu
 std::string read_ladder(const CostWay& way, const std::vector<CostRung>& rungs, const CostTruth& truth, bool smooth) {
   const double least = least_error(rungs);
   if (!std::isfinite(least)) return of_stopped(way, rungs);
+  if (!way.has_ladder && least <= truth.floor_m) return fmt::format("{} has no step to choose: it is as good as the truth.", way.name);
   if (!way.has_ladder) return fmt::format("{} has no step to choose: it is off by {:.1e} m.", way.name, least);
   const std::optional<FittedOrder> fit = order_of(way, rungs, truth);
   if (!fit && least <= kWrongLimit * truth.floor_m) return fmt::format("{} is exact here, to round-off: {:.1e} m.", way.name, least);
+  if (stays(rungs) && least > kWrongLimit * truth.floor_m && least < kAnswer * truth.scale_m) return of_wrong_limit(way, least);
   if (!fit) return fmt::format("{} shows no order yet: its error is still {:.1e} m where bodies move {:.1e} m.", way.name, least, truth.scale_m);
   if (way.controlled) return fmt::format("{} gets to {:.1e} m; each ten times the evaluations divide its error by 10^{:.1f}.", way.name, least, fit->order);
   if (fit->order < kNoOrder && least > kWrongLimit * truth.floor_m)
-    return fmt::format("{} does not converge: its error stays at {:.1e} m however small the step. What it computes is not this motion (a wrong law, or a term left out).", way.name, least);
+    return of_wrong_limit(way, least);
   if (fit->spread > kSettled) return fmt::format("{} gets to {:.1e} m; its order has not settled ({:.1f}, slopes {:.1f} apart).", way.name, least, fit->order, fit->spread);
   return of_order(way, *fit, smooth);
 }
