@@ -132,6 +132,15 @@ void add_module(const Context& context, const modules::ModuleKind& kind, const s
     way.laws.integrator_source = fmt::format("{} ({})", named.name, word);
     subject.ways.push_back(std::move(way));
   }
+  // Steps alone leave the module's other laws of motion unseen: the derivative, the renormalisation.
+  const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(kind.id + "=" + word, context.registry));
+  CostWay whole;
+  whole.name = fmt::format("{} whole {}", whose, kind.id);
+  whole.word = kind.id;
+  whole.order = kind.methods.back().order;
+  whole.laws = chosen.laws;
+  subject.ways.push_back(std::move(whole));
+  subject.connections.insert(subject.connections.end(), chosen.connections.begin(), chosen.connections.end());
 }
 
 CostSubject of_assignment(const Context& context, const modules::ModuleKind& kind, const CostWords& words) {

@@ -110,7 +110,9 @@ long first_steps(const scene::Scene& scene, const CostTruth& truth) {
 }
 
 long outer_steps(const scene::Scene& scene, const CostTruth& truth) {
-  const bool alone = scene.rods.empty() && scene.joints.empty() && scene.motors.empty() && !scene.contact;
+  // Motors look between steps, and lasting contacts push once a step: there the step is part of the scene. Rods and joints are held to
+  // the tolerance within a step, and brought back at its end.
+  const bool alone = scene.motors.empty() && !scene.contact;
   const double interval = truth.duration_s / static_cast<double>(truth.samples.size() - 1);
   return alone ? 1 : std::max(1L, std::lround(interval / (2.0 * scene.step_s)));
 }
@@ -132,7 +134,8 @@ std::vector<CostRung> run_ladder(const scene::Scene& scene, const CostWay& way, 
     rungs.push_back(run_rung(scene, way, truth, steps, tolerance, options));
     told(rungs.back());
     const double spent = cpu_seconds() - begun;
-    worse = rungs.back().error_m < least ? 0 : worse + 1;
+    const bool is_new = k == 0 || !way.controlled || rungs[k].evaluations > rungs[k - 1].evaluations;   // a tolerance that changes nothing tells nothing
+    worse = rungs.back().error_m < least ? 0 : worse + (is_new ? 1 : 0);
     least = std::min(least, std::isfinite(rungs.back().error_m) ? rungs.back().error_m : least);
     const bool reached = rungs.back().error_m <= kNearFloor * truth.floor_m || (worse >= kMostWorse && least < kGood * truth.scale_m);
     if (asked.empty() && (reached || cpu_seconds() + kGrowth * spent > until)) break;

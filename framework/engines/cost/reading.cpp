@@ -66,8 +66,9 @@ std::string read_ladder(const CostWay& way, const std::vector<CostRung>& rungs, 
   if (!way.has_ladder && least <= truth.floor_m) return fmt::format("{} has no step to choose: it is as good as the truth.", way.name);
   if (!way.has_ladder) return fmt::format("{} has no step to choose: it is off by {:.1e} m.", way.name, least);
   const std::optional<FittedOrder> fit = order_of(way, rungs, truth);
+  if (!fit && way.controlled) return fmt::format("{} gets to {:.1e} m.", way.name, least);
   if (!fit && least <= kWrongLimit * truth.floor_m) return fmt::format("{} is exact here, to round-off: {:.1e} m.", way.name, least);
-  if (stays(rungs) && least > kWrongLimit * truth.floor_m && least < kAnswer * truth.scale_m) return of_wrong_limit(way, least);
+  if (!way.controlled && stays(rungs) && least > kWrongLimit * truth.floor_m && least < kAnswer * truth.scale_m) return of_wrong_limit(way, least);
   if (!fit) return fmt::format("{} shows no order yet: its error is still {:.1e} m where bodies move {:.1e} m.", way.name, least, truth.scale_m);
   if (way.controlled) return fmt::format("{} gets to {:.1e} m; each ten times the evaluations divide its error by 10^{:.1f}.", way.name, least, fit->order);
   if (fit->order < kNoOrder && least > kWrongLimit * truth.floor_m)

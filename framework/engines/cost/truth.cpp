@@ -17,8 +17,8 @@ namespace {
 constexpr double kTight = 1e-13;          // tolerance of the truth: a hundred roundings, below which no method gets better
 constexpr double kGoodFloor = 1e-6;       // of the scale: a truth worse than this is looked for over half the time
 constexpr int kMostHalvings = 7;
-constexpr long kFewestSamples = 4, kMostSamples = 48;
-constexpr double kStepsASample = 4.0;     // of the scene's own steps
+constexpr long kFewestSamples = 4, kMostSamples = 24;
+constexpr double kStepsASample = 8.0;     // of the scene's own steps
 
 bool is_smooth(const scene::Scene& scene) {
   return std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const scene::BodySpec& body) { return body.collides; }) < 2;
