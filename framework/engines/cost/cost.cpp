@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kRuns = 5;                  // of one rung, at most: the least disturbed counts
 constexpr double kShort = 0.1;            // s: longer runs are not repeated
-constexpr double kCoarsest = 4.0;         // of the scene's own step: where a ladder begins
+constexpr double kCoarsest = 16.0;        // of the scene's own step: where a ladder begins
 constexpr int kMostRungs = 14;
 constexpr double kNearFloor = 3.0;        // of the truth's floor: finer runs show nothing
 constexpr double kGood = 1e-3;            // of the scale: below it, errors that do not fall are round-off
