@@ -87,12 +87,25 @@ auto counted_parts(long& parts) {
   };
 }
 
+// What a controlled method tries first: small enough that y and its slope hardly change in it. A trial over all of h may leave what the
+// equations can bear (a stiff spring flung out to 1e30 m) before the control can say no.
+// Source: Hairer, Norsett, Wanner, "Solving ODEs I", II.4 (starting step size), with the sizes of y in place of tolerances.
+double first_part(const OdeFunction& f, double t, const VectorXd& y, double h) {
+  const auto size = [&](const VectorXd& v) { return (v.array() / (1.0 + y.array().abs())).matrix().norm(); };
+  const VectorXd slope = f(t, y);
+  const double speed = size(slope), most = std::abs(h);
+  if (!(speed > 0.0)) return h;
+  const double first = std::min(most, 0.01 / speed);
+  const double bend = size(f(t + std::copysign(first, h), y + std::copysign(first, h) * slope) - slope) / first;
+  return std::copysign(std::min({most, 100.0 * first, std::sqrt(0.02 / std::max(bend, 0.02 / (most * most)))}), h);
+}
+
 template <class Controlled>
-VectorXd adaptive(Controlled stepper, const OdeFunction& f, double t, const VectorXd& y, double h, double first_part) {
+VectorXd adaptive(Controlled stepper, const OdeFunction& f, double t, const VectorXd& y, double h) {
   if (h == 0.0) return y;
   State state(y.data(), y.data() + y.size());
   long parts = 0;
-  odeint::integrate_adaptive(stepper, system_of(f), state, t, t + h, first_part * h, counted_parts(parts));
+  odeint::integrate_adaptive(stepper, system_of(f), state, t, t + h, first_part(f, t, y, h), counted_parts(parts));
   return vector_of(state);
 }
 
@@ -168,11 +181,11 @@ StepFunction step_of(const Method& method, double tolerance) {
   if (method.word == "verlet") return verlet;
   if (method.word == "rk4") return one_step<odeint::runge_kutta4<State>>;
   if (method.word == "dopri5")
-    return [tolerance](const OdeFunction& f, double t, const VectorXd& y, double h) { return adaptive(odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_dopri5<State>()), f, t, y, h, 1.0); };
+    return [tolerance](const OdeFunction& f, double t, const VectorXd& y, double h) { return adaptive(odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_dopri5<State>()), f, t, y, h); };
   if (method.word == "fehlberg78")
-    return [tolerance](const OdeFunction& f, double t, const VectorXd& y, double h) { return adaptive(odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_fehlberg78<State>()), f, t, y, h, 1.0); };
+    return [tolerance](const OdeFunction& f, double t, const VectorXd& y, double h) { return adaptive(odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_fehlberg78<State>()), f, t, y, h); };
   if (method.word == "bulirsch-stoer")
-    return [tolerance](const OdeFunction& f, double t, const VectorXd& y, double h) { return adaptive(odeint::bulirsch_stoer<State>(tolerance, tolerance), f, t, y, h, 1.0); };
+    return [tolerance](const OdeFunction& f, double t, const VectorXd& y, double h) { return adaptive(odeint::bulirsch_stoer<State>(tolerance, tolerance), f, t, y, h); };
   require(method.word == "rosenbrock4", "dynamics: a method of methods()");
   return [tolerance](const OdeFunction& f, double t, const VectorXd& y, double h) { return rosenbrock(f, t, y, h, tolerance); };
 }

@@ -41,6 +41,11 @@ class Measurement final : public TrajectorySink {
   double start_ = 0.0;
 };
 
+bool links_meet(const scene::Scene& scene) {
+  const bool linked = !(scene.springs.empty() && scene.rods.empty() && scene.joints.empty() && scene.drags.empty());
+  return linked && std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const scene::BodySpec& body) { return body.collides; }) > 1;
+}
+
 double energy_of(const Frame& frame) { return frame.kinetic_energy + frame.potential_energy; }
 
 void compare(const std::vector<Frame>& frames, const CostTruth& truth, CostRung& rung) {
@@ -128,8 +133,9 @@ std::vector<CostRung> run_ladder(const scene::Scene& scene, const CostWay& way, 
   for (std::size_t k = 0; k < most; ++k) {
     const double begun = cpu_seconds();
     long steps = first_steps(scene, truth) << std::min<std::size_t>(k, 20);
-    if (way.controlled || !way.has_ladder) steps = outer_steps(scene, truth);
-    else if (!asked.empty()) steps = std::max(1L, std::lround(interval / asked[k]));
+    // Bodies that hang on others and meet something go along a curve through their steps' ends: steps shrink with the tolerance there.
+    if ((way.controlled && !links_meet(scene)) || !way.has_ladder) steps = outer_steps(scene, truth);
+    else if (!asked.empty() && !way.controlled) steps = std::max(1L, std::lround(interval / asked[k]));
     const double tolerance = !way.controlled ? kUnset : asked.empty() ? std::pow(10.0, -1.0 - static_cast<double>(k)) : asked[k];
     rungs.push_back(run_rung(scene, way, truth, steps, tolerance, options));
     told(rungs.back());

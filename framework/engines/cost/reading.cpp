@@ -13,6 +13,7 @@ constexpr double kAnswer = 0.1;          // of the scale: coarser runs do not fo
 constexpr double kAsPromised = 0.25;     // off the order by less: terms of the next order at steps this coarse
 constexpr double kSettled = 0.5;         // slopes that lie farther apart show no order
 constexpr double kNoOrder = 0.3;         // a slope below this is no convergence
+constexpr double kLeastSlope = 2.0, kMostSlope = 14.0;   // of a method that chooses its steps: others show that the tolerance was not what cost
 constexpr double kSame = 0.05;           // errors that differ by less are one
 constexpr double kWrongLimit = 100.0;    // floors: what does not shrink above this is wrong, not finished
 
@@ -70,6 +71,7 @@ std::string read_ladder(const CostWay& way, const std::vector<CostRung>& rungs, 
   if (!fit && least <= kWrongLimit * truth.floor_m) return fmt::format("{} is exact here, to round-off: {:.1e} m.", way.name, least);
   if (!way.controlled && stays(rungs) && least > kWrongLimit * truth.floor_m && least < kAnswer * truth.scale_m) return of_wrong_limit(way, least);
   if (!fit) return fmt::format("{} shows no order yet: its error is still {:.1e} m where bodies move {:.1e} m.", way.name, least, truth.scale_m);
+  if (way.controlled && (fit->order < kLeastSlope || fit->order > kMostSlope)) return fmt::format("{} gets to {:.1e} m.", way.name, least);
   if (way.controlled) return fmt::format("{} gets to {:.1e} m; each ten times the evaluations divide its error by 10^{:.1f}.", way.name, least, fit->order);
   if (fit->order < kNoOrder && least > kWrongLimit * truth.floor_m)
     return of_wrong_limit(way, least);

@@ -143,9 +143,10 @@ CostTruth find_truth(const scene::Scene& scene, const Laws& laws, const CostOpti
     truth.what = pair.what;
     truth.samples = pair.run.frames;
     truth.scale_m = scale_of(truth.samples, truth.radii);
+    for (const double radius : truth.radii) truth.scale_m = radius > truth.scale_m ? radius : truth.scale_m;   // of what only rests
     truth.floor_m = farthest(pair.other.frames, pair.run.frames, truth.radii);
     if (truth.floor_m <= kGoodFloor * truth.scale_m) return truth;
-    why = fmt::format("two fine runs differ by {:.1e} m where bodies move {:.1e} m", truth.floor_m, truth.scale_m);
+    why = fmt::format("two fine runs differ by {:.1e} m where bodies move or measure {:.1e} m", truth.floor_m, truth.scale_m);
   }
   throw UserError(scene.name, fmt::format("no truth to compare with, even over {:.2g} s: {}", 2.0 * truth.duration_s, why), "Give a shorter --duration-s, or a scene in which less happens at once.");
 }
