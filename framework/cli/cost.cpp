@@ -120,26 +120,29 @@ std::vector<Ladder> run_all(const scene::Scene& scene, std::vector<CostWay> ways
   return ladders;
 }
 
-void tell(Context& context, const scene::Scene& scene, const std::vector<Ladder>& ladders, const CostTruth& truth, const CostWords& words, const std::string& subject) {
+void tell(Context& context, const std::vector<Ladder>& ladders, const CostTruth& truth, const CostWords& words, const CostSubject& subject) {
   report::CostPage page;
-  page.title = subject;
-  page.about = scene.about;
+  page.title = subject.title;
+  page.about = subject.scene.about;
   page.truth = truth.what;
   page.floor = truth.floor_m;
   page.scale = truth.scale_m;
   page.record = context.command_line;
   const double price = middle_price(ladders, truth);
-  for (const Ladder& ladder : ladders) page.curves.push_back(curve_of(ladder, truth, price, is_smooth(scene)));
+  for (const Ladder& ladder : ladders) page.curves.push_back(curve_of(ladder, truth, price, is_smooth(subject.scene)));
   page.readings = verdicts(page);
   if (truth.duration_s < truth.asked_s)
     page.readings.push_back(fmt::format("Looked at are the first {:.3g} s of {:.3g} s: for longer no truth can be computed in doubles, since errors grow too fast there, or it takes too long.", truth.duration_s, truth.asked_s));
-  fmt::print("{}\n  error: against {}: {:.1e} m, over {:.3g} s\n", subject, truth.what, truth.floor_m, truth.duration_s);
+  if (!subject.note.empty()) page.readings.push_back(subject.note);
+  fmt::print("{}\n  error: against {}: {:.1e} m, over {:.3g} s\n", subject.title, truth.what, truth.floor_m, truth.duration_s);
   print(page);
   for (const report::CostCurve& curve : page.curves) fmt::print("  {}\n", curve.reading);
   for (const std::string& reading : page.readings) fmt::print("{}\n", reading);
   const std::filesystem::path file = std::filesystem::path(words.out) / words.name() / "index.html";
   report::write_cost_page(page, file);
   fmt::print("{}\n", file.string());
+  const auto unwritten = [](const Ladder& ladder) { return !ladder.rungs.empty() && ladder.rungs.back().not_attempted; };
+  if (std::any_of(ladders.begin(), ladders.end(), unwritten)) context.exit = ExitCode::kNotAttempted;
 }
 
 void run_cost(Context& context, const CostWords& words) {
@@ -150,7 +153,7 @@ void run_cost(Context& context, const CostWords& words) {
   fmt::print(stderr, "tumble: the truth of {}\n", subject.scene.name);
   const CostTruth truth = engines::find_truth(subject.scene, subject.truth_laws, options);
   const std::vector<Ladder> ladders = run_all(subject.scene, subject.ways, truth, words, options);
-  tell(context, subject.scene, ladders, truth, words, subject.title);
+  tell(context, ladders, truth, words, subject);
 }
 
 }  // namespace

@@ -155,6 +155,8 @@ CostSubject of_assignment(const Context& context, const modules::ModuleKind& kin
   subject.connections = right.connections;
   const std::string word = words.modules.empty() ? "student" : words.modules;
   subject.title = fmt::format("{} ({}) on: {}", kind.id, word, subject.scene.title);
+  if (word != "student" && word != "reference")
+    subject.note = "This module runs in the sandbox, where each call and each derivative asked for costs some microseconds more: compare its force evaluations, not its CPU time.";
   add_module(context, kind, word, "your", right.laws, subject.scene, subject);
   if (has_reference && word != "reference") add_module(context, kind, "reference", "reference", right.laws, subject.scene, subject);
   if (!kind.methods.empty()) subject.ways.push_back(by_method(method_named("dopri5"), right.laws));

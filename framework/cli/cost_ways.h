@@ -32,6 +32,7 @@ struct CostSubject {
   std::string title;
   std::optional<double> duration_s;      // that suits it; empty: the scene's
   Laws truth_laws;
+  std::string note;                      // what to know when reading the prices; may be empty
   std::vector<engines::CostWay> ways;
   std::vector<std::shared_ptr<void>> connections;   // to sandboxes
 };

@@ -6,6 +6,7 @@
 
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
+#include "framework/core/not_implemented.h"
 #include "framework/engines/truths/memory_scene.h"
 
 namespace tumble::engines {
@@ -104,6 +105,10 @@ CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth
   } catch (const UserError& error) {
     rung.stopped_by = error.what();
     return rung;
+  } catch (const NotImplemented& missing) {
+    rung.stopped_by = missing.function() + " is not written yet";
+    rung.not_attempted = true;
+    return rung;
   }
   rung.cpu_s = std::max(1e-6, whole - building);
   return rung;
@@ -139,6 +144,7 @@ std::vector<CostRung> run_ladder(const scene::Scene& scene, const CostWay& way, 
     const double tolerance = !way.controlled ? kUnset : asked.empty() ? std::pow(10.0, -1.0 - static_cast<double>(k)) : asked[k];
     rungs.push_back(run_rung(scene, way, truth, steps, tolerance, options));
     told(rungs.back());
+    if (rungs.back().not_attempted) break;
     const double spent = cpu_seconds() - begun;
     const bool is_new = k == 0 || !way.controlled || rungs[k].evaluations > rungs[k - 1].evaluations;   // a tolerance that changes nothing tells nothing
     worse = rungs.back().error_m < least ? 0 : worse + (is_new ? 1 : 0);

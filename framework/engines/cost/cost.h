@@ -41,6 +41,7 @@ struct CostRung {
   std::vector<double> times, energy_errors;              // by sample [s]; |E - E of the truth| over all the energy there was [-]
   std::map<std::string, double> stage_seconds;
   std::string stopped_by;                                // empty: ran to the end
+  bool not_attempted = false;                            // a function that it needs is a stub: stopped_by says which
 };
 
 /// What runs are compared with.

@@ -14,7 +14,8 @@ constexpr double kAsPromised = 0.25;     // off the order by less: terms of the 
 constexpr double kSettled = 0.5;         // slopes that lie farther apart show no order
 constexpr double kNoOrder = 0.3;         // a slope below this is no convergence
 constexpr double kLeastSlope = 2.0, kMostSlope = 14.0;   // of a method that chooses its steps: others show that the tolerance was not what cost
-constexpr double kSame = 0.05;           // errors that differ by less are one
+constexpr double kStaysBelow = 0.6;      // of the scale: errors as large as bodies move are alike whatever made them
+constexpr double kSame = 0.02;           // errors that differ by less are one
 constexpr double kWrongLimit = 100.0;    // floors: what does not shrink above this is wrong, not finished
 
 double least_error(const std::vector<CostRung>& rungs) {
@@ -32,6 +33,7 @@ bool stays(const std::vector<CostRung>& rungs) {
 }
 
 std::string of_stopped(const CostWay& way, const std::vector<CostRung>& rungs) {
+  if (!rungs.empty() && rungs.back().not_attempted) return fmt::format("{}: {}.", way.name, rungs.back().stopped_by);
   return fmt::format("{} does not get through at any {}: {}", way.name, way.controlled ? "tolerance" : "step", rungs.empty() ? "nothing was run" : rungs.back().stopped_by);
 }
 
@@ -69,7 +71,7 @@ std::string read_ladder(const CostWay& way, const std::vector<CostRung>& rungs, 
   const std::optional<FittedOrder> fit = order_of(way, rungs, truth);
   if (!fit && way.controlled) return fmt::format("{} gets to {:.1e} m.", way.name, least);
   if (!fit && least <= kWrongLimit * truth.floor_m) return fmt::format("{} is exact here, to round-off: {:.1e} m.", way.name, least);
-  if (!way.controlled && stays(rungs) && least > kWrongLimit * truth.floor_m && least < kAnswer * truth.scale_m) return of_wrong_limit(way, least);
+  if (!way.controlled && stays(rungs) && least > kWrongLimit * truth.floor_m && least < kStaysBelow * truth.scale_m) return of_wrong_limit(way, least);
   if (!fit) return fmt::format("{} shows no order yet: its error is still {:.1e} m where bodies move {:.1e} m.", way.name, least, truth.scale_m);
   if (way.controlled && (fit->order < kLeastSlope || fit->order > kMostSlope)) return fmt::format("{} gets to {:.1e} m.", way.name, least);
   if (way.controlled) return fmt::format("{} gets to {:.1e} m; each ten times the evaluations divide its error by 10^{:.1f}.", way.name, least, fit->order);
