@@ -75,6 +75,8 @@ std::string read_ladder(const CostWay& way, const std::vector<CostRung>& rungs, 
   if (!fit) return fmt::format("{} shows no order yet: its error is still {:.1e} m where bodies move {:.1e} m.", way.name, least, truth.scale_m);
   if (way.controlled && (fit->order < kLeastSlope || fit->order > kMostSlope)) return fmt::format("{} gets to {:.1e} m.", way.name, least);
   if (way.controlled) return fmt::format("{} gets to {:.1e} m; each ten times the evaluations divide its error by 10^{:.1f}.", way.name, least, fit->order);
+  if (fit->order < kNoOrder && least <= kWrongLimit * truth.floor_m) return fmt::format("{} is exact here, to round-off: {:.1e} m.", way.name, least);
+  if (fit->pairs < 2) return fmt::format("{} gets to {:.1e} m; its ladder is too short to show an order.", way.name, least);
   if (fit->order < kNoOrder && least > kWrongLimit * truth.floor_m)
     return of_wrong_limit(way, least);
   if (fit->spread > kSettled) return fmt::format("{} gets to {:.1e} m; its order has not settled ({:.1f}, slopes {:.1f} apart).", way.name, least, fit->order, fit->spread);

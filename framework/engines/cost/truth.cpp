@@ -1,6 +1,7 @@
 // What runs are compared with: a closed form, or two runs that are finer than all others.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -16,6 +17,7 @@ namespace {
 
 constexpr double kTight = 1e-13;          // tolerance of the truth: a hundred roundings, below which no method gets better
 constexpr double kGoodFloor = 1e-6;       // of the scale: a truth worse than this is looked for over half the time
+constexpr double kRoundings = 16.0;       // two runs that agree to the last bit may both be off by some
 constexpr int kMostHalvings = 7;
 constexpr long kFewestSamples = 4, kMostSamples = 24;
 constexpr double kStepsASample = 8.0;     // of the scene's own steps
@@ -145,6 +147,7 @@ CostTruth find_truth(const scene::Scene& scene, const Laws& laws, const CostOpti
     truth.scale_m = scale_of(truth.samples, truth.radii);
     for (const double radius : truth.radii) truth.scale_m = radius > truth.scale_m ? radius : truth.scale_m;   // of what only rests
     truth.floor_m = farthest(pair.other.frames, pair.run.frames, truth.radii);
+    truth.floor_m = std::max(truth.floor_m, kRoundings * std::numeric_limits<double>::epsilon() * truth.scale_m);   // NaN stays
     if (truth.floor_m <= kGoodFloor * truth.scale_m) return truth;
     why = fmt::format("two fine runs differ by {:.1e} m where bodies move or measure {:.1e} m", truth.floor_m, truth.scale_m);
   }
