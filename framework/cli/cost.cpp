@@ -165,7 +165,6 @@ void add_cost(CLI::App& app, Context& context) {
   verb->add_option("--methods", words->methods, "Methods of integration, with commas: euler, symplectic, midpoint, verlet, rk4, dopri5, fehlberg78, bulirsch-stoer, rosenbrock4 (implicit); none")->delimiter(',');
   verb->add_option("--engines", words->engines, "Beside rd with each method: auto (rd with closed forms), ca, tw; none")->delimiter(',');
   verb->add_option("--stabilisations", words->stabilisations, "What keeps rods and joints together, each with RK4: none, baumgarte, projection")->delimiter(',');
-  verb->add_option("--roots", words->roots, "How times of impact are found, each to a ladder of tolerances [s]: laws (a2's), bisection, toms748")->delimiter(',');
   verb->add_option("--steps", words->steps, "Steps of the ladder [s], as 1/30,1/60,0.001, instead of halvings until the budget is used")->delimiter(',')->type_name("STEPS");
   verb->add_option("--tolerances", words->tolerances, "Tolerances of methods that control their error, instead of 0.1, 0.01, ...")->delimiter(',')->check(CLI::PositiveNumber);
   verb->add_option("--modules", words->modules, "Whose laws, as for tumble run; of an assignment: whose module is looked at (default student)")->type_name("WORDS");

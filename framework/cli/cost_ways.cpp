@@ -74,21 +74,6 @@ CostWay by_stabilisation(const std::string& word, const scene::Scene& scene, con
   return way;
 }
 
-/// The time of impact found to a tolerance, the rest as right as may be.
-CostWay by_root(const std::string& word, const Laws& laws) {
-  CostWay way;
-  way.name = "impacts by " + word;
-  way.word = word;
-  way.propagator = "auto";
-  way.controlled = true;
-  way.laws = laws;
-  const RootFinder find = word == "laws" ? RootFinder(laws.find_impact_time) : root_finder_named(word);
-  way.alter = [find](Laws& altered, double tolerance) {
-    altered.find_impact_time = [find, tolerance](const ScalarFunction& gap, const ScalarFunction& rate, double low, double high, double finest) { return find(gap, rate, low, high, std::max(tolerance, finest)); };
-  };
-  return way;
-}
-
 std::vector<std::string> methods_for(const scene::Scene& scene, const CostWords& words) {
   if (!words.methods.empty()) return is_none(words.methods) ? std::vector<std::string>{} : words.methods;
   std::vector<std::string> chosen = {"euler", "symplectic", "midpoint", "rk4", "dopri5", "fehlberg78", "bulirsch-stoer"};
@@ -113,8 +98,7 @@ CostSubject of_scene(const Context& context, const CostWords& words) {
   for (const std::string& word : methods_for(subject.scene, words)) subject.ways.push_back(by_method(method_named(word), chosen.laws));
   for (const std::string& word : engines_for(subject.scene, words)) subject.ways.push_back(by_engine(word, chosen.laws));
   for (const std::string& word : words.stabilisations) subject.ways.push_back(by_stabilisation(word, subject.scene, chosen.laws));
-  for (const std::string& word : words.roots) subject.ways.push_back(by_root(word, chosen.laws));
-  if (subject.ways.empty()) throw UserError("tumble cost " + words.scene, "--methods, --engines, --stabilisations and --roots leave nothing to run", "Leave one of them out.");
+  if (subject.ways.empty()) throw UserError("tumble cost " + words.scene, "--methods, --engines and --stabilisations leave nothing to run", "Leave one of them out.");
   return subject;
 }
 

@@ -5,7 +5,6 @@
 #include <limits>
 #include <stdexcept>
 
-#include <boost/math/tools/roots.hpp>
 #include <boost/numeric/odeint/integrate/integrate_adaptive.hpp>
 #include <boost/numeric/odeint/stepper/bulirsch_stoer.hpp>
 #include <boost/numeric/odeint/stepper/euler.hpp>
@@ -18,7 +17,6 @@
 
 #include "framework/core/error.h"
 #include "framework/core/nearest_word.h"
-#include "framework/dynamics/laws.h"
 
 namespace tumble {
 namespace {
@@ -149,32 +147,7 @@ VectorXd rosenbrock(const OdeFunction& f, double t, const VectorXd& y, double h,
   return vector_of(state);
 }
 
-RootResult bisected_root(const ScalarFunction& f, const ScalarFunction&, double low, double high, double tolerance) {
-  RootResult result;
-  const auto counted = [&](double t) { ++result.evaluations; return f(t); };
-  const double f_low = counted(low), f_high = counted(high);
-  if (std::isnan(f_low) || std::isnan(f_high)) return result;   // not converged
-  if (f_low < 0 || (f_low > 0 && f_high > 0)) {
-    result.status = RootStatus::kNoSignChange;
-  } else if (f_low == 0.0 || f_high == 0.0) {
-    result = {RootStatus::kConverged, f_low == 0.0 ? low : high, 0.0, result.evaluations};
-  } else {
-    std::uintmax_t limit = 200;
-    const auto [a, b] = boost::math::tools::bisect(counted, low, high, [tolerance](double x, double y) { return std::abs(y - x) <= tolerance; }, limit);
-    result.status = RootStatus::kConverged;   // or as near as doubles stand
-    result.time = a;                          // a gap there has not closed yet
-    result.residual = counted(a);
-  }
-  return result;
-}
-
 }  // namespace
-
-RootFinder root_finder_named(const std::string& word) {
-  if (word == "bisection") return bisected_root;
-  if (word == "toms748") return library_laws().find_impact_time;
-  throw UserError("root finder '" + word + "'", "there is none of that name." + did_you_mean(word, {"bisection", "toms748"}), "Known: bisection, toms748.");
-}
 
 const std::vector<Method>& methods() {
   static const std::vector<Method> all = {{"euler", "Euler", 1, false, false},

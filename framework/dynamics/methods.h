@@ -35,11 +35,4 @@ const Method& method_named(const std::string& word);
 /// Source: E. Hairer, S. P. Norsett, G. Wanner, "Solving ODEs I", II.4-II.9; "II", IV.7; implementations: Boost.Odeint.
 StepFunction step_of(const Method& method, double tolerance);
 
-/// Ways to find the time of an impact, by word, as Laws::find_impact_time; each narrows the bracket until it is as short as the tolerance.
-using RootFinder = std::function<RootResult(const ScalarFunction& gap, const ScalarFunction& gap_rate, double t_low, double t_high, double tolerance)>;
-
-/// bisection: halves the bracket. toms748: Alefeld, Potra and Shi's (ACM TOMS 748, 1995), by the library.
-/// @throws UserError naming the known words
-RootFinder root_finder_named(const std::string& word);
-
 }  // namespace tumble

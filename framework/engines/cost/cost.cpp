@@ -81,7 +81,6 @@ CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth
   if (way.stabilisation) stepped.scene.stabilisation = way.stabilisation;
   Laws laws = way.laws;
   if (way.method) laws.integrate_step = way.method(tolerance);
-  if (way.alter) way.alter(laws, tolerance);
   const RunOptions how = options_of(way, options, stepped.frame_rate_hz);
   CostRung rung;
   rung.step_s = way.has_ladder ? stepped.scene.step_s : kUnset;

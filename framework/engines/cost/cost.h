@@ -26,7 +26,6 @@ struct CostWay {
   std::string word;                                      // what a flag called it
   std::string engine = "rd", propagator = "laws";
   std::function<StepFunction(double tolerance)> method;  // in place of the laws' integration; empty: theirs, or a closed form
-  std::function<void(Laws& laws, double tolerance)> alter;   // other laws in place of some; empty: none
   double order = kUnset;                                 // that the method promises; NaN: none
   bool controlled = false;                               // its ladder is of tolerances, not of steps
   bool has_ladder = true;                                // false: there is nothing to refine
