@@ -30,9 +30,9 @@ struct Ladder {
 };
 
 std::string fineness_of(const CostRung& rung) {
-  if (std::isfinite(rung.tolerance)) return fmt::format("tolerance {:.0e}", rung.tolerance);
+  if (std::isfinite(rung.tolerance)) return fmt::format("tolerance\u00a0{:.0e}", rung.tolerance);
   if (!std::isfinite(rung.step_s)) return "no step";
-  return 1.0 / rung.step_s >= 10 ? fmt::format("1/{:.0f} s", 1.0 / rung.step_s) : fmt::format("{:.3g} s", rung.step_s);
+  return 1.0 / rung.step_s >= 10 ? fmt::format("1/{:.0f}\u00a0s", 1.0 / rung.step_s) : fmt::format("{:.3g} s", rung.step_s);
 }
 
 bool is_smooth(const scene::Scene& scene) {

@@ -22,7 +22,7 @@ struct Showcase {
   std::string scene;
   double duration_s;   // long enough to see an order, short enough for Euler's method to show one
 };
-const std::map<std::string, Showcase> kShowcases = {{"a1", {"pong_1", 3.0}}, {"a2", {"t_handle", 1.0}}, {"a3", {"double_pendulum", 1.0}}};
+const std::map<std::string, Showcase> kShowcases = {{"a1", {"collide_off_centre_e05", 2.0}}, {"a2", {"t_handle", 1.0}}, {"a3", {"double_pendulum", 1.0}}};
 
 bool is_none(const std::vector<std::string>& words) { return words.size() == 1 && words.front() == "none"; }
 

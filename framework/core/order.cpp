@@ -33,7 +33,9 @@ std::optional<FittedOrder> fit_order(const std::vector<double>& h, const std::ve
   std::sort(slopes.begin(), slopes.end());
   const std::size_t n = slopes.size();
   const double median = n % 2 == 1 ? slopes[n / 2] : 0.5 * (slopes[n / 2 - 1] + slopes[n / 2]);
-  return FittedOrder{median, slopes.back() - slopes.front(), static_cast<int>(n)};
+  // Of three slopes one may stand at the edge of round-off: the two that are closest say whether the order has settled.
+  const double spread = n == 3 ? std::min(slopes[1] - slopes[0], slopes[2] - slopes[1]) : slopes.back() - slopes.front();
+  return FittedOrder{median, spread, static_cast<int>(n)};
 }
 
 }  // namespace tumble

@@ -8,7 +8,7 @@ namespace tumble {
 
 struct FittedOrder {
   double order;      // p of  error ~ C h^p
-  double spread;     // how far the slopes of the pairs it stands on lie apart: small where the order has settled
+  double spread;     // how far the two closest slopes that it stands on lie apart: small where the order has settled
   int pairs;         // how many these are, at most 3
 };
 
