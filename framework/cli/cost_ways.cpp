@@ -150,12 +150,15 @@ CostSubject of_assignment(const Context& context, const modules::ModuleKind& kin
   subject.scene = find_scene(context, words.on.empty() ? showcase->second.scene : words.on, words.n);
   if (words.on.empty()) subject.duration_s = showcase->second.duration_s;
   const bool has_reference = std::filesystem::exists(context.build / "modules" / (kind.id + "_reference.so"));
-  const ChosenLaws right = choose_laws(context, subject.scene, parse_module_words(has_reference ? "reference" : "", context.registry));
+  const ChosenLaws right = choose_laws(context, subject.scene, parse_module_words(has_reference ? "reference" : kind.methods.empty() ? "" : kind.id + "=library", context.registry));
   subject.truth_laws = right.laws;
   subject.connections = right.connections;
   const std::string word = words.modules.empty() ? "student" : words.modules;
   subject.title = fmt::format("{} ({}) on: {}", kind.id, word, subject.scene.title);
-  if (word != "student" && word != "reference")
+  // The course's own modules stay with the instructor: then laws that no library has are the student's in the truth too.
+  if (!has_reference && kind.methods.empty())
+    subject.note = "This tree holds no reference of " + kind.id + ": the truth is computed with your own laws, so what is judged here is how the motion is integrated, not whether they are right.";
+  else if (word != "student" && word != "reference")
     subject.note = "This module runs in the sandbox, where each call and each derivative asked for costs some microseconds more: compare its force evaluations, not its CPU time.";
   add_module(context, kind, word, "your", right.laws, subject.scene, subject);
   if (has_reference && word != "reference") add_module(context, kind, "reference", "reference", right.laws, subject.scene, subject);
