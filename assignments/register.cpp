@@ -12,6 +12,8 @@ void register_assignments(modules::Registry& registry) {
   registry.add<a1::Module>("a1_impulse", "Impulse", a1::bind);
   registry.add<a2::Module>("a2_integration", "Integration", a2::bind);
   registry.add<a3::Module>("a3_constraints", "Constraints", a3::bind);
+  registry.add_method("euler_step", 1, &a2::Module::euler_step);
+  registry.add_method("rk4_step", 4, &a2::Module::rk4_step);
   a1::register_truths(registry);
   a2::register_truths(registry);
 }

@@ -1,13 +1,13 @@
 // tumble engines SCENE: the same scene by every engine, what each counted, whether they agree, and how long they took against each other.
 #include <algorithm>
 #include <cstdio>
-#include <ctime>
 #include <memory>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "framework/cli/scene_run.h"
+#include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
 #include "framework/engines/events/trace.h"
 #include "framework/engines/run.h"
@@ -26,12 +26,6 @@ struct EnginesWords {
   std::optional<int> n;
   std::optional<double> duration_s, step_s;
 };
-
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 std::string meaning_of(const std::string& engine) {
   for (const auto& [word, meaning] : engines::engine_words())

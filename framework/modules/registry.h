@@ -21,6 +21,13 @@ namespace tumble::modules {
 /// A table of functions of some module, its type known to the registration only.
 using AnyModule = std::shared_ptr<const void>;
 
+/// One of a module's own methods of integration, to be measured beside others.
+struct NamedMethod {
+  std::string name;                        // as its function is called
+  double order;                            // that it promises
+  std::function<std::function<VectorXd(const OdeFunction&, double, const VectorXd&, double)>(const AnyModule&)> step;
+};
+
 /// All that the framework can do with a module without knowing its header.
 struct ModuleKind {
   std::string id;                          // "a1"
@@ -33,6 +40,7 @@ struct ModuleKind {
   std::function<AnyModule(Connection&)> make_proxy;                  // judge's side
   /// Families of truths (engines/truths) whose values this module's functions give directly, by name.
   std::map<std::string, std::function<void(const AnyModule&, const truths::Case&, truths::Comparison&)>> truth_families;
+  std::vector<NamedMethod> methods;        // empty where the module is not about integration
 };
 
 class Registry {
@@ -63,6 +71,12 @@ class Registry {
     kinds_.at(Module::kId).truth_families[family] = [compare](const AnyModule& module, const truths::Case& truth, truths::Comparison& comparison) {
       compare(*static_cast<const Module*>(module.get()), truth, comparison);
     };
+  }
+
+  /// A method of integration among a registered module's functions.
+  template <class Module, class Member>
+  void add_method(const std::string& name, double order, Member Module::*function) {
+    kinds_.at(Module::kId).methods.push_back({name, order, [function](const AnyModule& module) { return static_cast<const Module*>(module.get())->*function; }});
   }
 
   /// @throws UserError naming the known ids

@@ -77,7 +77,22 @@ TEST_F(CommandLine, AnUnknownFlagIsAnsweredWithTheNearest) {
 TEST_F(CommandLine, HelpListsEveryVerb) {
   const Said said = type("--help");
   EXPECT_EQ(said.code, 0);
-  for (const char* verb : {"check", "watch", "run", "poke", "inspect", "truths", "grade", "audit", "release", "demo"}) EXPECT_TRUE(holds(said.out, verb)) << verb;
+  for (const char* verb : {"check", "watch", "run", "poke", "cost", "inspect", "truths", "grade", "audit", "release", "demo"}) EXPECT_TRUE(holds(said.out, verb)) << verb;
+}
+
+TEST_F(CommandLine, CostReadsTheOrderOfEachMethodAndDrawsIt) {
+  const Said said = type("cost t_handle --modules library --methods euler,rk4,dopri5 --engines none --steps 1/60,1/120,1/240,1/480 --tolerances 1e-6,1e-9 --duration-s 1");
+  EXPECT_EQ(said.code, 0) << said.err;
+  EXPECT_TRUE(holds(said.out, "Euler converges with order") && holds(said.out, "as it should (1)") && holds(said.out, "RK4 converges with order") && holds(said.out, "as it should (4)")) << said.out;
+  const std::string page = contents_of(folder_ / "out" / "cost" / "t_handle" / "index.html");
+  EXPECT_TRUE(holds(page, "Error against CPU time") && holds(page, "the truth&#39;s own error")) << page.size() << " bytes";
+}
+
+TEST_F(CommandLine, CostRefusesAMethodThatThereIsNot) {
+  const Said said = type("cost t_handle --modules library --methods rk5");
+  EXPECT_EQ(said.code, 2);
+  EXPECT_TRUE(holds(said.err, "there is no method of integration of that name") && holds(said.err, "bulirsch-stoer")) << said.err;
+  EXPECT_TRUE(left_nothing());
 }
 
 TEST_F(CommandLine, AnUnknownSceneIsAnsweredWithThoseThereAre) {

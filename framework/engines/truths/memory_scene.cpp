@@ -67,14 +67,19 @@ Trajectory run_in_memory(const scene::Scene& scene, const Laws& laws, double fra
   return recorder.trajectory();
 }
 
-Trajectory run_in_steps(const scene::Scene& scene, const Laws& laws, double t, long steps, long frames) {
+SteppedScene in_equal_steps(const scene::Scene& scene, double t, long steps, long frames) {
   // The last frame falls on the rounded frames / rate. There the last step ends too, and not a rounding before.
   const double rate = static_cast<double>(frames) / t, end = static_cast<double>(frames) / rate;
-  scene::Scene stepped = scene;
-  stepped.duration_s = end;
-  stepped.step_s = end / static_cast<double>(steps);
-  while (static_cast<double>(steps) * stepped.step_s < end) stepped.step_s = std::nextafter(stepped.step_s, std::numeric_limits<double>::infinity());
-  return run_in_memory(stepped, laws, rate);
+  SteppedScene stepped{scene, rate};
+  stepped.scene.duration_s = end;
+  stepped.scene.step_s = end / static_cast<double>(steps);
+  while (static_cast<double>(steps) * stepped.scene.step_s < end) stepped.scene.step_s = std::nextafter(stepped.scene.step_s, std::numeric_limits<double>::infinity());
+  return stepped;
+}
+
+Trajectory run_in_steps(const scene::Scene& scene, const Laws& laws, double t, long steps, long frames) {
+  const SteppedScene stepped = in_equal_steps(scene, t, steps, frames);
+  return run_in_memory(stepped.scene, laws, stepped.frame_rate_hz);
 }
 
 Frame frame_at(const scene::Scene& scene, const Laws& laws, double t) {

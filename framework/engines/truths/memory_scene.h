@@ -29,6 +29,13 @@ Trajectory run_in_memory(const scene::Scene& scene, const Laws& laws, double fra
 /// frame within a step stands on a path through the step's ends. @pre frames divides steps
 Trajectory run_in_steps(const scene::Scene& scene, const Laws& laws, double t, long steps, long frames);
 
+/// What run_in_steps runs: the scene cut into equal steps, and the rate of frames that fall on their ends.
+struct SteppedScene {
+  scene::Scene scene;
+  double frame_rate_hz;
+};
+SteppedScene in_equal_steps(const scene::Scene& scene, double t, long steps, long frames);
+
 /// All bodies at one instant of the run: a run that ends there. @param t  [s], > 0
 Frame frame_at(const scene::Scene& scene, const Laws& laws, double t);
 

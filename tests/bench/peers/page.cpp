@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/report/cost_page.h"
 #include "framework/report/html.h"
 #include "tests/bench/peers/cases.h"
 #include "tests/bench/peers/rows.h"
@@ -35,12 +36,6 @@ constexpr const char* kRules[] = {
     "Tumble goes through run_scene, the entry that `tumble run` uses, with the laws of the course's reference modules: retroactive detection with RK4 at a fixed step, or with Dormand-Prince (error control, from Boost.Odeint) behind the same law; and, where nothing but gravity and impacts acts and the tree has them, conservative advancement and timewarp, whose flights are closed forms.",
 };
 
-std::string seconds(double s) {
-  const double rounded = std::stod(fmt::format("{:.1e}", s));   // prices are known to two digits
-  if (rounded < 1e-3) return fmt::format("{:g} µs", 1e6 * rounded);
-  return rounded < 1.0 ? fmt::format("{:g} ms", 1e3 * rounded) : fmt::format("{:g} s", rounded);
-}
-
 std::string fineness(const Row& row) {
   if (std::isfinite(row.tolerance)) return fmt::format("tolerance {:.0e}", row.tolerance);
   return std::isfinite(row.step) ? fmt::format("1/{:g} s", std::round(1 / row.step)) : "no step";
@@ -48,12 +43,13 @@ std::string fineness(const Row& row) {
 
 /// What none of the same engine's rows beats in both price and error, by price.
 std::vector<Row> not_beaten(const std::vector<Row>& rows) {
-  std::vector<Row> best;
+  std::vector<double> prices, errors;
   for (const Row& row : rows) {
-    const bool beaten = std::any_of(rows.begin(), rows.end(), [&](const Row& other) { return other.cpu_s < row.cpu_s && other.error <= row.error; });
-    if (!beaten) best.push_back(row);
+    prices.push_back(row.cpu_s);
+    errors.push_back(row.error);
   }
-  std::sort(best.begin(), best.end(), [](const Row& a, const Row& b) { return a.cpu_s < b.cpu_s; });
+  std::vector<Row> best;
+  for (const std::size_t i : report::not_beaten(prices, errors)) best.push_back(rows[i]);
   return best;
 }
 
@@ -107,7 +103,7 @@ std::string unbroken(const std::string& words) {
 
 Cell price_cell(const Row* row, bool with_name, Look look) {
   if (row == nullptr) return {"-", "", Look::kMuted};
-  return {(with_name ? row->engine + " " : "") + unbroken(seconds(row->cpu_s)), "", look};
+  return {(with_name ? row->engine + " " : "") + unbroken(report::price_of(row->cpu_s)), "", look};
 }
 
 report::Table overview(const std::vector<BenchCase>& cases, const Measured& measured) {
@@ -137,16 +133,16 @@ std::string verdict(const BenchCase& bench, const Measured& measured) {
     const Row *ours = cheapest(measured.rows, bench.id, kOurs, false, mark), *theirs = cheapest(measured.rows, bench.id, kOurs, true, mark);
     std::string sentence;
     if (ours == nullptr && theirs == nullptr) sentence = "no engine gets there";
-    else if (ours == nullptr) sentence = fmt::format("Tumble does not get there; {} needs {}", theirs->engine, seconds(theirs->cpu_s));
-    else if (theirs == nullptr) sentence = fmt::format("Tumble needs {} ({}, {}); no peer gets there", seconds(ours->cpu_s), ours->method, fineness(*ours));
-    else if (ours->cpu_s <= theirs->cpu_s) sentence = fmt::format("Tumble needs {}, {} {:.1f} times as much", seconds(ours->cpu_s), theirs->engine, theirs->cpu_s / ours->cpu_s);
-    else sentence = fmt::format("Tumble loses: {} against {} of {} ({}, {}), {:.1f} times as much", seconds(ours->cpu_s), seconds(theirs->cpu_s), theirs->engine, theirs->method, fineness(*theirs), ours->cpu_s / theirs->cpu_s);
+    else if (ours == nullptr) sentence = fmt::format("Tumble does not get there; {} needs {}", theirs->engine, report::price_of(theirs->cpu_s));
+    else if (theirs == nullptr) sentence = fmt::format("Tumble needs {} ({}, {}); no peer gets there", report::price_of(ours->cpu_s), ours->method, fineness(*ours));
+    else if (ours->cpu_s <= theirs->cpu_s) sentence = fmt::format("Tumble needs {}, {} {:.1f} times as much", report::price_of(ours->cpu_s), theirs->engine, theirs->cpu_s / ours->cpu_s);
+    else sentence = fmt::format("Tumble loses: {} against {} of {} ({}, {}), {:.1f} times as much", report::price_of(ours->cpu_s), report::price_of(theirs->cpu_s), theirs->engine, theirs->method, fineness(*theirs), ours->cpu_s / theirs->cpu_s);
     words += fmt::format("{}At {:.0e}: {}.", words.empty() ? "" : " ", mark, sentence);
   }
   const Row* closest = nullptr;   // of the peers
   for (const Row& row : measured.rows)
     if (row.bench == bench.id && row.engine != kOurs && row.done && std::isfinite(row.error) && (closest == nullptr || row.error < closest->error)) closest = &row;
-  if (closest != nullptr) words += fmt::format(" The least error of a peer is {:.1e}: {} ({}, {}), {}.", closest->error, closest->engine, closest->method, fineness(*closest), seconds(closest->cpu_s));
+  if (closest != nullptr) words += fmt::format(" The least error of a peer is {:.1e}: {} ({}, {}), {}.", closest->error, closest->engine, closest->method, fineness(*closest), report::price_of(closest->cpu_s));
   return words;
 }
 
@@ -173,7 +169,7 @@ std::string losses(const std::vector<BenchCase>& cases, const Measured& measured
     if (rows_of(measured, bench.id, kOurs).empty()) words += fmt::format("{}{}: it does not finish)", words.empty() ? "" : ", ", what);
     else if (most > 0.0) words += fmt::format("{}{}: {} times the best peer's price)", words.empty() ? "" : ", ", what, most > 1.05 * least ? fmt::format("{:.1f} to {:.1f}", least, most) : fmt::format("{:.1f}", most));
     const Row* good = cheapest(measured.rows, bench.id, kOurs, false, bench.goal_error);
-    if (good != nullptr && good->cpu_s > bench.goal_price_s) words += fmt::format("{}{}: {} where the goal is {})", words.empty() ? "" : ", ", what, seconds(good->cpu_s), seconds(bench.goal_price_s));
+    if (good != nullptr && good->cpu_s > bench.goal_price_s) words += fmt::format("{}{}: {} where the goal is {})", words.empty() ? "" : ", ", what, report::price_of(good->cpu_s), report::price_of(bench.goal_price_s));
   }
   return words.empty() ? "Tumble is the cheapest at every error in every scene." : "Where Tumble loses, or misses its goal: " + words + ".";
 }
@@ -183,7 +179,7 @@ std::string prices_at(const BenchCase& bench, const Measured& measured, double s
   std::string words;
   const double duration = bench.sample_times.back();
   for (const Row& row : measured.rows)
-    if (row.bench == bench.id && row.done && std::abs(row.step - step) < 1e-9) words += fmt::format("{}{}, {}: {}, {} {:.1e} m", words.empty() ? "" : "; ", row.engine, row.method, seconds(row.cpu_s / duration), bench.error_name, row.error);
+    if (row.bench == bench.id && row.done && std::abs(row.step - step) < 1e-9) words += fmt::format("{}{}, {}: {}, {} {:.1e} m", words.empty() ? "" : "; ", row.engine, row.method, report::price_of(row.cpu_s / duration), bench.error_name, row.error);
   return fmt::format("CPU time a simulated second at 1/{:g} s: {}.", 1 / step, words);
 }
 
@@ -191,7 +187,7 @@ std::string all_rows(const BenchCase& bench, const Measured& measured) {
   std::string text;
   for (const Row& row : measured.rows)
     if (row.bench == bench.id)
-      text += fmt::format("{:8} {:36} {:16} {:>11}  {}\n", row.engine, row.method, fineness(row), row.done ? seconds(row.cpu_s) : "-", row.done ? fmt::format("error {:.2e}   {}", row.error, row.words) : row.words);
+      text += fmt::format("{:8} {:36} {:16} {:>11}  {}\n", row.engine, row.method, fineness(row), row.done ? report::price_of(row.cpu_s) : "-", row.done ? fmt::format("error {:.2e}   {}", row.error, row.words) : row.words);
   return text;
 }
 

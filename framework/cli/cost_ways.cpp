@@ -1,0 +1,196 @@
+#include "framework/cli/cost_ways.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+
+#include <fmt/format.h>
+
+#include "framework/cli/sandboxed_module.h"
+#include "framework/cli/scene_run.h"
+#include "framework/core/error.h"
+#include "framework/engines/timewarp/fast_timewarp.h"
+
+namespace tumble::cli {
+namespace {
+
+using engines::CostWay;
+
+/// Where an assignment's module is measured, unless --on says something else.
+struct Showcase {
+  std::string scene;
+  double duration_s;   // long enough to see an order, short enough for Euler's method to show one
+};
+const std::map<std::string, Showcase> kShowcases = {{"a1", {"collide_off_centre_e05", 2.0}}, {"a2", {"t_handle", 1.0}}, {"a3", {"double_pendulum", 1.0}}};
+
+bool is_none(const std::vector<std::string>& words) { return words.size() == 1 && words.front() == "none"; }
+
+CostWay by_method(const Method& method, const Laws& laws) {
+  CostWay way;
+  way.name = method.name;
+  way.word = method.word;
+  way.method = [method](double tolerance) { return step_of(method, tolerance); };
+  way.order = method.order;
+  way.controlled = method.controlled;
+  way.laws = laws;
+  way.laws.integrator_source = method.name + " of the library";
+  return way;
+}
+
+/// What nothing but gravity and impacts moves goes in closed form too.
+bool flies(const scene::Scene& scene) {
+  return scene.springs.empty() && scene.rods.empty() && scene.joints.empty() && scene.drags.empty() && scene.motors.empty() && scene.point_forces.empty() && !scene.contact;
+}
+
+CostWay by_engine(const std::string& word, const Laws& laws) {
+  CostWay way;
+  way.word = word;
+  way.laws = laws;
+  if (word == "auto") {
+    way.name = "rd, closed form";
+    way.propagator = "auto";
+    return way;
+  }
+  way.engine = word;
+  way.has_ladder = false;
+  for (const auto& [known, meaning] : engines::engine_words())
+    if (known == word) way.name = word + ", " + meaning;
+  if (way.name.empty() || word == "rd") throw UserError("--engines " + word, "expected auto, ca, tw, ordered or none", "rd runs with every method of --methods.");
+  return way;
+}
+
+CostWay by_stabilisation(const std::string& word, const scene::Scene& scene, const Laws& laws) {
+  if (!scene.stabilisation) throw UserError("--stabilisations " + word, scene.name + " has no rods and no joints", "Leave the flag out, or take a scene such as double_pendulum.");
+  CostWay way = by_method(method_named("rk4"), laws);
+  way.stabilisation = *scene.stabilisation;
+  if (word == "none") way.stabilisation->kind = scene::StabilisationKind::kNone;
+  else if (word == "baumgarte") way.stabilisation->kind = scene::StabilisationKind::kBaumgarte;
+  else if (word == "projection") way.stabilisation->kind = scene::StabilisationKind::kProjection;
+  else throw UserError("--stabilisations " + word, "expected none, baumgarte or projection", "For example --stabilisations baumgarte,projection.");
+  way.name = word == "none" ? "RK4, no stabilisation" : word == "baumgarte" ? fmt::format("RK4, Baumgarte {:g} s", way.stabilisation->time_constant_s) : "RK4, projection";
+  way.word = word;
+  way.order = kUnset;   // the stabilisation may set it
+  return way;
+}
+
+std::vector<std::string> methods_for(const scene::Scene& scene, const CostWords& words) {
+  if (!words.methods.empty()) return is_none(words.methods) ? std::vector<std::string>{} : words.methods;
+  std::vector<std::string> chosen = {"euler", "symplectic", "midpoint", "rk4", "dopri5", "fehlberg78", "bulirsch-stoer"};
+  if (!scene.springs.empty()) chosen.push_back("rosenbrock4");
+  return chosen;
+}
+
+std::vector<std::string> engines_for(const scene::Scene& scene, const CostWords& words) {
+  if (!words.engines.empty()) return is_none(words.engines) ? std::vector<std::string>{} : words.engines;
+  if (!flies(scene)) return {};
+  return engines::fast_timewarp() ? std::vector<std::string>{"auto", "ca", "tw"} : std::vector<std::string>{"auto", "ca"};
+}
+
+CostSubject of_scene(const Context& context, const CostWords& words) {
+  CostSubject subject;
+  subject.scene = find_scene(context, words.scene, words.n);
+  const ChosenLaws chosen = choose_laws(context, subject.scene, parse_module_words(words.modules, context.registry));
+  for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
+  subject.title = subject.scene.title;
+  subject.truth_laws = chosen.laws;
+  subject.connections = chosen.connections;
+  for (const std::string& word : methods_for(subject.scene, words)) subject.ways.push_back(by_method(method_named(word), chosen.laws));
+  for (const std::string& word : engines_for(subject.scene, words)) subject.ways.push_back(by_engine(word, chosen.laws));
+  for (const std::string& word : words.stabilisations) subject.ways.push_back(by_stabilisation(word, subject.scene, chosen.laws));
+  if (subject.ways.empty()) throw UserError("tumble cost " + words.scene, "--methods, --engines and --stabilisations leave nothing to run", "Leave one of them out.");
+  return subject;
+}
+
+/// A module's own methods of integration, where it has some; else the scene run by all its laws.
+void add_module(const Context& context, const modules::ModuleKind& kind, const std::string& word, const std::string& whose, const Laws& laws, const scene::Scene& scene, CostSubject& subject) {
+  if (kind.methods.empty()) {
+    const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(kind.id + "=" + word, context.registry));
+    CostWay way = by_method(method_named("rk4"), chosen.laws);
+    way.name = fmt::format("{} {}", whose, kind.id);
+    subject.ways.push_back(std::move(way));
+    subject.connections.insert(subject.connections.end(), chosen.connections.begin(), chosen.connections.end());
+    return;
+  }
+  modules::AnyModule module;
+  if (word == "student" || word == "reference") {
+    module = load_word(context, kind, word);
+  } else {
+    std::filesystem::path file = word;
+    if (std::filesystem::is_directory(file)) file /= kind.folder + ".cpp";
+    const SandboxedModule sandboxed = load_sandboxed(context, kind, file);
+    module = sandboxed.step.module;
+    subject.connections.push_back(sandboxed.step.connection);
+  }
+  for (const modules::NamedMethod& named : kind.methods) {
+    CostWay way;
+    way.name = fmt::format("{} {}", whose, named.name);
+    way.word = named.name;
+    way.method = [step = named.step(module)](double) { return step; };
+    way.order = named.order;
+    way.laws = laws;
+    way.laws.integrator_source = fmt::format("{} ({})", named.name, word);
+    subject.ways.push_back(std::move(way));
+  }
+  // Steps alone leave the module's other laws of motion unseen: the derivative, the renormalisation.
+  const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(kind.id + "=" + word, context.registry));
+  CostWay whole;
+  whole.name = fmt::format("{} whole {}", whose, kind.id);
+  whole.word = kind.id;
+  whole.order = kind.methods.back().order;
+  whole.laws = chosen.laws;
+  subject.ways.push_back(std::move(whole));
+  subject.connections.insert(subject.connections.end(), chosen.connections.begin(), chosen.connections.end());
+}
+
+CostSubject of_assignment(const Context& context, const modules::ModuleKind& kind, const CostWords& words) {
+  CostSubject subject;
+  const auto showcase = kShowcases.find(kind.id);
+  if (words.on.empty() && showcase == kShowcases.end()) throw UserError("tumble cost " + kind.id, "no scene is known on which this assignment is measured", "Name one: --on SCENE.");
+  subject.scene = find_scene(context, words.on.empty() ? showcase->second.scene : words.on, words.n);
+  if (words.on.empty()) subject.duration_s = showcase->second.duration_s;
+  const bool has_reference = std::filesystem::exists(context.build / "modules" / (kind.id + "_reference.so"));
+  const ChosenLaws right = choose_laws(context, subject.scene, parse_module_words(has_reference ? "reference" : kind.methods.empty() ? "" : kind.id + "=library", context.registry));
+  subject.truth_laws = right.laws;
+  subject.connections = right.connections;
+  const std::string word = words.modules.empty() ? "student" : words.modules;
+  subject.title = fmt::format("{} ({}) on: {}", kind.id, word, subject.scene.title);
+  // The course's own modules stay with the instructor: then laws that no library has are the student's in the truth too.
+  if (!has_reference && kind.methods.empty())
+    subject.note = "This tree holds no reference of " + kind.id + ": the truth is computed with your own laws, so what is judged here is how the motion is integrated, not whether they are right.";
+  else if (word != "student" && word != "reference")
+    subject.note = "This module runs in the sandbox, where each call and each derivative asked for costs some microseconds more: compare its force evaluations, not its CPU time.";
+  add_module(context, kind, word, "your", right.laws, subject.scene, subject);
+  if (has_reference && word != "reference") add_module(context, kind, "reference", "reference", right.laws, subject.scene, subject);
+  if (!kind.methods.empty()) subject.ways.push_back(by_method(method_named("dopri5"), right.laws));
+  return subject;
+}
+
+}  // namespace
+
+std::vector<double> CostWords::steps_s() const {
+  std::vector<double> all;
+  for (const std::string& text : steps) {
+    const std::size_t slash = text.find('/');
+    char* end = nullptr;
+    const std::string above = text.substr(0, slash), below = slash == std::string::npos ? "1" : text.substr(slash + 1);
+    const double numerator = std::strtod(above.c_str(), &end);
+    const bool is_number = !above.empty() && *end == '\0';
+    const double denominator = std::strtod(below.c_str(), &end);
+    if (!is_number || below.empty() || *end != '\0' || !(numerator / denominator > 0)) throw UserError("--steps " + text, "this is no time in seconds", "Give numbers or fractions: 1/30,1/60,0.001");
+    all.push_back(numerator / denominator);
+  }
+  std::sort(all.rbegin(), all.rend());
+  return all;
+}
+
+std::string CostWords::name() const { return std::filesystem::path(scene).stem().string(); }
+
+CostSubject find_subject(const Context& context, const CostWords& words) {
+  for (const modules::ModuleKind* kind : context.registry.all())
+    if (kind->id == words.scene) return of_assignment(context, *kind, words);
+  if (!words.on.empty()) throw UserError("--on " + words.on, "goes with an assignment (a1, a2, a3), and '" + words.scene + "' is none", "Give the scene itself: tumble cost " + words.on);
+  return of_scene(context, words);
+}
+
+}  // namespace tumble::cli

@@ -1,0 +1,43 @@
+/// Which ways to run a scene `tumble cost` compares: the words of its command line as curves to be measured.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/cli/module_choice.h"
+#include "framework/cli/verb.h"
+#include "framework/engines/cost/cost.h"
+
+namespace tumble::cli {
+
+struct CostWords {
+  std::string scene;                     // or an assignment's id
+  std::string modules, on, out = "out/cost";
+  std::vector<std::string> methods, engines, stabilisations, steps;   // empty: what suits the scene
+  std::vector<double> tolerances;
+  std::optional<double> duration_s;
+  std::optional<int> n;
+  double budget_s = 40.0;
+
+  /// @throws UserError for what is neither a number nor 1/N
+  std::vector<double> steps_s() const;
+  /// Of the page's folder.
+  std::string name() const;
+};
+
+/// What is measured.
+struct CostSubject {
+  scene::Scene scene;
+  std::string title;
+  std::optional<double> duration_s;      // that suits it; empty: the scene's
+  Laws truth_laws;
+  std::string note;                      // what to know when reading the prices; may be empty
+  std::vector<engines::CostWay> ways;
+  std::vector<std::shared_ptr<void>> connections;   // to sandboxes
+};
+
+/// @throws UserError naming what is not known, or does not suit the scene
+CostSubject find_subject(const Context& context, const CostWords& words);
+
+}  // namespace tumble::cli

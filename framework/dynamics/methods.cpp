@@ -1,0 +1,193 @@
+#include "framework/dynamics/methods.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <boost/numeric/odeint/integrate/integrate_adaptive.hpp>
+#include <boost/numeric/odeint/stepper/bulirsch_stoer.hpp>
+#include <boost/numeric/odeint/stepper/euler.hpp>
+#include <boost/numeric/odeint/stepper/generation.hpp>
+#include <boost/numeric/odeint/stepper/rosenbrock4.hpp>
+#include <boost/numeric/odeint/stepper/rosenbrock4_controller.hpp>
+#include <boost/numeric/odeint/stepper/runge_kutta4.hpp>
+#include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
+#include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
+
+#include "framework/core/error.h"
+#include "framework/core/nearest_word.h"
+
+namespace tumble {
+namespace {
+
+namespace odeint = boost::numeric::odeint;
+namespace ublas = boost::numeric::ublas;
+using State = std::vector<double>;          // Odeint's range algebra needs no adapter for it
+using UblasVector = ublas::vector<double>;  // what its Rosenbrock method solves with
+using UblasMatrix = ublas::matrix<double>;
+
+constexpr int kFirstMomentum = 7;           // of the 13 numbers of a body
+constexpr long kMostParts = 1000000;        // of one step, by a controlled method
+
+template <class Container>
+VectorXd vector_of(const Container& state) { return Eigen::Map<const VectorXd>(&state[0], static_cast<Eigen::Index>(state.size())); }
+
+auto system_of(const OdeFunction& f) {
+  return [&f](const State& at, State& derivative, double time) {
+    const VectorXd dy = f(time, vector_of(at));
+    derivative.assign(dy.data(), dy.data() + dy.size());
+  };
+}
+
+template <class Stepper>
+VectorXd one_step(const OdeFunction& f, double t, const VectorXd& y, double h) {
+  State state(y.data(), y.data() + y.size());
+  Stepper().do_step(system_of(f), state, t, h);
+  return vector_of(state);
+}
+
+VectorXd midpoint(const OdeFunction& f, double t, const VectorXd& y, double h) { return y + h * f(t + 0.5 * h, y + 0.5 * h * f(t, y)); }
+
+// Adds h dy to the places, or to the momenta.
+void add(const VectorXd& dy, double h, bool momenta, VectorXd& y) {
+  if (y.size() % kStateSize != 0) {   // a swing: places, then velocities
+    const Eigen::Index half = y.size() / 2;
+    (momenta ? y.tail(half) : y.head(half)) += h * (momenta ? dy.tail(half) : dy.head(half));
+    return;
+  }
+  for (Eigen::Index body = 0; body < y.size(); body += kStateSize) {
+    const Eigen::Index first = momenta ? body + kFirstMomentum : body, count = momenta ? kStateSize - kFirstMomentum : kFirstMomentum;
+    y.segment(first, count) += h * dy.segment(first, count);
+  }
+}
+
+// Momenta first, then places with the new momenta.
+VectorXd symplectic_euler(const OdeFunction& f, double t, const VectorXd& y, double h) {
+  VectorXd next = y;
+  add(f(t, y), h, true, next);
+  add(f(t, next), h, false, next);
+  return next;
+}
+
+// Half a step of momenta, a step of places, half a step of momenta (Stoermer, Verlet). Of second order where forces and the turning
+// of places depend on places alone; a body that tumbles turns with the orientation it had, which is of first order.
+VectorXd verlet(const OdeFunction& f, double t, const VectorXd& y, double h) {
+  VectorXd next = y;
+  add(f(t, y), 0.5 * h, true, next);
+  add(f(t + 0.5 * h, next), h, false, next);
+  add(f(t + h, next), 0.5 * h, true, next);
+  return next;
+}
+
+// Ends a run that would never end: what has blown up asks for ever shorter steps.
+auto counted_parts(long& parts) {
+  return [&parts](const auto&, double time) {
+    if (++parts > kMostParts) throw std::runtime_error("a tolerance too small to be reached: more than a million steps inside one, at t = " + std::to_string(time) + " s");
+  };
+}
+
+// What a controlled method tries first: small enough that y and its slope hardly change in it. A trial over all of h may leave what the
+// equations can bear (a stiff spring flung out to 1e30 m) before the control can say no.
+// Source: Hairer, Norsett, Wanner, "Solving ODEs I", II.4 (starting step size), with the sizes of y in place of tolerances.
+double first_part(const OdeFunction& f, double t, const VectorXd& y, double h) {
+  const auto size = [&](const VectorXd& v) { return (v.array() / (1.0 + y.array().abs())).matrix().norm(); };
+  const VectorXd slope = f(t, y);
+  const double speed = size(slope), most = std::abs(h);
+  if (!(speed > 0.0)) return h;
+  const double first = std::min(most, 0.01 / speed);
+  const double bend = size(f(t + std::copysign(first, h), y + std::copysign(first, h) * slope) - slope) / first;
+  return std::copysign(std::min({most, 100.0 * first, std::sqrt(0.02 / std::max(bend, 0.02 / (most * most)))}), h);
+}
+
+template <class Controlled>
+VectorXd adaptive(Controlled stepper, const OdeFunction& f, double t, const VectorXd& y, double h) {
+  if (h == 0.0) return y;
+  State state(y.data(), y.data() + y.size());
+  long parts = 0;
+  odeint::integrate_adaptive(stepper, system_of(f), state, t, t + h, first_part(f, t, y, h), counted_parts(parts));
+  return vector_of(state);
+}
+
+// df/dy by central differences, df/dt by one more pair: as a Rosenbrock method asks for it. Error of each entry: eps^(2/3) of its size.
+class DifferencedJacobian {
+ public:
+  explicit DifferencedJacobian(const OdeFunction& f) : f_(f) {}
+  void operator()(const UblasVector& at, UblasMatrix& jacobian, double t, UblasVector& by_time) const {
+    const VectorXd y = vector_of(at);
+    const double part = std::cbrt(std::numeric_limits<double>::epsilon());
+    for (Eigen::Index column = 0; column < y.size(); ++column) {
+      const double step = part * std::max(1.0, std::abs(y[column]));
+      VectorXd before = y, after = y;
+      before[column] -= step;
+      after[column] += step;
+      const VectorXd slope = (f_(t, after) - f_(t, before)) / (after[column] - before[column]);
+      for (Eigen::Index row = 0; row < y.size(); ++row) jacobian(static_cast<std::size_t>(row), static_cast<std::size_t>(column)) = slope[row];
+    }
+    const double step = part * std::max(1.0, std::abs(t));
+    const VectorXd slope = (f_(t + step, y) - f_(t - step, y)) / (2.0 * step);
+    for (Eigen::Index row = 0; row < y.size(); ++row) by_time(static_cast<std::size_t>(row)) = slope[row];
+  }
+
+ private:
+  const OdeFunction& f_;
+};
+
+VectorXd rosenbrock(const OdeFunction& f, double t, const VectorXd& y, double h, double tolerance) {
+  if (h == 0.0) return y;
+  UblasVector state(static_cast<std::size_t>(y.size()));
+  std::copy(y.data(), y.data() + y.size(), state.begin());
+  const auto system = [&f](const UblasVector& at, UblasVector& derivative, double time) {
+    const VectorXd dy = f(time, vector_of(at));
+    std::copy(dy.data(), dy.data() + dy.size(), derivative.begin());
+  };
+  long parts = 0;
+  odeint::integrate_adaptive(odeint::rosenbrock4_controller<odeint::rosenbrock4<double>>(tolerance, tolerance), std::make_pair(system, DifferencedJacobian(f)), state, t, t + h, h,
+                             counted_parts(parts));
+  return vector_of(state);
+}
+
+}  // namespace
+
+const std::vector<Method>& methods() {
+  static const std::vector<Method> all = {{"euler", "Euler", 1, false, false},
+                                          {"symplectic", "symplectic Euler", 1, false, false},
+                                          {"midpoint", "midpoint", 2, false, false},
+                                          {"verlet", "Verlet", 2, false, false},
+                                          {"rk4", "RK4", 4, false, false},
+                                          {"dopri5", "Dormand-Prince 5(4)", 5, true, false},
+                                          {"fehlberg78", "Fehlberg 7(8)", 8, true, false},
+                                          {"bulirsch-stoer", "Bulirsch-Stoer", kUnset, true, false},
+                                          {"rosenbrock4", "Rosenbrock 4 (implicit)", 4, true, true}};
+  return all;
+}
+
+const Method& method_named(const std::string& word) {
+  std::vector<std::string> words;
+  std::string known;
+  for (const Method& method : methods()) {
+    if (method.word == word) return method;
+    words.push_back(method.word);
+    known += (known.empty() ? "" : ", ") + method.word;
+  }
+  throw UserError("method '" + word + "'", "there is no method of integration of that name." + did_you_mean(word, words), "Known: " + known + ".");
+}
+
+StepFunction step_of(const Method& method, double tolerance) {
+  require(!method.controlled || tolerance > 0.0, "dynamics: a controlled method needs a tolerance > 0");
+  if (method.word == "euler") return one_step<odeint::euler<State>>;
+  if (method.word == "symplectic") return symplectic_euler;
+  if (method.word == "midpoint") return midpoint;
+  if (method.word == "verlet") return verlet;
+  if (method.word == "rk4") return one_step<odeint::runge_kutta4<State>>;
+  if (method.word == "dopri5")
+    return [tolerance](const OdeFunction& f, double t, const VectorXd& y, double h) { return adaptive(odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_dopri5<State>()), f, t, y, h); };
+  if (method.word == "fehlberg78")
+    return [tolerance](const OdeFunction& f, double t, const VectorXd& y, double h) { return adaptive(odeint::make_controlled(tolerance, tolerance, odeint::runge_kutta_fehlberg78<State>()), f, t, y, h); };
+  if (method.word == "bulirsch-stoer")
+    return [tolerance](const OdeFunction& f, double t, const VectorXd& y, double h) { return adaptive(odeint::bulirsch_stoer<State>(tolerance, tolerance), f, t, y, h); };
+  require(method.word == "rosenbrock4", "dynamics: a method of methods()");
+  return [tolerance](const OdeFunction& f, double t, const VectorXd& y, double h) { return rosenbrock(f, t, y, h, tolerance); };
+}
+
+}  // namespace tumble

@@ -1,0 +1,38 @@
+/// Methods of integration to compare with, by name: each is a step that can stand in the laws' place (Laws::integrate_step).
+///
+/// All take any y; symplectic ones take packed states (13 numbers a body) or the (place, velocity) of a swing, since they must know
+/// places from momenta. Controlled methods cut the step that they are given into as many as their tolerance asks for.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "framework/dynamics/ode.h"
+
+namespace tumble {
+
+/// y(t) to y(t + h).
+using StepFunction = std::function<VectorXd(const OdeFunction& f, double t, const VectorXd& y, double h)>;
+
+struct Method {
+  std::string word;         // on the command line: "dopri5"
+  std::string name;         // for people: "Dormand-Prince 5(4)"
+  double order;             // p: the error goes as h^p; NaN where the method chooses its own
+  bool controlled;          // takes a tolerance, and chooses its steps by it
+  bool implicit;            // for stiff systems: its price a step is higher, and its steps are not bounded by stability
+};
+
+/// In the order in which they are drawn: euler, symplectic, midpoint, verlet, rk4, dopri5, fehlberg78, bulirsch-stoer, rosenbrock4.
+const std::vector<Method>& methods();
+
+/// @throws UserError naming the known words
+const Method& method_named(const std::string& word);
+
+/// The method as a step.
+/// @param tolerance  of a controlled method: error a step it allows itself, absolute and relative, > 0; not looked at by others
+/// The step of a controlled method throws std::runtime_error where it would need more than 1e6 steps inside one.
+/// Source: E. Hairer, S. P. Norsett, G. Wanner, "Solving ODEs I", II.4-II.9; "II", IV.7; implementations: Boost.Odeint.
+StepFunction step_of(const Method& method, double tolerance);
+
+}  // namespace tumble

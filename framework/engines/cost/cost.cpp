@@ -1,0 +1,158 @@
+#include "framework/engines/cost/cost.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "framework/core/cpu_time.h"
+#include "framework/core/error.h"
+#include "framework/core/not_implemented.h"
+#include "framework/engines/truths/memory_scene.h"
+
+namespace tumble::engines {
+namespace {
+
+constexpr int kRuns = 5;                  // of one rung, at most: the least disturbed counts
+constexpr double kShort = 0.1;            // s: longer runs are not repeated
+constexpr double kCoarsest = 16.0;        // of the scene's own step: where a ladder begins
+constexpr int kMostRungs = 14;
+constexpr double kNearFloor = 3.0;        // of the truth's floor: finer runs show nothing
+constexpr double kGood = 1e-3;            // of the scale: below it, errors that do not fall are round-off
+constexpr int kMostWorse = 2;             // rungs in a row that are no better than the best
+constexpr double kGrowth = 2.2;           // price of a rung over the one before, as expected
+
+/// Samples, energies and the clock.
+class Measurement final : public TrajectorySink {
+ public:
+  void begin(const TrajectoryInfo&, const std::vector<TrajectoryBody>&) override { start_ = cpu_seconds(); }
+  void frame(const Frame& frame) override { frames.push_back(frame); }
+  void event(const Event&) override {}
+  void end(const Counters& all, const std::string& why) override {
+    cpu_s = cpu_seconds() - start_;
+    counters = all;
+    stopped_by = why;
+  }
+
+  std::vector<Frame> frames;
+  Counters counters;
+  std::string stopped_by;
+  double cpu_s = 0.0;
+
+ private:
+  double start_ = 0.0;
+};
+
+bool links_meet(const scene::Scene& scene) {
+  const bool linked = !(scene.springs.empty() && scene.rods.empty() && scene.joints.empty() && scene.drags.empty());
+  return linked && std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const scene::BodySpec& body) { return body.collides; }) > 1;
+}
+
+double energy_of(const Frame& frame) { return frame.kinetic_energy + frame.potential_energy; }
+
+void compare(const std::vector<Frame>& frames, const CostTruth& truth, CostRung& rung) {
+  double scale = 0.0, lowest = truth.samples.front().potential_energy;
+  for (const Frame& frame : truth.samples) {
+    lowest = std::min(lowest, frame.potential_energy);
+    scale = std::max(scale, frame.kinetic_energy + frame.potential_energy - lowest);
+  }
+  rung.error_m = frames.size() < truth.samples.size() ? kUnset : 0.0;
+  for (std::size_t k = 0; k < std::min(frames.size(), truth.samples.size()); ++k) {
+    const double distance = distance_between(frames[k], truth.samples[k], truth.radii);
+    if (!(distance <= rung.error_m)) rung.error_m = std::isnan(rung.error_m) ? kUnset : distance;
+    rung.times.push_back(truth.samples[k].time);
+    rung.energy_errors.push_back(std::abs(energy_of(frames[k]) - energy_of(truth.samples[k])) / (scale > 0.0 ? scale : 1.0));
+  }
+}
+
+RunOptions options_of(const CostWay& way, const CostOptions& options, double frame_rate_hz) {
+  RunOptions how;
+  how.engine = way.engine;
+  if (way.engine == "rd") how.propagator = way.propagator;
+  how.timewarp = options.timewarp;
+  how.frame_rate_hz = frame_rate_hz;
+  return how;
+}
+
+}  // namespace
+
+CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, long steps, double tolerance, const CostOptions& options) {
+  const long samples = static_cast<long>(truth.samples.size()) - 1;
+  truths::SteppedScene stepped = truths::in_equal_steps(scene, truth.duration_s, samples * steps, samples);
+  if (way.stabilisation) stepped.scene.stabilisation = way.stabilisation;
+  Laws laws = way.laws;
+  if (way.method) laws.integrate_step = way.method(tolerance);
+  const RunOptions how = options_of(way, options, stepped.frame_rate_hz);
+  CostRung rung;
+  rung.step_s = way.has_ladder ? stepped.scene.step_s : kUnset;
+  if (way.controlled) rung.tolerance = tolerance;
+  RunOptions nothing = how;
+  nothing.duration_s = 1e-9 * stepped.scene.step_s;   // what comes before the first step
+  double building = std::numeric_limits<double>::infinity(), whole = building;
+  try {
+    for (int k = 0; k < kRuns && (k == 0 || whole < kShort); ++k) {
+      Measurement built, run;
+      run_scene(stepped.scene, laws, nothing, built);
+      run_scene(stepped.scene, laws, how, run);
+      building = std::min(building, built.cpu_s);
+      whole = std::min(whole, run.cpu_s);
+      if (k > 0) continue;
+      rung.stopped_by = run.stopped_by;
+      rung.stage_seconds = run.counters.stage_seconds;
+      rung.evaluations = run.counters.counts["derivative_evaluations"];
+      compare(run.frames, truth, rung);
+      if (!rung.stopped_by.empty()) break;
+    }
+  } catch (const UserError& error) {
+    rung.stopped_by = error.what();
+    return rung;
+  } catch (const NotImplemented& missing) {
+    rung.stopped_by = missing.function() + " is not written yet";
+    rung.not_attempted = true;
+    return rung;
+  }
+  rung.cpu_s = std::max(1e-6, whole - building);
+  return rung;
+}
+
+long first_steps(const scene::Scene& scene, const CostTruth& truth) {
+  const double interval = truth.duration_s / static_cast<double>(truth.samples.size() - 1);
+  return std::max(1L, std::lround(interval / (kCoarsest * scene.step_s)));
+}
+
+long outer_steps(const scene::Scene& scene, const CostTruth& truth) {
+  // Motors look between steps, and lasting contacts push once a step: there the step is part of the scene. Rods and joints are held to
+  // the tolerance within a step, and brought back at its end.
+  const bool alone = scene.motors.empty() && !scene.contact;
+  const double interval = truth.duration_s / static_cast<double>(truth.samples.size() - 1);
+  return alone ? 1 : std::max(1L, std::lround(interval / (2.0 * scene.step_s)));
+}
+
+std::vector<CostRung> run_ladder(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, double budget_s, const CostOptions& options, const std::vector<double>& steps_s,
+                                 const std::vector<double>& tolerances, const std::function<void(const CostRung&)>& told) {
+  const double interval = truth.duration_s / static_cast<double>(truth.samples.size() - 1), until = cpu_seconds() + budget_s;
+  const std::vector<double>& asked = way.controlled ? tolerances : steps_s;
+  const std::size_t most = !way.has_ladder ? 1 : asked.empty() ? kMostRungs : asked.size();
+  std::vector<CostRung> rungs;
+  double least = std::numeric_limits<double>::infinity();
+  int worse = 0;
+  for (std::size_t k = 0; k < most; ++k) {
+    const double begun = cpu_seconds();
+    long steps = first_steps(scene, truth) << std::min<std::size_t>(k, 20);
+    // Bodies that hang on others and meet something go along a curve through their steps' ends: steps shrink with the tolerance there.
+    if ((way.controlled && !links_meet(scene)) || !way.has_ladder) steps = outer_steps(scene, truth);
+    else if (!asked.empty() && !way.controlled) steps = std::max(1L, std::lround(interval / asked[k]));
+    const double tolerance = !way.controlled ? kUnset : asked.empty() ? std::pow(10.0, -1.0 - static_cast<double>(k)) : asked[k];
+    rungs.push_back(run_rung(scene, way, truth, steps, tolerance, options));
+    told(rungs.back());
+    if (rungs.back().not_attempted) break;
+    const double spent = cpu_seconds() - begun;
+    const bool is_new = k == 0 || !way.controlled || rungs[k].evaluations > rungs[k - 1].evaluations;   // a tolerance that changes nothing tells nothing
+    worse = rungs.back().error_m < least ? 0 : worse + (is_new ? 1 : 0);
+    least = std::min(least, std::isfinite(rungs.back().error_m) ? rungs.back().error_m : least);
+    const bool reached = rungs.back().error_m <= kNearFloor * truth.floor_m || (worse >= kMostWorse && least < kGood * truth.scale_m);
+    if (asked.empty() && (reached || cpu_seconds() + kGrowth * spent > until)) break;
+  }
+  return rungs;
+}
+
+}  // namespace tumble::engines

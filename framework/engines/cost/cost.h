@@ -1,0 +1,85 @@
+/// What accuracy costs: a scene run over ladders of steps or tolerances, each run's error and price.
+///
+/// Error: the farthest that a body is from where it should be, over all movable bodies and samples [m]. Of a body it is the distance of its
+/// centre of mass plus the angle it is turned by wrongly times its radius of gyration: how far matter in it is out of place.
+/// Should be: the closed form where nothing but gravity and impacts acts, else a run far finer than any that is judged; that one's own
+/// error is estimated by a second one, and no error near that floor means anything.
+/// Price: CPU time of the engine without what comes before its first step (models, shapes), the best of several short runs; and the
+/// number of derivatives of bodies that were asked for, which does not depend on the machine.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/dynamics/methods.h"
+#include "framework/engines/run.h"
+
+namespace tumble::engines {
+
+/// One curve: all that is chosen about a run, but how finely.
+struct CostWay {
+  std::string name;                                      // "RK4"
+  std::string word;                                      // what a flag called it
+  std::string engine = "rd", propagator = "laws";
+  std::function<StepFunction(double tolerance)> method;  // in place of the laws' integration; empty: theirs, or a closed form
+  double order = kUnset;                                 // that the method promises; NaN: none
+  bool controlled = false;                               // its ladder is of tolerances, not of steps
+  bool has_ladder = true;                                // false: there is nothing to refine
+  std::optional<scene::StabilisationSpec> stabilisation; // in place of the scene's
+  Laws laws;
+};
+
+/// One run.
+struct CostRung {
+  double step_s = kUnset, tolerance = kUnset;
+  double error_m = kUnset, cpu_s = kUnset;
+  std::uint64_t evaluations = 0;                         // derivatives of a body's, or of a group of linked bodies', state
+  std::vector<double> times, energy_errors;              // by sample [s]; |E - E of the truth| over all the energy there was [-]
+  std::map<std::string, double> stage_seconds;
+  std::string stopped_by;                                // empty: ran to the end
+  bool not_attempted = false;                            // a function that it needs is a stub: stopped_by says which
+};
+
+/// What runs are compared with.
+struct CostTruth {
+  std::string what;                  // in words
+  std::vector<Frame> samples;
+  std::vector<double> radii;         // of gyration, by body; NaN for immovable ones [m]
+  double floor_m = kUnset;           // its own error
+  double scale_m = kUnset;           // how far bodies move: an error of this size is no answer at all
+  double duration_s = 0.0;           // looked at
+  double asked_s = 0.0;              // that was asked for; more than the former where no truth can be had for so long
+};
+
+struct CostOptions {
+  std::optional<double> duration_s;  // overrides the scene's
+  double budget_s = 45.0;            // CPU of all ladders together
+  double most_of_truth_s = 12.0;     // CPU of one run of the truth
+  Engine timewarp;
+};
+
+/// @param laws  right ones: what they do not integrate is part of the truth
+/// @throws UserError where no truth can be had even for a short while
+CostTruth find_truth(const scene::Scene& scene, const Laws& laws, const CostOptions& options);
+
+/// One run of a way. @param steps  per sample, >= 1; @param tolerance  of a controlled way
+CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, long steps, double tolerance, const CostOptions& options);
+
+/// Steps per sample of a fixed-step ladder, coarse to fine; or the outer step of a controlled method.
+long first_steps(const scene::Scene& scene, const CostTruth& truth);
+long outer_steps(const scene::Scene& scene, const CostTruth& truth);
+
+/// The whole ladder, coarse to fine: until the truth's floor is reached, or the next rung would take more than the budget.
+/// @param told     called after each rung
+/// @param steps_s  steps that were asked for; empty: halvings of the first @param tolerances  the same
+std::vector<CostRung> run_ladder(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, double budget_s, const CostOptions& options, const std::vector<double>& steps_s,
+                                 const std::vector<double>& tolerances, const std::function<void(const CostRung&)>& told);
+
+/// Distance of two frames as above. [m]
+double distance_between(const Frame& found, const Frame& expected, const std::vector<double>& radii);
+
+}  // namespace tumble::engines

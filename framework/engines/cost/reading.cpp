@@ -1,0 +1,86 @@
+#include "framework/engines/cost/reading.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace tumble::engines {
+namespace {
+
+constexpr double kAnswer = 0.1;          // of the scale: coarser runs do not follow the power law yet
+constexpr double kAsPromised = 0.25;     // off the order by less: terms of the next order at steps this coarse
+constexpr double kSettled = 0.5;         // slopes that lie farther apart show no order
+constexpr double kNoOrder = 0.3;         // a slope below this is no convergence
+constexpr double kLeastSlope = 2.0, kMostSlope = 14.0;   // of a method that chooses its steps: others show that the tolerance was not what cost
+constexpr double kStaysBelow = 0.6;      // of the scale: errors as large as bodies move are alike whatever made them
+constexpr double kSame = 0.02;           // errors that differ by less are one
+constexpr double kWrongLimit = 100.0;    // floors: what does not shrink above this is wrong, not finished
+
+double least_error(const std::vector<CostRung>& rungs) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const CostRung& rung : rungs)
+    if (rung.stopped_by.empty() && rung.error_m < least) least = rung.error_m;
+  return least;
+}
+
+/// Whether the last three errors are the same.
+bool stays(const std::vector<CostRung>& rungs) {
+  if (rungs.size() < 3) return false;
+  const double last = rungs.back().error_m;
+  return std::all_of(rungs.end() - 3, rungs.end(), [last](const CostRung& rung) { return rung.stopped_by.empty() && std::abs(rung.error_m - last) <= kSame * last; });
+}
+
+std::string of_stopped(const CostWay& way, const std::vector<CostRung>& rungs) {
+  if (!rungs.empty() && rungs.back().not_attempted) return fmt::format("{}: {}.", way.name, rungs.back().stopped_by);
+  return fmt::format("{} does not get through at any {}: {}", way.name, way.controlled ? "tolerance" : "step", rungs.empty() ? "nothing was run" : rungs.back().stopped_by);
+}
+
+std::string of_wrong_limit(const CostWay& way, double least) {
+  return fmt::format("{} does not converge: its error stays at {:.1e} m however small the step. What it computes is not this motion (a wrong law, or a term left out).", way.name, least);
+}
+
+std::string of_order(const CostWay& way, const FittedOrder& fit, bool smooth) {
+  const std::string seen = fmt::format("{} converges with order {:.2f}", way.name, fit.order);
+  if (std::isnan(way.order)) return seen + ".";
+  const double off = fit.order - way.order;
+  if (std::abs(off) <= kAsPromised) return fmt::format("{}, as it should ({:.0f}).", seen, way.order);
+  if (off > 0) return fmt::format("{}, better than the {:.0f} it promises: in this scene its leading error cancels.", seen, way.order);
+  if (!smooth) return fmt::format("{} where the method promises {:.0f}: here impacts, rods or contacts may set the order, not the method.", seen, way.order);
+  if (way.order >= 4 && fit.order > 0.6) return fmt::format("{} where {:.0f} is promised: a stage is off (its weight, its place in time, or the slope it starts from).", seen, way.order);
+  return fmt::format("{} where {:.0f} is promised: the step is not the method's.", seen, way.order);
+}
+
+}  // namespace
+
+std::optional<FittedOrder> order_of(const CostWay& way, const std::vector<CostRung>& rungs, const CostTruth& truth) {
+  std::vector<double> h, error;
+  for (const CostRung& rung : rungs) {
+    h.push_back(way.controlled ? 1.0 / std::max<double>(1.0, static_cast<double>(rung.evaluations)) : rung.step_s);
+    error.push_back(rung.stopped_by.empty() ? rung.error_m : kUnset);
+  }
+  return way.has_ladder ? fit_order(h, error, truth.floor_m, kAnswer * truth.scale_m) : std::nullopt;
+}
+
+std::string read_ladder(const CostWay& way, const std::vector<CostRung>& rungs, const CostTruth& truth, bool smooth) {
+  const double least = least_error(rungs);
+  if (!std::isfinite(least)) return of_stopped(way, rungs);
+  if (!way.has_ladder && least <= truth.floor_m) return fmt::format("{} has no step to choose: it is as good as the truth.", way.name);
+  if (!way.has_ladder) return fmt::format("{} has no step to choose: it is off by {:.1e} m.", way.name, least);
+  const std::optional<FittedOrder> fit = order_of(way, rungs, truth);
+  if (!fit && way.controlled) return fmt::format("{} gets to {:.1e} m.", way.name, least);
+  if (!fit && least <= kWrongLimit * truth.floor_m) return fmt::format("{} is exact here, to round-off: {:.1e} m.", way.name, least);
+  if (!way.controlled && stays(rungs) && least > kWrongLimit * truth.floor_m && least < kStaysBelow * truth.scale_m) return of_wrong_limit(way, least);
+  if (!fit) return fmt::format("{} shows no order yet: its error is still {:.1e} m where bodies move {:.1e} m.", way.name, least, truth.scale_m);
+  if (way.controlled && (fit->order < kLeastSlope || fit->order > kMostSlope)) return fmt::format("{} gets to {:.1e} m.", way.name, least);
+  if (way.controlled) return fmt::format("{} gets to {:.1e} m; each ten times the evaluations divide its error by 10^{:.1f}.", way.name, least, fit->order);
+  if (fit->order < kNoOrder && least <= kWrongLimit * truth.floor_m) return fmt::format("{} is exact here, to round-off: {:.1e} m.", way.name, least);
+  if (fit->pairs < 2) return fmt::format("{} gets to {:.1e} m; its ladder is too short to show an order.", way.name, least);
+  if (fit->order < kNoOrder && least > kWrongLimit * truth.floor_m)
+    return of_wrong_limit(way, least);
+  if (fit->spread > kSettled) return fmt::format("{} gets to {:.1e} m; its order has not settled ({:.1f}, slopes {:.1f} apart).", way.name, least, fit->order, fit->spread);
+  return of_order(way, *fit, smooth);
+}
+
+}  // namespace tumble::engines

@@ -1,0 +1,154 @@
+#include "framework/report/cost_page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "framework/report/html.h"
+
+namespace tumble::report {
+namespace {
+
+constexpr double kMarks[] = {1e-3, 1e-6, 1e-9};   // m
+constexpr double kExact = 1e-17;                  // m: an error of nothing at all is drawn here
+
+Plot drawn(const CostPage& page, Axis across, const std::string& title, double (*x)(const CostPoint&), const std::string& caption) {
+  Plot plot{title, std::move(across), {"error of places", "m", Scale::kLog}, {}, {}, caption};
+  for (const CostCurve& curve : page.curves) {
+    Curve line{std::isfinite(curve.order) ? fmt::format("{}, order {:.2f}", curve.name, curve.order) : curve.name, {}, {}, true};
+    for (const CostPoint& point : curve.points) {
+      if (!point.stopped_by.empty() || !(point.error < page.scale) || !(x(point) > 0)) continue;
+      line.x.push_back(x(point));
+      line.y.push_back(std::max({point.error, page.floor, kExact}));   // below the floor nothing can be told
+    }
+    if (line.x.empty()) line.name.clear();   // its place stays, so that a method looks the same in all pictures
+    plot.curves.push_back(std::move(line));
+  }
+  if (page.floor > 0) plot.limits.push_back({page.floor, "the truth's own error"});
+  return plot;
+}
+
+Plot plot_of_energy(const CostPage& page) {
+  Plot plot{"Energy against time, at about the same price", {"time", "s"}, {"|E - E of the truth| / energy", "", Scale::kLog}, {}, {}, "Each curve is the run of its method that comes closest to the middle price of all: "};
+  std::string which;
+  for (const CostCurve& curve : page.curves) {
+    plot.curves.push_back({curve.times.empty() ? "" : curve.name, curve.times, curve.energy_errors});
+    for (double& error : plot.curves.back().y) error = std::max(error, kExact);
+    if (!curve.times.empty()) which += fmt::format("{}{} ({})", which.empty() ? "" : ", ", curve.name, curve.points[curve.example].fineness);
+  }
+  plot.caption += which + ".";
+  return plot;
+}
+
+Table table_of_prices(const CostPage& page) {
+  Table table;
+  table.caption = "CPU time for an error of at most 1e-3, 1e-6, 1e-9 m, and what was needed for it. \u2013: it does not get there.";
+  table.columns = {{""}, {"order", true}};
+  for (const double mark : kMarks) table.columns.insert(table.columns.end(), {{fmt::format("1e{:.0f} m", std::log10(mark)), true}, {"by"}});
+  for (const CostCurve& curve : page.curves) {
+    std::vector<Cell> cells{{curve.name}, {std::isfinite(curve.order) ? fmt::format("{:.2f}", curve.order) : "\u2013"}};
+    for (const double mark : kMarks) {
+      const CostPoint* point = cheapest(curve, mark);
+      double best = std::numeric_limits<double>::infinity();
+      for (const CostCurve& other : page.curves)
+        if (const CostPoint* theirs = cheapest(other, mark)) best = std::min(best, theirs->cpu_s);
+      if (point == nullptr) cells.insert(cells.end(), {{"\u2013", "", Look::kMuted}, {""}});
+      else cells.insert(cells.end(), {{price_of(point->cpu_s), "", point->cpu_s <= best ? Look::kGood : Look::kPlain}, {point->fineness, "", Look::kMuted}});
+    }
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+Table table_of_stages(const CostPage& page) {
+  std::set<std::string> stages;   // that took any time
+  for (const CostCurve& curve : page.curves)
+    for (const auto& [stage, seconds] : curve.stage_seconds)
+      if (seconds > 0) stages.insert(stage);
+  Table table;
+  table.caption = "Where the time of the same runs went, in per cent of what the stages took together.";
+  table.columns = {{""}, {"run"}};
+  for (const std::string& stage : stages) table.columns.push_back({stage, true});
+  for (const CostCurve& curve : page.curves) {
+    if (curve.stage_seconds.empty()) continue;
+    const double all = std::accumulate(curve.stage_seconds.begin(), curve.stage_seconds.end(), 0.0, [](double sum, const auto& stage) { return sum + stage.second; });
+    std::vector<Cell> cells{{curve.name}, {curve.points[curve.example].fineness, "", Look::kMuted}};
+    for (const std::string& stage : stages) {
+      const auto found = curve.stage_seconds.find(stage);
+      cells.push_back({all > 0 && found != curve.stage_seconds.end() && found->second > 0 ? fmt::format("{:.1f}", 100.0 * found->second / all) : "0"});
+    }
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+std::string all_points(const CostPage& page) {
+  std::string text = fmt::format("{:32} {:16} {:>12} {:>10} {:>14}\n", "", "", "error [m]", "CPU", "evaluations");
+  for (const CostCurve& curve : page.curves)
+    for (const CostPoint& point : curve.points) {
+      text += fmt::format("{:32} {:16} ", curve.name, point.fineness);
+      text += point.stopped_by.empty() ? fmt::format("{:>12.2e} {:>10} {:>14.0f}\n", point.error, price_of(point.cpu_s), point.evaluations) : point.stopped_by + "\n";
+    }
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::size_t> not_beaten(const std::vector<double>& price, const std::vector<double>& error) {
+  std::vector<std::size_t> best;
+  for (std::size_t i = 0; i < price.size(); ++i) {
+    bool beaten = !std::isfinite(price[i]) || !std::isfinite(error[i]);
+    for (std::size_t j = 0; j < price.size() && !beaten; ++j) beaten = price[j] < price[i] && error[j] <= error[i];
+    if (!beaten) best.push_back(i);
+  }
+  std::sort(best.begin(), best.end(), [&](std::size_t i, std::size_t j) { return price[i] < price[j]; });
+  return best;
+}
+
+const CostPoint* cheapest(const CostCurve& curve, double error) {
+  const CostPoint* best = nullptr;
+  for (const CostPoint& point : curve.points)
+    if (point.stopped_by.empty() && point.error <= error && (best == nullptr || point.cpu_s < best->cpu_s)) best = &point;
+  return best;
+}
+
+std::string price_of(double seconds) {
+  if (!std::isfinite(seconds)) return "\u2013";
+  const double rounded = std::stod(fmt::format("{:.1e}", seconds));   // prices are known to two digits
+  if (rounded < 1e-3) return fmt::format("{:g} \u00b5s", 1e6 * rounded);
+  return rounded < 1.0 ? fmt::format("{:g} ms", 1e3 * rounded) : fmt::format("{:g} s", rounded);
+}
+
+Plot plot_of_price(const CostPage& page) {
+  return drawn(page, {"CPU time", "s", Scale::kLog}, "Error against CPU time", [](const CostPoint& point) { return point.cpu_s; }, "Left is cheaper, down is more accurate. A method of order p falls by p decades where its price rises by one.");
+}
+
+void write_cost_page(const CostPage& cost, const std::filesystem::path& file) {
+  Page page("What accuracy costs", cost.title);
+  for (const std::string& reading : cost.readings) page.paragraph(reading);
+  page.plot(plot_of_price(cost));
+  page.table(table_of_prices(cost));
+  page.heading("Order");
+  page.plot(drawn(cost, {"step", "s", Scale::kLog}, "Error against the step", [](const CostPoint& point) { return point.step; }, "The slope is the order: halving the step divides the error of a method of order p by 2^p. Methods that choose their own steps are not in this picture."));
+  for (const CostCurve& curve : cost.curves)
+    if (!curve.reading.empty()) page.paragraph(curve.reading);
+  page.heading("Force evaluations");
+  page.plot(drawn(cost, {"derivatives asked for", "", Scale::kLog}, "Error against force evaluations", [](const CostPoint& point) { return point.evaluations; }, "What a method costs on any machine. Closed forms ask for none, and are not in this picture."));
+  page.heading("Energy");
+  page.plot(plot_of_energy(cost));
+  page.heading("Where the time went");
+  page.table(table_of_stages(cost));
+  page.heading("How it was measured");
+  page.paragraph(cost.about);
+  page.paragraph(fmt::format("Errors are against {}: {:.1e} m. The error of a body is how far its centre of mass is out of place, plus the angle by which it is turned wrongly times its radius of gyration; the "
+                             "largest over all movable bodies and samples counts. An error of {:.1e} m, which is as far as bodies move, is no answer, and is not drawn.", cost.truth, cost.floor, cost.scale));
+  page.paragraph("CPU time is that of the engine without models and shapes, the best of up to five runs; samples are part of it. On this machine, in this run: ratios matter.");
+  page.fold("Every run", all_points(cost));
+  page.record(cost.record);
+  page.write(file);
+}
+
+}  // namespace tumble::report

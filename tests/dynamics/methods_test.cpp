@@ -1,0 +1,70 @@
+// Methods of integration to compare with: each is of the order that it promises, or keeps to the tolerance that it is given.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "framework/core/error.h"
+#include "framework/dynamics/methods.h"
+
+namespace tumble::testing {
+namespace {
+
+// y'' = -y from (1, 0): (cos t, -sin t).
+const OdeFunction kSwing = [](double, const VectorXd& y) -> VectorXd { return Eigen::Vector2d(y[1], -y[0]); };
+
+double error_at_1(const StepFunction& step, int steps) {
+  VectorXd y = Eigen::Vector2d(1.0, 0.0);
+  for (int k = 0; k < steps; ++k) y = step(kSwing, static_cast<double>(k) / steps, y, 1.0 / steps);
+  return (y - Eigen::Vector2d(std::cos(1.0), -std::sin(1.0))).norm();
+}
+
+TEST(Methods, OfFixedStepsHaveTheOrderTheyPromise) {
+  for (const Method& method : methods()) {
+    if (method.controlled) continue;
+    const StepFunction step = step_of(method, kUnset);
+    // The next term of the error is smaller by the step, 1/64: of the order that is 0.05 at most. A wrong stage costs a whole order.
+    EXPECT_NEAR(std::log2(error_at_1(step, 64) / error_at_1(step, 128)), method.order, 0.05) << method.name;
+  }
+}
+
+TEST(Methods, ThatControlTheirErrorKeepToTheTolerance) {
+  for (const Method& method : methods()) {
+    if (!method.controlled) continue;
+    double last = 1.0;
+    for (const double tolerance : {1e-4, 1e-7, 1e-10}) {
+      const double error = error_at_1(step_of(method, tolerance), 1);
+      // The tolerance is of a step; in one radian there are tens of them at most, with a method of order 4 at 1e-10 some hundred.
+      EXPECT_LT(error, 200 * tolerance) << method.name << ", tolerance " << tolerance;
+      EXPECT_LT(error, last) << method.name << ": a smaller tolerance must make a smaller error";
+      last = error;
+    }
+  }
+}
+
+TEST(Methods, ImplicitOneTakesStepsThatStabilityForbidsOthers) {
+  // y' = -1e6 (y - cos t): explicit methods need steps below 3e-6, a stiff one follows the cosine.
+  int calls = 0;
+  const OdeFunction stiff = [&calls](double t, const VectorXd& y) -> VectorXd {
+    ++calls;
+    return VectorXd::Constant(1, -1e6 * (y[0] - std::cos(t)));
+  };
+  const VectorXd end = step_of(method_named("rosenbrock4"), 1e-6)(stiff, 0.0, VectorXd::Constant(1, 1.0), 1.0);
+  EXPECT_NEAR(end[0], std::cos(1.0), 1e-5);   // ten times the tolerance; the solution lags by 1e-6 sin t
+  EXPECT_LT(calls, 20000);                    // at least 1e6 / 3 steps of more than one call for an explicit method
+}
+
+TEST(Methods, UnknownNameIsRefusedWithTheNearest) {
+  EXPECT_THROW(
+      {
+        try {
+          method_named("rk5");
+        } catch (const UserError& error) {
+          EXPECT_NE(std::string(error.what()).find("rk4"), std::string::npos) << error.what();
+          throw;
+        }
+      },
+      UserError);
+}
+
+}  // namespace
+}  // namespace tumble::testing

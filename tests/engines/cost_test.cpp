@@ -1,0 +1,111 @@
+// What accuracy costs: the truth's floor, the order that a ladder shows, and the sentence that reads it.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "framework/core/error.h"
+#include "framework/engines/cost/cost.h"
+#include "framework/engines/cost/reading.h"
+#include "framework/engines/truths/memory_scene.h"
+
+namespace tumble::testing {
+namespace {
+
+using engines::CostRung;
+using engines::CostTruth;
+using engines::CostWay;
+
+/// A box that spins about no axis of its own, for a second, a third of a turn away from where Euler's method puts it.
+scene::Scene free_top() {
+  scene::Scene scene = truths::empty_scene("free top", 1.0, 1e-3);
+  scene::BodySpec top = truths::point_mass("top", 1.0, Vector3d::Zero(), Vector3d(1.0, 0.0, 0.0));
+  top.inertia_body_kg_m2 = Vector3d(1.0, 2.0, 3.0).asDiagonal();
+  top.omega_world_rad_s = Vector3d(1.0, 0.5, 2.0);
+  scene.bodies = {top};
+  return scene;
+}
+
+CostWay way_of(const std::string& word) {
+  const Method& method = method_named(word);
+  CostWay way;
+  way.name = method.name;
+  way.method = [method](double tolerance) { return step_of(method, tolerance); };
+  way.order = method.order;
+  way.controlled = method.controlled;
+  way.laws = library_laws();
+  return way;
+}
+
+/// A short ladder of steps or tolerances.
+std::vector<CostRung> ladder_of(const scene::Scene& scene, const CostWay& way, const CostTruth& truth) {
+  return engines::run_ladder(scene, way, truth, 10.0, {}, {1.0 / 16, 1.0 / 32, 1.0 / 64, 1.0 / 128}, {1e-4, 1e-6, 1e-8, 1e-10}, [](const CostRung&) {});
+}
+
+TEST(Cost, TruthOfAFreeTopIsTheClosedFormToRoundOff) {
+  const CostTruth truth = engines::find_truth(free_top(), library_laws(), {});
+  EXPECT_NE(truth.what.find("closed form"), std::string::npos) << truth.what;
+  EXPECT_EQ(truth.duration_s, 1.0);
+  // Two engines, each a few roundings of elliptic functions a sample; a metre is the scale.
+  EXPECT_LT(truth.floor_m, 1e-13);
+}
+
+TEST(Cost, LaddersShowTheOrderOfTheirMethod) {
+  const scene::Scene scene = free_top();
+  const CostTruth truth = engines::find_truth(scene, library_laws(), {});
+  for (const char* word : {"euler", "midpoint", "rk4"}) {
+    const CostWay way = way_of(word);
+    const std::vector<CostRung> rungs = ladder_of(scene, way, truth);
+    const auto fit = engines::order_of(way, rungs, truth);
+    ASSERT_TRUE(fit) << word;
+    // w h is 1/30 at the middle of the ladder: the next term of the error is a tenth of the first at most.
+    EXPECT_NEAR(fit->order, way.order, 0.15) << word;
+    EXPECT_NE(engines::read_ladder(way, rungs, truth, true).find("as it should"), std::string::npos) << engines::read_ladder(way, rungs, truth, true);
+  }
+}
+
+TEST(Cost, AStageThatIsOffIsSaidToBe) {
+  const scene::Scene scene = free_top();
+  const CostTruth truth = engines::find_truth(scene, library_laws(), {});
+  CostWay way = way_of("rk4");
+  way.name = "your rk4_step";
+  way.method = [](double) -> StepFunction {
+    return [](const OdeFunction& f, double t, const VectorXd& y, double h) -> VectorXd {
+      const VectorXd k1 = f(t, y), k2 = f(t + h / 2, y + h / 2 * k1), k3 = f(t + h / 2, y + h / 2 * k1), k4 = f(t + h, y + h * k3);   // k3 starts from k1
+      return y + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4);
+    };
+  };
+  const std::string reading = engines::read_ladder(way, ladder_of(scene, way, truth), truth, true);
+  EXPECT_NE(reading.find("a stage is off"), std::string::npos) << reading;
+}
+
+TEST(Cost, AWrongLawDoesNotConverge) {
+  const scene::Scene scene = free_top();
+  const CostTruth truth = engines::find_truth(scene, library_laws(), {});
+  CostWay way = way_of("rk4");
+  way.laws.state_derivative = [right = way.laws.state_derivative](const RigidBodyState& state, const Inertia& inertia, const Wrench& wrench) -> VectorXd {
+    return 0.99 * right(state, inertia, wrench);   // a hundredth slower
+  };
+  const std::string reading = engines::read_ladder(way, ladder_of(scene, way, truth), truth, true);
+  EXPECT_NE(reading.find("does not converge"), std::string::npos) << reading;
+}
+
+TEST(Cost, SmallerTolerancesCostMoreEvaluationsAndLessError) {
+  const scene::Scene scene = free_top();
+  const CostTruth truth = engines::find_truth(scene, library_laws(), {});
+  const std::vector<CostRung> rungs = ladder_of(scene, way_of("dopri5"), truth);
+  ASSERT_EQ(rungs.size(), 4u);
+  EXPECT_GT(rungs.back().evaluations, rungs.front().evaluations);
+  EXPECT_LT(rungs.back().error_m, 1e-2 * rungs.front().error_m);   // the tolerances span a factor of 1e6
+}
+
+TEST(Cost, EnergyThatTheMethodLosesIsSeen) {
+  const scene::Scene scene = free_top();
+  const CostTruth truth = engines::find_truth(scene, library_laws(), {});
+  const CostRung coarse = engines::run_rung(scene, way_of("euler"), truth, 2, kUnset, {}), fine = engines::run_rung(scene, way_of("rk4"), truth, 8, kUnset, {});
+  ASSERT_EQ(coarse.energy_errors.size(), truth.samples.size());
+  EXPECT_GT(coarse.energy_errors.back(), 1e-4);
+  EXPECT_LT(fine.energy_errors.back(), 1e-6);
+}
+
+}  // namespace
+}  // namespace tumble::testing
