@@ -104,11 +104,18 @@ bool is_foremost_around(const CollisionShape& shape, int piece, const PlacedPoly
   const double slack = kSameHeight * shape.bounding_radius();
   double foremost = -kInfinity;
   for (const int v : face) foremost = std::max(foremost, d.dot(shape.vertices()[v]));
-  for (const int v : face) {
-    if (d.dot(shape.vertices()[v]) < foremost - slack) continue;
-    for (const int w : shape.neighbours(v))
-      if (d.dot(shape.vertices()[w]) > foremost + slack) return false;
-  }
+  // About an edge lie its two faces: what meets it at its ends, in a corner that is not convex, may stand out farther.
+  InlineVector<int, 4> touching;
+  for (const int v : face)
+    if (d.dot(shape.vertices()[v]) >= foremost - slack) touching.push_back(v);
+  const bool is_edge = touching.size() == 2;
+  for (const int v : touching)
+    for (const int w : shape.neighbours(v)) {
+      if (d.dot(shape.vertices()[w]) <= foremost + slack) continue;
+      if (!is_edge) return false;
+      const auto& of_other = shape.neighbours(v == touching[0] ? touching[1] : touching[0]);
+      if (std::find(of_other.begin(), of_other.end(), w) != of_other.end()) return false;
+    }
   return true;
 }
 

@@ -32,16 +32,18 @@ struct SlidingProblem {
   }
 };
 
-/// The s at which |p_t| = mu p_n, p_t then scaled to the cone exactly. 1 - mu p_n / |p_t| is nearly linear in s.
-SlidingImpulse slide(const SlidingProblem& problem, double friction, double high) {
-  double low = 0, s = 0;
+/// Finds the s at which |p_t| = mu p_n, from a guess. 1 - mu p_n / |p_t| is nearly linear in s.
+SlidingImpulse slide(const SlidingProblem& problem, double friction, double high, double& s) {
+  double low = 0;
+  if (!(s < high)) s = 0;
   SlidingImpulse p = problem.at(s);
   for (int i = 0; i < kMostNewtonSteps; ++i) {
     const double bound = friction * p.normal, excess = p.length - bound;
     (excess > 0 ? low : high) = s;
     if (std::abs(excess) <= 4 * kEps * p.length || high - low <= 2 * kEps * high) break;
     const double slope = friction * (p.normal * p.length_slope - p.normal_slope * p.length);  // of excess / length, times length^2
-    double next = slope > 0 ? s - excess * p.length / slope : -1.0;
+    double next = slope < 0 ? s - excess * p.length / slope : -1.0;
+    if (std::abs(next - s) <= 4 * kEps * s) break;   // nearer to it no s is
     if (!(next > low && next < high)) next = low > 0 ? std::sqrt(low) * std::sqrt(high) : 0.5 * high;
     s = next;
     p = problem.at(s);
@@ -69,17 +71,19 @@ LocalContact prepare_local(const Matrix3d& w) {
   return local;
 }
 
-Vector3d solve_local(const LocalContact& local, const Vector3d& free, double friction) {
+Vector3d solve_local(LocalContact& local, const Vector3d& free, double friction) {
   if (free[0] >= 0) return Vector3d::Zero();  // open
   if (friction == 0) return {-free[0] / local.w_nn, 0, 0};
   const double free_1 = local.cosine * free[1] + local.sine * free[2], free_2 = -local.sine * free[1] + local.cosine * free[2];
   const double push = free[0] / local.w_nn;
   const SlidingProblem problem{local, free_1 - local.coupling_1 * push, free_2 - local.coupling_2 * push, free[0]};
   SlidingImpulse p = problem.at(0);
-  if (p.length > friction * p.normal) {
+  if (!(p.length > friction * p.normal)) {
+    local.slide = 0;
+  } else {
     const double c = std::hypot(problem.c1, problem.c2), coupling = std::hypot(local.coupling_1, local.coupling_2);
     const double high = c * (local.w_nn + friction * coupling) / (friction * -free[0]);  // there |p_t| < mu p_n for certain
-    p = slide(problem, friction, high);
+    p = slide(problem, friction, high, local.slide);
     const double scale = p.length > 0 ? friction * std::max(p.normal, 0.0) / p.length : 0.0;
     p.t1 *= scale;
     p.t2 *= scale;

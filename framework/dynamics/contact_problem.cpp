@@ -39,7 +39,7 @@ ContactMode mode_of(const ContactBlock& block, const Vector3d& impulse) {
 }
 
 /// Sweeps until the goal is met, or their number is spent.
-void sweep_until(const Goal& goal, const std::vector<contacts::LocalContact>& locals, int most_sweeps, Progress& progress) {
+void sweep_until(const Goal& goal, std::vector<contacts::LocalContact>& locals, int most_sweeps, Progress& progress) {
   for (int i = 0; i < most_sweeps && !progress.accepted; ++i) {
     const double change = contacts::sweep(goal.system, locals, i % 2 == 0, progress.impulses);
     ++progress.sweeps;
@@ -153,7 +153,8 @@ class Turns {
 void iterate(const Goal& goal, const ContactOptions& options, double enough, Progress& progress) {
   const std::size_t size = goal.system.contacts.size() + goal.system.rows.size();
   if (static_cast<int>(size) > options.largest_direct || size == 1) {  // one contact: the first sweep is exact
-    sweep_until(goal, contacts::prepare_locals(goal.system), options.most_sweeps_alone, progress);
+    std::vector<contacts::LocalContact> locals = contacts::prepare_locals(goal.system);
+    sweep_until(goal, locals, options.most_sweeps_alone, progress);
     return;
   }
   contacts::BodyMatrix matrix(goal.system);

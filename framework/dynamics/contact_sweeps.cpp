@@ -12,7 +12,7 @@ double normal_velocity(const ContactBlock& c, const std::vector<Vector6d>& y) {
   return v;
 }
 
-double relax_contact(const ContactBlock& block, const LocalContact& local, Vector3d& impulse, std::vector<Vector6d>& y) {
+double relax_contact(const ContactBlock& block, LocalContact& local, Vector3d& impulse, std::vector<Vector6d>& y) {
   if (!(block.give > 0)) return 0;
   if (!block.is_frictional()) {
     const double before = impulse[0];
@@ -55,7 +55,7 @@ std::vector<LocalContact> prepare_locals(const System& system) {
   return locals;
 }
 
-double sweep(const System& system, const std::vector<LocalContact>& locals, bool forward, Impulses& impulses) {
+double sweep(const System& system, std::vector<LocalContact>& locals, bool forward, Impulses& impulses) {
   const std::size_t contacts = system.contacts.size(), rows = system.rows.size();
   double largest = 0;
   const auto relax = [&](std::size_t i) {

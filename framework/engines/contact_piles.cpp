@@ -25,6 +25,9 @@ constexpr int kShiftSweeps = 40;
 constexpr double kShiftTolerance = 1e-2;   // of the farthest: the next round takes the rest
 constexpr int kMostShifts = 24;         // rounds
 constexpr double kShiftReach = 1.5;     // shifts: points this far apart may come together by them
+constexpr double kDeeper = 1.1, kAsDeep = 0.9;   // of an overlap: a point this deep is no part of it; none that deep has missed it
+constexpr double kGoOn = 2.0;           // likewise, in what two bodies have moved by the last shift: levers make it long
+constexpr double kSamePlace = 0.05;     // of the shell: bodies that have moved less since are faced as they were
 
 }  // namespace
 
@@ -109,11 +112,14 @@ bool LastingContacts::keep_pile_apart(const Group& group, const std::vector<Pair
   for (int i = 0; i < moving_.size(); ++i)
     if (moving_.world().bodies[i].immovable()) states[i].com_world = prescribed_position(moving_.world().bodies[i], t);
   std::vector<double> way(states.size(), 0.0);
+  std::vector<Faced> faced(pairs.size());
   for (int round = 0; round < kMostShifts; ++round) {
     double wrong = 0.0;
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       const double least = kTooNear * room_of(pairs[k]);
-      gaps[k] -= way[pairs[k].first] + way[pairs[k].second];
+      const double moved = way[pairs[k].first] + way[pairs[k].second];
+      faced[k].moved += moved;
+      gaps[k] -= moved;
       if (gaps[k] >= least) continue;
       gaps[k] = least_gap_of(pairs[k], states);
       if (gaps[k] < least) gaps[k] = distance_of(pairs[k], states);
@@ -121,7 +127,7 @@ bool LastingContacts::keep_pile_apart(const Group& group, const std::vector<Pair
     }
     if (wrong == 0.0) return true;
     ++counters_.nudges;
-    const ContactSolution shift = solve_contacts(shifts_of(group, pairs, states, t, gaps, kShiftReach * wrong), {.tolerance = kShiftTolerance, .largest_direct = 0, .most_sweeps_alone = kShiftSweeps});
+    const ContactSolution shift = solve_contacts(shifts_of(group, pairs, states, t, gaps, wrong, way, faced), {.tolerance = kShiftTolerance, .largest_direct = 0, .most_sweeps_alone = kShiftSweeps});
     counters_.contact_sweeps += static_cast<std::uint64_t>(shift.sweeps);
     for (std::size_t k = 0; k < group.bodies.size(); ++k) {
       const int body = group.bodies[k];
@@ -131,13 +137,27 @@ bool LastingContacts::keep_pile_apart(const Group& group, const std::vector<Pair
   return false;
 }
 
-ContactProblem LastingContacts::shifts_of(const Group& group, const std::vector<Pair>& pairs, const std::vector<RigidBodyState>& states, double t, const std::vector<double>& gaps, double reach) {
+// Of two that overlap by `gap`: columns through their surfaces may go in and out elsewhere, deeper than the two are or not as deep.
+LastingContacts::Points LastingContacts::points_of_overlap(Pair pair, const std::vector<RigidBodyState>& states, double reach, double gap) const {
+  Points points = points_at(pair, states, reach);
+  if (gap >= 0.0) return points;
+  std::erase_if(points, [&](const collision::NearPoint& p) { return p.gap < kDeeper * gap; });
+  if (std::any_of(points.begin(), points.end(), [&](const collision::NearPoint& p) { return p.gap < kAsDeep * gap; })) return points;
+  const collision::Gap deepest = gap_of(pair, states);
+  points.push_back({deepest.point_a_world, deepest.point_b_world, deepest.normal_b_to_a_world, deepest.distance});
+  return points;
+}
+
+ContactProblem LastingContacts::shifts_of(const Group& group, const std::vector<Pair>& pairs, const std::vector<RigidBodyState>& states, double t, const std::vector<double>& gaps, double wrong, const std::vector<double>& way, std::vector<Faced>& faced) {
   ContactProblem problem;
   std::map<int, int> places;
   for (const int body : group.bodies) place(body, t, places, states, nullptr, problem);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const double reach = std::max(kShiftReach * wrong, kGoOn * (way[pairs[k].first] + way[pairs[k].second]));
     if (gaps[k] >= reach) continue;
-    for (const collision::NearPoint& point : points_at(pairs[k], states, reach)) {
+    if (!(faced[k].reach >= reach && faced[k].moved <= kSamePlace * room_of(pairs[k]))) faced[k] = {points_of_overlap(pairs[k], states, reach, gaps[k]), reach, 0.0};
+    for (const collision::NearPoint& point : faced[k].points) {
+      if (point.gap > reach) continue;
       PushingContact contact;
       place_for_shift(group, pairs[k], point, states, t, room_of(pairs[k]), places, problem, contact);
       problem.contacts.push_back(contact);

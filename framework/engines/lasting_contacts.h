@@ -78,6 +78,12 @@ class LastingContacts {
     double start_gap = 0.0;      // at the start of the step, wherever `point` is looked at [m]
   };
 
+  struct Faced {                 // a pair's points as they were when it was last asked for them
+    Points points;
+    double reach = -1.0;         // all up to here [m]; negative: never asked
+    double moved = 0.0;          // by any point of the two since, at most [m]
+  };
+
   struct Landing {
     std::size_t touch;           // which
     double time, speed;          // since the step's start [s], with which it comes down [m/s]
@@ -135,7 +141,8 @@ class LastingContacts {
   std::optional<double> take_pile_step(const Group& group, double h);
   double way_of(int body, const Velocity& shift) const;
   bool keep_pile_apart(const Group& group, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, std::vector<double>& gaps);
-  ContactProblem shifts_of(const Group& group, const std::vector<Pair>& pairs, const std::vector<RigidBodyState>& states, double t, const std::vector<double>& gaps, double reach);
+  Points points_of_overlap(Pair pair, const std::vector<RigidBodyState>& states, double reach, double gap) const;
+  ContactProblem shifts_of(const Group& group, const std::vector<Pair>& pairs, const std::vector<RigidBodyState>& states, double t, const std::vector<double>& gaps, double wrong, const std::vector<double>& way, std::vector<Faced>& faced);
   bool apply_shift(int body, const Velocity& shift, std::vector<RigidBodyState>& states) const;
   void place_for_shift(const Group& group, Pair pair, const collision::NearPoint& point, const std::vector<RigidBodyState>& states, double t, double room, std::map<int, int>& places,
                        ContactProblem& problem, PushingContact& contact);

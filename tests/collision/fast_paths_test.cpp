@@ -186,6 +186,25 @@ TEST(NearPoints, OfABoxAgainstAWallAndAFloorOfOneMeshPushBothWays) {
     }
 }
 
+TEST(NearPoints, OfABallAgainstTwoEdgesThatMeetInACornerAreOneOnEach) {
+  // Under the bar of a T, beside its stem: an edge of each is met, and both edges end in the inner corner, where the other part stands out.
+  const Shape t_shape = model("t_handle");
+  const CollisionShape t(t_shape), ball{Sphere{0.1}};
+  const std::vector<Vector3d>& vertices = std::get<MeshSolid>(t_shape).mesh_body.vertices;
+  Vector3d high = vertices[0];
+  for (const Vector3d& v : vertices) high = high.cwiseMax(v);
+  const Vector3d about = high - Vector3d(0.425, 0.15, 0.0);   // outline of the model: the bar's end and top, the stem's half width of 0.075
+  const Vector3d corner = *std::min_element(vertices.begin(), vertices.end(), [&](const Vector3d& v, const Vector3d& w) { return (v - about).norm() < (w - about).norm(); });
+  constexpr double kGap = 1e-6;
+  const double aside = (0.1 + kGap) / std::sqrt(2.0);
+  const auto points = collision::near_points(ball, {corner + Vector3d(aside, -aside, aside)}, t, {}, 1e-5);
+  ASSERT_EQ(points.size(), 2u);
+  const Vector3d from_stem = Vector3d(1, 0, 1).normalized(), from_bar = Vector3d(0, -1, 1).normalized();
+  for (const Vector3d& n : {from_stem, from_bar})
+    EXPECT_TRUE(std::any_of(points.begin(), points.end(), [&](const NearPoint& p) { return (p.normal_b_to_a_world - n).norm() < 1e-9; })) << n.transpose();
+  for (const NearPoint& p : points) EXPECT_NEAR(p.gap, kGap, 1e-15);   // a few roundings of coordinates below 1
+}
+
 void expect_same_bits(const Gap& a, const Gap& b) {
   EXPECT_EQ(a.distance, b.distance);
   EXPECT_EQ(a.normal_b_to_a_world, b.normal_b_to_a_world);
