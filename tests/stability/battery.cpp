@@ -69,7 +69,7 @@ void Findings::part(const std::string& what, const std::function<void()>& work) 
 
 std::vector<Case> cases() {
   std::vector<Case> all;
-  for (const auto add : {add_springs, add_chains, add_loops, add_tops, add_meshes, add_impacts, add_sweeps, add_scales, add_rotation, add_stacks, add_structures, add_friction, add_piles}) add(all);
+  for (const auto add : {add_springs, add_chains, add_loops, add_tops, add_meshes, add_impacts, add_sweeps, add_scales, add_rotation, add_stacks, add_cards, add_structures, add_friction, add_piles, add_rollbacks}) add(all);
   std::stable_sort(all.begin(), all.end(), [](const Case& a, const Case& b) { return a.row < b.row; });
   return all;
 }

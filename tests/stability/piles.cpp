@@ -1,4 +1,4 @@
-// Rows 30, 33 and 34: dense piles, and what is not part of the battery yet.
+// Rows 30 and 34: dense piles, and what is not part of the battery yet.
 #include <algorithm>
 #include <cmath>
 
@@ -57,7 +57,6 @@ void dense_pile(const Given& given, Findings& findings) {
 
 void add_piles(std::vector<Case>& cases) {
   cases.push_back({30, "dense pile", "Heavy balls without friction fall on each other between walls (SimBenchmark's 666). Hundreds of contacts begin within milliseconds; engines leave balls inside each other or blow up.", "a1 a3", dense_pile});
-  cases.push_back({33, "timewarp rollback", "Many bodies at their own local times, one of which must go back: the result may not depend on the order of processing, bit by bit.", "", {}, "the timewarp engine (assignment 4) does not exist yet"});
   cases.push_back({34, "soft contact", "A penalty spring needs steps two to three orders of magnitude smaller than a hard contact for the same scene.", "", {}, "there is no soft contact to compare with: contacts of this project are hard"});
 }
 

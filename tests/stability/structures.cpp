@@ -1,4 +1,4 @@
-// Rows 11, 12 and 13: a card tent, an arch, a body in a nip: what stands or falls by a number that is known.
+// Rows 12 and 13: an arch, a body in a nip: what stands or falls by a number that is known.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "framework/core/files.h"
-#include "models/write_3ds.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/support.h"
 
@@ -14,117 +13,6 @@ namespace tumble::battery {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-
-/// Writes a four-cornered prism. @param corners  (x, z), the inside to the left of each side, seen against y
-void write_prism(const std::vector<Vector2d>& corners, double half_depth, const std::filesystem::path& file) {
-  TriangleMesh mesh;
-  for (const double y : {-half_depth, half_depth})
-    for (const Vector2d& corner : corners) mesh.vertices.emplace_back(corner.x(), y, corner.y());
-  for (int i = 0; i < 4; ++i) {
-    const int j = (i + 1) % 4;
-    mesh.faces.push_back({i, 4 + j, j});
-    mesh.faces.push_back({i, 4 + i, 4 + j});
-  }
-  for (const Face& face : {Face{0, 1, 2}, Face{0, 2, 3}, Face{4, 6, 5}, Face{4, 7, 6}}) mesh.faces.push_back(face);
-  write_whole(file, models::write_3ds({{"prism", mesh}}));
-}
-
-// ---- Row 11 ----------------------------------------------------------------------------------------------------------
-
-/// Cards of length 1 m that lean at half-angle a, on each other or on a smooth wall, which is the same by symmetry; they stand on, and
-/// touch by, the edges of their inner faces. By moments about a foot: H cos(a) = m g (sin(a) / 2 - t cos(a) / 2), N = m g: they stand
-/// from mu = (tan(a) - t) / 2.
-constexpr double kThickness = 0.01;
-double tent_limit(double a) { return (std::tan(a) - kThickness) / 2; }
-
-scene::Scene tent(double a, double mu, bool wall) {
-  constexpr double kApart = 1e-9;   // m: so that the two edges have a direction from one to the other
-  std::vector<scene::BodySpec> bodies;
-  for (const double side : {-1.0, 1.0}) {
-    if (wall && side < 0) continue;
-    // Along the card, up; out of its inner face, towards the other card and down.
-    const Vector3d along(-side * std::sin(a), 0, std::cos(a)), inner(-side * std::cos(a), 0, -std::sin(a));
-    const Vector3d foot(side * (std::sin(a) + 0.5 * kApart), 0, 0);
-    bodies.push_back(turned(rough(box(side < 0 ? "left" : "right", Vector3d(0.5 * kThickness, 0.5, 0.5), 0.1, foot + 0.5 * along - 0.5 * kThickness * inner), mu), -side * a, Vector3d::UnitY()));
-  }
-  bodies.push_back(floor_of(mu));
-  if (wall) bodies.push_back(truths::wall("wall", Vector3d::Zero(), Vector3d::UnitX(), 0.0));
-  return with_contact("card tent", std::move(bodies));
-}
-
-/// Two loose cards cut so that they stand flat on the floor and meet face to face at x = 0, with corners as a .3ds file keeps them.
-/// Statics may put the floor's push at the inner end of the foot and the other card's at the top: they stand from (foot - x_com) / high.
-struct CutCard {
-  double foot, width, low, high;   // inner end and length of the foot, ends of the upper face [m]
-  Vector3d com() const {   // a right-angled triangle without a smaller one
-    const double outer = foot + width, whole = outer * high, inner = foot * low;
-    return {(whole * outer - inner * foot) / (3 * (whole - inner)), 0.0, (whole * high - inner * low) / (3 * (whole - inner))};
-  }
-  double limit() const { return (foot - com().x()) / high; }
-};
-
-CutCard cut_card(double a) {
-  const auto kept = [](double v) { return static_cast<double>(static_cast<float>(v)); };
-  const double foot = kept(std::sin(a)), outer = kept(std::sin(a) + kThickness / std::cos(a));
-  return {foot, outer - foot, kept(foot / std::tan(a)), kept(outer / std::tan(a))};
-}
-
-scene::Scene cut_tent(double a, double part, const std::filesystem::path& folder) {
-  const CutCard card = cut_card(a);
-  const std::filesystem::path file = folder / "card.3ds";
-  write_prism({{card.foot, 0.0}, {card.foot + card.width, 0.0}, {0.0, card.high}, {0.0, card.low}}, 0.5, file);
-  std::vector<scene::BodySpec> bodies;
-  for (const double side : {1.0, -1.0}) {
-    scene::BodySpec body = rough(box(side > 0 ? "right" : "left", Vector3d::Ones(), 0.1, Vector3d(side * card.com().x(), 0, card.com().z())), part * card.limit());
-    body.shape = scene::ModelSpec{file.string(), "", 1.0};
-    if (side < 0) body.world_from_body = Quaterniond(0, 0, 0, 1);   // half a turn about z
-    bodies.push_back(body);
-  }
-  bodies.push_back(floor_of(1.0));
-  return with_contact("cut tent", std::move(bodies));
-}
-
-void two_loose_cards(const Given& given, Findings& findings) {
-  const PrivateFolder folder;
-  for (const double part : {1.1, 0.9}) {
-    const std::string name = fmt::format("tent of two loose cards, half-angle 0.4, mu = {:g} of the limit", part);
-    findings.part(name, [&] {
-      const double duration = part < 1 ? 0.6 : given.is_long ? 10.0 : 2.0;
-      const Trajectory run = run_by_steps(cut_tent(0.4, part, folder.path()), given.laws, duration, 1.0 / 240, 200);
-      const double way = std::max(drift_of(run, 0), drift_of(run, 1));
-      if (part > 1) findings.at_most(name + ": creep", way, 1e-3, "m", "static: 1e-3 of a card's length in 10 s");
-      else findings.must_fail(name + ": stands", way, 1e-3, "m", "friction a tenth too small");
-    });
-  }
-  findings.part("fall of the two loose cards, 2 s", [&] {
-    const Trajectory run = run_by_steps(cut_tent(0.4, 0.9, folder.path()), given.laws, 2.0, 1.0 / 240, 200);
-    findings.at_most("fall of the two loose cards, 2 s: rise of the energy", energy_rise(run), 1e-6, "", "plastic impacts and friction only take");
-  });
-}
-
-void card_tent(const Given& given, Findings& findings) {
-  report::Plot plot{"Card on a smooth wall, half-angle 0.4: way of its foot", {"time", "s"}, {"way", "m", report::Scale::kLog}, {}, {{1e-3, "threshold"}}, "A tenth above the limit it stands without creeping, a tenth below it slides."};
-  for (const double a : {0.2, 0.4}) {
-    for (const double part : {1.1, 0.9}) {
-      const std::string name = fmt::format("card on a smooth wall, half-angle {:g}, mu = {:g} of the limit", a, part);
-      findings.part(name, [&] {
-        const Trajectory run = run_by_steps(tent(a, part * tent_limit(a), true), given.laws, given.is_long ? 10.0 : 2.0, 1.0 / 240, 200);
-        const double way = drift_of(run, 0);
-        if (part > 1) findings.at_most(name + ": creep", way, 1e-3, "m", "static: 1e-3 of a card's length in 10 s");
-        else findings.at_least(name + ": slides down", way, 0.2, "m", "below the limit the feet go apart until the cards lie");
-        if (part < 1) findings.must_fail(name + ": stands", way, 1e-3, "m", "friction a tenth too small");
-        if (a == 0.4) plot.curves.push_back(curve_of(fmt::format("{:g} of the limit", part), run, [&](const Frame& f) { return std::max(1e-12, (f.poses[0].com_world - run.frames.front().poses[0].com_world).norm()); }));
-      });
-    }
-  }
-  findings.part("two loose cards", [&] { two_loose_cards(given, findings); });
-  findings.part("two loose cards, edge on edge", [&] {
-    const Trajectory run = run_by_steps(tent(0.4, 1.1 * tent_limit(0.4), false), given.laws, given.is_long ? 10.0 : 2.0, 1.0 / 240, 200);
-    findings.at_most("two loose cards, edge on edge, half-angle 0.4, mu = 1.1 of the limit: creep", std::max(drift_of(run, 0), drift_of(run, 1)), 1e-3, "m", "the same structure as the card on a smooth wall, by symmetry");
-  });
-  findings.plot(std::move(plot));
-  findings.not_run("houses of 2 to 4 levels", "only the tent is built so far");
-}
 
 // ---- Row 12 ----------------------------------------------------------------------------------------------------------
 
@@ -232,13 +120,12 @@ void wedge(const Given& given, Findings& findings) {
     }
   }
   findings.plot(std::move(plot));
-  findings.not_run("spikes and cliff edges of Erleben's set", "their models are not made yet");
+  findings.part("spikes and cliff edges", [&] { spikes(given, findings); });
 }
 
 }  // namespace
 
 void add_structures(std::vector<Case>& cases) {
-  cases.push_back({11, "card house", "Two cards that lean on each other stand if their friction is at least half the tangent of their angle. Solvers that correct velocities a little at every step let them creep apart.", "a1 a3", card_tent});
   cases.push_back({12, "masonry arch", "A semicircle of loose stones stands by its shape alone if it is thicker than a tenth of its radius (0.1075), and falls with four hinges if it is thinner. Nothing but contact forces decides.", "a1 a3", masonry_arch});
   cases.push_back({13, "wedge, jamming", "A body squeezed between two faces locks itself if friction is at least the tangent of half their angle, whatever the force. Two percent above and two below must differ: no creep, no overlap.", "a1 a3", wedge});
 }

@@ -4,8 +4,10 @@
 #include <cmath>
 
 #include "framework/core/error.h"
+#include "framework/core/files.h"
 #include "framework/core/not_implemented.h"
 #include "framework/engines/truths/families.h"
+#include "models/write_3ds.h"
 
 namespace tumble::battery {
 
@@ -121,6 +123,21 @@ void compare_with_truth(const Given& given, Findings& findings, const std::strin
     findings.at_most("truth " + id + ": " + worst->output, worst->error, worst->pass_mark, "",
                      worst->note.empty() ? "100 floors of double precision; of all outputs the one closest to its mark" : worst->note);
   });
+}
+
+void write_model(const TriangleMesh& mesh, const std::filesystem::path& file) { write_whole(file, models::write_3ds({{"model", mesh}})); }
+
+void write_prism(const std::vector<Vector2d>& corners, double half_depth, const std::filesystem::path& file) {
+  TriangleMesh mesh;
+  for (const double y : {-half_depth, half_depth})
+    for (const Vector2d& corner : corners) mesh.vertices.emplace_back(corner.x(), y, corner.y());
+  for (int i = 0; i < 4; ++i) {
+    const int j = (i + 1) % 4;
+    mesh.faces.push_back({i, 4 + j, j});
+    mesh.faces.push_back({i, 4 + i, 4 + j});
+  }
+  for (const Face& face : {Face{0, 1, 2}, Face{0, 2, 3}, Face{4, 6, 5}, Face{4, 7, 6}}) mesh.faces.push_back(face);
+  write_model(mesh, file);
 }
 
 }  // namespace tumble::battery

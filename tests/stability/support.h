@@ -1,11 +1,13 @@
 /// What the cases of the stability battery share: small scenes, measures of runs, comparisons with truth files.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
 #include "framework/cli/battery.h"
 #include "framework/engines/truths/memory_scene.h"
+#include "framework/geometry/triangle_mesh.h"
 
 namespace tumble::battery {
 
@@ -24,6 +26,10 @@ scene::BodySpec turned(scene::BodySpec body, double angle, const Vector3d& axis)
 scene::Scene with_contact(const std::string& name, std::vector<scene::BodySpec> bodies);
 /// A chain of rods from the origin, a bob at each rod's end. @param direction  unit, along the chain
 scene::Scene chain(const std::vector<double>& masses, double length, const Vector3d& direction);
+/// Writes a solid to a .3ds file, its faces counter-clockwise seen from outside.
+void write_model(const TriangleMesh& mesh, const std::filesystem::path& file);
+/// Writes a four-cornered prism. @param corners  (x, z), the inside to the left of each side, seen against y
+void write_prism(const std::vector<Vector2d>& corners, double half_depth, const std::filesystem::path& file);
 /// The run of a scene by steps of about h, frames at ends of steps. @param frames  about how many
 Trajectory run_by_steps(const scene::Scene& scene, const Laws& laws, double duration, double h, long frames);
 
