@@ -8,16 +8,28 @@ namespace {
 // Farther off than this many times its extent, a scene loses three digits and more: that is where local coordinates begin.
 constexpr double kFar = 1000.0;
 
+/// Calls visit(point) for every place that a scene names in the world's coordinates, bodies first; visit may change it.
+template <class Scene, class Visit>
+void for_each_place(Scene& scene, const Visit& visit) {
+  for (auto& body : scene.bodies) visit(body.position_m);
+  for (auto& spring : scene.springs)
+    for (auto* anchor : {&spring.a, &spring.b})
+      if (anchor->body.empty()) visit(anchor->point_m);
+  for (auto& rod : scene.rods)
+    for (auto* anchor : {&rod.a, &rod.b})
+      if (anchor->body.empty()) visit(anchor->point_m);
+  for (auto& joint : scene.joints) visit(joint.point_m);
+}
+
 }  // namespace
 
 Vector3d local_origin(const scene::Scene& scene) {
-  if (!scene.springs.empty() || !scene.rods.empty() || !scene.joints.empty()) return Vector3d::Zero();
   if (scene.bodies.empty()) return Vector3d::Zero();
   Vector3d low = scene.bodies.front().position_m, high = low;
-  for (const scene::BodySpec& body : scene.bodies) {
-    low = low.cwiseMin(body.position_m);
-    high = high.cwiseMax(body.position_m);
-  }
+  for_each_place(scene, [&](const Vector3d& place) {
+    low = low.cwiseMin(place);
+    high = high.cwiseMax(place);
+  });
   double extent = (high - low).maxCoeff();
   if (extent == 0.0) extent = scene.duration_s * scene.bodies.front().velocity_m_s.norm();   // one body: its way
   const Vector3d middle = low + 0.5 * (high - low);
@@ -28,7 +40,7 @@ Vector3d local_origin(const scene::Scene& scene) {
 }
 
 scene::Scene seen_from(const Vector3d& origin_world, scene::Scene scene) {
-  for (scene::BodySpec& body : scene.bodies) body.position_m -= origin_world;
+  for_each_place(scene, [&](Vector3d& place) { place -= origin_world; });
   for (scene::PointForceSpec& force : scene.point_forces) force.point_m -= origin_world;
   return scene;
 }

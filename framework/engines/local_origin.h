@@ -9,8 +9,8 @@
 
 namespace tumble::engines {
 
-/// A place among the bodies from which theirs are exact differences; zero where the scene stands near the world's
-/// origin, and for scenes with springs, rods or joints. [m]
+/// A place among the bodies, and what they hang from, from which their places are exact differences; zero where the scene stands near the
+/// world's origin. [m]
 Vector3d local_origin(const scene::Scene& scene);
 
 /// The same scene, seen from there.
