@@ -42,6 +42,18 @@ void LastingContacts::begin_where_touching(const std::vector<Pair>& pairs) {
     });
     if (slow) begin(pair, gap);
   }
+  draw_apart();
+}
+
+// A scene's places are rounded: of bodies wedged between others no single shift takes that back.
+void LastingContacts::draw_apart() {
+  std::vector<RigidBodyState> states = moving_.states();
+  const auto closed = [&](const Pair& pair) { return distance_of(pair, states) < 0; };
+  for (const Group& group : groups({lasting_.begin(), lasting_.end()})) {
+    if (std::none_of(group.pairs.begin(), group.pairs.end(), closed)) continue;
+    keep_apart(group, group.pairs, states, moving_.time());
+    for (const int body : group.bodies) moving_.set_state(body, states[body]);
+  }
 }
 
 // Where forces act: on the surface of the body that moves, so that a rolling ball's arm is its radius; between two that move, in the middle.

@@ -37,7 +37,7 @@ class LastingContacts {
 
   /// A collision has become a lasting contact.
   void begin(Pair pair, const collision::Gap& gap);
-  /// Pairs that touch at the start and do not approach faster than the rest speed.
+  /// Pairs that touch at the start and do not approach faster than the rest speed; overlaps of a rounding are taken back.
   void begin_where_touching(const std::vector<Pair>& pairs);
   bool lasts(Pair pair) const { return lasting_.contains(pair); }
 
@@ -134,6 +134,7 @@ class LastingContacts {
   double speed(const Group& group) const;
   std::optional<double> take_step(const Group& group, double h);
   void require_numbers(const Group& group, const ContactSolution& solution) const;
+  void draw_apart();
   bool is_pile(const Group& group) const;
   double room_of(Pair pair) const;
   std::vector<RigidBodyState> middle_of(const Group& group, double h) const;
