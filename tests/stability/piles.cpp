@@ -30,7 +30,6 @@ scene::Scene pile(int n, bool elastic) {
   }
   scene::Scene scene = with_contact("pile", std::move(bodies));
   if (elastic) scene.contact.reset();
-  else scene.contact->plastic_impacts = scene::PlasticImpacts::kInStep;
   return scene;
 }
 
