@@ -17,7 +17,7 @@ class PairCaches {
   }
 
  private:
-  static constexpr std::size_t kMost = 1 << 16;
+  static constexpr std::size_t kMost = 1 << 13;
   std::unordered_map<std::uint64_t, collision::PairCache> known_;   // never iterated over
 };
 
