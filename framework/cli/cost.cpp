@@ -150,7 +150,7 @@ void run_cost(Context& context, const CostWords& words) {
   options.timewarp = engines::fast_timewarp();
   const CostSubject subject = find_subject(context, words);
   options.duration_s = words.duration_s ? words.duration_s : subject.duration_s;
-  fmt::print(stderr, "tumble: the truth of {}\n", subject.scene.name);
+  options.told = [](const std::string& what) { fmt::print(stderr, "tumble: {}\n", what); };
   const CostTruth truth = engines::find_truth(subject.scene, subject.truth_laws, options);
   const std::vector<Ladder> ladders = run_all(subject.scene, subject.ways, truth, words, options);
   tell(context, ladders, truth, words, subject);

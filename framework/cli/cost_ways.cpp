@@ -24,9 +24,9 @@ struct Showcase {
 };
 const std::map<std::string, Showcase> kShowcases = {{"a1", {"collide_off_centre_e05", 2.0}}, {"a2", {"t_handle", 1.0}}, {"a3", {"double_pendulum", 1.0}}};
 
-bool is_none(const std::vector<std::string>& words) { return words.size() == 1 && words.front() == "none"; }
+}  // namespace
 
-CostWay by_method(const Method& method, const Laws& laws) {
+CostWay way_by_method(const Method& method, const Laws& laws) {
   CostWay way;
   way.name = method.name;
   way.word = method.word;
@@ -38,12 +38,11 @@ CostWay by_method(const Method& method, const Laws& laws) {
   return way;
 }
 
-/// What nothing but gravity and impacts moves goes in closed form too.
-bool flies(const scene::Scene& scene) {
+bool goes_in_closed_form(const scene::Scene& scene) {
   return scene.springs.empty() && scene.rods.empty() && scene.joints.empty() && scene.drags.empty() && scene.motors.empty() && scene.point_forces.empty() && !scene.contact;
 }
 
-CostWay by_engine(const std::string& word, const Laws& laws) {
+CostWay way_by_engine(const std::string& word, const Laws& laws) {
   CostWay way;
   way.word = word;
   way.laws = laws;
@@ -60,9 +59,13 @@ CostWay by_engine(const std::string& word, const Laws& laws) {
   return way;
 }
 
+namespace {
+
+bool is_none(const std::vector<std::string>& words) { return words.size() == 1 && words.front() == "none"; }
+
 CostWay by_stabilisation(const std::string& word, const scene::Scene& scene, const Laws& laws) {
   if (!scene.stabilisation) throw UserError("--stabilisations " + word, scene.name + " has no rods and no joints", "Leave the flag out, or take a scene such as double_pendulum.");
-  CostWay way = by_method(method_named("rk4"), laws);
+  CostWay way = way_by_method(method_named("rk4"), laws);
   way.stabilisation = *scene.stabilisation;
   if (word == "none") way.stabilisation->kind = scene::StabilisationKind::kNone;
   else if (word == "baumgarte") way.stabilisation->kind = scene::StabilisationKind::kBaumgarte;
@@ -83,7 +86,7 @@ std::vector<std::string> methods_for(const scene::Scene& scene, const CostWords&
 
 std::vector<std::string> engines_for(const scene::Scene& scene, const CostWords& words) {
   if (!words.engines.empty()) return is_none(words.engines) ? std::vector<std::string>{} : words.engines;
-  if (!flies(scene)) return {};
+  if (!goes_in_closed_form(scene)) return {};
   return engines::fast_timewarp() ? std::vector<std::string>{"auto", "ca", "tw"} : std::vector<std::string>{"auto", "ca"};
 }
 
@@ -95,8 +98,8 @@ CostSubject of_scene(const Context& context, const CostWords& words) {
   subject.title = subject.scene.title;
   subject.truth_laws = chosen.laws;
   subject.connections = chosen.connections;
-  for (const std::string& word : methods_for(subject.scene, words)) subject.ways.push_back(by_method(method_named(word), chosen.laws));
-  for (const std::string& word : engines_for(subject.scene, words)) subject.ways.push_back(by_engine(word, chosen.laws));
+  for (const std::string& word : methods_for(subject.scene, words)) subject.ways.push_back(way_by_method(method_named(word), chosen.laws));
+  for (const std::string& word : engines_for(subject.scene, words)) subject.ways.push_back(way_by_engine(word, chosen.laws));
   for (const std::string& word : words.stabilisations) subject.ways.push_back(by_stabilisation(word, subject.scene, chosen.laws));
   if (subject.ways.empty()) throw UserError("tumble cost " + words.scene, "--methods, --engines and --stabilisations leave nothing to run", "Leave one of them out.");
   return subject;
@@ -106,7 +109,7 @@ CostSubject of_scene(const Context& context, const CostWords& words) {
 void add_module(const Context& context, const modules::ModuleKind& kind, const std::string& word, const std::string& whose, const Laws& laws, const scene::Scene& scene, CostSubject& subject) {
   if (kind.methods.empty()) {
     const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(kind.id + "=" + word, context.registry));
-    CostWay way = by_method(method_named("rk4"), chosen.laws);
+    CostWay way = way_by_method(method_named("rk4"), chosen.laws);
     way.name = fmt::format("{} {}", whose, kind.id);
     subject.ways.push_back(std::move(way));
     subject.connections.insert(subject.connections.end(), chosen.connections.begin(), chosen.connections.end());
@@ -162,7 +165,7 @@ CostSubject of_assignment(const Context& context, const modules::ModuleKind& kin
     subject.note = "This module runs in the sandbox, where each call and each derivative asked for costs some microseconds more: compare its force evaluations, not its CPU time.";
   add_module(context, kind, word, "your", right.laws, subject.scene, subject);
   if (has_reference && word != "reference") add_module(context, kind, "reference", "reference", right.laws, subject.scene, subject);
-  if (!kind.methods.empty()) subject.ways.push_back(by_method(method_named("dopri5"), right.laws));
+  if (!kind.methods.empty()) subject.ways.push_back(way_by_method(method_named("dopri5"), right.laws));
   return subject;
 }
 

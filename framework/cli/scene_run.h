@@ -17,6 +17,9 @@ struct RunWords {
   std::string engine = "rd", propagator;
   std::optional<int> n;                // of a scene whose size is a parameter
   std::optional<double> step_s, duration_s;
+  std::optional<double> accuracy_m, budget_s;        // what is asked for in place of engine, method and step; see planned_run.h
+  std::string method;                  // of integration, in place of the laws' own; empty: theirs
+  std::optional<double> tolerance;     // of a method that has one
   std::string png, sheet, video, trajectory, html;   // files to write; empty: none
   std::string beside;                  // how a second run in the page differs; see run_page.h
   double at_s = -1.0;                  // of the PNG; negative: the end

@@ -75,24 +75,28 @@ RunOptions options_of(const CostWay& way, const CostOptions& options, double fra
 
 }  // namespace
 
-CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, long steps, double tolerance, const CostOptions& options) {
+CostRun run_of(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, long steps, double tolerance, const CostOptions& options) {
   const long samples = static_cast<long>(truth.samples.size()) - 1;
   truths::SteppedScene stepped = truths::in_equal_steps(scene, truth.duration_s, samples * steps, samples);
-  if (way.stabilisation) stepped.scene.stabilisation = way.stabilisation;
-  Laws laws = way.laws;
-  if (way.method) laws.integrate_step = way.method(tolerance);
-  const RunOptions how = options_of(way, options, stepped.frame_rate_hz);
+  CostRun run{std::move(stepped.scene), way.laws, options_of(way, options, stepped.frame_rate_hz)};
+  if (way.stabilisation) run.scene.stabilisation = way.stabilisation;
+  if (way.method) run.laws.integrate_step = way.method(tolerance);
+  return run;
+}
+
+CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, long steps, double tolerance, const CostOptions& options) {
+  const auto [stepped, laws, how] = run_of(scene, way, truth, steps, tolerance, options);
   CostRung rung;
-  rung.step_s = way.has_ladder ? stepped.scene.step_s : kUnset;
+  rung.step_s = way.has_ladder ? stepped.step_s : kUnset;
   if (way.controlled) rung.tolerance = tolerance;
   RunOptions nothing = how;
-  nothing.duration_s = 1e-9 * stepped.scene.step_s;   // what comes before the first step
+  nothing.duration_s = 1e-9 * stepped.step_s;   // what comes before the first step
   double building = std::numeric_limits<double>::infinity(), whole = building;
   try {
     for (int k = 0; k < kRuns && (k == 0 || whole < kShort); ++k) {
       Measurement built, run;
-      run_scene(stepped.scene, laws, nothing, built);
-      run_scene(stepped.scene, laws, how, run);
+      run_scene(stepped, laws, nothing, built);
+      run_scene(stepped, laws, how, run);
       building = std::min(building, built.cpu_s);
       whole = std::min(whole, run.cpu_s);
       if (k > 0) continue;
@@ -111,6 +115,7 @@ CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth
     return rung;
   }
   rung.cpu_s = std::max(1e-6, whole - building);
+  rung.building_s = building;
   return rung;
 }
 
@@ -118,6 +123,8 @@ long first_steps(const scene::Scene& scene, const CostTruth& truth) {
   const double interval = truth.duration_s / static_cast<double>(truth.samples.size() - 1);
   return std::max(1L, std::lround(interval / (kCoarsest * scene.step_s)));
 }
+
+bool steps_are_free(const scene::Scene& scene) { return scene.motors.empty() && !scene.contact && !links_meet(scene); }
 
 long outer_steps(const scene::Scene& scene, const CostTruth& truth) {
   // Motors look between steps, and lasting contacts push once a step: there the step is part of the scene. Rods and joints are held to

@@ -37,6 +37,7 @@ struct CostWay {
 struct CostRung {
   double step_s = kUnset, tolerance = kUnset;
   double error_m = kUnset, cpu_s = kUnset;
+  double building_s = kUnset;                            // models and shapes, before the first step: not in cpu_s
   std::uint64_t evaluations = 0;                         // derivatives of a body's, or of a group of linked bodies', state
   std::vector<double> times, energy_errors;              // by sample [s]; |E - E of the truth| over all the energy there was [-]
   std::map<std::string, double> stage_seconds;
@@ -59,7 +60,10 @@ struct CostOptions {
   std::optional<double> duration_s;  // overrides the scene's
   double budget_s = 45.0;            // CPU of all ladders together
   double most_of_truth_s = 12.0;     // CPU of one run of the truth
+  std::optional<double> frame_rate_hz;   // samples of the truth: the frames of a run (or a little denser, so that they divide the duration); empty: a few
+  bool shorten = true;               // look at less time where the truth does not hold for all of it; else that is refused
   Engine timewarp;
+  std::function<void(const std::string&)> told;   // progress, in words; empty: nobody listens
 };
 
 /// @param laws  right ones: what they do not integrate is part of the truth
@@ -72,6 +76,17 @@ CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth
 /// Steps per sample of a fixed-step ladder, coarse to fine; or the outer step of a controlled method.
 long first_steps(const scene::Scene& scene, const CostTruth& truth);
 long outer_steps(const scene::Scene& scene, const CostTruth& truth);
+
+/// Whether a controlled method may take its steps as it likes: nothing in the scene happens once a step.
+bool steps_are_free(const scene::Scene& scene);
+
+/// The run of a rung as the engines are asked for it: the scene in equal steps, laws and options.
+struct CostRun {
+  scene::Scene scene;
+  Laws laws;
+  RunOptions options;
+};
+CostRun run_of(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, long steps, double tolerance, const CostOptions& options);
 
 /// The whole ladder, coarse to fine: until the truth's floor is reached, or the next rung would take more than the budget.
 /// @param told     called after each rung
