@@ -75,34 +75,42 @@ report::CostCurve curve_of(const Ladder& ladder, const CostTruth& truth, double 
 /// Which method pays at which accuracy.
 std::vector<std::string> verdicts(const report::CostPage& page) {
   std::vector<std::string> words;
-  for (const double mark : {1e-3, 1e-6, 1e-9}) {
+  for (const double mark : page.marks) {
     const report::CostCurve* best = nullptr;
     for (const report::CostCurve& curve : page.curves) {
       const report::CostPoint* point = report::cheapest(curve, mark);
       if (point != nullptr && (best == nullptr || point->cpu_s < report::cheapest(*best, mark)->cpu_s)) best = &curve;
     }
-    if (best == nullptr) words.push_back(fmt::format("{:.0e} m: nothing here gets there.", mark));
-    else words.push_back(fmt::format("{:.0e} m costs {} at least: {}, {}.", mark, report::price_of(report::cheapest(*best, mark)->cpu_s), best->name, report::cheapest(*best, mark)->fineness));
+    if (best == nullptr) words.push_back(fmt::format("{}: nothing here gets there.", report::mark_in_words(page, mark)));
+    else words.push_back(fmt::format("{} costs {} at least: {}, {}.", report::mark_in_words(page, mark), report::price_of(report::cheapest(*best, mark)->cpu_s), best->name, report::cheapest(*best, mark)->fineness));
   }
   return words;
 }
 
 void print(const report::CostPage& page) {
   fmt::print("{:<30} {:>6}  {:<32}", "", "order", "least error");
-  for (const double mark : {1e-3, 1e-6, 1e-9}) fmt::print(" {:>12}", fmt::format("{:.0e} m", mark));
+  for (const double mark : page.marks) fmt::print(" {:>14}", report::mark_in_words(page, mark));
   fmt::print("\n");
   for (const report::CostCurve& curve : page.curves) {
     const report::CostPoint* least = nullptr;
     for (const report::CostPoint& point : curve.points)
       if (point.stopped_by.empty() && std::isfinite(point.error) && (least == nullptr || point.error < least->error)) least = &point;
     fmt::print("{:<30} {:>6}  {:<32}", curve.name, std::isfinite(curve.order) ? fmt::format("{:.2f}", curve.order) : "-",
-               least == nullptr ? "does not get through" : fmt::format("{:.1e} m at {}", least->error, least->fineness));
-    for (const double mark : {1e-3, 1e-6, 1e-9}) {
+               least == nullptr ? "does not get through" : fmt::format("{:.1e}{} at {}", least->error, page.error_unit.empty() ? "" : " m", least->fineness));
+    for (const double mark : page.marks) {
       const report::CostPoint* point = report::cheapest(curve, mark);
-      fmt::print(" {:>12}", point == nullptr ? "-" : report::price_of(point->cpu_s));
+      fmt::print(" {:>14}", point == nullptr ? "-" : report::price_of(point->cpu_s));
     }
     fmt::print("\n");
   }
+}
+
+std::string what_error_is(const CostTruth& truth) {
+  if (truth.by_numbers)
+    return fmt::format("There is no truth to compare places with ({}). So each run is judged as tumble run judges it, and its error is the worst of the scene's numbers over what that number is allowed: up to 1 is right. "
+                       "Where nothing at all is allowed and something is there, a run has no such error and is not drawn.", truth.why_by_numbers);
+  return fmt::format("Errors are against {}: {:.1e} m. The error of a body is how far its centre of mass is out of place, plus the angle by which it is turned wrongly times its radius of gyration; the "
+                     "largest over all movable bodies and samples counts. An error of {:.1e} m, which is as far as bodies move, is no answer, and is not drawn.", truth.what, truth.floor_m, truth.scale_m);
 }
 
 std::vector<Ladder> run_all(const scene::Scene& scene, std::vector<CostWay> ways, const CostTruth& truth, const CostWords& words, const engines::CostOptions& options) {
@@ -112,7 +120,7 @@ std::vector<Ladder> run_all(const scene::Scene& scene, std::vector<CostWay> ways
     const double left = std::max(0.0, until - cpu_seconds()), share = left / static_cast<double>(ways.size() - k);
     Ladder ladder{std::move(ways[k]), {}};
     ladder.rungs = engines::run_ladder(scene, ladder.way, truth, share, options, words.steps_s(), words.tolerances, [&](const CostRung& rung) {
-      const std::string found = rung.stopped_by.empty() ? fmt::format("error {:.1e} m, {}", rung.error_m, report::price_of(rung.cpu_s)) : "stopped";
+      const std::string found = rung.stopped_by.empty() ? fmt::format("error {:.1e}{}, {}", rung.error_m, truth.by_numbers ? " of allowed" : " m", report::price_of(rung.cpu_s)) : "stopped";
       fmt::print(stderr, "{:>2}/{} {:<28} {:<16} {:<28} at most {:.0f} s left\n", k + 1, ways.size(), ladder.way.name, fineness_of(rung), found, std::max(0.0, until - cpu_seconds()));
     });
     ladders.push_back(std::move(ladder));
@@ -125,16 +133,24 @@ void tell(Context& context, const std::vector<Ladder>& ladders, const CostTruth&
   page.title = subject.title;
   page.about = subject.scene.about;
   page.truth = truth.what;
+  page.what_error_is = what_error_is(truth);
+  if (truth.by_numbers) {
+    page.error_name = "worst number over what is allowed";
+    page.error_unit.clear();
+    page.marks = {1.0, 0.1};
+  }
   page.floor = truth.floor_m;
   page.scale = truth.scale_m;
   page.record = context.command_line;
   const double price = middle_price(ladders, truth);
   for (const Ladder& ladder : ladders) page.curves.push_back(curve_of(ladder, truth, price, is_smooth(subject.scene)));
   page.readings = verdicts(page);
-  if (truth.duration_s < truth.asked_s)
-    page.readings.push_back(fmt::format("Looked at are the first {:.3g} s of {:.3g} s: for longer no truth can be computed in doubles, since errors grow too fast there, or it takes too long.", truth.duration_s, truth.asked_s));
+  if (truth.by_numbers) page.readings.push_back("Judged by the scene's own numbers, for there is no truth to compare places with: " + truth.why_by_numbers + ".");
+  else if (truth.duration_s < (1.0 - 1e-9) * truth.asked_s)
+    page.readings.push_back(fmt::format("Looked at are the first {:.3g} s of {:.3g} s: {}.", truth.duration_s, truth.asked_s, truth.shortened_by));
   if (!subject.note.empty()) page.readings.push_back(subject.note);
-  fmt::print("{}\n  error: against {}: {:.1e} m, over {:.3g} s\n", subject.title, truth.what, truth.floor_m, truth.duration_s);
+  if (truth.by_numbers) fmt::print("{}\n  judged by its numbers, over {:.3g} s: the worst of them over what it is allowed [-]\n", subject.title, truth.duration_s);
+  else fmt::print("{}\n  error: against {}: {:.1e} m, over {:.3g} s\n", subject.title, truth.what, truth.floor_m, truth.duration_s);
   print(page);
   for (const report::CostCurve& curve : page.curves) fmt::print("  {}\n", curve.reading);
   for (const std::string& reading : page.readings) fmt::print("{}\n", reading);
@@ -151,7 +167,11 @@ void run_cost(Context& context, const CostWords& words) {
   const CostSubject subject = find_subject(context, words);
   options.duration_s = words.duration_s ? words.duration_s : subject.duration_s;
   options.told = [](const std::string& what) { fmt::print(stderr, "tumble: {}\n", what); };
-  const CostTruth truth = engines::find_truth(subject.scene, subject.truth_laws, options);
+  std::string why;
+  const std::optional<CostTruth> found = engines::try_truth(subject.scene, subject.truth_laws, options, why);
+  if (!found && subject.scene.checks.empty()) throw UserError(subject.scene.name, "there is no truth to compare with (" + why + "), and the scene has no numbers to be judged by", "Give it \"checks\", or a shorter --duration-s.");
+  const CostTruth truth = found ? *found : engines::by_numbers(subject.scene, options, why);
+  if (!found) fmt::print(stderr, "tumble: no truth ({}): runs are judged by the scene's numbers\n", why);
   const std::vector<Ladder> ladders = run_all(subject.scene, subject.ways, truth, words, options);
   tell(context, ladders, truth, words, subject);
 }

@@ -36,7 +36,8 @@ struct CostWay {
 /// One run.
 struct CostRung {
   double step_s = kUnset, tolerance = kUnset;
-  double error_m = kUnset, cpu_s = kUnset;
+  double error_m = kUnset, cpu_s = kUnset;               // error: by numbers [-], see CostTruth
+  std::string worst;                                     // by numbers: which is the worst
   double building_s = kUnset;                            // models and shapes, before the first step: not in cpu_s
   std::uint64_t evaluations = 0;                         // derivatives of a body's, or of a group of linked bodies', state
   std::vector<double> times, energy_errors;              // by sample [s]; |E - E of the truth| over all the energy there was [-]
@@ -46,20 +47,28 @@ struct CostRung {
 };
 
 /// What runs are compared with.
+///
+/// Where no two fine runs agree (an arch of stones, dominoes: which of two corners strikes first hangs on the last digit) there is no such
+/// thing, and runs are judged by the scene's own numbers: then an "error" is the worst of these over what is allowed [-], and up to 1 is right.
 struct CostTruth {
   std::string what;                  // in words
-  std::vector<Frame> samples;
+  bool by_numbers = false;
+  std::string why_by_numbers;
+  long intervals = 0;                // between the samples that runs are looked at
+  std::vector<Frame> samples;        // intervals + 1, or none
   std::vector<double> radii;         // of gyration, by body; NaN for immovable ones [m]
   double floor_m = kUnset;           // its own error
   double scale_m = kUnset;           // how far bodies move: an error of this size is no answer at all
   double duration_s = 0.0;           // looked at
   double asked_s = 0.0;              // that was asked for; more than the former where no truth can be had for so long
+  std::string shortened_by;          // why; empty: it is as long as asked
 };
 
 struct CostOptions {
   std::optional<double> duration_s;  // overrides the scene's
   double budget_s = 45.0;            // CPU of all ladders together
   double most_of_truth_s = 12.0;     // CPU of one run of the truth
+  double most_of_search_s = 18.0;    // CPU of all its runs
   std::optional<double> frame_rate_hz;   // samples of the truth: the frames of a run (or a little denser, so that they divide the duration); empty: a few
   bool shorten = true;               // look at less time where the truth does not hold for all of it; else that is refused
   Engine timewarp;
@@ -69,6 +78,10 @@ struct CostOptions {
 /// @param laws  right ones: what they do not integrate is part of the truth
 /// @throws UserError where no truth can be had even for a short while
 CostTruth find_truth(const scene::Scene& scene, const Laws& laws, const CostOptions& options);
+/// The same, or nothing. @param why  why not, or why only for less time
+std::optional<CostTruth> try_truth(const scene::Scene& scene, const Laws& laws, const CostOptions& options, std::string& why);
+/// To judge by the scene's numbers. @param why  no truth is there
+CostTruth by_numbers(const scene::Scene& scene, const CostOptions& options, const std::string& why);
 
 /// One run of a way. @param steps  per sample, >= 1; @param tolerance  of a controlled way
 CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, long steps, double tolerance, const CostOptions& options);

@@ -16,11 +16,14 @@ namespace tumble::engines {
 namespace {
 
 constexpr double kTight = 1e-13;          // tolerance of the truth: a hundred roundings, below which no method gets better
-constexpr double kGoodFloor = 1e-6;       // of the scale: a truth worse than this is looked for over half the time
+constexpr double kGoodFloor = 1e-6;       // of the scale: a truth worse than this is looked for over less time
+constexpr double kPoorFloor = 1e-4;       // of the scale: one that is better than nothing
 constexpr double kRoundings = 16.0;       // two runs that agree to the last bit may both be off by some
 constexpr int kMostHalvings = 7;
 constexpr long kFewestSamples = 4, kMostSamples = 24;
 constexpr double kStepsASample = 8.0;     // of the scene's own steps
+constexpr double kFramesASecond = 60.0;    // that numbers are judged by
+constexpr double kTellEvery = 1.0;        // s of CPU
 
 bool is_smooth(const scene::Scene& scene) {
   return std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const scene::BodySpec& body) { return body.collides; }) < 2;
@@ -36,6 +39,29 @@ struct Window {
   double duration_s;
   long samples;
   double most_s;
+  const std::function<void(const std::string&)>& told;
+};
+
+/// Records, and says how far it is now and then.
+class WatchedRecorder final : public TrajectorySink {
+ public:
+  WatchedRecorder(const Window& window, const std::function<void(const std::string&)>& told) : window_(window), told_(told), begun_(cpu_seconds()), next_(begun_ + kTellEvery) {}
+  void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override { recorder.begin(info, bodies); }
+  void frame(const Frame& frame) override {
+    recorder.frame(frame);
+    const double now = cpu_seconds();
+    if (!told_ || now < next_) return;
+    next_ = now + kTellEvery;
+    told_(fmt::format("  {:.3g} of {:.3g} s simulated, at most {:.0f} s left for this run", frame.time, window_.duration_s, std::max(0.0, begun_ + window_.most_s - now)));
+  }
+  void event(const Event& event) override { recorder.event(event); }
+  void end(const Counters& counters, const std::string& stopped_by) override { recorder.end(counters, stopped_by); }
+  TrajectoryRecorder recorder;
+
+ private:
+  const Window& window_;
+  const std::function<void(const std::string&)>& told_;
+  double begun_, next_;
 };
 
 struct FinerRun {
@@ -53,22 +79,16 @@ FinerRun run_finely(const scene::Scene& scene, const Laws& laws, const Window& w
     if (cpu_seconds() > until) throw std::runtime_error("it took too long");
     return step(f, t, y, h);
   };
-  TrajectoryRecorder recorder;
-  run_scene(stepped.scene, timed, options, recorder);
-  return {recorder.trajectory().frames, recorder.trajectory().stopped_by};
+  WatchedRecorder watched(window, window.told);
+  run_scene(stepped.scene, timed, options, watched);
+  const Trajectory& run = watched.recorder.trajectory();
+  return {run.frames, run.stopped_by};
 }
 
 double farthest(const std::vector<Frame>& found, const std::vector<Frame>& expected, const std::vector<double>& radii) {
   if (found.size() != expected.size()) return kUnset;
   double most = 0.0;
   for (std::size_t k = 0; k < found.size(); ++k) most = std::max(most, distance_between(found[k], expected[k], radii));
-  return most;
-}
-
-/// How far bodies get from where they were.
-double scale_of(const std::vector<Frame>& frames, const std::vector<double>& radii) {
-  double most = 0.0;
-  for (const Frame& frame : frames) most = std::max(most, distance_between(frame, frames.front(), radii));
   return most;
 }
 
@@ -123,22 +143,39 @@ std::vector<double> radii_of(const scene::Scene& scene) {
   return radii;
 }
 
-/// Takes the pair's samples and floor. @return why these are no truth; empty where they are
-std::string judge_pair(const Pair& pair, CostTruth& truth) {
-  if (const std::string why = pair.run.stopped_by + pair.other.stopped_by; !why.empty()) return why;
+/// Takes as many of the pair's samples as agree to a part of the motion. @return whether these are enough
+bool take(const Pair& pair, double agreement, const Window& window, CostTruth& truth) {
   truth.what = pair.what;
-  truth.samples = pair.run.frames;
-  truth.scale_m = scale_of(truth.samples, truth.radii);
+  truth.floor_m = truth.scale_m = 0.0;
   for (const double radius : truth.radii) truth.scale_m = radius > truth.scale_m ? radius : truth.scale_m;   // of what only rests
-  truth.floor_m = farthest(pair.other.frames, pair.run.frames, truth.radii);
-  truth.floor_m = std::max(truth.floor_m, kRoundings * std::numeric_limits<double>::epsilon() * truth.scale_m);   // NaN stays
-  if (truth.floor_m <= kGoodFloor * truth.scale_m) return "";
-  return fmt::format("two fine runs of it differ by {:.1e} m where bodies move or measure {:.1e} m: errors grow too fast in it, or an impact hangs on the last digit", truth.floor_m, truth.scale_m);
+  std::size_t agreed = 0;
+  double floor = 0.0, scale = truth.scale_m;
+  for (std::size_t k = 0; k < std::min(pair.run.frames.size(), pair.other.frames.size()); ++k) {
+    scale = std::max(scale, distance_between(pair.run.frames[k], pair.run.frames.front(), truth.radii));
+    floor = std::max({distance_between(pair.other.frames[k], pair.run.frames[k], truth.radii), floor, kRoundings * std::numeric_limits<double>::epsilon() * scale});   // NaN stays
+    if (!(floor <= kPoorFloor * scale)) break;
+    if (!(floor <= agreement * scale)) continue;   // what moves on may make up for it
+    agreed = k + 1;
+    truth.floor_m = floor;
+    truth.scale_m = scale;
+  }
+  if (agreed <= static_cast<std::size_t>(kFewestSamples)) return false;
+  truth.samples.assign(pair.run.frames.begin(), pair.run.frames.begin() + static_cast<std::ptrdiff_t>(agreed));
+  truth.intervals = static_cast<long>(agreed) - 1;
+  truth.duration_s = window.duration_s * static_cast<double>(truth.intervals) / static_cast<double>(window.samples);
+  return true;
 }
 
-std::string refused_remedy(const scene::Scene& scene, double duration_s) {
-  return fmt::format("It holds for {0:.4g} s: ask for these with --duration-s {0:.4g}; or leave --accuracy and --budget-s out and judge the scene by its numbers; or see how its error goes with tumble cost {1}.", duration_s, scene.name);
+std::string why_not(const Pair& pair, const CostTruth& truth) {
+  if (const std::string stopped = pair.run.stopped_by + pair.other.stopped_by; !stopped.empty()) return stopped;
+  return fmt::format("two fine runs of it soon differ by more than a millionth of how far bodies move ({:.1e} m at the end): errors grow too fast in it, or an impact hangs on the last digit",
+                     farthest(pair.other.frames, pair.run.frames, truth.radii));
 }
+
+const std::string kNoTruthRemedy = "Leave --accuracy and --budget-s out and judge the scene by its numbers, or see what its steps cost with tumble cost ";
+
+/// Rounded down to what a person would type.
+double holds_for(const CostTruth& truth) { return std::floor(100.0 * truth.duration_s) / 100.0; }
 
 }  // namespace
 
@@ -156,24 +193,47 @@ double distance_between(const Frame& found, const Frame& expected, const std::ve
   return most;
 }
 
-CostTruth find_truth(const scene::Scene& scene, const Laws& laws, const CostOptions& options) {
+std::optional<CostTruth> try_truth(const scene::Scene& scene, const Laws& laws, const CostOptions& options, std::string& why) {
   CostTruth truth;
-  truth.asked_s = truth.duration_s = options.duration_s.value_or(scene.duration_s);
+  truth.asked_s = options.duration_s.value_or(scene.duration_s);
   truth.radii = radii_of(scene);
   const bool closed = knows_closed_forms(scene, laws);
-  std::string why;
-  for (int halving = 0; halving <= kMostHalvings; ++halving, truth.duration_s *= 0.5) {
-    const Window window{truth.duration_s, samples_of(scene, truth.duration_s, options.frame_rate_hz), options.most_of_truth_s};
-    if (options.told) options.told(fmt::format("looking for the truth of {} over {:.3g} s{}", scene.name, truth.duration_s, closed ? ", in closed form" : fmt::format(" (two fine runs, at most {:.0f} s of CPU time each)", window.most_s)));
+  const double until = cpu_seconds() + options.most_of_search_s;
+  double duration = truth.asked_s;
+  for (int halving = 0; halving <= kMostHalvings && cpu_seconds() < until; ++halving, duration *= 0.5) {
+    const Window window{duration, samples_of(scene, duration, options.frame_rate_hz), std::min(options.most_of_truth_s, until - cpu_seconds()), options.told};
+    if (options.told) options.told(fmt::format("the truth of {} over {:.3g} s{}", scene.name, duration, closed ? ", in closed form" : fmt::format(": two fine runs, at most {:.0f} s of CPU time", until - cpu_seconds())));
     const Pair pair = closed ? run_closed(scene, laws, window) : run_converged(scene, laws, window);
-    if (std::string here = judge_pair(pair, truth); !here.empty()) {
-      if (why.empty()) why = here;
-      continue;
+    if (take(pair, kGoodFloor, window, truth) || take(pair, kPoorFloor, window, truth)) {
+      if (truth.intervals < window.samples) truth.shortened_by = why = why.empty() ? why_not(pair, truth) : why;
+      return truth;
     }
-    if (halving > 0 && !options.shorten) throw UserError(scene.name, fmt::format("there is no truth for {:.4g} s of this scene: {}", truth.asked_s, why), refused_remedy(scene, truth.duration_s));
-    return truth;
+    if (why.empty()) why = why_not(pair, truth);
+    truth.shortened_by = why;
   }
-  throw UserError(scene.name, fmt::format("no truth to compare with, even over {:.2g} s: {}", 2.0 * truth.duration_s, why), "Give a shorter --duration-s, or a scene in which less happens at once.");
+  return std::nullopt;
+}
+
+CostTruth find_truth(const scene::Scene& scene, const Laws& laws, const CostOptions& options) {
+  std::string why;
+  const std::optional<CostTruth> truth = try_truth(scene, laws, options, why);
+  if (!truth)
+    throw UserError(scene.name, "no truth to compare with, however short a time is looked at: " + why, options.shorten ? "Compare its judged numbers: tumble cost " + scene.name + " does." : kNoTruthRemedy + scene.name + ".");
+  if (truth->shortened_by.empty() || options.shorten) return *truth;
+  throw UserError(scene.name, fmt::format("there is no truth for {:.4g} s of this scene: {}", truth->asked_s, truth->shortened_by),
+                  fmt::format("It holds for {0:.4g} s: ask for these with --duration-s {0:.4g}; or leave --accuracy and --budget-s out and judge the scene by its numbers; or see how its error goes with tumble cost {1}.", holds_for(*truth), scene.name));
+}
+
+CostTruth by_numbers(const scene::Scene& scene, const CostOptions& options, const std::string& why) {
+  CostTruth truth;
+  truth.asked_s = truth.duration_s = options.duration_s.value_or(scene.duration_s);
+  truth.intervals = samples_of(scene, truth.duration_s, kFramesASecond);
+  truth.by_numbers = true;
+  truth.why_by_numbers = why;
+  truth.what = "what the scene is judged by";
+  truth.floor_m = 0.0;
+  truth.scale_m = std::numeric_limits<double>::infinity();
+  return truth;
 }
 
 }  // namespace tumble::engines
