@@ -17,13 +17,6 @@ namespace {
 
 using engines::CostWay;
 
-/// Where an assignment's module is measured, unless --on says something else.
-struct Showcase {
-  std::string scene;
-  double duration_s;   // long enough to see an order, short enough for Euler's method to show one
-};
-const std::map<std::string, Showcase> kShowcases = {{"a1", {"collide_off_centre_e05", 2.0}}, {"a2", {"t_handle", 1.0}}, {"a3", {"double_pendulum", 1.0}}};
-
 }  // namespace
 
 CostWay way_by_method(const Method& method, const Laws& laws) {
@@ -148,10 +141,9 @@ void add_module(const Context& context, const modules::ModuleKind& kind, const s
 
 CostSubject of_assignment(const Context& context, const modules::ModuleKind& kind, const CostWords& words) {
   CostSubject subject;
-  const auto showcase = kShowcases.find(kind.id);
-  if (words.on.empty() && showcase == kShowcases.end()) throw UserError("tumble cost " + kind.id, "no scene is known on which this assignment is measured", "Name one: --on SCENE.");
-  subject.scene = find_scene(context, words.on.empty() ? showcase->second.scene : words.on, words.n);
-  if (words.on.empty()) subject.duration_s = showcase->second.duration_s;
+  if (words.on.empty() && kind.cost.scene.empty()) throw UserError("tumble cost " + kind.id, "no scene is known on which this assignment is measured", "Name one: --on SCENE.");
+  subject.scene = find_scene(context, words.on.empty() ? kind.cost.scene : words.on, words.n);
+  if (words.on.empty()) subject.duration_s = kind.cost.duration_s;
   const bool has_reference = std::filesystem::exists(context.build / "modules" / (kind.id + "_reference.so"));
   const ChosenLaws right = choose_laws(context, subject.scene, parse_module_words(has_reference ? "reference" : kind.methods.empty() ? "" : kind.id + "=library", context.registry));
   subject.truth_laws = right.laws;

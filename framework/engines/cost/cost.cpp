@@ -15,7 +15,6 @@
 namespace tumble::engines {
 namespace {
 
-constexpr int kRuns = 5;                  // of one rung, at most: the least disturbed counts
 constexpr double kShort = 0.1;            // s: longer runs are not repeated
 constexpr double kCoarsest = 16.0;        // of the scene's own step: where a ladder begins
 constexpr int kMostRungs = 14;
@@ -123,7 +122,7 @@ CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth
   nothing.duration_s = 1e-9 * stepped.step_s;   // what comes before the first step
   double building = std::numeric_limits<double>::infinity(), whole = building;
   try {
-    for (int k = 0; k < kRuns && (k == 0 || whole < kShort); ++k) {
+    for (int k = 0; k < options.runs && (k == 0 || whole < kShort); ++k) {
       Measurement built, run;
       run_scene(stepped, laws, nothing, built);
       run_scene(stepped, laws, how, run);

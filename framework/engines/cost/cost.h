@@ -71,6 +71,7 @@ struct CostOptions {
   double most_of_search_s = 18.0;    // CPU of all its runs
   std::optional<double> frame_rate_hz;   // samples of the truth: the frames of a run (or a little denser, so that they divide the duration); empty: a few
   bool shorten = true;               // look at less time where the truth does not hold for all of it; else that is refused
+  int runs = 5;                      // of a short rung: the least disturbed counts; 1 where only counts matter
   Engine timewarp;
   std::function<void(const std::string&)> told;   // progress, in words; empty: nobody listens
 };

@@ -86,6 +86,13 @@ std::optional<FittedOrder> order_of(const CostWay& way, const std::vector<CostRu
   return way.has_ladder && !truth.by_numbers ? fit_order(h, error, truth.floor_m, kAnswer * truth.scale_m) : std::nullopt;
 }
 
+bool keeps_promise(const CostWay& way, const std::vector<CostRung>& rungs, const CostTruth& truth) {
+  const std::optional<FittedOrder> fit = order_of(way, rungs, truth);
+  const double least = least_error(rungs);
+  if (!fit || fit->order < kNoOrder) return least <= kWrongLimit * truth.floor_m;
+  return std::isnan(way.order) || fit->order >= way.order - kAsPromised;
+}
+
 std::string read_ladder(const CostWay& way, const std::vector<CostRung>& rungs, const CostTruth& truth, bool smooth) {
   if (truth.by_numbers) return of_numbers(way, rungs);
   const double least = least_error(rungs);

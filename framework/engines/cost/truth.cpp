@@ -23,6 +23,9 @@ constexpr int kMostHalvings = 7;
 constexpr long kFewestSamples = 4, kMostSamples = 24;
 constexpr double kStepsASample = 8.0;     // of the scene's own steps
 constexpr double kFramesASecond = 60.0;    // that numbers are judged by
+constexpr double kNextPrice = 2.2;        // of a run with half the step, over the one before
+constexpr double kHelps = 0.7;            // of the floor: less gain from half the step is none
+constexpr double kShareLeft = 0.4;        // of the time: kept for looking at less of the scene
 constexpr double kTellEvery = 1.0;        // s of CPU
 
 bool is_smooth(const scene::Scene& scene) {
@@ -67,6 +70,7 @@ class WatchedRecorder final : public TrajectorySink {
 struct FinerRun {
   std::vector<Frame> frames;
   std::string stopped_by;
+  double cpu_s;
 };
 
 /// @param steps  per sample
@@ -79,10 +83,11 @@ FinerRun run_finely(const scene::Scene& scene, const Laws& laws, const Window& w
     if (cpu_seconds() > until) throw std::runtime_error("it took too long");
     return step(f, t, y, h);
   };
+  const double begun = cpu_seconds();
   WatchedRecorder watched(window, window.told);
   run_scene(stepped.scene, timed, options, watched);
   const Trajectory& run = watched.recorder.trajectory();
-  return {run.frames, run.stopped_by};
+  return {run.frames, run.stopped_by, cpu_seconds() - begun};
 }
 
 double farthest(const std::vector<Frame>& found, const std::vector<Frame>& expected, const std::vector<double>& radii) {
@@ -99,7 +104,7 @@ Laws with_method(Laws laws, const std::string& word) {
 
 /// Two runs of which each is right, as far as it goes, by itself.
 struct Pair {
-  FinerRun run, other;
+  FinerRun run, other{};
   std::string what;
 };
 
@@ -124,16 +129,20 @@ Pair run_closed(const scene::Scene& scene, const Laws& laws, const Window& windo
           "closed form (parabola, free rotation by elliptic functions) from one impact to the next; its floor is what two engines that use it differ by"};
 }
 
+/// Of the coarser of two fine runs.
+long steps_a_sample(const scene::Scene& scene, const Window& window) { return std::max(1L, std::lround(4.0 * window.duration_s / scene.step_s / static_cast<double>(window.samples))); }
+
+std::string two_steps_in_words(long steps, const Window& window) {
+  return fmt::format("a run by Fehlberg 7(8) with tolerance {:.0e} at steps of 1/{:.0f} s; its floor is what twice the step differs by", kTight, static_cast<double>(steps * window.samples) / window.duration_s);
+}
+
 Pair run_converged(const scene::Scene& scene, const Laws& laws, const Window& window) {
-  const long steps = std::max(1L, std::lround(4.0 * window.duration_s / scene.step_s / static_cast<double>(window.samples)));
+  const long steps = steps_a_sample(scene, window);
   Pair pair{run_finely(scene, with_method(laws, "fehlberg78"), window, 2 * steps, {}), {}, ""};
-  if (is_smooth(scene) && pair.run.stopped_by.empty()) {
-    pair.other = run_finely(scene, with_method(laws, "bulirsch-stoer"), window, steps, {});
-    pair.what = fmt::format("a run by Fehlberg 7(8) with tolerance {:.0e}; its floor is what Bulirsch-Stoer with twice the step differs by", kTight);
-  } else if (pair.run.stopped_by.empty()) {
-    pair.other = run_finely(scene, with_method(laws, "fehlberg78"), window, steps, {});
-    pair.what = fmt::format("a run by Fehlberg 7(8) with tolerance {:.0e} at steps of 1/{:.0f} s; its floor is what twice the step differs by", kTight, 2.0 * static_cast<double>(steps * window.samples) / window.duration_s);
-  }
+  if (!pair.run.stopped_by.empty()) return pair;
+  pair.what = two_steps_in_words(2 * steps, window);
+  pair.other = run_finely(scene, with_method(laws, is_smooth(scene) ? "bulirsch-stoer" : "fehlberg78"), window, steps, {});
+  if (is_smooth(scene)) pair.what = fmt::format("a run by Fehlberg 7(8) with tolerance {:.0e}; its floor is what Bulirsch-Stoer with twice the step differs by", kTight);
   return pair;
 }
 
@@ -193,6 +202,37 @@ double distance_between(const Frame& found, const Frame& expected, const std::ve
   return most;
 }
 
+namespace {
+
+bool is_whole(const CostTruth& truth, const Window& window) { return truth.intervals == window.samples; }
+
+/// Takes what a pair shows, if anything.
+bool take_either(const Pair& pair, const Window& window, CostTruth& truth) { return take(pair, kGoodFloor, window, truth) || take(pair, kPoorFloor, window, truth); }
+
+/// Where contacts, rods or motors push once a step, the step itself is what is not fine enough: halves it as long as that helps and there is time.
+void refine(const scene::Scene& scene, const Laws& laws, const Window& window, double until, Pair pair, bool& found, CostTruth& truth) {
+  double price = pair.run.cpu_s;
+  for (long steps = 4 * steps_a_sample(scene, window);; steps *= 2) {
+    const bool is_good = found && is_whole(truth, window) && truth.floor_m <= kGoodFloor * truth.scale_m;
+    if (is_good || !pair.run.stopped_by.empty() || cpu_seconds() + kNextPrice * price > until) return;
+    pair.other = std::move(pair.run);
+    pair.run = run_finely(scene, with_method(laws, "fehlberg78"), window, steps, {});
+    pair.what = two_steps_in_words(steps, window);
+    price = pair.run.cpu_s;
+    CostTruth finer = truth;
+    if (!pair.run.stopped_by.empty() || !take_either(pair, window, finer)) {
+      if (found) return;
+      continue;
+    }
+    const bool helps = !found || finer.intervals > truth.intervals || (finer.intervals == truth.intervals && finer.floor_m < kHelps * truth.floor_m);
+    if (!helps) return;
+    truth = finer;
+    found = true;
+  }
+}
+
+}  // namespace
+
 std::optional<CostTruth> try_truth(const scene::Scene& scene, const Laws& laws, const CostOptions& options, std::string& why) {
   CostTruth truth;
   truth.asked_s = options.duration_s.value_or(scene.duration_s);
@@ -203,13 +243,14 @@ std::optional<CostTruth> try_truth(const scene::Scene& scene, const Laws& laws, 
   for (int halving = 0; halving <= kMostHalvings && cpu_seconds() < until; ++halving, duration *= 0.5) {
     const Window window{duration, samples_of(scene, duration, options.frame_rate_hz), std::min(options.most_of_truth_s, until - cpu_seconds()), options.told};
     if (options.told) options.told(fmt::format("the truth of {} over {:.3g} s{}", scene.name, duration, closed ? ", in closed form" : fmt::format(": two fine runs, at most {:.0f} s of CPU time", until - cpu_seconds())));
-    const Pair pair = closed ? run_closed(scene, laws, window) : run_converged(scene, laws, window);
-    if (take(pair, kGoodFloor, window, truth) || take(pair, kPoorFloor, window, truth)) {
-      if (truth.intervals < window.samples) truth.shortened_by = why = why.empty() ? why_not(pair, truth) : why;
-      return truth;
-    }
-    if (why.empty()) why = why_not(pair, truth);
-    truth.shortened_by = why;
+    Pair pair = closed ? run_closed(scene, laws, window) : run_converged(scene, laws, window);
+    const std::string here = why_not(pair, truth);
+    bool found = take_either(pair, window, truth);
+    if (!closed && !is_smooth(scene)) refine(scene, laws, window, until - kShareLeft * (until - cpu_seconds()), std::move(pair), found, truth);
+    if (why.empty()) why = here;
+    if (!found) continue;
+    if (truth.duration_s < (1.0 - 1e-9) * truth.asked_s) truth.shortened_by = why;
+    return truth;
   }
   return std::nullopt;
 }
