@@ -24,12 +24,14 @@ using modules::AnyModule;
 using modules::ModuleKind;
 
 constexpr double kCoarsest = 1.0 / 8.0;   // s: of the ladder
+constexpr std::size_t kReferenceStyles = 8;   // report/plot.h: the second eight curves
 constexpr int kRungs = 8;                 // halvings down to 1/1024 s
 
 struct Measured {
   CostWay way;
   std::vector<CostRung> rungs;
   std::string story;                      // what ended it; empty: it ran whole
+  bool is_reference = false;
 };
 
 /// The module's own methods, then its laws as a whole: steps alone leave the derivative and the renormalisation unseen.
@@ -62,10 +64,13 @@ std::vector<Measured> measure(const scene::Scene& scene, std::vector<CostWay> wa
   for (int k = 0; k < kRungs; ++k) steps.push_back(kCoarsest * std::pow(0.5, k));
   std::vector<Measured> all;
   for (CostWay& way : ways) {
-    Measured measured{std::move(way), {}, ""};
+    Measured measured{std::move(way), {}, "", false};
     between();
     try {
-      engines::run_ladder(scene, measured.way, truth, 0.0, options, steps, {}, [&](const CostRung& rung) { measured.rungs.push_back(rung); });
+      engines::run_ladder(scene, measured.way, truth, 0.0, options, steps, {}, [&](const CostRung& rung) {
+        measured.rungs.push_back(rung);
+        if (call_log().noted && !rung.not_attempted) throw std::runtime_error(call_log().story);   // it hangs or crashes: once is enough
+      });
     } catch (const std::exception& error) {
       measured.story = error.what();
     }
@@ -87,6 +92,7 @@ CostLine line_of(const Measured& measured, const CostTruth& truth) {
 report::Plot plot_of(const std::vector<Measured>& all, const CostTruth& truth, report::Axis across, const std::string& title, double (*x)(const CostRung&), const std::string& caption) {
   report::Plot plot{title, std::move(across), {"error of places", "m", report::Scale::kLog}, {}, {}, caption};
   for (const Measured& measured : all) {
+    if (measured.is_reference) plot.curves.resize(std::max(plot.curves.size(), kReferenceStyles));   // the submission's colours again, with hollow marks
     const auto fit = engines::order_of(measured.way, measured.rungs, truth);
     report::Curve curve{fit ? fmt::format("{}, order {:.2f}", measured.way.name, fit->order) : measured.way.name, {}, {}, true};
     for (const CostRung& rung : measured.rungs) {
@@ -124,13 +130,19 @@ CostSection measure_cost(const Course& course, const std::string& id, const fs::
   call_log() = CallLog{};
   WorkerConnection connection(worker);
   const AnyModule proxy = kind.make_proxy(connection);
-  std::vector<Measured> all = measure(scene, ways_of(kind, proxy, right, laws_around(course, kind, proxy, "submission", scene), "your"), truth, [&] { connection.reset(); });
+  std::vector<Measured> all = measure(scene, ways_of(kind, proxy, right, laws_around(course, kind, proxy, "submission", scene), "your"), truth, [&] {
+    connection.reset();
+    call_log() = CallLog{};   // each curve by itself
+  });
 
   CostSection section{scene.title, fmt::format("{}: {:.1e} m", truth.what, truth.floor_m), {}, {}};
   for (const Measured& measured : all) section.lines.push_back(line_of(measured, truth));
   if (reference) {
     const Laws whole = laws_around(course, kind, reference, "reference", scene);
-    for (Measured& measured : measure(scene, ways_of(kind, reference, right, whole, "reference"), truth, [] {})) all.push_back(std::move(measured));
+    for (Measured& measured : measure(scene, ways_of(kind, reference, right, whole, "reference"), truth, [] {})) {
+      measured.is_reference = true;
+      all.push_back(std::move(measured));
+    }
   }
   section.plots.push_back(plot_of(all, truth, {"step", "s", report::Scale::kLog}, "Error against the step", [](const CostRung& rung) { return rung.step_s; },
                                   "The slope is the order: halving the step divides the error of a method of order p by 2^p."));

@@ -88,6 +88,31 @@ TEST_F(CommandLine, CostReadsTheOrderOfEachMethodAndDrawsIt) {
   EXPECT_TRUE(holds(page, "Error against CPU time") && holds(page, "the truth&#39;s own error")) << page.size() << " bytes";
 }
 
+TEST_F(CommandLine, AnAccuracyChoosesMethodAndStepAndSaysWhatWasPaid) {
+  const Said said = type("run t_handle --modules a2=library --accuracy 1e-6 --duration-s 2");
+  EXPECT_EQ(said.code, 0) << said.out << said.err;
+  for (const char* words : {"asked    an error of at most 1e-06 m", "truth    closed form", "chosen   ", "paid     ", "the same without looking: "}) EXPECT_TRUE(holds(said.out, words)) << words << '\n' << said.out;
+}
+
+TEST_F(CommandLine, ABudgetChoosesTheLeastErrorForIt) {
+  const Said said = type("run t_handle --modules a2=library --budget-s 2 --duration-s 1");
+  EXPECT_EQ(said.code, 0) << said.out << said.err;
+  EXPECT_TRUE(holds(said.out, "asked    the least error for 2 s of CPU time") && holds(said.out, "the truth's own error")) << said.out;
+}
+
+TEST_F(CommandLine, AnAccuracyRefusesWhatContradictsItAndWhatCannotBe) {
+  const Said both = type("run t_handle --modules a2=library --accuracy 1e-6 --step-s 0.01"), too_fine = type("run t_handle --modules a2=library --accuracy 1e-20 --duration-s 1");
+  EXPECT_EQ(both.code, 2);
+  EXPECT_TRUE(holds(both.err, "it chooses engine, method and step")) << both.err;
+  EXPECT_EQ(too_fine.code, 2);
+  EXPECT_TRUE(holds(too_fine.err, "the truth itself is known to") && holds(too_fine.err, "Ask for ")) << too_fine.err;
+}
+
+TEST_F(CommandLine, AMethodOfTheLibraryCanTakeTheLawsPlace) {
+  EXPECT_TRUE(holds(type("run t_handle --modules a2=library --method dopri5 --tolerance 1e-9 --duration-s 1").out, "motion by Dormand-Prince 5(4) of the library"));
+  EXPECT_TRUE(holds(type("run t_handle --modules a2=library --method dopri5 --duration-s 1").err, "none is given"));
+}
+
 TEST_F(CommandLine, CostRefusesAMethodThatThereIsNot) {
   const Said said = type("cost t_handle --modules library --methods rk5");
   EXPECT_EQ(said.code, 2);

@@ -17,6 +17,7 @@ constexpr int kMostTrims = 3;            // trials between a rung that fails and
 constexpr double kWorthTrimming = 0.9;   // of the price: what saves less is not looked for
 constexpr double kHopeless = 3.0;        // prices: above this of the best one a way that does not yet fulfil the wish is given up
 constexpr int kMostWorse = 2;            // trials in a row that are no better
+constexpr double kAnswer = 0.1;           // of the scale: coarser runs do not show where they lead
 constexpr double kAlike = 1.05;          // errors that differ by less are one: the cheaper run is better
 
 bool is_right(const CostRung& rung) { return rung.stopped_by.empty() && std::isfinite(rung.error_m); }
@@ -99,8 +100,11 @@ void Search::refine(const CostWay& way) {
     }
     if (is_right(now.rung) && now.rung.error_m <= truth_.floor_m) return;   // no truth tells better
     if (is_right(now.rung) && now.rung.cpu_s > (wish_.error_m ? kHopeless * best_price() : *wish_.price_s)) return;
-    worse = now.rung.error_m < least ? 0 : worse + (is_right(now.rung) ? 1 : 0);
-    if (worse >= kMostWorse && least < 1e-3 * truth_.scale_m) return;       // round-off has taken over
+    if (wish_.price_s && found.best && found.best->rung.error_m <= truth_.floor_m && now.rung.cpu_s > found.best->rung.cpu_s) return;
+    const bool is_new = !before || now.rung.evaluations > before->rung.evaluations;   // a tolerance that changes nothing tells nothing
+    const bool falls = now.rung.error_m * kAlike < least;
+    worse = falls ? 0 : worse + (is_right(now.rung) && is_new ? 1 : 0);
+    if (worse >= kMostWorse && least < kAnswer * truth_.scale_m) return;    // round-off has taken over, or it is another motion
     if (is_right(now.rung)) least = std::min(least, now.rung.error_m);
     before = now;
   }

@@ -206,8 +206,14 @@ namespace {
 
 bool is_whole(const CostTruth& truth, const Window& window) { return truth.intervals == window.samples; }
 
-/// Takes what a pair shows, if anything.
-bool take_either(const Pair& pair, const Window& window, CostTruth& truth) { return take(pair, kGoodFloor, window, truth) || take(pair, kPoorFloor, window, truth); }
+/// Takes what a pair shows, if anything: a poor truth of all of it is worth more than a good one of a part.
+bool take_either(const Pair& pair, const Window& window, CostTruth& truth) {
+  CostTruth poor = truth;
+  const bool is_poor = take(pair, kPoorFloor, window, poor);
+  if (take(pair, kGoodFloor, window, truth) && (is_whole(truth, window) || !is_whole(poor, window))) return true;
+  truth = poor;
+  return is_poor;
+}
 
 /// Where contacts, rods or motors push once a step, the step itself is what is not fine enough: halves it as long as that helps and there is time.
 void refine(const scene::Scene& scene, const Laws& laws, const Window& window, double until, Pair pair, bool& found, CostTruth& truth) {
