@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "framework/cli/cost_impacts.h"
 #include "framework/cli/cost_ways.h"
 #include "framework/cli/scene_run.h"
 #include "framework/core/cpu_time.h"
@@ -23,6 +24,9 @@ namespace {
 using engines::CostRung;
 using engines::CostTruth;
 using engines::CostWay;
+
+constexpr double kLeastRung = 2.0;   // s of CPU that any run may take
+constexpr double kLongest = 2.0;     // shares of the budget, likewise
 
 struct Ladder {
   CostWay way;
@@ -96,7 +100,7 @@ void print(const report::CostPage& page) {
     for (const report::CostPoint& point : curve.points)
       if (point.stopped_by.empty() && std::isfinite(point.error) && (least == nullptr || point.error < least->error)) least = &point;
     fmt::print("{:<30} {:>6}  {:<32}", curve.name, std::isfinite(curve.order) ? fmt::format("{:.2f}", curve.order) : "-",
-               least == nullptr ? "does not get through" : fmt::format("{:.1e}{} at {}", least->error, page.error_unit.empty() ? "" : " m", least->fineness));
+               least == nullptr ? "does not get through" : fmt::format("{:.1e}{} at {}", least->error, page.error_unit.empty() ? "" : " " + page.error_unit, least->fineness));
     for (const double mark : page.marks) {
       const report::CostPoint* point = report::cheapest(curve, mark);
       fmt::print(" {:>14}", point == nullptr ? "-" : report::price_of(point->cpu_s));
@@ -117,15 +121,37 @@ std::vector<Ladder> run_all(const scene::Scene& scene, std::vector<CostWay> ways
   std::vector<Ladder> ladders;
   const double begun = cpu_seconds(), until = begun + words.budget_s;
   for (std::size_t k = 0; k < ways.size(); ++k) {
+    if (k > 0 && cpu_seconds() > until) {
+      fmt::print(stderr, "{:>2}/{} {:<28} not run: the budget of {:g} s is used up\n", k + 1, ways.size(), ways[k].name, words.budget_s);
+      continue;
+    }
     const double left = std::max(0.0, until - cpu_seconds()), share = left / static_cast<double>(ways.size() - k);
     Ladder ladder{std::move(ways[k]), {}};
-    ladder.rungs = engines::run_ladder(scene, ladder.way, truth, share, options, words.steps_s(), words.tolerances, [&](const CostRung& rung) {
+    engines::CostOptions own = options;
+    own.most_of_rung_s = std::max(kLeastRung, std::min(left, kLongest * share));
+    ladder.rungs = engines::run_ladder(scene, ladder.way, truth, share, own, words.steps_s(), words.tolerances, [&](const CostRung& rung) {
       const std::string found = rung.stopped_by.empty() ? fmt::format("error {:.1e}{}, {}", rung.error_m, truth.by_numbers ? " of allowed" : " m", report::price_of(rung.cpu_s)) : "stopped";
       fmt::print(stderr, "{:>2}/{} {:<28} {:<16} {:<28} at most {:.0f} s left\n", k + 1, ways.size(), ladder.way.name, fineness_of(rung), found, std::max(0.0, until - cpu_seconds()));
     });
     ladders.push_back(std::move(ladder));
   }
   return ladders;
+}
+
+void print_and_write(const report::CostPage& page, const CostWords& words) {
+  print(page);
+  for (const report::CostCurve& curve : page.curves) fmt::print("  {}\n", curve.reading);
+  for (const std::string& reading : page.readings) fmt::print("{}\n", reading);
+  const std::filesystem::path file = std::filesystem::path(words.out) / words.name() / "index.html";
+  report::write_cost_page(page, file);
+  fmt::print("{}\n", file.string());
+}
+
+void tell_impacts(const Context& context, const CostWords& words) {
+  report::CostPage page = cost_of_impacts(context, words);
+  for (const std::string& verdict : verdicts(page)) page.readings.push_back(verdict);
+  fmt::print("{}\n  {}\n", page.title, page.about);
+  print_and_write(page, words);
 }
 
 void tell(Context& context, const std::vector<Ladder>& ladders, const CostTruth& truth, const CostWords& words, const CostSubject& subject) {
@@ -151,17 +177,13 @@ void tell(Context& context, const std::vector<Ladder>& ladders, const CostTruth&
   if (!subject.note.empty()) page.readings.push_back(subject.note);
   if (truth.by_numbers) fmt::print("{}\n  judged by its numbers, over {:.3g} s: the worst of them over what it is allowed [-]\n", subject.title, truth.duration_s);
   else fmt::print("{}\n  error: against {}: {:.1e} m, over {:.3g} s\n", subject.title, truth.what, truth.floor_m, truth.duration_s);
-  print(page);
-  for (const report::CostCurve& curve : page.curves) fmt::print("  {}\n", curve.reading);
-  for (const std::string& reading : page.readings) fmt::print("{}\n", reading);
-  const std::filesystem::path file = std::filesystem::path(words.out) / words.name() / "index.html";
-  report::write_cost_page(page, file);
-  fmt::print("{}\n", file.string());
+  print_and_write(page, words);
   const auto unwritten = [](const Ladder& ladder) { return !ladder.rungs.empty() && ladder.rungs.back().not_attempted; };
   if (std::any_of(ladders.begin(), ladders.end(), unwritten)) context.exit = ExitCode::kNotAttempted;
 }
 
 void run_cost(Context& context, const CostWords& words) {
+  if (words.scene == kImpactWord) return tell_impacts(context, words);
   engines::CostOptions options;
   options.timewarp = engines::fast_timewarp();
   const CostSubject subject = find_subject(context, words);
@@ -181,10 +203,12 @@ void run_cost(Context& context, const CostWords& words) {
 void add_cost(CLI::App& app, Context& context) {
   auto words = std::make_shared<CostWords>();
   CLI::App* verb = app.add_subcommand("cost", "What accuracy costs: error against CPU time by every method, step and engine, drawn and read");
-  verb->add_option("scene", words->scene, "A scene file, the bare name of one, a scene with a size, or an assignment (a1, a2, a3): the student's module against the reference")->required()->type_name("SCENE");
+  verb->add_option("scene", words->scene, "A scene file, the bare name of one, a scene with a size, an assignment (a1, a2, a3): the student's module against the reference; or toi: root finders on times of impact")->required()->type_name("SCENE");
   verb->add_option("--methods", words->methods, "Methods of integration, with commas: euler, symplectic, midpoint, verlet, rk4, dopri5, fehlberg78, bulirsch-stoer, rosenbrock4 (implicit); none")->delimiter(',');
   verb->add_option("--engines", words->engines, "Beside rd with each method: auto (rd with closed forms), ca, tw; none")->delimiter(',');
   verb->add_option("--stabilisations", words->stabilisations, "What keeps rods and joints together, each with RK4: none, baumgarte, projection")->delimiter(',');
+  verb->add_option("--impacts", words->impacts, "Which root finder looks for impacts, over its tolerance: bisection, newton, toms748")->delimiter(',');
+  verb->add_option("--solvers", words->solvers, "Iterative solvers in place of direct ones, over their tolerance: gradients (rods and joints), sweeps (contacts without friction)")->delimiter(',');
   verb->add_option("--steps", words->steps, "Steps of the ladder [s], as 1/30,1/60,0.001, instead of halvings until the budget is used")->delimiter(',')->type_name("STEPS");
   verb->add_option("--tolerances", words->tolerances, "Tolerances of methods that control their error, instead of 0.1, 0.01, ...")->delimiter(',')->check(CLI::PositiveNumber);
   verb->add_option("--modules", words->modules, "Whose laws, as for tumble run; of an assignment: whose module is looked at (default student)")->type_name("WORDS");

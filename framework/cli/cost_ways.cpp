@@ -10,6 +10,8 @@
 #include "framework/cli/sandboxed_module.h"
 #include "framework/cli/scene_run.h"
 #include "framework/core/error.h"
+#include "framework/dynamics/iterative_solvers.h"
+#include "framework/dynamics/root_methods.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 
 namespace tumble::cli {
@@ -70,6 +72,46 @@ CostWay by_stabilisation(const std::string& word, const scene::Scene& scene, con
   return way;
 }
 
+constexpr double kTightest = 1e-12;   // tolerance of what is not looked at, so that only the axis shows
+
+/// Where impacts come from another root finder. The framework goes on from its answer to the last digit, so that a tolerance changes what is
+/// paid and not what comes out; tumble cost toi shows the finders alone.
+CostWay by_impacts(const std::string& word, const scene::Scene& scene, const Laws& laws) {
+  const RootMethod& root = root_method_named(word);
+  CostWay way;
+  way.name = "impacts by " + root.name;
+  way.word = word;
+  way.controlled = true;
+  way.laws = laws;
+  way.counted = "gap_evaluations";
+  if (goes_in_closed_form(scene)) way.propagator = "auto";
+  else way.method = [](double) { return step_of(method_named("fehlberg78"), kTightest); };
+  way.tuned = [find = root.find](double tolerance, Laws& tuned) {
+    tuned.find_impact_time = [find, tolerance](const ScalarFunction& gap, const ScalarFunction& rate, double low, double high, double) { return find(gap, rate, low, high, tolerance); };
+  };
+  return way;
+}
+
+CostWay by_solver(const std::string& word, const scene::Scene& scene, const Laws& laws) {
+  const bool linked = !scene.rods.empty() || !scene.joints.empty();
+  CostWay way = way_by_method(method_named("fehlberg78"), laws);
+  way.method = [](double) { return step_of(method_named("fehlberg78"), kTightest); };
+  way.word = word;
+  way.order = kUnset;
+  if (word == "gradients" && linked) {
+    way.name = "links by conjugate gradients";
+    way.tuned = solve_links_by_gradients;
+  } else if (word == "sweeps" && scene.contact) {
+    way.name = "contacts by sweeps";
+    way.tuned = solve_contacts_by_sweeps;
+  } else if (word == "gradients" || word == "sweeps") {
+    throw UserError("--solvers " + word, scene.name + (word == "sweeps" ? " has no lasting contacts" : " has no rods and no joints"), word == "sweeps" ? "Take a scene such as beam_on_two_supports." : "Take a scene such as chain_8.");
+  } else {
+    throw UserError("--solvers " + word, "expected gradients (of rods and joints) or sweeps (of contacts without friction)", "For example --solvers gradients.");
+  }
+  return way;
+}
+
 std::vector<std::string> methods_for(const scene::Scene& scene, const CostWords& words) {
   if (!words.methods.empty()) return is_none(words.methods) ? std::vector<std::string>{} : words.methods;
   std::vector<std::string> chosen = {"euler", "symplectic", "midpoint", "rk4", "dopri5", "fehlberg78", "bulirsch-stoer"};
@@ -94,7 +136,9 @@ CostSubject of_scene(const Context& context, const CostWords& words) {
   for (const std::string& word : methods_for(subject.scene, words)) subject.ways.push_back(way_by_method(method_named(word), chosen.laws));
   for (const std::string& word : engines_for(subject.scene, words)) subject.ways.push_back(way_by_engine(word, chosen.laws));
   for (const std::string& word : words.stabilisations) subject.ways.push_back(by_stabilisation(word, subject.scene, chosen.laws));
-  if (subject.ways.empty()) throw UserError("tumble cost " + words.scene, "--methods, --engines and --stabilisations leave nothing to run", "Leave one of them out.");
+  for (const std::string& word : words.impacts) subject.ways.push_back(by_impacts(word, subject.scene, chosen.laws));
+  for (const std::string& word : words.solvers) subject.ways.push_back(by_solver(word, subject.scene, chosen.laws));
+  if (subject.ways.empty()) throw UserError("tumble cost " + words.scene, "--methods, --engines and the other axes leave nothing to run", "Leave one of them out.");
   return subject;
 }
 

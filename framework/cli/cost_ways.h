@@ -14,7 +14,7 @@ namespace tumble::cli {
 struct CostWords {
   std::string scene;                     // or an assignment's id
   std::string modules, on, out = "out/cost";
-  std::vector<std::string> methods, engines, stabilisations, steps;   // empty: what suits the scene
+  std::vector<std::string> methods, engines, stabilisations, impacts, solvers, steps;   // empty: what suits the scene
   std::vector<double> tolerances;
   std::optional<double> duration_s;
   std::optional<int> n;

@@ -87,7 +87,7 @@ Table table_of_stages(const CostPage& page) {
 }
 
 std::string all_points(const CostPage& page) {
-  std::string text = fmt::format("{:32} {:16} {:>12} {:>10} {:>14}\n", "", "", page.error_unit.empty() ? "error [-]" : "error [m]", "CPU", "evaluations");
+  std::string text = fmt::format("{:32} {:16} {:>12} {:>10} {:>14}\n", "", "", fmt::format("error [{}]", page.error_unit.empty() ? "-" : page.error_unit), "CPU", "evaluations");
   for (const CostCurve& curve : page.curves)
     for (const CostPoint& point : curve.points) {
       text += fmt::format("{:32} {:16} ", curve.name, point.fineness);
@@ -137,20 +137,27 @@ void write_cost_page(const CostPage& cost, const std::filesystem::path& file) {
   for (const std::string& reading : cost.readings) page.paragraph(reading);
   page.plot(plot_of_price(cost));
   page.table(table_of_prices(cost));
-  page.heading("Order");
-  page.plot(drawn(cost, {"step", "s", Scale::kLog}, "Error against the step", [](const CostPoint& point) { return point.step; }, "The slope is the order: halving the step divides the error of a method of order p by 2^p. Methods that choose their own steps are not in this picture."));
+  const bool by_step = cost.finer.name == "step";
+  page.heading(by_step ? "Order" : "Tolerance");
+  page.plot(drawn(cost, cost.finer, "Error against the " + cost.finer.name, [](const CostPoint& point) { return point.step; },
+                  by_step ? "The slope is the order: halving the step divides the error of a method of order p by 2^p. Methods that choose their own steps are not in this picture."
+                          : "What a finder is asked for, and what it gives. What has no tolerance is not in this picture."));
   for (const CostCurve& curve : cost.curves)
     if (!curve.reading.empty()) page.paragraph(curve.reading);
-  page.heading("Force evaluations");
-  page.plot(drawn(cost, {"derivatives asked for", "-", Scale::kLog}, "Error against force evaluations", [](const CostPoint& point) { return point.evaluations; }, "What a method costs on any machine. Closed forms ask for none, and are not in this picture."));
-  page.heading("Energy");
-  page.plot(plot_of_energy(cost));
-  page.heading("Where the time went");
-  page.table(table_of_stages(cost));
+  page.heading("Evaluations");
+  page.plot(drawn(cost, {cost.counted, "-", Scale::kLog}, "Error against evaluations", [](const CostPoint& point) { return point.evaluations; }, "What a method costs on any machine. Closed forms ask for none, and are not in this picture."));
+  const auto has_energy = [](const CostCurve& curve) { return !curve.times.empty(); };
+  if (std::any_of(cost.curves.begin(), cost.curves.end(), has_energy)) {
+    page.heading("Energy");
+    page.plot(plot_of_energy(cost));
+    page.heading("Where the time went");
+    page.table(table_of_stages(cost));
+  }
   page.heading("How it was measured");
   page.paragraph(cost.about);
   page.paragraph(cost.what_error_is);
-  page.paragraph("CPU time is that of the engine without models and shapes, the best of up to five runs; samples are part of it. On this machine, in this run: ratios matter.");
+  if (!cost.what_price_is.empty()) page.paragraph(cost.what_price_is);
+  else page.paragraph("CPU time is that of the engine without models and shapes, the best of up to five runs; samples are part of it. On this machine, in this run: ratios matter.");
   page.fold("Every run", all_points(cost));
   page.record(cost.record);
   page.write(file);

@@ -36,6 +36,9 @@ struct CostPage {
   std::string error_name = "error of places", error_unit = "m";
   std::vector<double> marks = {1e-3, 1e-6, 1e-9};   // errors whose price is asked
   std::string what_error_is;         // in a sentence
+  std::string what_price_is;         // the same; empty: the engine's
+  Axis finer = {"step", "s", Scale::kLog};           // what makes runs finer: CostPoint::step
+  std::string counted = "derivatives asked for";     // CostPoint::evaluations
   double floor;                      // of the truth [m]
   double scale;                      // errors above it are no answer, and not drawn [m]
   std::vector<CostCurve> curves;

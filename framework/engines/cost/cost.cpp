@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -103,6 +104,15 @@ RunOptions options_of(const CostWay& way, const CostOptions& options, double fra
   return how;
 }
 
+/// Stops a run that takes too long. The clock is looked at rarely enough to cost nothing.
+StepFunction until_too_long(const StepFunction& step, double most_s) {
+  constexpr int kEach = 64;
+  return [step, until = cpu_seconds() + most_s, most_s, calls = 0](const OdeFunction& f, double t, const VectorXd& y, double h) mutable {
+    if (++calls % kEach == 0 && cpu_seconds() > until) throw std::runtime_error(fmt::format("it would take more than {:.0f} s", most_s));
+    return step(f, t, y, h);
+  };
+}
+
 }  // namespace
 
 CostRun run_of(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, long steps, double tolerance, const CostOptions& options) {
@@ -110,6 +120,8 @@ CostRun run_of(const scene::Scene& scene, const CostWay& way, const CostTruth& t
   CostRun run{std::move(stepped.scene), way.laws, options_of(way, options, stepped.frame_rate_hz)};
   if (way.stabilisation) run.scene.stabilisation = way.stabilisation;
   if (way.method) run.laws.integrate_step = way.method(tolerance);
+  if (way.tuned) way.tuned(tolerance, run.laws);
+  if (std::isfinite(options.most_of_rung_s)) run.laws.integrate_step = until_too_long(run.laws.integrate_step, options.most_of_rung_s);
   return run;
 }
 
@@ -131,7 +143,7 @@ CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth
       if (k > 0) continue;
       rung.stopped_by = run.run().stopped_by;
       rung.stage_seconds = run.run().counters.stage_seconds;
-      const auto evaluations = run.run().counters.counts.find("derivative_evaluations");
+      const auto evaluations = run.run().counters.counts.find(way.counted);
       rung.evaluations = evaluations == run.run().counters.counts.end() ? 0 : evaluations->second;
       if (truth.by_numbers) judge(judged_part(scene, truth), run.run(), rung);
       else compare(run.run().frames, truth, rung);

@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -26,6 +27,8 @@ struct CostWay {
   std::string word;                                      // what a flag called it
   std::string engine = "rd", propagator = "laws";
   std::function<StepFunction(double tolerance)> method;  // in place of the laws' integration; empty: theirs, or a closed form
+  std::function<void(double tolerance, Laws& laws)> tuned;   // puts what else depends on the tolerance into the laws: a root finder, a solver
+  std::string counted = "derivative_evaluations";        // which counter its evaluations are
   double order = kUnset;                                 // that the method promises; NaN: none
   bool controlled = false;                               // its ladder is of tolerances, not of steps
   bool has_ladder = true;                                // false: there is nothing to refine
@@ -39,7 +42,7 @@ struct CostRung {
   double error_m = kUnset, cpu_s = kUnset;               // error: by numbers [-], see CostTruth
   std::string worst;                                     // by numbers: which is the worst
   double building_s = kUnset;                            // models and shapes, before the first step: not in cpu_s
-  std::uint64_t evaluations = 0;                         // derivatives of a body's, or of a group of linked bodies', state
+  std::uint64_t evaluations = 0;                         // derivatives of a body's, or of a group of linked bodies', state; or what the way counts
   std::vector<double> times, energy_errors;              // by sample [s]; |E - E of the truth| over all the energy there was [-]
   std::map<std::string, double> stage_seconds;
   std::string stopped_by;                                // empty: ran to the end
@@ -71,6 +74,7 @@ struct CostOptions {
   double most_of_search_s = 18.0;    // CPU of all its runs
   std::optional<double> frame_rate_hz;   // samples of the truth: the frames of a run (or a little denser, so that they divide the duration); empty: a few
   bool shorten = true;               // look at less time where the truth does not hold for all of it; else that is refused
+  double most_of_rung_s = std::numeric_limits<double>::infinity();   // CPU of one run: longer ones are stopped, where they integrate
   int runs = 5;                      // of a short rung: the least disturbed counts; 1 where only counts matter
   Engine timewarp;
   std::function<void(const std::string&)> told;   // progress, in words; empty: nobody listens
