@@ -213,6 +213,13 @@ scene::Scene find_scene(const Context& context, const std::string& word, std::op
   throw UserError(word, "more than one scene begins like this: " + names, "Give more of the name.");
 }
 
+std::vector<std::string> scene_names(const Context& context) {
+  std::vector<std::string> names;
+  for (const fs::path& file : scenes_of(context)) names.push_back(file.stem().string());
+  for (const scene::SizedScene& sized : scene::sized_scenes()) names.push_back(sized.name);
+  return names;
+}
+
 void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const RunWords& words, const std::string& extra) {
   const PictureSize size = parse_size(words.size);   // refused before the run, not after it
   check_page_words(context, words);

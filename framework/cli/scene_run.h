@@ -47,6 +47,9 @@ Vector3d parse_vector(const std::string& flag, const std::string& text);
 /// @throws UserError naming the scenes there are, or that a scene has one size only
 scene::Scene find_scene(const Context& context, const std::string& word, std::optional<int> n = std::nullopt);
 
+/// The names of every scene there is: those of the assignments, then those with a size.
+std::vector<std::string> scene_names(const Context& context);
+
 /// Runs the scene, writes the files asked for, prints the summary and sets context.exit.
 /// @param extra  a line of talk that stands in the summary under the title (may be empty)
 void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const RunWords& words, const std::string& extra = "");
