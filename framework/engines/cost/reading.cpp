@@ -36,7 +36,7 @@ bool stays(const std::vector<CostRung>& rungs) {
 
 /// Of what shows no order because nothing is left to show.
 std::string of_exact(const CostWay& way, double least, const CostTruth& truth) {
-  if (least > kRoundOff * truth.scale_m) return fmt::format("{} is as good as the truth at every step: {:.1e} m.", way.name, least);
+  if (least > kRoundOff * truth.scale_m) return fmt::format("{} gets as close as the truth can tell: {:.1e} m.", way.name, least);
   return fmt::format("{} is exact here, to round-off: {:.1e} m.", way.name, least);
 }
 

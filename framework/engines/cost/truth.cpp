@@ -177,7 +177,7 @@ bool take(const Pair& pair, double agreement, const Window& window, CostTruth& t
 
 std::string why_not(const Pair& pair, const CostTruth& truth) {
   if (const std::string stopped = pair.run.stopped_by + pair.other.stopped_by; !stopped.empty()) return stopped;
-  return fmt::format("two fine runs of it soon differ by more than a millionth of how far bodies move ({:.1e} m at the end): errors grow too fast in it, or an impact hangs on the last digit",
+  return fmt::format("two fine runs of it do not stay together ({:.1e} m apart at the end): errors grow too fast in it, or an impact hangs on the last digit",
                      farthest(pair.other.frames, pair.run.frames, truth.radii));
 }
 
