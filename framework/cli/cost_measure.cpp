@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/cli/read_truth.h"
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
 #include "framework/engines/cost/cost.h"
@@ -99,6 +100,16 @@ std::vector<Ladder> run_all(const scene::Scene& scene, std::vector<CostWay> ways
   return ladders;
 }
 
+/// A file of tests/truths about the same problem tells the truth's error better than two runs of one engine do.
+void check_with_files(const Context& context, const CostSubject& subject, CostTruth& truth) {
+  const std::filesystem::path folder = context.root / "tests" / "truths";
+  if (!std::filesystem::is_directory(folder)) return;
+  for (const auto& file : find_truths(folder)) {
+    const truths::Case known = read_truth(file);
+    engines::check_truth(subject.scene, subject.truth_laws, truths::known_places(subject.scene, known), "tests/truths/" + file.filename().string(), truth);
+  }
+}
+
 report::CostPage page_of(const Context& context, const std::vector<Ladder>& ladders, const CostTruth& truth, const CostSubject& subject) {
   report::CostPage page;
   page.title = subject.title;
@@ -153,8 +164,9 @@ MeasuredCost measure_cost(const Context& context, const CostWords& words) {
   std::string why;
   const std::optional<CostTruth> found = engines::try_truth(subject.scene, subject.truth_laws, options, why);
   if (!found && subject.scene.checks.empty()) throw UserError(subject.scene.name, "there is no truth to compare with (" + why + "), and the scene has no numbers to be judged by", "Give it \"checks\", or a shorter --duration-s.");
-  const CostTruth truth = found ? *found : engines::by_numbers(subject.scene, options, why);
+  CostTruth truth = found ? *found : engines::by_numbers(subject.scene, options, why);
   if (!found) fmt::print(stderr, "tumble: no truth ({}): runs are judged by the scene's numbers\n", why);
+  if (found) check_with_files(context, subject, truth);
   const std::vector<Ladder> ladders = run_all(subject.scene, subject.ways, truth, words, options);
   MeasuredCost measured;
   measured.page = page_of(context, ladders, truth, subject);

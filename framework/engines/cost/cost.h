@@ -18,6 +18,7 @@
 
 #include "framework/dynamics/methods.h"
 #include "framework/engines/run.h"
+#include "framework/engines/truths/known_places.h"
 
 namespace tumble::engines {
 
@@ -85,6 +86,9 @@ struct CostOptions {
 CostTruth find_truth(const scene::Scene& scene, const Laws& laws, const CostOptions& options);
 /// The same, or nothing. @param why  why not, or why only for less time
 std::optional<CostTruth> try_truth(const scene::Scene& scene, const Laws& laws, const CostOptions& options, std::string& why);
+/// Holds a truth against places that are known from outside: what it is off by is its own error, where that is more than was estimated.
+/// @param source  of the places, for people. Those later than the truth's end are not looked at
+void check_truth(const scene::Scene& scene, const Laws& laws, const std::vector<truths::KnownPlace>& places, const std::string& source, CostTruth& truth);
 /// To judge by the scene's numbers. @param why  no truth is there
 CostTruth by_numbers(const scene::Scene& scene, const CostOptions& options, const std::string& why);
 

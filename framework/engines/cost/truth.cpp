@@ -271,6 +271,25 @@ CostTruth find_truth(const scene::Scene& scene, const Laws& laws, const CostOpti
                   fmt::format("It holds for {0:.4g} s: ask for these with --duration-s {0:.4g}; or leave --accuracy and --budget-s out and judge the scene by its numbers; or see how its error goes with tumble cost {1}.", holds_for(*truth), scene.name));
 }
 
+void check_truth(const scene::Scene& scene, const Laws& laws, const std::vector<truths::KnownPlace>& places, const std::string& source, CostTruth& truth) {
+  const Laws fine = with_method(laws, "fehlberg78");
+  std::optional<Frame> frame;
+  double off = 0.0;
+  int instants = 0;
+  for (const truths::KnownPlace& place : places) {
+    if (place.time_s > truth.duration_s * (1.0 + 1e-12)) continue;
+    if (!frame || frame->time != place.time_s) {
+      frame = truths::frame_at(scene, fine, place.time_s);
+      frame->time = place.time_s;   // a rounding beside it
+      ++instants;
+    }
+    off = std::max(off, (frame->poses.at(place.body).com_world - place.com_world).norm());
+  }
+  if (instants == 0) return;
+  truth.floor_m = std::max(truth.floor_m, off);
+  truth.what += fmt::format(", or what {} differs by where it knows the place ({} instant{}: {:.1e} m)", source, instants, instants == 1 ? "" : "s", off);
+}
+
 CostTruth by_numbers(const scene::Scene& scene, const CostOptions& options, const std::string& why) {
   CostTruth truth;
   truth.asked_s = truth.duration_s = options.duration_s.value_or(scene.duration_s);
