@@ -133,8 +133,9 @@ CostSubject of_scene(const Context& context, const CostWords& words) {
   subject.title = subject.scene.title;
   subject.truth_laws = chosen.laws;
   subject.connections = chosen.connections;
-  for (const std::string& word : methods_for(subject.scene, words)) subject.ways.push_back(way_by_method(method_named(word), chosen.laws));
+  // Closed forms first: they cost little, and stand where a budget ends early.
   for (const std::string& word : engines_for(subject.scene, words)) subject.ways.push_back(way_by_engine(word, chosen.laws));
+  for (const std::string& word : methods_for(subject.scene, words)) subject.ways.push_back(way_by_method(method_named(word), chosen.laws));
   for (const std::string& word : words.stabilisations) subject.ways.push_back(by_stabilisation(word, subject.scene, chosen.laws));
   for (const std::string& word : words.impacts) subject.ways.push_back(by_impacts(word, subject.scene, chosen.laws));
   for (const std::string& word : words.solvers) subject.ways.push_back(by_solver(word, subject.scene, chosen.laws));

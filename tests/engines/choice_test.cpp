@@ -131,5 +131,45 @@ TEST(ByNumbers, WhereNothingIsAllowedAndSomethingIsThereARunIsWrong) {
   EXPECT_TRUE(std::isinf(rung.error_m)) << rung.error_m;
 }
 
+/// A case in memory, as a truth file gives it: one bob on a rod of a metre, released from the horizontal.
+truths::Case pendulum_case(const std::string& mass) {
+  using truths::Value;
+  const auto text = [](const std::string& words) { return Value("test", words); };
+  const auto input = [&](const std::string& name, const Value& value) { return std::pair<std::string, Value>(name, Value("test", Value::Members{{"value", value}})); };
+  const auto list = [&](const std::vector<std::string>& numbers) {
+    Value::List all;
+    for (const std::string& number : numbers) all.push_back(text(number));
+    return Value("test", all);
+  };
+  truths::Case known;
+  known.family = "chain";
+  known.inputs = Value("test", Value::Members{input("masses", list({mass})), input("lengths", list({"1"})), input("g", text("9.81")), input("theta0", list({"1.57079632679489661923132169164"})),
+                                              input("omega0", list({"0"})), input("times", list({"0.5"}))});
+  known.outputs = Value("test", Value::Members{input("positions_t0.5", Value("test", Value::List{list({"0.5", "-0.866"})}))});
+  return known;
+}
+
+TEST(KnownPlaces, AreThoseOfTheSameProblemOnly) {
+  const scene::Scene scene = truths::straight_chain({2.0}, 1.0, Vector3d::UnitX(), Vector3d(0.0, 0.0, -9.81));
+  const auto places = truths::known_places(scene, pendulum_case("2"));
+  ASSERT_EQ(places.size(), 1u);
+  EXPECT_EQ(places[0].time_s, 0.5);
+  EXPECT_EQ(places[0].com_world, Vector3d(0.5, 0.0, -0.866));
+  EXPECT_TRUE(truths::known_places(scene, pendulum_case("2.001")).empty());
+  EXPECT_TRUE(truths::known_places(truths::straight_chain({2.0}, 1.0, Vector3d::UnitX(), Vector3d(0.0, 0.0, -9.8)), pendulum_case("2")).empty());
+  EXPECT_TRUE(truths::known_places(truths::straight_chain({2.0}, 1.0, -Vector3d::UnitZ(), Vector3d(0.0, 0.0, -9.81)), pendulum_case("2")).empty());
+}
+
+TEST(KnownPlaces, WidenTheErrorOfATruthThatMissesThem) {
+  CostTruth truth = engines::find_truth(tumbling(), library_laws(), {});
+  const double before = truth.floor_m;
+  const Vector3d there = Vector3d(1.0, 0.0, 0.0) * 0.5;   // the top flies at 1 m/s
+  engines::check_truth(tumbling(), library_laws(), {{0.5, 0, there}, {7.0, 0, there}}, "a file", truth);   // the second is beyond the truth's end
+  EXPECT_LT(truth.floor_m, before + 1e-14);
+  engines::check_truth(tumbling(), library_laws(), {{0.5, 0, there + Vector3d(0.0, 1e-5, 0.0)}}, "a wrong file", truth);
+  EXPECT_NEAR(truth.floor_m, 1e-5, 1e-12);
+  EXPECT_NE(truth.what.find("a wrong file"), std::string::npos) << truth.what;
+}
+
 }  // namespace
 }  // namespace tumble::testing
