@@ -36,7 +36,7 @@ Cell cell_of(const report::CostPage& page, double mark) {
   const report::CostCurve* curve = cheapest_curve(page, mark);
   if (curve == nullptr) return {"\u2013", "", Look::kMuted};
   const report::CostPoint* point = report::cheapest(*curve, mark);
-  return {fmt::format("{} {}, {}", report::price_of(point->cpu_s), curve->name, point->fineness)};
+  return {fmt::format("{}: {}, {}", report::price_of(point->cpu_s), curve->name, point->fineness)};
 }
 
 /// Scene, then a cell a mark; a scene without a truth says what being right costs.
