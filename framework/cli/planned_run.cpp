@@ -78,7 +78,7 @@ std::string price_of(const CostChoice& choice) { return report::price_of(choice.
 /// The words that make the run again without a search.
 std::string flags_of(const CostChoice& choice) {
   if (choice.way.engine != "rd") return "--engine " + choice.way.engine;
-  const std::string step = fmt::format("--step-s {:.6g}", choice.rung.step_s);
+  const std::string step = fmt::format("--step-s {:.17g}", choice.rung.step_s);
   if (choice.way.propagator == "auto") return "--propagator auto " + step;
   if (!choice.way.method) return step;
   return fmt::format("--method {} {}{}", choice.way.word, choice.way.controlled ? fmt::format("--tolerance {:.3g} ", choice.tolerance) : "", step);

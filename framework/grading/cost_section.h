@@ -27,8 +27,8 @@ struct CostSection {
 };
 
 struct CostSectionOptions {
-  double call_wall_s = 2.0;             // a call that takes longer has hung: it ends its own curve
-  double session_wall_s = 20.0;         // of all calls of one curve; right ones take less than a second
+  double call_wall_s = 3.0;             // a call that takes longer has hung: it ends its own curve
+  double session_wall_s = 60.0;         // of all calls of one curve; right ones take less than a second on an idle machine
 };
 
 /// Measures a module where it says that this is done (ModuleKind::cost). Its calls go to the sandbox; what hangs or crashes there ends its
