@@ -10,6 +10,8 @@
 #include "framework/cli/sandboxed_module.h"
 #include "framework/cli/scene_run.h"
 #include "framework/core/error.h"
+#include "framework/dynamics/iterative_solvers.h"
+#include "framework/dynamics/root_methods.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 
 namespace tumble::cli {
@@ -17,16 +19,9 @@ namespace {
 
 using engines::CostWay;
 
-/// Where an assignment's module is measured, unless --on says something else.
-struct Showcase {
-  std::string scene;
-  double duration_s;   // long enough to see an order, short enough for Euler's method to show one
-};
-const std::map<std::string, Showcase> kShowcases = {{"a1", {"collide_off_centre_e05", 2.0}}, {"a2", {"t_handle", 1.0}}, {"a3", {"double_pendulum", 1.0}}};
+}  // namespace
 
-bool is_none(const std::vector<std::string>& words) { return words.size() == 1 && words.front() == "none"; }
-
-CostWay by_method(const Method& method, const Laws& laws) {
+CostWay way_by_method(const Method& method, const Laws& laws) {
   CostWay way;
   way.name = method.name;
   way.word = method.word;
@@ -38,12 +33,11 @@ CostWay by_method(const Method& method, const Laws& laws) {
   return way;
 }
 
-/// What nothing but gravity and impacts moves goes in closed form too.
-bool flies(const scene::Scene& scene) {
+bool goes_in_closed_form(const scene::Scene& scene) {
   return scene.springs.empty() && scene.rods.empty() && scene.joints.empty() && scene.drags.empty() && scene.motors.empty() && scene.point_forces.empty() && !scene.contact;
 }
 
-CostWay by_engine(const std::string& word, const Laws& laws) {
+CostWay way_by_engine(const std::string& word, const Laws& laws) {
   CostWay way;
   way.word = word;
   way.laws = laws;
@@ -60,9 +54,13 @@ CostWay by_engine(const std::string& word, const Laws& laws) {
   return way;
 }
 
+namespace {
+
+bool is_none(const std::vector<std::string>& words) { return words.size() == 1 && words.front() == "none"; }
+
 CostWay by_stabilisation(const std::string& word, const scene::Scene& scene, const Laws& laws) {
   if (!scene.stabilisation) throw UserError("--stabilisations " + word, scene.name + " has no rods and no joints", "Leave the flag out, or take a scene such as double_pendulum.");
-  CostWay way = by_method(method_named("rk4"), laws);
+  CostWay way = way_by_method(method_named("rk4"), laws);
   way.stabilisation = *scene.stabilisation;
   if (word == "none") way.stabilisation->kind = scene::StabilisationKind::kNone;
   else if (word == "baumgarte") way.stabilisation->kind = scene::StabilisationKind::kBaumgarte;
@@ -71,6 +69,46 @@ CostWay by_stabilisation(const std::string& word, const scene::Scene& scene, con
   way.name = word == "none" ? "RK4, no stabilisation" : word == "baumgarte" ? fmt::format("RK4, Baumgarte {:g} s", way.stabilisation->time_constant_s) : "RK4, projection";
   way.word = word;
   way.order = kUnset;   // the stabilisation may set it
+  return way;
+}
+
+constexpr double kTightest = 1e-12;   // tolerance of what is not looked at, so that only the axis shows
+
+/// Where impacts come from another root finder. The framework goes on from its answer to the last digit, so that a tolerance changes what is
+/// paid and not what comes out; tumble cost toi shows the finders alone.
+CostWay by_impacts(const std::string& word, const scene::Scene& scene, const Laws& laws) {
+  const RootMethod& root = root_method_named(word);
+  CostWay way;
+  way.name = "impacts by " + root.name;
+  way.word = word;
+  way.controlled = true;
+  way.laws = laws;
+  way.counted = "gap_evaluations";
+  if (goes_in_closed_form(scene)) way.propagator = "auto";
+  else way.method = [](double) { return step_of(method_named("fehlberg78"), kTightest); };
+  way.tuned = [find = root.find](double tolerance, Laws& tuned) {
+    tuned.find_impact_time = [find, tolerance](const ScalarFunction& gap, const ScalarFunction& rate, double low, double high, double) { return find(gap, rate, low, high, tolerance); };
+  };
+  return way;
+}
+
+CostWay by_solver(const std::string& word, const scene::Scene& scene, const Laws& laws) {
+  const bool linked = !scene.rods.empty() || !scene.joints.empty();
+  CostWay way = way_by_method(method_named("fehlberg78"), laws);
+  way.method = [](double) { return step_of(method_named("fehlberg78"), kTightest); };
+  way.word = word;
+  way.order = kUnset;
+  if (word == "gradients" && linked) {
+    way.name = "links by conjugate gradients";
+    way.tuned = solve_links_by_gradients;
+  } else if (word == "sweeps" && scene.contact) {
+    way.name = "contacts by sweeps";
+    way.tuned = solve_contacts_by_sweeps;
+  } else if (word == "gradients" || word == "sweeps") {
+    throw UserError("--solvers " + word, scene.name + (word == "sweeps" ? " has no lasting contacts" : " has no rods and no joints"), word == "sweeps" ? "Take a scene such as beam_on_two_supports." : "Take a scene such as chain_8.");
+  } else {
+    throw UserError("--solvers " + word, "expected gradients (of rods and joints) or sweeps (of contacts without friction)", "For example --solvers gradients.");
+  }
   return way;
 }
 
@@ -83,7 +121,7 @@ std::vector<std::string> methods_for(const scene::Scene& scene, const CostWords&
 
 std::vector<std::string> engines_for(const scene::Scene& scene, const CostWords& words) {
   if (!words.engines.empty()) return is_none(words.engines) ? std::vector<std::string>{} : words.engines;
-  if (!flies(scene)) return {};
+  if (!goes_in_closed_form(scene)) return {};
   return engines::fast_timewarp() ? std::vector<std::string>{"auto", "ca", "tw"} : std::vector<std::string>{"auto", "ca"};
 }
 
@@ -95,10 +133,13 @@ CostSubject of_scene(const Context& context, const CostWords& words) {
   subject.title = subject.scene.title;
   subject.truth_laws = chosen.laws;
   subject.connections = chosen.connections;
-  for (const std::string& word : methods_for(subject.scene, words)) subject.ways.push_back(by_method(method_named(word), chosen.laws));
-  for (const std::string& word : engines_for(subject.scene, words)) subject.ways.push_back(by_engine(word, chosen.laws));
+  // Closed forms first: they cost little, and stand where a budget ends early.
+  for (const std::string& word : engines_for(subject.scene, words)) subject.ways.push_back(way_by_engine(word, chosen.laws));
+  for (const std::string& word : methods_for(subject.scene, words)) subject.ways.push_back(way_by_method(method_named(word), chosen.laws));
   for (const std::string& word : words.stabilisations) subject.ways.push_back(by_stabilisation(word, subject.scene, chosen.laws));
-  if (subject.ways.empty()) throw UserError("tumble cost " + words.scene, "--methods, --engines and --stabilisations leave nothing to run", "Leave one of them out.");
+  for (const std::string& word : words.impacts) subject.ways.push_back(by_impacts(word, subject.scene, chosen.laws));
+  for (const std::string& word : words.solvers) subject.ways.push_back(by_solver(word, subject.scene, chosen.laws));
+  if (subject.ways.empty()) throw UserError("tumble cost " + words.scene, "--methods, --engines and the other axes leave nothing to run", "Leave one of them out.");
   return subject;
 }
 
@@ -106,7 +147,7 @@ CostSubject of_scene(const Context& context, const CostWords& words) {
 void add_module(const Context& context, const modules::ModuleKind& kind, const std::string& word, const std::string& whose, const Laws& laws, const scene::Scene& scene, CostSubject& subject) {
   if (kind.methods.empty()) {
     const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(kind.id + "=" + word, context.registry));
-    CostWay way = by_method(method_named("rk4"), chosen.laws);
+    CostWay way = way_by_method(method_named("rk4"), chosen.laws);
     way.name = fmt::format("{} {}", whose, kind.id);
     subject.ways.push_back(std::move(way));
     subject.connections.insert(subject.connections.end(), chosen.connections.begin(), chosen.connections.end());
@@ -145,10 +186,9 @@ void add_module(const Context& context, const modules::ModuleKind& kind, const s
 
 CostSubject of_assignment(const Context& context, const modules::ModuleKind& kind, const CostWords& words) {
   CostSubject subject;
-  const auto showcase = kShowcases.find(kind.id);
-  if (words.on.empty() && showcase == kShowcases.end()) throw UserError("tumble cost " + kind.id, "no scene is known on which this assignment is measured", "Name one: --on SCENE.");
-  subject.scene = find_scene(context, words.on.empty() ? showcase->second.scene : words.on, words.n);
-  if (words.on.empty()) subject.duration_s = showcase->second.duration_s;
+  if (words.on.empty() && kind.cost.scene.empty()) throw UserError("tumble cost " + kind.id, "no scene is known on which this assignment is measured", "Name one: --on SCENE.");
+  subject.scene = find_scene(context, words.on.empty() ? kind.cost.scene : words.on, words.n);
+  if (words.on.empty()) subject.duration_s = kind.cost.duration_s;
   const bool has_reference = std::filesystem::exists(context.build / "modules" / (kind.id + "_reference.so"));
   const ChosenLaws right = choose_laws(context, subject.scene, parse_module_words(has_reference ? "reference" : kind.methods.empty() ? "" : kind.id + "=library", context.registry));
   subject.truth_laws = right.laws;
@@ -162,7 +202,7 @@ CostSubject of_assignment(const Context& context, const modules::ModuleKind& kin
     subject.note = "This module runs in the sandbox, where each call and each derivative asked for costs some microseconds more: compare its force evaluations, not its CPU time.";
   add_module(context, kind, word, "your", right.laws, subject.scene, subject);
   if (has_reference && word != "reference") add_module(context, kind, "reference", "reference", right.laws, subject.scene, subject);
-  if (!kind.methods.empty()) subject.ways.push_back(by_method(method_named("dopri5"), right.laws));
+  if (!kind.methods.empty()) subject.ways.push_back(way_by_method(method_named("dopri5"), right.laws));
   return subject;
 }
 

@@ -14,7 +14,7 @@ namespace tumble::cli {
 struct CostWords {
   std::string scene;                     // or an assignment's id
   std::string modules, on, out = "out/cost";
-  std::vector<std::string> methods, engines, stabilisations, steps;   // empty: what suits the scene
+  std::vector<std::string> methods, engines, stabilisations, impacts, solvers, steps;   // empty: what suits the scene
   std::vector<double> tolerances;
   std::optional<double> duration_s;
   std::optional<int> n;
@@ -36,6 +36,13 @@ struct CostSubject {
   std::vector<engines::CostWay> ways;
   std::vector<std::shared_ptr<void>> connections;   // to sandboxes
 };
+
+/// A method of the library in place of the laws' own.
+engines::CostWay way_by_method(const Method& method, const Laws& laws);
+/// @param word  auto (rd with closed forms), ca, tw, ordered
+engines::CostWay way_by_engine(const std::string& word, const Laws& laws);
+/// What nothing but gravity and impacts moves goes in closed form too.
+bool goes_in_closed_form(const scene::Scene& scene);
 
 /// @throws UserError naming what is not known, or does not suit the scene
 CostSubject find_subject(const Context& context, const CostWords& words);

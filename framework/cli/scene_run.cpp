@@ -13,12 +13,13 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/cli/judgement_table.h"
+#include "framework/cli/planned_run.h"
 #include "framework/cli/run_page.h"
 #include "framework/cli/scene_pictures.h"
+#include "framework/core/cpu_time.h"
 #include "framework/core/nearest_word.h"
 #include "framework/engines/judge.h"
 #include "framework/engines/run.h"
-#include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/grading/worker_connection.h"
 #include "framework/scene/load_scene.h"
 #include "framework/scene/sized_scenes.h"
@@ -29,8 +30,8 @@ namespace {
 namespace fs = std::filesystem;
 using engines::CheckResult;
 
-std::string modules_line(const ChosenLaws& chosen) {
-  return fmt::format("impulses by {} · motion by {}", chosen.laws.impulse_source, chosen.laws.integrator_source);
+std::string modules_line(const Laws& laws) {
+  return fmt::format("impulses by {} · motion by {}", laws.impulse_source, laws.integrator_source);
 }
 
 const char* name_of(EventKind kind) {
@@ -72,11 +73,12 @@ void print_counts(const std::map<std::string, std::uint64_t>& counts) {
   if (column != 0) fmt::print("\n");
 }
 
-void print_summary(const scene::Scene& scene, const ChosenLaws& chosen, const Trajectory& run, const std::vector<CheckResult>& checks, const std::string& extra) {
+void print_summary(const scene::Scene& scene, const Laws& laws, const Trajectory& run, const std::vector<CheckResult>& checks, const std::string& extra, const std::string& searched) {
   fmt::print("{}\n", scene.title);
   if (!extra.empty()) fmt::print("  {}\n", extra);
   if (!scene.about.empty()) fmt::print("  {}\n", scene.about);
-  fmt::print("  laws     {}\n", modules_line(chosen));
+  fmt::print("  laws     {}\n", modules_line(laws));
+  fmt::print("{}", searched);
   const double end = run.frames.empty() ? 0.0 : run.frames.back().time;
   fmt::print("  run      engine {}, step {:.6g} s, {:.6g} s simulated, {} bodies, {} frames\n", run.info.engine, run.info.step_s, end, run.bodies.size(), run.frames.size());
   std::string events;
@@ -88,7 +90,7 @@ void print_summary(const scene::Scene& scene, const ChosenLaws& chosen, const Tr
   fmt::print("{}", judgement_table(checks));
 }
 
-void print_json(const scene::Scene& scene, const ChosenLaws& chosen, const Trajectory& run, const std::vector<CheckResult>& checks) {
+void print_json(const scene::Scene& scene, const PlannedRun& plan, const Trajectory& run, const std::vector<CheckResult>& checks, double cpu_s) {
   nlohmann::ordered_json page;
   page["scene"] = scene.name;
   page["title"] = scene.title;
@@ -96,8 +98,8 @@ void print_json(const scene::Scene& scene, const ChosenLaws& chosen, const Traje
   page["command"] = run.info.command;
   page["version"] = run.info.version;
   page["engine"] = run.info.engine;
-  page["impulse_source"] = chosen.laws.impulse_source;
-  page["integrator_source"] = chosen.laws.integrator_source;
+  page["impulse_source"] = plan.laws.impulse_source;
+  page["integrator_source"] = plan.laws.integrator_source;
   page["step_s"] = run.info.step_s;
   page["end_s"] = run.frames.empty() ? 0.0 : run.frames.back().time;
   page["bodies"] = run.bodies.size();
@@ -105,6 +107,7 @@ void print_json(const scene::Scene& scene, const ChosenLaws& chosen, const Traje
   page["counts"] = run.counters.counts;
   page["notices"] = run.counters.notices;
   page["stopped_by"] = run.stopped_by;
+  if (plan.search) page["search"] = search_as_json(*plan.search, run, cpu_s);
   page["checks"] = nlohmann::json::array();
   for (const auto& check : checks)   // a value that is not finite becomes null
     page["checks"].push_back({{"kind", check.kind}, {"subject", check.subject}, {"value", check.value}, {"threshold", check.threshold}, {"unit", check.unit},
@@ -210,32 +213,36 @@ scene::Scene find_scene(const Context& context, const std::string& word, std::op
   throw UserError(word, "more than one scene begins like this: " + names, "Give more of the name.");
 }
 
+std::vector<std::string> scene_names(const Context& context) {
+  std::vector<std::string> names;
+  for (const fs::path& file : scenes_of(context)) names.push_back(file.stem().string());
+  for (const scene::SizedScene& sized : scene::sized_scenes()) names.push_back(sized.name);
+  return names;
+}
+
 void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const RunWords& words, const std::string& extra) {
   const PictureSize size = parse_size(words.size);   // refused before the run, not after it
   check_page_words(context, words);
-  engines::RunOptions options;
-  options.engine = words.engine;
-  options.propagator = words.propagator;
-  options.timewarp = engines::fast_timewarp();
-  options.step_s = words.step_s;
-  options.duration_s = words.duration_s;
-  options.command = context.command_line;
+  for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
+  const PlannedRun plan = plan_run(context, scene, chosen, words);
   TrajectoryRecorder recorder;
   const auto start = std::chrono::steady_clock::now();
-  for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
+  const double cpu_before = cpu_seconds();
   std::string ended;   // why a submission gave no answer
   try {
-    engines::run_scene(scene, chosen.laws, options, recorder);
+    engines::run_scene(plan.scene, plan.laws, plan.options, recorder);
   } catch (const grading::CallEnded& error) {
     ended = error.what();
   }
+  const double cpu_s = cpu_seconds() - cpu_before;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   Trajectory run = recorder.trajectory();
   if (!ended.empty()) run.stopped_by = ended;
 
   const auto checks = engines::judge_run(judged_part(scene, words), run);
-  if (words.json) print_json(scene, chosen, run, checks);
-  else print_summary(scene, chosen, run, checks, extra);
+  const std::string searched = plan.search ? search_in_words(*plan.search, run, cpu_s) : "";
+  if (words.json) print_json(scene, plan, run, checks, cpu_s);
+  else print_summary(scene, plan.laws, run, checks, extra, searched);
   std::fflush(stdout);
 
   fmt::print(stderr, "ran in {:.2f} s", seconds);

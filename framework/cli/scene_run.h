@@ -17,6 +17,9 @@ struct RunWords {
   std::string engine = "rd", propagator;
   std::optional<int> n;                // of a scene whose size is a parameter
   std::optional<double> step_s, duration_s;
+  std::optional<double> accuracy_m, budget_s;        // what is asked for in place of engine, method and step; see planned_run.h
+  std::string method;                  // of integration, in place of the laws' own; empty: theirs
+  std::optional<double> tolerance;     // of a method that has one
   std::string png, sheet, video, trajectory, html;   // files to write; empty: none
   std::string beside;                  // how a second run in the page differs; see run_page.h
   double at_s = -1.0;                  // of the PNG; negative: the end
@@ -43,6 +46,9 @@ Vector3d parse_vector(const std::string& flag, const std::string& text);
 /// @param n     that size; nothing: its default
 /// @throws UserError naming the scenes there are, or that a scene has one size only
 scene::Scene find_scene(const Context& context, const std::string& word, std::optional<int> n = std::nullopt);
+
+/// The names of every scene there is: those of the assignments, then those with a size.
+std::vector<std::string> scene_names(const Context& context);
 
 /// Runs the scene, writes the files asked for, prints the summary and sets context.exit.
 /// @param extra  a line of talk that stands in the summary under the title (may be empty)

@@ -80,6 +80,8 @@ Grade grade_submission(const Course& course, const std::string& id, const Submis
   if (options.media && grade.state == GradeState::kJudged)
     grade.media = make_media(course, id, options.scenes.empty() ? scenes_of(course, id) : options.scenes, object.path, folder / "media", options.media_options);
 
+  if (grade.state == GradeState::kJudged) grade.cost = measure_cost(course, id, object.path);
+
   const GradeKey key{submission_digest(submission), grader_digest(course, id, options.budget_s), pictures_digest(course, id, options)};
   const std::string results = gradescope_json(grade);
   write_whole(folder / "results.json", results);

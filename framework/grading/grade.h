@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/grading/cost_section.h"
 #include "framework/grading/course.h"
 #include "framework/grading/media.h"
 #include "framework/grading/verdict.h"
@@ -56,6 +57,7 @@ struct Grade {
   std::vector<std::string> notes;
   std::vector<ScoredTest> tests;     // in the rubric's order
   std::vector<SceneMedia> media;
+  CostSection cost;                  // on the page only, not in the record
   double score = 0.0, possible = 0.0;
   bool taken_over = false;           // nothing had changed since an earlier run: its results stand
   std::string change;                // "80 -> 85: the grader changed"; empty where there was no other result before

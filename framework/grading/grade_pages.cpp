@@ -137,9 +137,20 @@ void add_media(report::Page& page, const std::vector<SceneMedia>& media, const s
   }
 }
 
+void add_cost(report::Page& page, const CostSection& cost) {
+  if (cost.scene.empty()) return;
+  page.heading("What accuracy costs", 2, "cost");
+  for (const CostLine& line : cost.lines) page.paragraph(line.reading, line.is_right ? Look::kGood : line.is_attempted ? Look::kBad : Look::kMuted);
+  if (std::none_of(cost.lines.begin(), cost.lines.end(), [](const CostLine& line) { return line.is_attempted; })) return;
+  for (const report::Plot& plot : cost.plots) page.plot(plot);
+  page.paragraph(fmt::format("Measured on: {}. Errors are against {}; an error is how far a body's centre of mass is out of place, plus the angle by which it is turned wrongly times its radius of gyration. "
+                             "This part shows; no points hang on it.", cost.scene, cost.truth), Look::kMuted);
+}
+
 report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade, const std::string& record) {
   report::Page page(plain_name(grade.name), fmt::format("{} ({}): {}", kind.title, kind.id, summary_of(grade)));
   page.links({{"All submissions", "../index.html"}, {"Tests", "#tests"}, {"Stories", "#stories"}, {"Scenes", "#scenes"}});
+  if (!grade.cost.scene.empty()) page.links({{"What accuracy costs", "#cost"}});
   add_tiles(page, grade);
   for (const std::string& note : grade.notes) page.paragraph("Note: " + plain_text(note), Look::kWarning);
   if (!grade.story.empty()) {
@@ -152,6 +163,7 @@ report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade
   if (grade.state == GradeState::kJudged) add_stories(page, grade);
   if (grade.state != GradeState::kJudged) page.paragraph("No test ran.", Look::kMuted);
   else if (count(grade, Verdict::kRight) == grade.tests.size()) page.paragraph("Every test is right.", Look::kGood);
+  add_cost(page, grade.cost);
   page.heading("Scenes", 2, "scenes");
   if (grade.media.empty()) page.paragraph("No scene was run.", Look::kMuted);
   add_media(page, grade.media, "media");

@@ -20,6 +20,9 @@ void add_stories(report::Page& page, const Grade& grade);
 /// @param folder  of the media, relative to the page
 void add_media(report::Page& page, const std::vector<SceneMedia>& media, const std::filesystem::path& folder);
 
+/// Nothing where nothing was measured.
+void add_cost(report::Page& page, const CostSection& cost);
+
 /// "12.5 of 100", "fault of the grader", ...: one line on how it went.
 std::string summary_of(const Grade& grade);
 

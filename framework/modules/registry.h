@@ -28,6 +28,13 @@ struct NamedMethod {
   std::function<std::function<VectorXd(const OdeFunction&, double, const VectorXd&, double)>(const AnyModule&)> step;
 };
 
+/// Where what accuracy costs is measured of a module: a scene for so long that an order shows, and so short that a method of the first does too.
+struct CostShowcase {
+  std::string scene;                       // a bare name; empty: nobody said
+  double duration_s = 0.0;
+  bool is_graded = false;                  // a part of each graded report: where the module sets how errors shrink with the step
+};
+
 /// All that the framework can do with a module without knowing its header.
 struct ModuleKind {
   std::string id;                          // "a1"
@@ -41,6 +48,7 @@ struct ModuleKind {
   /// Families of truths (engines/truths) whose values this module's functions give directly, by name.
   std::map<std::string, std::function<void(const AnyModule&, const truths::Case&, truths::Comparison&)>> truth_families;
   std::vector<NamedMethod> methods;        // empty where the module is not about integration
+  CostShowcase cost;
 };
 
 class Registry {
@@ -78,6 +86,8 @@ class Registry {
   void add_method(const std::string& name, double order, Member Module::*function) {
     kinds_.at(Module::kId).methods.push_back({name, order, [function](const AnyModule& module) { return static_cast<const Module*>(module.get())->*function; }});
   }
+
+  void show_cost(const std::string& id, const CostShowcase& showcase) { kinds_.at(id).cost = showcase; }
 
   /// @throws UserError naming the known ids
   const ModuleKind& find(const std::string& id) const;

@@ -2,11 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
 namespace tumble::render {
 namespace {
+
+constexpr double kLineSpacing = 1.25;   // of the size of letters
 
 std::string engine_name(const std::string& id) {
   if (id == "rd") return "retroactive detection";
@@ -29,6 +33,15 @@ std::string made_by(const TrajectoryInfo& info) {
   return text;
 }
 
+/// Words in as many lines as they need, two at most: what does not fit into the second is cut short.
+std::vector<std::string> in_lines(const TextWriter& writer, const std::string& text, double size, double room, bool bold) {
+  if (writer.width(text, size, bold) <= room) return {text};
+  std::size_t end = std::string::npos;   // of the first line: the last space that it has room for
+  for (std::size_t space = text.find(' '); space != std::string::npos && writer.width(text.substr(0, space), size, bold) <= room; space = text.find(' ', space + 1)) end = space;
+  if (end == std::string::npos) return {writer.fitted(text, size, room, bold)};
+  return {text.substr(0, end), writer.fitted(text.substr(end + 1), size, room, bold)};
+}
+
 }  // namespace
 
 void write_captions(Image& image, const TextWriter& writer, const scene::Scene& scene, const Trajectory& run, const Stage& stage,
@@ -44,21 +57,24 @@ void write_captions(Image& image, const TextWriter& writer, const scene::Scene& 
   writer.write(image, time, margin, h - margin, words == Words::kAll ? 15.0 * unit : small, kDark, Align::kLeft, true);
   if (words == Words::kTimeOnly) return;
 
-  double label_width = 0.0;
-  if (!label.empty()) {
-    label_width = writer.width(label, large * 0.9, true) + margin;
-    writer.write(image, label, w - margin, margin + large * 0.8, large * 0.9, kDark, Align::kRight, true);
-  }
+  // Of a run beside another the label stands below the title, which has the whole width: half a picture is too narrow for both.
   const std::string& title = scene.title.empty() ? scene.name : scene.title;
-  writer.write(image, writer.fitted(title, large, w - 2 * margin - label_width, true), margin, margin + large * 0.8, large, kDark, Align::kLeft, true);
+  double baseline = margin + large * 0.8;
+  for (const std::string& part : in_lines(writer, title, large, w - 2 * margin, true)) {
+    writer.write(image, part, margin, baseline, large, kDark, Align::kLeft, true);
+    baseline += kLineSpacing * large;
+  }
+  if (!label.empty()) writer.write(image, writer.fitted(label, large * 0.9, w - 2 * margin, true), margin, baseline, large * 0.9, kSoft, Align::kLeft, true);
 
   std::string right = made_by(run.info);
   if (stage.grid_spacing_m() > 0.0 && !stage.has_scale_bar()) right = fmt::format("grid {:g} m · ", stage.grid_spacing_m()) + right;
   const double room = w - 3 * margin - writer.width(time, 15.0 * unit, true);
-  writer.write(image, writer.fitted(right, small, room), w - margin, h - margin, small, kSoft, Align::kRight);
+  std::vector<std::string> made = in_lines(writer, right, small, room, false);
+  double from_below = h - margin;
+  for (auto line = made.rbegin(); line != made.rend(); ++line, from_below -= kLineSpacing * small) writer.write(image, *line, w - margin, from_below, small, kSoft, Align::kRight);
 
   if (!run.stopped_by.empty() && frame + 1 == run.frames.size())
-    writer.write(image, writer.fitted("stopped: " + run.stopped_by, small * 1.15, w - 2 * margin, true), margin, h - margin - 22.0 * unit, small * 1.15,
+    writer.write(image, writer.fitted("stopped: " + run.stopped_by, small * 1.15, w - 2 * margin, true), margin, from_below - 10.0 * unit, small * 1.15,
                  kAlarm, Align::kLeft, true);
 }
 

@@ -12,11 +12,10 @@
 namespace tumble::report {
 namespace {
 
-constexpr double kMarks[] = {1e-3, 1e-6, 1e-9};   // m
 constexpr double kExact = 1e-17;                  // m: an error of nothing at all is drawn here
 
 Plot drawn(const CostPage& page, Axis across, const std::string& title, double (*x)(const CostPoint&), const std::string& caption) {
-  Plot plot{title, std::move(across), {"error of places", "m", Scale::kLog}, {}, {}, caption};
+  Plot plot{title, std::move(across), {page.error_name, page.error_unit, Scale::kLog}, {}, {}, caption};
   for (const CostCurve& curve : page.curves) {
     Curve line{std::isfinite(curve.order) ? fmt::format("{}, order {:.2f}", curve.name, curve.order) : curve.name, {}, {}, true};
     for (const CostPoint& point : curve.points) {
@@ -27,12 +26,13 @@ Plot drawn(const CostPage& page, Axis across, const std::string& title, double (
     if (line.x.empty()) line.name.clear();   // its place stays, so that a method looks the same in all pictures
     plot.curves.push_back(std::move(line));
   }
+  if (page.error_unit.empty()) plot.limits.push_back({1.0, "right below"});
   if (page.floor > 0) plot.limits.push_back({page.floor, "the truth's own error"});
   return plot;
 }
 
 Plot plot_of_energy(const CostPage& page) {
-  Plot plot{"Energy against time, at about the same price", {"time", "s"}, {"|E - E of the truth| / energy", "", Scale::kLog}, {}, {}, "Each curve is the run of its method that comes closest to the middle price of all: "};
+  Plot plot{"Energy against time, at about the same price", {"time", "s"}, {page.error_unit.empty() ? "|E - E at the start| / energy" : "|E - E of the truth| / energy", "-", Scale::kLog}, {}, {}, "Each curve is the run of its method that comes closest to the middle price of all: "};
   std::string which;
   for (const CostCurve& curve : page.curves) {
     plot.curves.push_back({curve.times.empty() ? "" : curve.name, curve.times, curve.energy_errors});
@@ -45,12 +45,13 @@ Plot plot_of_energy(const CostPage& page) {
 
 Table table_of_prices(const CostPage& page) {
   Table table;
-  table.caption = "CPU time for an error of at most 1e-3, 1e-6, 1e-9 m, and what was needed for it. \u2013: it does not get there.";
+  table.caption = "CPU time for an error of at most this much, and what was needed for it. \u2013: it does not get there.";
+  if (page.error_unit.empty()) table.caption = "CPU time for a run that is right by all its numbers, or uses up a tenth of what they allow, and what was needed for it. \u2013: it does not get there.";
   table.columns = {{""}, {"order", true}};
-  for (const double mark : kMarks) table.columns.insert(table.columns.end(), {{fmt::format("1e{:.0f} m", std::log10(mark)), true}, {"by"}});
+  for (const double mark : page.marks) table.columns.insert(table.columns.end(), {{mark_in_words(page, mark), true}, {"by"}});
   for (const CostCurve& curve : page.curves) {
     std::vector<Cell> cells{{curve.name}, {std::isfinite(curve.order) ? fmt::format("{:.2f}", curve.order) : "\u2013"}};
-    for (const double mark : kMarks) {
+    for (const double mark : page.marks) {
       const CostPoint* point = cheapest(curve, mark);
       double best = std::numeric_limits<double>::infinity();
       for (const CostCurve& other : page.curves)
@@ -86,7 +87,7 @@ Table table_of_stages(const CostPage& page) {
 }
 
 std::string all_points(const CostPage& page) {
-  std::string text = fmt::format("{:32} {:16} {:>12} {:>10} {:>14}\n", "", "", "error [m]", "CPU", "evaluations");
+  std::string text = fmt::format("{:32} {:16} {:>12} {:>10} {:>14}\n", "", "", fmt::format("error [{}]", page.error_unit.empty() ? "-" : page.error_unit), "CPU", "evaluations");
   for (const CostCurve& curve : page.curves)
     for (const CostPoint& point : curve.points) {
       text += fmt::format("{:32} {:16} ", curve.name, point.fineness);
@@ -115,6 +116,11 @@ const CostPoint* cheapest(const CostCurve& curve, double error) {
   return best;
 }
 
+std::string mark_in_words(const CostPage& page, double mark) {
+  if (!page.error_unit.empty()) return fmt::format("1e{:.0f} {}", std::log10(mark), page.error_unit);
+  return mark == 1.0 ? "right" : fmt::format("{:g} of allowed", mark);
+}
+
 std::string price_of(double seconds) {
   if (!std::isfinite(seconds)) return "\u2013";
   const double rounded = std::stod(fmt::format("{:.1e}", seconds));   // prices are known to two digits
@@ -131,21 +137,27 @@ void write_cost_page(const CostPage& cost, const std::filesystem::path& file) {
   for (const std::string& reading : cost.readings) page.paragraph(reading);
   page.plot(plot_of_price(cost));
   page.table(table_of_prices(cost));
-  page.heading("Order");
-  page.plot(drawn(cost, {"step", "s", Scale::kLog}, "Error against the step", [](const CostPoint& point) { return point.step; }, "The slope is the order: halving the step divides the error of a method of order p by 2^p. Methods that choose their own steps are not in this picture."));
+  const bool by_step = cost.finer.name == "step";
+  page.heading(by_step ? "Order" : "Tolerance");
+  page.plot(drawn(cost, cost.finer, "Error against the " + cost.finer.name, [](const CostPoint& point) { return point.step; },
+                  by_step ? "The slope is the order: halving the step divides the error of a method of order p by 2^p. Methods that choose their own steps are not in this picture."
+                          : "What a finder is asked for, and what it gives. What has no tolerance is not in this picture."));
   for (const CostCurve& curve : cost.curves)
     if (!curve.reading.empty()) page.paragraph(curve.reading);
-  page.heading("Force evaluations");
-  page.plot(drawn(cost, {"derivatives asked for", "", Scale::kLog}, "Error against force evaluations", [](const CostPoint& point) { return point.evaluations; }, "What a method costs on any machine. Closed forms ask for none, and are not in this picture."));
-  page.heading("Energy");
-  page.plot(plot_of_energy(cost));
-  page.heading("Where the time went");
-  page.table(table_of_stages(cost));
+  page.heading("Evaluations");
+  page.plot(drawn(cost, {cost.counted, "-", Scale::kLog}, "Error against evaluations", [](const CostPoint& point) { return point.evaluations; }, "What a method costs on any machine. Closed forms ask for none, and are not in this picture."));
+  const auto has_energy = [](const CostCurve& curve) { return !curve.times.empty(); };
+  if (std::any_of(cost.curves.begin(), cost.curves.end(), has_energy)) {
+    page.heading("Energy");
+    page.plot(plot_of_energy(cost));
+    page.heading("Where the time went");
+    page.table(table_of_stages(cost));
+  }
   page.heading("How it was measured");
   page.paragraph(cost.about);
-  page.paragraph(fmt::format("Errors are against {}: {:.1e} m. The error of a body is how far its centre of mass is out of place, plus the angle by which it is turned wrongly times its radius of gyration; the "
-                             "largest over all movable bodies and samples counts. An error of {:.1e} m, which is as far as bodies move, is no answer, and is not drawn.", cost.truth, cost.floor, cost.scale));
-  page.paragraph("CPU time is that of the engine without models and shapes, the best of up to five runs; samples are part of it. On this machine, in this run: ratios matter.");
+  page.paragraph(cost.what_error_is);
+  if (!cost.what_price_is.empty()) page.paragraph(cost.what_price_is);
+  else page.paragraph("CPU time is that of the engine without models and shapes, the best of up to five runs; samples are part of it. On this machine, in this run: ratios matter.");
   page.fold("Every run", all_points(cost));
   page.record(cost.record);
   page.write(file);

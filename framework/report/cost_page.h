@@ -33,6 +33,12 @@ struct CostPage {
   std::string title, about;
   std::vector<std::string> readings; // sentences at the head
   std::string truth;                 // what errors are measured against
+  std::string error_name = "error of places", error_unit = "m";
+  std::vector<double> marks = {1e-3, 1e-6, 1e-9};   // errors whose price is asked
+  std::string what_error_is;         // in a sentence
+  std::string what_price_is;         // the same; empty: the engine's
+  Axis finer = {"step", "s", Scale::kLog};           // what makes runs finer: CostPoint::step
+  std::string counted = "derivatives asked for";     // CostPoint::evaluations
   double floor;                      // of the truth [m]
   double scale;                      // errors above it are no answer, and not drawn [m]
   std::vector<CostCurve> curves;
@@ -44,6 +50,9 @@ std::vector<std::size_t> not_beaten(const std::vector<double>& price, const std:
 
 /// The cheapest point whose error is at most this; nullptr where none gets there.
 const CostPoint* cheapest(const CostCurve& curve, double error);
+
+/// An error that is asked for, in words: "1e-6 m", or "right" where errors are shares of what is allowed.
+std::string mark_in_words(const CostPage& page, double mark);
 
 /// A time with two digits and the unit that suits it: "3.2 ms".
 std::string price_of(double seconds);

@@ -19,11 +19,15 @@ constexpr double kTextHeight = 17;
 constexpr double kLetter = 0.64;        // width of a bold letter over its size, on average
 constexpr double kMostDecades = 40.0;   // on a logarithmic axis: what lies deeper is rounding, and drawn at the edge
 
-// From dark to light for print, told apart by the colour-blind (after M. Okabe, K. Ito, "Color universal design", 2008).
+// From dark to light for print, told apart by the colour-blind (after M. Okabe, K. Ito, "Color universal design", 2008). Eight colours are as
+// many as people tell apart: the second eight curves take them again, with other dashes, thinner lines and hollow marks.
 struct Style {
   const char *colour, *dashes;
 };
-constexpr Style kStyles[] = {{"#00446b", ""}, {"#c14d00", "7 3"}, {"#007a57", "2 2.5"}, {"#9a4f86", "9 3 2 3"}, {"#3d8fc4", "4 2"}, {"#8a6d00", "1.5 4"}, {"#222222", "12 4"}, {"#b5465f", "5 2 1.5 2 1.5 2"}};
+constexpr Style kStyles[] = {{"#00446b", ""},     {"#c14d00", "7 3"},    {"#007a57", "2 2.5"},    {"#9a4f86", "9 3 2 3"}, {"#3d8fc4", "4 2"},   {"#8a6d00", "1.5 4"},     {"#222222", "12 4"}, {"#b5465f", "5 2 1.5 2 1.5 2"},
+                             {"#00446b", "3 5"},  {"#c14d00", ""},       {"#007a57", "10 2 2 2"}, {"#9a4f86", "1 2"},     {"#3d8fc4", "14 5"},  {"#8a6d00", "6 2 1 2 1 2 1 2"}, {"#222222", "2 6"},  {"#b5465f", ""}};
+constexpr std::size_t kColours = 8;     // also: shapes of marks
+constexpr std::size_t kMarksOfLong = 6; // along a curve without marks of its own, where colours repeat
 
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
@@ -100,17 +104,35 @@ Curve thinned(const Curve& curve) {
   return thin;
 }
 
-std::string mark(double x, double y, std::size_t style, const char* colour) {
+const Style& style_of(std::size_t place) { return kStyles[place % std::size(kStyles)]; }
+bool is_hollow(std::size_t place) { return place % std::size(kStyles) >= kColours; }
+double width_of(std::size_t place) { return is_hollow(place) ? 1.2 : 1.8; }
+
+// Outlines in units of a mark's radius, drawn around its centre: square, triangles, diamond, cross, star, hexagon. A circle comes before these.
+constexpr const char* kOutlines[kColours] = {"", "M-1 -1H1V1H-1z", "M0 -1.3L1.2 0.9H-1.2z", "M0 -1.4L1.1 0L0 1.4L-1.1 0z", "M-1.2 -0.9H1.2L0 1.3z", "M-1.3 -0.45H-0.45V-1.3H0.45V-0.45H1.3V0.45H0.45V1.3H-0.45V0.45H-1.3z",
+                                             "M0 -1.5L0.4 -0.4L1.5 0L0.4 0.4L0 1.5L-0.4 0.4L-1.5 0L-0.4 -0.4z", "M-0.6 -1.1H0.6L1.2 0L0.6 1.1H-0.6L-1.2 0z"};
+
+std::string mark(double x, double y, std::size_t place) {
   constexpr double r = 3.2;
-  switch (style % 3) {
-    case 0: return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" fill=\"{}\"/>", x, y, r, colour);
-    case 1: return fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{}\" height=\"{}\" fill=\"{}\"/>", x - r, y - r, 2 * r, 2 * r, colour);
-    default: return fmt::format("<path d=\"M{:.1f} {:.1f}l{} {}h{}z\" fill=\"{}\"/>", x, y - 1.3 * r, 1.2 * r, 2.2 * r, -2.4 * r, colour);
-  }
+  const char* outline = kOutlines[place % kColours];
+  const std::string paint = is_hollow(place) ? fmt::format("fill=\"#fff\" stroke=\"{}\" stroke-width=\"1.3\"", style_of(place).colour) : fmt::format("fill=\"{}\"", style_of(place).colour);
+  if (*outline == '\0') return fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\" {}/>", x, y, r, paint);
+  return fmt::format("<path transform=\"translate({:.1f} {:.1f}) scale({})\" vector-effect=\"non-scaling-stroke\" d=\"{}\" {}/>", x, y, r, outline, paint);
+}
+
+std::string dashes_of(std::size_t place) {
+  const char* dashes = style_of(place).dashes;
+  return *dashes == '\0' ? "" : fmt::format(" stroke-dasharray=\"{}\"", dashes);
+}
+
+// Every so many points of a curve bear a mark; 0: none does.
+std::size_t points_a_mark(const Curve& curve, const Plot& plot) {
+  if (curve.marks) return 1;
+  return plot.curves.size() > kColours ? std::max<std::size_t>(1, curve.x.size() / kMarksOfLong) : 0;
 }
 
 std::string draw(const Curve& curve, std::size_t place, const Plot& plot, const Scaled& x, const Scaled& y) {
-  const Style& style = kStyles[place % std::size(kStyles)];
+  const std::size_t each = points_a_mark(curve, plot), first = each > 1 ? place % kColours * each / kColours : 0;   // marks of neighbours do not hide each other
   std::string path, marks;
   bool pen_down = false;
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
@@ -120,10 +142,9 @@ std::string draw(const Curve& curve, std::size_t place, const Plot& plot, const 
     }
     path += fmt::format("{}{:.1f} {:.1f}", pen_down ? 'L' : 'M', x(curve.x[i]), y(curve.y[i]));
     pen_down = true;
-    if (curve.marks) marks += mark(x(curve.x[i]), y(curve.y[i]), place, style.colour);
+    if (each > 0 && i % each == first) marks += mark(x(curve.x[i]), y(curve.y[i]), place);
   }
-  const std::string dashes = *style.dashes == '\0' ? "" : fmt::format(" stroke-dasharray=\"{}\"", style.dashes);
-  return fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.8\" stroke-linejoin=\"round\"{}/>\n{}", path, style.colour, dashes, marks);
+  return fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\"{}/>\n{}", path, style_of(place).colour, width_of(place), dashes_of(place), marks);
 }
 
 // Below the names of the axis, in rows.
@@ -132,15 +153,13 @@ std::string legend(const Plot& plot, double& bottom) {
   double x = kLeft, y = kBottom + 58;
   for (std::size_t i = 0; i < plot.curves.size(); ++i) {
     if (plot.curves[i].name.empty()) continue;
-    const Style& style = kStyles[i % std::size(kStyles)];
     const double width = 44 + 6.6 * static_cast<double>(plot.curves[i].name.size());
     if (x > kLeft && x + width > kRight) {
       x = kLeft;
       y += kTextHeight;
     }
-    const std::string dashes = *style.dashes == '\0' ? "" : fmt::format(" stroke-dasharray=\"{}\"", style.dashes);
-    svg += line(x, y - 4, x + 28, y - 4, fmt::format("stroke=\"{}\" stroke-width=\"2.4\"{}", style.colour, dashes));
-    if (plot.curves[i].marks) svg += mark(x + 14, y - 4, i, style.colour);
+    svg += line(x, y - 4, x + 28, y - 4, fmt::format("stroke=\"{}\" stroke-width=\"{}\"{}", style_of(i).colour, width_of(i) + 0.6, dashes_of(i)));
+    if (points_a_mark(plot.curves[i], plot) > 0) svg += mark(x + 14, y - 4, i);
     svg += text(x + 34, y, plot.curves[i].name, "start");
     x += width;
   }

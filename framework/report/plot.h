@@ -26,7 +26,7 @@ struct Axis {
 struct Curve {
   std::string name;             // "" : not in the legend
   std::vector<double> x, y;     // as many
-  bool marks = false;           // a mark at each point: for few points
+  bool marks = false;           // a mark at each point: for few points; else a few along it where there are more than 8 curves
 };
 
 /// A horizontal line: what the curves are judged by.
@@ -38,7 +38,7 @@ struct Limit {
 struct Plot {
   std::string title;
   Axis x, y;
-  std::vector<Curve> curves;    // told apart up to 8
+  std::vector<Curve> curves;    // told apart up to 16
   std::vector<Limit> limits;
   std::string caption = {};     // what to see in it
 };

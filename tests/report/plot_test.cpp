@@ -1,6 +1,9 @@
 // Plots: ticks are round numbers, what cannot be drawn breaks a line, words are escaped, thresholds are drawn.
 #include <cmath>
 
+#include <set>
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
@@ -70,6 +73,33 @@ TEST(Plots, StandInAPageWithTheirCaption) {
   page.plot({"title", {"x"}, {"y"}, {{"c", {1, 2}, {1, 2}}}, {}, "what to see"});
   EXPECT_EQ(count(page.html(), "<svg"), 1u);
   EXPECT_NE(page.html().find("<figcaption>what to see</figcaption>"), std::string::npos);
+}
+
+TEST(Plot, SixteenCurvesLookDifferentInTheLegend) {
+  Plot plot{"Sixteen", {"x"}, {"y"}, {}, {}, ""};
+  for (int i = 0; i < 16; ++i) plot.curves.push_back({"curve " + std::to_string(i), {0.0, 1.0}, {0.0, 1.0 + i}, true});
+  const std::string svg = svg_of(plot);
+  std::set<std::string> lines, marks;   // stroke and dashes; shape, fill and colour
+  const std::string from = "<text x=";
+  for (int i = 0; i < 16; ++i) {
+    const auto name = svg.find(">curve " + std::to_string(i) + "<"), line = svg.rfind("<line", name);
+    const std::string row = svg.substr(line, name - line);
+    lines.insert(row.substr(row.find("stroke="), row.find("/>") - row.find("stroke=")));
+    const auto outline = row.find(" d=");
+    marks.insert(row.substr(outline == std::string::npos ? row.find(" r=") : outline, row.find("<text") - (outline == std::string::npos ? row.find(" r=") : outline)));
+  }
+  EXPECT_EQ(lines.size(), 16u);
+  EXPECT_EQ(marks.size(), 16u);
+}
+
+TEST(Plot, LongCurvesBearAFewMarksWhereColoursRepeat) {
+  Plot few{"Few", {"x"}, {"y"}, {}, {}, ""}, many = few;
+  Curve curve{"c", {}, {}};
+  for (int i = 0; i < 100; ++i) curve.x.push_back(i), curve.y.push_back(i);
+  for (int i = 0; i < 3; ++i) few.curves.push_back(curve);
+  for (int i = 0; i < 12; ++i) many.curves.push_back(curve);
+  EXPECT_EQ(svg_of(few).find("<circle"), std::string::npos);
+  EXPECT_NE(svg_of(many).find("<circle"), std::string::npos);
 }
 
 }  // namespace

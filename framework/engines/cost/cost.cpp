@@ -3,16 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
+
+#include <fmt/format.h>
 
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
 #include "framework/core/not_implemented.h"
+#include "framework/engines/judge.h"
 #include "framework/engines/truths/memory_scene.h"
 
 namespace tumble::engines {
 namespace {
 
-constexpr int kRuns = 5;                  // of one rung, at most: the least disturbed counts
 constexpr double kShort = 0.1;            // s: longer runs are not repeated
 constexpr double kCoarsest = 16.0;        // of the scene's own step: where a ladder begins
 constexpr int kMostRungs = 14;
@@ -21,24 +24,24 @@ constexpr double kGood = 1e-3;            // of the scale: below it, errors that
 constexpr int kMostWorse = 2;             // rungs in a row that are no better than the best
 constexpr double kGrowth = 2.2;           // price of a rung over the one before, as expected
 
-/// Samples, energies and the clock.
+/// The run and its clock.
 class Measurement final : public TrajectorySink {
  public:
-  void begin(const TrajectoryInfo&, const std::vector<TrajectoryBody>&) override { start_ = cpu_seconds(); }
-  void frame(const Frame& frame) override { frames.push_back(frame); }
-  void event(const Event&) override {}
-  void end(const Counters& all, const std::string& why) override {
-    cpu_s = cpu_seconds() - start_;
-    counters = all;
-    stopped_by = why;
+  void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override {
+    recorder_.begin(info, bodies);
+    start_ = cpu_seconds();
   }
-
-  std::vector<Frame> frames;
-  Counters counters;
-  std::string stopped_by;
+  void frame(const Frame& frame) override { recorder_.frame(frame); }
+  void event(const Event& event) override { recorder_.event(event); }
+  void end(const Counters& counters, const std::string& stopped_by) override {
+    cpu_s = cpu_seconds() - start_;
+    recorder_.end(counters, stopped_by);
+  }
+  const Trajectory& run() const { return recorder_.trajectory(); }
   double cpu_s = 0.0;
 
  private:
+  TrajectoryRecorder recorder_;
   double start_ = 0.0;
 };
 
@@ -64,6 +67,34 @@ void compare(const std::vector<Frame>& frames, const CostTruth& truth, CostRung&
   }
 }
 
+/// A run that is shorter than the scene is not judged by what it cannot have reached.
+scene::Scene judged_part(scene::Scene scene, const CostTruth& truth) {
+  if (truth.duration_s < scene.duration_s) std::erase_if(scene.checks, [](const scene::CheckSpec& check) { return !check.expected.empty(); });
+  return scene;
+}
+
+/// The worst of the scene's numbers, over what each is allowed.
+void judge(const scene::Scene& scene, const Trajectory& run, CostRung& rung) {
+  rung.error_m = 0.0;
+  for (const CheckResult& check : judge_run(scene, run)) {
+    double share = check.at_least ? check.threshold / check.value : check.value / check.threshold;
+    if (check.threshold == 0.0) share = check.passed ? 0.0 : std::numeric_limits<double>::infinity();   // nothing at all is allowed
+    if (!check.passed && !(share > 1.0)) share = std::numeric_limits<double>::infinity();
+    if (share <= rung.error_m) continue;
+    rung.error_m = share;
+    rung.worst = fmt::format("{} of {}: {:.3g} {}{:.3g} {}", check.kind, check.subject, check.value, check.at_least ? ">= " : "<= ", check.threshold, check.unit);
+  }
+  double scale = 0.0, lowest = std::numeric_limits<double>::infinity();
+  for (const Frame& frame : run.frames) {
+    lowest = std::min(lowest, frame.potential_energy);
+    scale = std::max(scale, energy_of(frame) - lowest);
+  }
+  for (const Frame& frame : run.frames) {
+    rung.times.push_back(frame.time);
+    rung.energy_errors.push_back(std::abs(energy_of(frame) - energy_of(run.frames.front())) / (scale > 0.0 ? scale : 1.0));
+  }
+}
+
 RunOptions options_of(const CostWay& way, const CostOptions& options, double frame_rate_hz) {
   RunOptions how;
   how.engine = way.engine;
@@ -73,33 +104,49 @@ RunOptions options_of(const CostWay& way, const CostOptions& options, double fra
   return how;
 }
 
+/// Stops a run that takes too long. The clock is looked at rarely enough to cost nothing.
+StepFunction until_too_long(const StepFunction& step, double most_s) {
+  constexpr int kEach = 64;
+  return [step, until = cpu_seconds() + most_s, most_s, calls = 0](const OdeFunction& f, double t, const VectorXd& y, double h) mutable {
+    if (++calls % kEach == 0 && cpu_seconds() > until) throw std::runtime_error(fmt::format("it would take more than {:.0f} s", most_s));
+    return step(f, t, y, h);
+  };
+}
+
 }  // namespace
 
+CostRun run_of(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, long steps, double tolerance, const CostOptions& options) {
+  truths::SteppedScene stepped = truths::in_equal_steps(scene, truth.duration_s, truth.intervals * steps, truth.intervals);
+  CostRun run{std::move(stepped.scene), way.laws, options_of(way, options, stepped.frame_rate_hz)};
+  if (way.stabilisation) run.scene.stabilisation = way.stabilisation;
+  if (way.method) run.laws.integrate_step = way.method(tolerance);
+  if (way.tuned) way.tuned(tolerance, run.laws);
+  if (std::isfinite(options.most_of_rung_s)) run.laws.integrate_step = until_too_long(run.laws.integrate_step, options.most_of_rung_s);
+  return run;
+}
+
 CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, long steps, double tolerance, const CostOptions& options) {
-  const long samples = static_cast<long>(truth.samples.size()) - 1;
-  truths::SteppedScene stepped = truths::in_equal_steps(scene, truth.duration_s, samples * steps, samples);
-  if (way.stabilisation) stepped.scene.stabilisation = way.stabilisation;
-  Laws laws = way.laws;
-  if (way.method) laws.integrate_step = way.method(tolerance);
-  const RunOptions how = options_of(way, options, stepped.frame_rate_hz);
+  const auto [stepped, laws, how] = run_of(scene, way, truth, steps, tolerance, options);
   CostRung rung;
-  rung.step_s = way.has_ladder ? stepped.scene.step_s : kUnset;
+  rung.step_s = way.has_ladder ? stepped.step_s : kUnset;
   if (way.controlled) rung.tolerance = tolerance;
   RunOptions nothing = how;
-  nothing.duration_s = 1e-9 * stepped.scene.step_s;   // what comes before the first step
+  nothing.duration_s = 1e-9 * stepped.step_s;   // what comes before the first step
   double building = std::numeric_limits<double>::infinity(), whole = building;
   try {
-    for (int k = 0; k < kRuns && (k == 0 || whole < kShort); ++k) {
+    for (int k = 0; k < options.runs && (k == 0 || whole < kShort); ++k) {
       Measurement built, run;
-      run_scene(stepped.scene, laws, nothing, built);
-      run_scene(stepped.scene, laws, how, run);
+      run_scene(stepped, laws, nothing, built);
+      run_scene(stepped, laws, how, run);
       building = std::min(building, built.cpu_s);
       whole = std::min(whole, run.cpu_s);
       if (k > 0) continue;
-      rung.stopped_by = run.stopped_by;
-      rung.stage_seconds = run.counters.stage_seconds;
-      rung.evaluations = run.counters.counts["derivative_evaluations"];
-      compare(run.frames, truth, rung);
+      rung.stopped_by = run.run().stopped_by;
+      rung.stage_seconds = run.run().counters.stage_seconds;
+      const auto evaluations = run.run().counters.counts.find(way.counted);
+      rung.evaluations = evaluations == run.run().counters.counts.end() ? 0 : evaluations->second;
+      if (truth.by_numbers) judge(judged_part(scene, truth), run.run(), rung);
+      else compare(run.run().frames, truth, rung);
       if (!rung.stopped_by.empty()) break;
     }
   } catch (const UserError& error) {
@@ -111,25 +158,28 @@ CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth
     return rung;
   }
   rung.cpu_s = std::max(1e-6, whole - building);
+  rung.building_s = building;
   return rung;
 }
 
 long first_steps(const scene::Scene& scene, const CostTruth& truth) {
-  const double interval = truth.duration_s / static_cast<double>(truth.samples.size() - 1);
+  const double interval = truth.duration_s / static_cast<double>(truth.intervals);
   return std::max(1L, std::lround(interval / (kCoarsest * scene.step_s)));
 }
+
+bool steps_are_free(const scene::Scene& scene) { return scene.motors.empty() && !scene.contact && !links_meet(scene); }
 
 long outer_steps(const scene::Scene& scene, const CostTruth& truth) {
   // Motors look between steps, and lasting contacts push once a step: there the step is part of the scene. Rods and joints are held to
   // the tolerance within a step, and brought back at its end.
   const bool alone = scene.motors.empty() && !scene.contact;
-  const double interval = truth.duration_s / static_cast<double>(truth.samples.size() - 1);
+  const double interval = truth.duration_s / static_cast<double>(truth.intervals);
   return alone ? 1 : std::max(1L, std::lround(interval / (2.0 * scene.step_s)));
 }
 
 std::vector<CostRung> run_ladder(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, double budget_s, const CostOptions& options, const std::vector<double>& steps_s,
                                  const std::vector<double>& tolerances, const std::function<void(const CostRung&)>& told) {
-  const double interval = truth.duration_s / static_cast<double>(truth.samples.size() - 1), until = cpu_seconds() + budget_s;
+  const double interval = truth.duration_s / static_cast<double>(truth.intervals), until = cpu_seconds() + budget_s;
   const std::vector<double>& asked = way.controlled ? tolerances : steps_s;
   const std::size_t most = !way.has_ladder ? 1 : asked.empty() ? kMostRungs : asked.size();
   std::vector<CostRung> rungs;

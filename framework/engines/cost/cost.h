@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -17,6 +18,7 @@
 
 #include "framework/dynamics/methods.h"
 #include "framework/engines/run.h"
+#include "framework/engines/truths/known_places.h"
 
 namespace tumble::engines {
 
@@ -26,6 +28,8 @@ struct CostWay {
   std::string word;                                      // what a flag called it
   std::string engine = "rd", propagator = "laws";
   std::function<StepFunction(double tolerance)> method;  // in place of the laws' integration; empty: theirs, or a closed form
+  std::function<void(double tolerance, Laws& laws)> tuned;   // puts what else depends on the tolerance into the laws: a root finder, a solver
+  std::string counted = "derivative_evaluations";        // which counter its evaluations are
   double order = kUnset;                                 // that the method promises; NaN: none
   bool controlled = false;                               // its ladder is of tolerances, not of steps
   bool has_ladder = true;                                // false: there is nothing to refine
@@ -36,8 +40,10 @@ struct CostWay {
 /// One run.
 struct CostRung {
   double step_s = kUnset, tolerance = kUnset;
-  double error_m = kUnset, cpu_s = kUnset;
-  std::uint64_t evaluations = 0;                         // derivatives of a body's, or of a group of linked bodies', state
+  double error_m = kUnset, cpu_s = kUnset;               // error: by numbers [-], see CostTruth
+  std::string worst;                                     // by numbers: which is the worst
+  double building_s = kUnset;                            // models and shapes, before the first step: not in cpu_s
+  std::uint64_t evaluations = 0;                         // derivatives of a body's, or of a group of linked bodies', state; or what the way counts
   std::vector<double> times, energy_errors;              // by sample [s]; |E - E of the truth| over all the energy there was [-]
   std::map<std::string, double> stage_seconds;
   std::string stopped_by;                                // empty: ran to the end
@@ -45,26 +51,46 @@ struct CostRung {
 };
 
 /// What runs are compared with.
+///
+/// Where no two fine runs agree (an arch of stones, dominoes: which of two corners strikes first hangs on the last digit) there is no such
+/// thing, and runs are judged by the scene's own numbers: then an "error" is the worst of these over what is allowed [-], and up to 1 is right.
 struct CostTruth {
   std::string what;                  // in words
-  std::vector<Frame> samples;
+  bool by_numbers = false;
+  std::string why_by_numbers;
+  long intervals = 0;                // between the samples that runs are looked at
+  std::vector<Frame> samples;        // intervals + 1, or none
   std::vector<double> radii;         // of gyration, by body; NaN for immovable ones [m]
   double floor_m = kUnset;           // its own error
   double scale_m = kUnset;           // how far bodies move: an error of this size is no answer at all
   double duration_s = 0.0;           // looked at
   double asked_s = 0.0;              // that was asked for; more than the former where no truth can be had for so long
+  std::string shortened_by;          // why; empty: it is as long as asked
 };
 
 struct CostOptions {
   std::optional<double> duration_s;  // overrides the scene's
   double budget_s = 45.0;            // CPU of all ladders together
   double most_of_truth_s = 12.0;     // CPU of one run of the truth
+  double most_of_search_s = 18.0;    // CPU of all its runs
+  std::optional<double> frame_rate_hz;   // samples of the truth: the frames of a run (or a little denser, so that they divide the duration); empty: a few
+  bool shorten = true;               // look at less time where the truth does not hold for all of it; else that is refused
+  double most_of_rung_s = std::numeric_limits<double>::infinity();   // CPU of one run: longer ones are stopped, where they integrate
+  int runs = 5;                      // of a short rung: the least disturbed counts; 1 where only counts matter
   Engine timewarp;
+  std::function<void(const std::string&)> told;   // progress, in words; empty: nobody listens
 };
 
 /// @param laws  right ones: what they do not integrate is part of the truth
 /// @throws UserError where no truth can be had even for a short while
 CostTruth find_truth(const scene::Scene& scene, const Laws& laws, const CostOptions& options);
+/// The same, or nothing. @param why  why not, or why only for less time
+std::optional<CostTruth> try_truth(const scene::Scene& scene, const Laws& laws, const CostOptions& options, std::string& why);
+/// Holds a truth against places that are known from outside: what it is off by is its own error, where that is more than was estimated.
+/// @param source  of the places, for people. Those later than the truth's end are not looked at
+void check_truth(const scene::Scene& scene, const Laws& laws, const std::vector<truths::KnownPlace>& places, const std::string& source, CostTruth& truth);
+/// To judge by the scene's numbers. @param why  no truth is there
+CostTruth by_numbers(const scene::Scene& scene, const CostOptions& options, const std::string& why);
 
 /// One run of a way. @param steps  per sample, >= 1; @param tolerance  of a controlled way
 CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, long steps, double tolerance, const CostOptions& options);
@@ -72,6 +98,17 @@ CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth
 /// Steps per sample of a fixed-step ladder, coarse to fine; or the outer step of a controlled method.
 long first_steps(const scene::Scene& scene, const CostTruth& truth);
 long outer_steps(const scene::Scene& scene, const CostTruth& truth);
+
+/// Whether a controlled method may take its steps as it likes: nothing in the scene happens once a step.
+bool steps_are_free(const scene::Scene& scene);
+
+/// The run of a rung as the engines are asked for it: the scene in equal steps, laws and options.
+struct CostRun {
+  scene::Scene scene;
+  Laws laws;
+  RunOptions options;
+};
+CostRun run_of(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, long steps, double tolerance, const CostOptions& options);
 
 /// The whole ladder, coarse to fine: until the truth's floor is reached, or the next rung would take more than the budget.
 /// @param told     called after each rung

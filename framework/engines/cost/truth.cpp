@@ -16,52 +16,84 @@ namespace tumble::engines {
 namespace {
 
 constexpr double kTight = 1e-13;          // tolerance of the truth: a hundred roundings, below which no method gets better
-constexpr double kGoodFloor = 1e-6;       // of the scale: a truth worse than this is looked for over half the time
+constexpr double kGoodFloor = 1e-6;       // of the scale: a truth worse than this is looked for over less time
+constexpr double kPoorFloor = 1e-4;       // of the scale: one that is better than nothing
 constexpr double kRoundings = 16.0;       // two runs that agree to the last bit may both be off by some
 constexpr int kMostHalvings = 7;
 constexpr long kFewestSamples = 4, kMostSamples = 24;
 constexpr double kStepsASample = 8.0;     // of the scene's own steps
+constexpr double kFramesASecond = 60.0;    // that numbers are judged by
+constexpr double kNextPrice = 2.2;        // of a run with half the step, over the one before
+constexpr double kHelps = 0.7;            // of the floor: less gain from half the step is none
+constexpr double kShareLeft = 0.4;        // of the time: kept for looking at less of the scene
+constexpr double kTellEvery = 1.0;        // s of CPU
 
 bool is_smooth(const scene::Scene& scene) {
   return std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const scene::BodySpec& body) { return body.collides; }) < 2;
 }
 
-long samples_of(const scene::Scene& scene, double duration) {
+long samples_of(const scene::Scene& scene, double duration, std::optional<double> frame_rate_hz) {
+  if (frame_rate_hz) return std::max(1L, std::lround(std::ceil(duration * *frame_rate_hz - 1e-9)));
   return std::clamp(std::lround(duration / (kStepsASample * scene.step_s)), kFewestSamples, kMostSamples);
 }
+
+/// What is looked at, and how much CPU time a run of it may take.
+struct Window {
+  double duration_s;
+  long samples;
+  double most_s;
+  const std::function<void(const std::string&)>& told;
+};
+
+/// Records, and says how far it is now and then.
+class WatchedRecorder final : public TrajectorySink {
+ public:
+  WatchedRecorder(const Window& window, const std::function<void(const std::string&)>& told) : window_(window), told_(told), begun_(cpu_seconds()), next_(begun_ + kTellEvery) {}
+  void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override { recorder.begin(info, bodies); }
+  void frame(const Frame& frame) override {
+    recorder.frame(frame);
+    const double now = cpu_seconds();
+    if (!told_ || now < next_) return;
+    next_ = now + kTellEvery;
+    told_(fmt::format("  {:.3g} of {:.3g} s simulated, at most {:.0f} s left for this run", frame.time, window_.duration_s, std::max(0.0, begun_ + window_.most_s - now)));
+  }
+  void event(const Event& event) override { recorder.event(event); }
+  void end(const Counters& counters, const std::string& stopped_by) override { recorder.end(counters, stopped_by); }
+  TrajectoryRecorder recorder;
+
+ private:
+  const Window& window_;
+  const std::function<void(const std::string&)>& told_;
+  double begun_, next_;
+};
 
 struct FinerRun {
   std::vector<Frame> frames;
   std::string stopped_by;
+  double cpu_s;
 };
 
 /// @param steps  per sample
-FinerRun run_finely(const scene::Scene& scene, const Laws& laws, double duration, long steps, const RunOptions& how, double most_s) {
-  const long samples = samples_of(scene, duration);
-  const truths::SteppedScene stepped = truths::in_equal_steps(scene, duration, samples * steps, samples);
+FinerRun run_finely(const scene::Scene& scene, const Laws& laws, const Window& window, long steps, const RunOptions& how) {
+  const truths::SteppedScene stepped = truths::in_equal_steps(scene, window.duration_s, window.samples * steps, window.samples);
   RunOptions options = how;
   options.frame_rate_hz = stepped.frame_rate_hz;
   Laws timed = laws;
-  timed.integrate_step = [step = laws.integrate_step, until = cpu_seconds() + most_s](const OdeFunction& f, double t, const VectorXd& y, double h) {
+  timed.integrate_step = [step = laws.integrate_step, until = cpu_seconds() + window.most_s](const OdeFunction& f, double t, const VectorXd& y, double h) {
     if (cpu_seconds() > until) throw std::runtime_error("it took too long");
     return step(f, t, y, h);
   };
-  TrajectoryRecorder recorder;
-  run_scene(stepped.scene, timed, options, recorder);
-  return {recorder.trajectory().frames, recorder.trajectory().stopped_by};
+  const double begun = cpu_seconds();
+  WatchedRecorder watched(window, window.told);
+  run_scene(stepped.scene, timed, options, watched);
+  const Trajectory& run = watched.recorder.trajectory();
+  return {run.frames, run.stopped_by, cpu_seconds() - begun};
 }
 
 double farthest(const std::vector<Frame>& found, const std::vector<Frame>& expected, const std::vector<double>& radii) {
   if (found.size() != expected.size()) return kUnset;
   double most = 0.0;
   for (std::size_t k = 0; k < found.size(); ++k) most = std::max(most, distance_between(found[k], expected[k], radii));
-  return most;
-}
-
-/// How far bodies get from where they were.
-double scale_of(const std::vector<Frame>& frames, const std::vector<double>& radii) {
-  double most = 0.0;
-  for (const Frame& frame : frames) most = std::max(most, distance_between(frame, frames.front(), radii));
   return most;
 }
 
@@ -72,7 +104,7 @@ Laws with_method(Laws laws, const std::string& word) {
 
 /// Two runs of which each is right, as far as it goes, by itself.
 struct Pair {
-  FinerRun run, other;
+  FinerRun run, other{};
   std::string what;
 };
 
@@ -89,24 +121,28 @@ bool knows_closed_forms(const scene::Scene& scene, const Laws& laws) {
   return true;
 }
 
-Pair run_closed(const scene::Scene& scene, const Laws& laws, double duration, double most_s) {
+Pair run_closed(const scene::Scene& scene, const Laws& laws, const Window& window) {
   RunOptions ordered, stepped;
   ordered.engine = "ordered";
   stepped.propagator = "auto";
-  return {run_finely(scene, laws, duration, 1, ordered, most_s), run_finely(scene, laws, duration, 4, stepped, most_s),
+  return {run_finely(scene, laws, window, 1, ordered), run_finely(scene, laws, window, 4, stepped),
           "closed form (parabola, free rotation by elliptic functions) from one impact to the next; its floor is what two engines that use it differ by"};
 }
 
-Pair run_converged(const scene::Scene& scene, const Laws& laws, double duration, double most_s) {
-  const long steps = std::max(1L, std::lround(4.0 * duration / scene.step_s / static_cast<double>(samples_of(scene, duration))));
-  Pair pair{run_finely(scene, with_method(laws, "fehlberg78"), duration, 2 * steps, {}, most_s), {}, ""};
-  if (is_smooth(scene) && pair.run.stopped_by.empty()) {
-    pair.other = run_finely(scene, with_method(laws, "bulirsch-stoer"), duration, steps, {}, most_s);
-    pair.what = fmt::format("a run by Fehlberg 7(8) with tolerance {:.0e}; its floor is what Bulirsch-Stoer with twice the step differs by", kTight);
-  } else if (pair.run.stopped_by.empty()) {
-    pair.other = run_finely(scene, with_method(laws, "fehlberg78"), duration, steps, {}, most_s);
-    pair.what = fmt::format("a run by Fehlberg 7(8) with tolerance {:.0e} at steps of 1/{:.0f} s; its floor is what twice the step differs by", kTight, 2.0 * static_cast<double>(steps * samples_of(scene, duration)) / duration);
-  }
+/// Of the coarser of two fine runs.
+long steps_a_sample(const scene::Scene& scene, const Window& window) { return std::max(1L, std::lround(4.0 * window.duration_s / scene.step_s / static_cast<double>(window.samples))); }
+
+std::string two_steps_in_words(long steps, const Window& window) {
+  return fmt::format("a run by Fehlberg 7(8) with tolerance {:.0e} at steps of 1/{:.0f} s; its floor is what twice the step differs by", kTight, static_cast<double>(steps * window.samples) / window.duration_s);
+}
+
+Pair run_converged(const scene::Scene& scene, const Laws& laws, const Window& window) {
+  const long steps = steps_a_sample(scene, window);
+  Pair pair{run_finely(scene, with_method(laws, "fehlberg78"), window, 2 * steps, {}), {}, ""};
+  if (!pair.run.stopped_by.empty()) return pair;
+  pair.what = two_steps_in_words(2 * steps, window);
+  pair.other = run_finely(scene, with_method(laws, is_smooth(scene) ? "bulirsch-stoer" : "fehlberg78"), window, steps, {});
+  if (is_smooth(scene)) pair.what = fmt::format("a run by Fehlberg 7(8) with tolerance {:.0e}; its floor is what Bulirsch-Stoer with twice the step differs by", kTight);
   return pair;
 }
 
@@ -115,6 +151,40 @@ std::vector<double> radii_of(const scene::Scene& scene) {
   for (const WorldBody& body : build_world(scene).bodies) radii.push_back(body.immovable() ? kUnset : std::sqrt(body.inertia.inertia_body.trace() / (2.0 * body.inertia.mass)));
   return radii;
 }
+
+/// Takes as many of the pair's samples as agree to a part of the motion. @return whether these are enough
+bool take(const Pair& pair, double agreement, const Window& window, CostTruth& truth) {
+  truth.what = pair.what;
+  truth.floor_m = truth.scale_m = 0.0;
+  for (const double radius : truth.radii) truth.scale_m = radius > truth.scale_m ? radius : truth.scale_m;   // of what only rests
+  std::size_t agreed = 0;
+  double floor = 0.0, scale = truth.scale_m;
+  for (std::size_t k = 0; k < std::min(pair.run.frames.size(), pair.other.frames.size()); ++k) {
+    scale = std::max(scale, distance_between(pair.run.frames[k], pair.run.frames.front(), truth.radii));
+    floor = std::max({distance_between(pair.other.frames[k], pair.run.frames[k], truth.radii), floor, kRoundings * std::numeric_limits<double>::epsilon() * scale});   // NaN stays
+    if (!(floor <= kPoorFloor * scale)) break;
+    if (!(floor <= agreement * scale)) continue;   // what moves on may make up for it
+    agreed = k + 1;
+    truth.floor_m = floor;
+    truth.scale_m = scale;
+  }
+  if (agreed <= static_cast<std::size_t>(kFewestSamples)) return false;
+  truth.samples.assign(pair.run.frames.begin(), pair.run.frames.begin() + static_cast<std::ptrdiff_t>(agreed));
+  truth.intervals = static_cast<long>(agreed) - 1;
+  truth.duration_s = window.duration_s * static_cast<double>(truth.intervals) / static_cast<double>(window.samples);
+  return true;
+}
+
+std::string why_not(const Pair& pair, const CostTruth& truth) {
+  if (const std::string stopped = pair.run.stopped_by + pair.other.stopped_by; !stopped.empty()) return stopped;
+  return fmt::format("two fine runs of it do not stay together ({:.1e} m apart at the end): errors grow too fast in it, or an impact hangs on the last digit",
+                     farthest(pair.other.frames, pair.run.frames, truth.radii));
+}
+
+const std::string kNoTruthRemedy = "Leave --accuracy and --budget-s out and judge the scene by its numbers, or see what its steps cost with tumble cost ";
+
+/// Rounded down to what a person would type.
+double holds_for(const CostTruth& truth) { return std::floor(100.0 * truth.duration_s) / 100.0; }
 
 }  // namespace
 
@@ -132,26 +202,104 @@ double distance_between(const Frame& found, const Frame& expected, const std::ve
   return most;
 }
 
-CostTruth find_truth(const scene::Scene& scene, const Laws& laws, const CostOptions& options) {
+namespace {
+
+bool is_whole(const CostTruth& truth, const Window& window) { return truth.intervals == window.samples; }
+
+/// Takes what a pair shows, if anything: a poor truth of all of it is worth more than a good one of a part.
+bool take_either(const Pair& pair, const Window& window, CostTruth& truth) {
+  CostTruth poor = truth;
+  const bool is_poor = take(pair, kPoorFloor, window, poor);
+  if (take(pair, kGoodFloor, window, truth) && (is_whole(truth, window) || !is_whole(poor, window))) return true;
+  truth = poor;
+  return is_poor;
+}
+
+/// Where contacts, rods or motors push once a step, the step itself is what is not fine enough: halves it as long as that helps and there is time.
+void refine(const scene::Scene& scene, const Laws& laws, const Window& window, double until, Pair pair, bool& found, CostTruth& truth) {
+  double price = pair.run.cpu_s;
+  for (long steps = 4 * steps_a_sample(scene, window);; steps *= 2) {
+    const bool is_good = found && is_whole(truth, window) && truth.floor_m <= kGoodFloor * truth.scale_m;
+    if (is_good || !pair.run.stopped_by.empty() || cpu_seconds() + kNextPrice * price > until) return;
+    pair.other = std::move(pair.run);
+    pair.run = run_finely(scene, with_method(laws, "fehlberg78"), window, steps, {});
+    pair.what = two_steps_in_words(steps, window);
+    price = pair.run.cpu_s;
+    CostTruth finer = truth;
+    if (!pair.run.stopped_by.empty() || !take_either(pair, window, finer)) {
+      if (found) return;
+      continue;
+    }
+    const bool helps = !found || finer.intervals > truth.intervals || (finer.intervals == truth.intervals && finer.floor_m < kHelps * truth.floor_m);
+    if (!helps) return;
+    truth = finer;
+    found = true;
+  }
+}
+
+}  // namespace
+
+std::optional<CostTruth> try_truth(const scene::Scene& scene, const Laws& laws, const CostOptions& options, std::string& why) {
   CostTruth truth;
-  truth.asked_s = truth.duration_s = options.duration_s.value_or(scene.duration_s);
+  truth.asked_s = options.duration_s.value_or(scene.duration_s);
   truth.radii = radii_of(scene);
   const bool closed = knows_closed_forms(scene, laws);
-  std::string why;
-  for (int halving = 0; halving <= kMostHalvings; ++halving, truth.duration_s *= 0.5) {
-    const Pair pair = closed ? run_closed(scene, laws, truth.duration_s, options.most_of_truth_s) : run_converged(scene, laws, truth.duration_s, options.most_of_truth_s);
-    why = pair.run.stopped_by + pair.other.stopped_by;
-    if (!why.empty()) continue;
-    truth.what = pair.what;
-    truth.samples = pair.run.frames;
-    truth.scale_m = scale_of(truth.samples, truth.radii);
-    for (const double radius : truth.radii) truth.scale_m = radius > truth.scale_m ? radius : truth.scale_m;   // of what only rests
-    truth.floor_m = farthest(pair.other.frames, pair.run.frames, truth.radii);
-    truth.floor_m = std::max(truth.floor_m, kRoundings * std::numeric_limits<double>::epsilon() * truth.scale_m);   // NaN stays
-    if (truth.floor_m <= kGoodFloor * truth.scale_m) return truth;
-    why = fmt::format("two fine runs differ by {:.1e} m where bodies move or measure {:.1e} m", truth.floor_m, truth.scale_m);
+  const double until = cpu_seconds() + options.most_of_search_s;
+  double duration = truth.asked_s;
+  for (int halving = 0; halving <= kMostHalvings && cpu_seconds() < until; ++halving, duration *= 0.5) {
+    const Window window{duration, samples_of(scene, duration, options.frame_rate_hz), std::min(options.most_of_truth_s, until - cpu_seconds()), options.told};
+    if (options.told) options.told(fmt::format("the truth of {} over {:.3g} s{}", scene.name, duration, closed ? ", in closed form" : fmt::format(": two fine runs, at most {:.0f} s of CPU time", until - cpu_seconds())));
+    Pair pair = closed ? run_closed(scene, laws, window) : run_converged(scene, laws, window);
+    const std::string here = why_not(pair, truth);
+    bool found = take_either(pair, window, truth);
+    if (!closed && !is_smooth(scene)) refine(scene, laws, window, until - kShareLeft * (until - cpu_seconds()), std::move(pair), found, truth);
+    if (why.empty()) why = here;
+    if (!found) continue;
+    if (truth.duration_s < (1.0 - 1e-9) * truth.asked_s) truth.shortened_by = why;
+    return truth;
   }
-  throw UserError(scene.name, fmt::format("no truth to compare with, even over {:.2g} s: {}", 2.0 * truth.duration_s, why), "Give a shorter --duration-s, or a scene in which less happens at once.");
+  return std::nullopt;
+}
+
+CostTruth find_truth(const scene::Scene& scene, const Laws& laws, const CostOptions& options) {
+  std::string why;
+  const std::optional<CostTruth> truth = try_truth(scene, laws, options, why);
+  if (!truth)
+    throw UserError(scene.name, "no truth to compare with, however short a time is looked at: " + why, options.shorten ? "Compare its judged numbers: tumble cost " + scene.name + " does." : kNoTruthRemedy + scene.name + ".");
+  if (truth->shortened_by.empty() || options.shorten) return *truth;
+  throw UserError(scene.name, fmt::format("there is no truth for {:.4g} s of this scene: {}", truth->asked_s, truth->shortened_by),
+                  fmt::format("It holds for {0:.4g} s: ask for these with --duration-s {0:.4g}; or leave --accuracy and --budget-s out and judge the scene by its numbers; or see how its error goes with tumble cost {1}.", holds_for(*truth), scene.name));
+}
+
+void check_truth(const scene::Scene& scene, const Laws& laws, const std::vector<truths::KnownPlace>& places, const std::string& source, CostTruth& truth) {
+  const Laws fine = with_method(laws, "fehlberg78");
+  std::optional<Frame> frame;
+  double off = 0.0;
+  int instants = 0;
+  for (const truths::KnownPlace& place : places) {
+    if (place.time_s > truth.duration_s * (1.0 + 1e-12)) continue;
+    if (!frame || frame->time != place.time_s) {
+      frame = truths::frame_at(scene, fine, place.time_s);
+      frame->time = place.time_s;   // a rounding beside it
+      ++instants;
+    }
+    off = std::max(off, (frame->poses.at(place.body).com_world - place.com_world).norm());
+  }
+  if (instants == 0) return;
+  truth.floor_m = std::max(truth.floor_m, off);
+  truth.what += fmt::format(", or what {} differs by where it knows the place ({} instant{}: {:.1e} m)", source, instants, instants == 1 ? "" : "s", off);
+}
+
+CostTruth by_numbers(const scene::Scene& scene, const CostOptions& options, const std::string& why) {
+  CostTruth truth;
+  truth.asked_s = truth.duration_s = options.duration_s.value_or(scene.duration_s);
+  truth.intervals = samples_of(scene, truth.duration_s, kFramesASecond);
+  truth.by_numbers = true;
+  truth.why_by_numbers = why;
+  truth.what = "what the scene is judged by";
+  truth.floor_m = 0.0;
+  truth.scale_m = std::numeric_limits<double>::infinity();
+  return truth;
 }
 
 }  // namespace tumble::engines

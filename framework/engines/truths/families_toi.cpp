@@ -4,6 +4,7 @@
 
 #include "framework/collision/first_impact.h"
 #include "framework/engines/truths/families.h"
+#include "framework/engines/truths/impact_problem.h"
 
 namespace tumble::truths {
 namespace {
@@ -70,11 +71,16 @@ bool compare_toi(const Case& truth, const std::optional<Impact>& impact, Compari
 
 // ---- toi_sphere_plane ------------------------------------------------------------------------------------------------
 
-void compare_sphere_plane(const Case& truth, const Laws& laws, Comparison& comparison) {
+Solid ball_of(const Case& truth) {
   Solid ball{CollisionShape(Sphere{truth.input("R").number()}), {}};
   ball.motion.com0_world = truth.input("x0").vector3();
   ball.motion.velocity_world = truth.input("v0").vector3();
   ball.motion.acceleration_world = gravity(truth);
+  return ball;
+}
+
+void compare_sphere_plane(const Case& truth, const Laws& laws, Comparison& comparison) {
+  const Solid ball = ball_of(truth);
   const auto impact = find_impact(ball, plane(truth.input("n").vector3().normalized(), truth.input("d").number()), laws);
   if (!compare_toi(truth, impact, comparison)) return;
   const MotionState state = ball.motion.at(impact->time);
@@ -86,7 +92,7 @@ void compare_sphere_plane(const Case& truth, const Laws& laws, Comparison& compa
 
 // ---- toi_rod_plane ---------------------------------------------------------------------------------------------------
 
-void compare_rod_plane(const Case& truth, const Laws& laws, Comparison& comparison) {
+Solid rod_of(const Case& truth) {
   constexpr double kThickness = 1e-25;  // of the length: nothing, and yet a box
   const double half = 0.5 * truth.input("L").number(), phi0 = truth.input("phi0").number(), omega = truth.input("omega").number();
   Solid rod{CollisionShape(Box{Vector3d(half, kThickness * half, kThickness * half)}), {}};
@@ -96,6 +102,12 @@ void compare_rod_plane(const Case& truth, const Laws& laws, Comparison& comparis
   // The angle grows from x towards z: a turn about -y.
   rod.motion.world_from_body_0 = Eigen::AngleAxisd(phi0, -Vector3d::UnitY());
   rod.motion.omega_world = {0.0, -omega, 0.0};
+  return rod;
+}
+
+void compare_rod_plane(const Case& truth, const Laws& laws, Comparison& comparison) {
+  const Solid rod = rod_of(truth);
+  const double phi0 = truth.input("phi0").number(), omega = truth.input("omega").number();
   const auto impact = find_impact(rod, plane(Vector3d::UnitZ(), 0.0), laws);
   if (!compare_toi(truth, impact, comparison)) return;
   const MotionState state = rod.motion.at(impact->time);
@@ -225,6 +237,41 @@ void compare_tunnel(const Case& truth, const Laws& laws, Comparison& comparison)
 }
 
 }  // namespace
+
+namespace {
+
+ImpactProblem problem_between(const Case& truth, const Solid& a, const Solid& b, double window_s) {
+  const double toi = truth.output("toi").number();
+  ImpactProblem problem{truth.id, {}, {}, window_s * std::floor(toi / window_s), 0.0, toi, {}};
+  problem.high = problem.low + window_s;
+  problem.gap = [a, b](double t) { return compute_gap(a.shape, a.motion.at(t).pose, b.shape, b.motion.at(t).pose).distance; };
+  problem.gap_rate = [a, b](double t) {
+    const MotionState at_a = a.motion.at(t), at_b = b.motion.at(t);
+    return gap_rate(compute_gap(a.shape, at_a.pose, b.shape, at_b.pose), at_a, at_b);
+  };
+  return problem;
+}
+
+/// Ball and plane under gravity: n.x0 - d - R + n.v t - (n.g / 2) t^2 = 0, the first root in the form without cancellation.
+double ball_meets_plane(const Case& truth) {
+  const Vector3d normal = truth.input("n").vector3().normalized();
+  const double c = normal.dot(truth.input("x0").vector3()) - truth.input("d").number() - truth.input("R").number();
+  const double b = normal.dot(truth.input("v0").vector3()), a = 0.5 * normal.dot(gravity(truth));
+  return 2.0 * c / (-b + std::sqrt(b * b - 4.0 * a * c));
+}
+
+}  // namespace
+
+std::optional<ImpactProblem> impact_problem(const Case& truth, double window_s) {
+  if (truth.family == "toi_sphere_plane") {
+    ImpactProblem problem = problem_between(truth, ball_of(truth), plane(truth.input("n").vector3().normalized(), truth.input("d").number()), window_s);
+    problem.closed_form = [truth] { return ball_meets_plane(truth); };
+    return problem;
+  }
+  if (truth.family == "toi_rod_plane") return problem_between(truth, rod_of(truth), plane(Vector3d::UnitZ(), 0.0), window_s);
+  if (truth.family == "toi_boxes") return problem_between(truth, box_of(truth, "A"), box_of(truth, "B"), window_s);
+  return std::nullopt;   // a graze is a double root, and a bullet is through the wall at the end of a step: no bracket
+}
 
 void compare_times_of_impact(const Case& truth, const Laws& laws, Comparison& comparison) {
   if (truth.family == "toi_sphere_plane") compare_sphere_plane(truth, laws, comparison);

@@ -10,14 +10,19 @@
 
 #include "framework/report/cost_page.h"
 #include "framework/report/html.h"
+#include "framework/report/peer_rows.h"
 #include "tests/bench/peers/cases.h"
-#include "tests/bench/peers/rows.h"
 
 namespace tumble::peers {
 namespace {
 
 using report::Cell;
 using report::Look;
+using report::PeerRow;
+using report::PeerRows;
+using report::PeerWords;
+using report::cheapest_row;
+using report::read_peer_rows;
 
 const std::string kOurs = "Tumble";
 constexpr double kMarks[] = {1e-3, 1e-6, 1e-9};
@@ -36,58 +41,58 @@ constexpr const char* kRules[] = {
     "Tumble goes through run_scene, the entry that `tumble run` uses, with the laws of the course's reference modules: retroactive detection with RK4 at a fixed step, or with Dormand-Prince (error control, from Boost.Odeint) behind the same law; and, where nothing but gravity and impacts acts and the tree has them, conservative advancement and timewarp, whose flights are closed forms.",
 };
 
-std::string fineness(const Row& row) {
+std::string fineness(const PeerRow& row) {
   if (std::isfinite(row.tolerance)) return fmt::format("tolerance {:.0e}", row.tolerance);
   return std::isfinite(row.step) ? fmt::format("1/{:g} s", std::round(1 / row.step)) : "no step";
 }
 
 /// What none of the same engine's rows beats in both price and error, by price.
-std::vector<Row> not_beaten(const std::vector<Row>& rows) {
+std::vector<PeerRow> not_beaten(const std::vector<PeerRow>& rows) {
   std::vector<double> prices, errors;
-  for (const Row& row : rows) {
+  for (const PeerRow& row : rows) {
     prices.push_back(row.cpu_s);
     errors.push_back(row.error);
   }
-  std::vector<Row> best;
+  std::vector<PeerRow> best;
   for (const std::size_t i : report::not_beaten(prices, errors)) best.push_back(rows[i]);
   return best;
 }
 
-std::vector<Row> rows_of(const Measured& measured, const std::string& bench, const std::string& engine) {
-  std::vector<Row> rows;
-  for (const Row& row : measured.rows)
+std::vector<PeerRow> rows_of(const PeerRows& measured, const std::string& bench, const std::string& engine) {
+  std::vector<PeerRow> rows;
+  for (const PeerRow& row : measured.rows)
     if (row.bench == bench && row.engine == engine && row.done && std::isfinite(row.error) && row.error < kBlownUp) rows.push_back(row);
   return rows;
 }
 
-report::Curve curve_of(const std::string& name, const std::vector<Row>& rows) {
+report::Curve curve_of(const std::string& name, const std::vector<PeerRow>& rows) {
   report::Curve curve{name, {}, {}, true};
-  for (const Row& row : rows) {
+  for (const PeerRow& row : rows) {
     curve.x.push_back(row.cpu_s);
     curve.y.push_back(std::max(row.error, kExact));
   }
   return curve;
 }
 
-std::vector<std::string> methods_of(const std::vector<Row>& rows) {
+std::vector<std::string> methods_of(const std::vector<PeerRow>& rows) {
   std::vector<std::string> methods;
-  for (const Row& row : rows)
+  for (const PeerRow& row : rows)
     if (std::find(methods.begin(), methods.end(), row.method) == methods.end()) methods.push_back(row.method);
   return methods;
 }
 
-report::Plot plot_of(const BenchCase& bench, const Measured& measured) {
+report::Plot plot_of(const BenchCase& bench, const PeerRows& measured) {
   report::Plot plot{bench.id + ": " + bench.title, {"CPU time", "s", report::Scale::kLog}, {bench.error_name, bench.error_unit, report::Scale::kLog}, {}, {}, "Left is cheaper, down is more accurate. Truth: " + bench.truth + "."};
-  for (const EngineWords& engine : measured.engines) {
-    const std::vector<Row> rows = rows_of(measured, bench.id, engine.name);
+  for (const PeerWords& engine : measured.engines) {
+    const std::vector<PeerRow> rows = rows_of(measured, bench.id, engine.name);
     if (engine.name != kOurs) {   // empty where it does not run: an engine looks the same in all pictures
       plot.curves.push_back(curve_of(rows.empty() ? "" : engine.name, not_beaten(rows)));
       continue;
     }
     for (std::size_t k = 0; k < kMostWays; ++k) {
       const std::vector<std::string> methods = methods_of(rows);
-      std::vector<Row> of_method;
-      if (k < methods.size()) std::copy_if(rows.begin(), rows.end(), std::back_inserter(of_method), [&](const Row& row) { return row.method == methods[k]; });
+      std::vector<PeerRow> of_method;
+      if (k < methods.size()) std::copy_if(rows.begin(), rows.end(), std::back_inserter(of_method), [&](const PeerRow& row) { return row.method == methods[k]; });
       plot.curves.push_back(curve_of(of_method.empty() ? "" : "Tumble, " + methods[k], of_method));
     }
   }
@@ -101,12 +106,12 @@ std::string unbroken(const std::string& words) {
   return whole;
 }
 
-Cell price_cell(const Row* row, bool with_name, Look look) {
+Cell price_cell(const PeerRow* row, bool with_name, Look look) {
   if (row == nullptr) return {"-", "", Look::kMuted};
   return {(with_name ? row->engine + " " : "") + unbroken(report::price_of(row->cpu_s)), "", look};
 }
 
-report::Table overview(const std::vector<BenchCase>& cases, const Measured& measured) {
+report::Table overview(const std::vector<BenchCase>& cases, const PeerRows& measured) {
   report::Table table;
   table.caption = "What an error of at most 1e-3, 1e-6, 1e-9 costs: Tumble's CPU time, the cheapest peer's, and the first over the second. - : none gets there.";
   table.columns = {{"Scene"}};
@@ -114,7 +119,7 @@ report::Table overview(const std::vector<BenchCase>& cases, const Measured& meas
   for (const BenchCase& bench : cases) {
     std::vector<Cell> cells{{unbroken(bench.id.substr(0, 2) + " " + bench.name), "#" + bench.id}};
     for (const double mark : kMarks) {
-      const Row *ours = cheapest(measured.rows, bench.id, kOurs, false, mark), *theirs = cheapest(measured.rows, bench.id, kOurs, true, mark);
+      const PeerRow *ours = cheapest_row(measured.rows, bench.id, kOurs, false, mark), *theirs = cheapest_row(measured.rows, bench.id, kOurs, true, mark);
       const bool wins = ours != nullptr && (theirs == nullptr || ours->cpu_s <= theirs->cpu_s);
       cells.push_back(price_cell(ours, false, wins ? Look::kGood : Look::kPlain));
       cells.push_back(price_cell(theirs, true, !wins && theirs != nullptr ? Look::kWarning : Look::kPlain));
@@ -127,10 +132,10 @@ report::Table overview(const std::vector<BenchCase>& cases, const Measured& meas
 }
 
 /// Where Tumble stands in this scene, in words made of the numbers.
-std::string verdict(const BenchCase& bench, const Measured& measured) {
+std::string verdict(const BenchCase& bench, const PeerRows& measured) {
   std::string words;
   for (const double mark : kMarks) {
-    const Row *ours = cheapest(measured.rows, bench.id, kOurs, false, mark), *theirs = cheapest(measured.rows, bench.id, kOurs, true, mark);
+    const PeerRow *ours = cheapest_row(measured.rows, bench.id, kOurs, false, mark), *theirs = cheapest_row(measured.rows, bench.id, kOurs, true, mark);
     std::string sentence;
     if (ours == nullptr && theirs == nullptr) sentence = "no engine gets there";
     else if (ours == nullptr) sentence = fmt::format("Tumble does not get there; {} needs {}", theirs->engine, report::price_of(theirs->cpu_s));
@@ -139,28 +144,28 @@ std::string verdict(const BenchCase& bench, const Measured& measured) {
     else sentence = fmt::format("Tumble loses: {} against {} of {} ({}, {}), {:.1f} times as much", report::price_of(ours->cpu_s), report::price_of(theirs->cpu_s), theirs->engine, theirs->method, fineness(*theirs), ours->cpu_s / theirs->cpu_s);
     words += fmt::format("{}At {:.0e}: {}.", words.empty() ? "" : " ", mark, sentence);
   }
-  const Row* closest = nullptr;   // of the peers
-  for (const Row& row : measured.rows)
+  const PeerRow* closest = nullptr;   // of the peers
+  for (const PeerRow& row : measured.rows)
     if (row.bench == bench.id && row.engine != kOurs && row.done && std::isfinite(row.error) && (closest == nullptr || row.error < closest->error)) closest = &row;
   if (closest != nullptr) words += fmt::format(" The least error of a peer is {:.1e}: {} ({}, {}), {}.", closest->error, closest->engine, closest->method, fineness(*closest), report::price_of(closest->cpu_s));
   return words;
 }
 
 /// What of Tumble's ended early.
-std::string trouble(const BenchCase& bench, const Measured& measured) {
+std::string trouble(const BenchCase& bench, const PeerRows& measured) {
   std::string words;
-  for (const Row& row : measured.rows)
+  for (const PeerRow& row : measured.rows)
     if (row.bench == bench.id && row.engine == kOurs && !row.done) words += fmt::format("{}Tumble, {}, {}: {}.", words.empty() ? "" : " ", row.method, fineness(row), row.words.substr(0, std::min(row.words.find(" (integrator"), row.words.find(';'))));
   return words;
 }
 
 /// Where Tumble is not the cheapest, in one paragraph.
-std::string losses(const std::vector<BenchCase>& cases, const Measured& measured) {
+std::string losses(const std::vector<BenchCase>& cases, const PeerRows& measured) {
   std::string words;
   for (const BenchCase& bench : cases) {
     double least = std::numeric_limits<double>::infinity(), most = 0.0;
     for (const double mark : kMarks) {
-      const Row *ours = cheapest(measured.rows, bench.id, kOurs, false, mark), *theirs = cheapest(measured.rows, bench.id, kOurs, true, mark);
+      const PeerRow *ours = cheapest_row(measured.rows, bench.id, kOurs, false, mark), *theirs = cheapest_row(measured.rows, bench.id, kOurs, true, mark);
       if (theirs == nullptr || (ours != nullptr && ours->cpu_s <= theirs->cpu_s)) continue;
       const double factor = ours == nullptr ? std::numeric_limits<double>::infinity() : ours->cpu_s / theirs->cpu_s;
       least = std::min(least, factor), most = std::max(most, factor);
@@ -168,41 +173,41 @@ std::string losses(const std::vector<BenchCase>& cases, const Measured& measured
     const std::string what = bench.id + " (" + bench.name;
     if (rows_of(measured, bench.id, kOurs).empty()) words += fmt::format("{}{}: it does not finish)", words.empty() ? "" : ", ", what);
     else if (most > 0.0) words += fmt::format("{}{}: {} times the best peer's price)", words.empty() ? "" : ", ", what, most > 1.05 * least ? fmt::format("{:.1f} to {:.1f}", least, most) : fmt::format("{:.1f}", most));
-    const Row* good = cheapest(measured.rows, bench.id, kOurs, false, bench.goal_error);
+    const PeerRow* good = cheapest_row(measured.rows, bench.id, kOurs, false, bench.goal_error);
     if (good != nullptr && good->cpu_s > bench.goal_price_s) words += fmt::format("{}{}: {} where the goal is {})", words.empty() ? "" : ", ", what, report::price_of(good->cpu_s), report::price_of(bench.goal_price_s));
   }
   return words.empty() ? "Tumble is the cheapest at every error in every scene." : "Where Tumble loses, or misses its goal: " + words + ".";
 }
 
 /// Every engine's CPU time a simulated second at one step.
-std::string prices_at(const BenchCase& bench, const Measured& measured, double step) {
+std::string prices_at(const BenchCase& bench, const PeerRows& measured, double step) {
   std::string words;
   const double duration = bench.sample_times.back();
-  for (const Row& row : measured.rows)
+  for (const PeerRow& row : measured.rows)
     if (row.bench == bench.id && row.done && std::abs(row.step - step) < 1e-9) words += fmt::format("{}{}, {}: {}, {} {:.1e} m", words.empty() ? "" : "; ", row.engine, row.method, report::price_of(row.cpu_s / duration), bench.error_name, row.error);
   return fmt::format("CPU time a simulated second at 1/{:g} s: {}.", 1 / step, words);
 }
 
-std::string all_rows(const BenchCase& bench, const Measured& measured) {
+std::string all_rows(const BenchCase& bench, const PeerRows& measured) {
   std::string text;
-  for (const Row& row : measured.rows)
+  for (const PeerRow& row : measured.rows)
     if (row.bench == bench.id)
       text += fmt::format("{:8} {:36} {:16} {:>11}  {}\n", row.engine, row.method, fineness(row), row.done ? report::price_of(row.cpu_s) : "-", row.done ? fmt::format("error {:.2e}   {}", row.error, row.words) : row.words);
   return text;
 }
 
 void write(const std::filesystem::path& rows, const std::filesystem::path& file, bool quick) {
-  const Measured measured = read_rows(rows);
+  const PeerRows measured = read_peer_rows(rows);
   std::vector<BenchCase> cases;
   for (BenchCase& bench : all_cases(quick))
-    if (std::any_of(measured.rows.begin(), measured.rows.end(), [&](const Row& row) { return row.bench == bench.id; })) cases.push_back(std::move(bench));
+    if (std::any_of(measured.rows.begin(), measured.rows.end(), [&](const PeerRow& row) { return row.bench == bench.id; })) cases.push_back(std::move(bench));
   report::Page page("What accuracy costs: Tumble beside the engines people use today", quick ? "Quick run: few steps, short scenes. Figures of a quick run prove nothing but that it runs." : "Scenes S1 to S8, error against CPU time");
   page.table(overview(cases, measured));
   page.paragraph(losses(cases, measured));
   page.heading("How it was measured");
   for (const char* rule : kRules) page.paragraph(rule);
   report::Table engines{"", {{"Engine"}, {"Version"}, {"Settings"}}, {}};
-  for (const EngineWords& engine : measured.engines) engines.rows.push_back({{engine.name}, {engine.version}, {engine.settings}});
+  for (const PeerWords& engine : measured.engines) engines.rows.push_back({{engine.name}, {engine.version}, {engine.settings}});
   page.table(engines);
   for (const BenchCase& bench : cases) {
     page.heading(bench.id + ": " + bench.title, 2, bench.id);

@@ -1,4 +1,4 @@
-#include "tests/bench/peers/rows.h"
+#include "framework/report/peer_rows.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 #include <fstream>
 #include <stdexcept>
 
-namespace tumble::peers {
+namespace tumble::report {
 namespace {
 
 std::vector<std::string> fields_of(const std::string& line) {
@@ -21,7 +21,7 @@ std::vector<std::string> fields_of(const std::string& line) {
 
 double number(const std::string& word) { return std::strtod(word.c_str(), nullptr); }
 
-void read_file(const std::filesystem::path& file, Measured& measured) {
+void read_file(const std::filesystem::path& file, PeerRows& measured) {
   std::ifstream stream(file);
   for (std::string line; std::getline(stream, line);) {
     const std::vector<std::string> f = fields_of(line);
@@ -33,22 +33,22 @@ void read_file(const std::filesystem::path& file, Measured& measured) {
 
 }  // namespace
 
-Measured read_rows(const std::filesystem::path& folder) {
+PeerRows read_peer_rows(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder))
     if (entry.path().extension() == ".tsv") files.push_back(entry.path());
   const auto place = [](const std::filesystem::path& file) { return std::pair(file.stem() != "tumble", file.stem().string()); };
   std::sort(files.begin(), files.end(), [&](const auto& a, const auto& b) { return place(a) < place(b); });
-  Measured measured;
+  PeerRows measured;
   for (const auto& file : files) read_file(file, measured);
   return measured;
 }
 
-const Row* cheapest(const std::vector<Row>& rows, const std::string& bench, const std::string& engine, bool of_others, double error) {
-  const Row* best = nullptr;
-  for (const Row& row : rows)
+const PeerRow* cheapest_row(const std::vector<PeerRow>& rows, const std::string& bench, const std::string& engine, bool of_others, double error) {
+  const PeerRow* best = nullptr;
+  for (const PeerRow& row : rows)
     if (row.bench == bench && (row.engine == engine) != of_others && row.done && row.error <= error && (best == nullptr || row.cpu_s < best->cpu_s)) best = &row;
   return best;
 }
 
-}  // namespace tumble::peers
+}  // namespace tumble::report

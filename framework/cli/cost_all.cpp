@@ -1,0 +1,152 @@
+#include "framework/cli/cost_all.h"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "framework/cli/cost_measure.h"
+#include "framework/cli/scene_run.h"
+#include "framework/core/error.h"
+#include "framework/report/html.h"
+#include "framework/report/peer_rows.h"
+
+namespace tumble::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using report::Cell;
+using report::Look;
+using report::PeerRow;
+
+constexpr double kMarks[] = {1e-3, 1e-6, 1e-9};   // m
+const std::string kOurs = "Tumble";
+
+struct SceneLine {
+  std::string scene;
+  std::string problem;                 // why there is nothing; empty: there is
+  std::optional<MeasuredCost> cost;
+};
+
+/// What is paid for an error, and by what.
+Cell cell_of(const report::CostPage& page, double mark) {
+  const report::CostCurve* curve = cheapest_curve(page, mark);
+  if (curve == nullptr) return {"\u2013", "", Look::kMuted};
+  const report::CostPoint* point = report::cheapest(*curve, mark);
+  return {fmt::format("{}: {}, {}", report::price_of(point->cpu_s), curve->name, point->fineness)};
+}
+
+/// Scene, then a cell a mark; a scene without a truth says what being right costs.
+report::Table table_of(const std::vector<SceneLine>& lines) {
+  report::Table table;
+  table.caption = "CPU time that an error of at most 1e-3, 1e-6, 1e-9 m costs, and what it was reached by. \u2013: nothing that was run gets there.";
+  table.columns = {{"Scene"}, {"Looked at"}, {"1e-3 m"}, {"1e-6 m"}, {"1e-9 m"}};
+  for (const SceneLine& line : lines) {
+    const Cell name{line.scene, line.cost ? line.scene + "/index.html" : ""};
+    if (!line.cost) {
+      table.rows.push_back({name, {"failed", "", Look::kBad}, {line.problem, "", Look::kMuted}, {""}, {""}});
+      continue;
+    }
+    const report::CostPage& page = line.cost->page;
+    const bool whole = line.cost->duration_s >= (1.0 - 1e-9) * line.cost->asked_s;
+    std::vector<Cell> cells{name, {whole ? fmt::format("{:.3g} s", line.cost->asked_s) : fmt::format("{:.3g} of {:.3g} s", line.cost->duration_s, line.cost->asked_s), "", Look::kMuted}};
+    if (page.error_unit.empty()) {
+      const Cell right = cell_of(page, 1.0);
+      cells.push_back({"right by its numbers: " + right.text, "", right.look});
+      cells.insert(cells.end(), {{"no truth", "", Look::kMuted}, {"", "", Look::kMuted}});
+    } else {
+      for (const double mark : kMarks) cells.push_back(cell_of(page, mark));
+    }
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+std::string peer_cell(const PeerRow* row) { return row == nullptr ? "\u2013" : fmt::format("{} {}", row->engine, report::price_of(row->cpu_s)); }
+
+/// @param page  of the peers, to link to, relative to this one
+report::Table table_of_peers(const report::PeerRows& measured, const std::string& page) {
+  report::Table table;
+  table.caption = "Beside other engines: what an error of at most 1e-3, 1e-6, 1e-9 (of the scene's own kind) costs Tumble, and the cheapest peer that gets there.";
+  table.columns = {{"Scene"}, {"1e-3"}, {"best peer"}, {"1e-6"}, {"best peer"}, {"1e-9"}, {"best peer"}};
+  std::set<std::string> benches;
+  for (const PeerRow& row : measured.rows) benches.insert(row.bench);
+  for (const std::string& bench : benches) {
+    std::vector<Cell> cells{{bench, page + "#" + bench}};
+    for (const double mark : kMarks) {
+      const PeerRow *ours = report::cheapest_row(measured.rows, bench, kOurs, false, mark), *theirs = report::cheapest_row(measured.rows, bench, kOurs, true, mark);
+      const bool wins = ours != nullptr && (theirs == nullptr || ours->cpu_s <= theirs->cpu_s);
+      cells.push_back({ours == nullptr ? "\u2013" : report::price_of(ours->cpu_s), "", wins ? Look::kGood : ours == nullptr ? Look::kMuted : Look::kBad});
+      cells.push_back({peer_cell(theirs), "", theirs == nullptr ? Look::kMuted : Look::kPlain});
+    }
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+/// Columns as wide as their widest cell; letters are counted, not bytes.
+void print(const report::Table& table) {
+  const auto letters = [](const std::string& text) { return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; })); };
+  std::vector<std::size_t> widths;
+  for (const report::Column& column : table.columns) widths.push_back(letters(column.name));
+  for (const auto& row : table.rows)
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], letters(row[i].text));
+  const auto line = [&](const auto& text_of, std::size_t n) {
+    std::string text;
+    for (std::size_t i = 0; i < n; ++i) text += text_of(i) + std::string(widths[i] - letters(text_of(i)) + 2, ' ');
+    fmt::print("{}\n", text.substr(0, text.find_last_not_of(' ') + 1));
+  };
+  fmt::print("{}\n", table.caption);
+  line([&](std::size_t i) { return table.columns[i].name; }, table.columns.size());
+  for (const auto& row : table.rows) line([&](std::size_t i) { return row[i].text; }, row.size());
+  fmt::print("\n");
+}
+
+SceneLine line_of(const Context& context, const CostWords& words, const std::string& scene) {
+  CostWords own = words;
+  own.scene = scene;
+  SceneLine line{scene, "", std::nullopt};
+  try {
+    line.cost = measure_cost(context, own);
+    report::write_cost_page(line.cost->page, fs::path(words.out) / scene / "index.html");
+  } catch (const std::exception& error) {   // what goes wrong in one scene is told in its line
+    line.problem = error.what();
+  }
+  return line;
+}
+
+void write_page(const Context& context, const std::vector<report::Table>& tables, const CostWords& words, bool has_peers) {
+  report::Page page("What accuracy costs, scene by scene", "Every scene over its methods, steps, tolerances and engines");
+  page.paragraph("Each scene has a page of its own, with curves. Prices are CPU times of this machine in this run: ratios matter. Where a truth holds for a part of a scene only, that part is what was looked at.");
+  for (const report::Table& table : tables) page.table(table);
+  if (!has_peers) page.paragraph("Other engines are not in it: tests/bench/peers/run.sh measures those that are installed.", Look::kMuted);
+  page.record(context.command_line);
+  page.write(fs::path(words.out) / "index.html");
+}
+
+}  // namespace
+
+void cost_of_all(Context& context, const CostWords& words) {
+  if (words.n || words.duration_s || !words.on.empty()) throw UserError("tumble cost all", "sizes, durations and --on belong to one scene", "Leave --n, --duration-s and --on out, or name a scene.");
+  const std::vector<std::string> scenes = scene_names(context);
+  const auto begun = std::chrono::steady_clock::now();
+  std::vector<SceneLine> lines;
+  for (std::size_t k = 0; k < scenes.size(); ++k) {
+    const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    fmt::print(stderr, "[{}/{}] {}{}\n", k + 1, scenes.size(), scenes[k], k == 0 ? "" : fmt::format(" · about {:.0f} min left", std::ceil(spent / static_cast<double>(k) * static_cast<double>(scenes.size() - k) / 60.0)));
+    lines.push_back(line_of(context, words, scenes[k]));
+    if (!lines.back().problem.empty()) context.exit = ExitCode::kCheckFailed;
+  }
+  std::vector<report::Table> tables{table_of(lines)};
+  const fs::path rows = fs::path("out") / "peers" / "rows";
+  const bool has_peers = fs::is_directory(rows);
+  if (has_peers) tables.push_back(table_of_peers(report::read_peer_rows(rows), "../peers/index.html"));
+  for (const report::Table& table : tables) print(table);
+  write_page(context, tables, words, has_peers);
+  fmt::print("{}\n", (fs::path(words.out) / "index.html").string());
+}
+
+}  // namespace tumble::cli

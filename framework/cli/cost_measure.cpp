@@ -1,0 +1,182 @@
+#include "framework/cli/cost_measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include <fmt/format.h>
+
+#include "framework/cli/read_truth.h"
+#include "framework/core/cpu_time.h"
+#include "framework/core/error.h"
+#include "framework/engines/cost/cost.h"
+#include "framework/engines/cost/reading.h"
+#include "framework/engines/timewarp/fast_timewarp.h"
+
+namespace tumble::cli {
+namespace {
+
+using engines::CostRung;
+using engines::CostTruth;
+using engines::CostWay;
+
+constexpr double kLeastRung = 2.0;   // s of CPU that any run may take
+constexpr double kLongest = 2.0;     // shares of the budget, likewise
+
+struct Ladder {
+  CostWay way;
+  std::vector<CostRung> rungs;
+};
+
+std::string fineness_of(const CostRung& rung) {
+  if (std::isfinite(rung.tolerance)) return fmt::format("tolerance\u00a0{:.0e}", rung.tolerance);
+  if (!std::isfinite(rung.step_s)) return "no step";
+  return 1.0 / rung.step_s >= 10 ? fmt::format("1/{:.0f}\u00a0s", 1.0 / rung.step_s) : fmt::format("{:.3g} s", rung.step_s);
+}
+
+bool is_smooth(const scene::Scene& scene) {
+  const auto collide = std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const scene::BodySpec& body) { return body.collides; });
+  return collide < 2 && scene.rods.empty() && scene.joints.empty() && scene.motors.empty();
+}
+
+/// Runs whose error is no answer cost nothing worth comparing.
+double middle_price(const std::vector<Ladder>& ladders, const CostTruth& truth) {
+  std::vector<double> prices;
+  for (const Ladder& ladder : ladders)
+    for (const CostRung& rung : ladder.rungs)
+      if (rung.stopped_by.empty() && rung.error_m < truth.scale_m) prices.push_back(rung.cpu_s);
+  if (prices.empty()) return 1.0;
+  std::sort(prices.begin(), prices.end());
+  return prices[prices.size() / 2];
+}
+
+report::CostCurve curve_of(const Ladder& ladder, const CostTruth& truth, double price, bool smooth) {
+  report::CostCurve curve;
+  curve.name = ladder.way.name;
+  curve.reading = engines::read_ladder(ladder.way, ladder.rungs, truth, smooth);
+  const auto fit = engines::order_of(ladder.way, ladder.rungs, truth);
+  if (fit && !ladder.way.controlled) curve.order = fit->order;
+  double closest = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < ladder.rungs.size(); ++k) {
+    const CostRung& rung = ladder.rungs[k];
+    curve.points.push_back({fineness_of(rung), ladder.way.controlled ? kUnset : rung.step_s, rung.error_m, rung.cpu_s, static_cast<double>(rung.evaluations), rung.stopped_by});
+    const double off = std::abs(std::log(rung.cpu_s / price));
+    if (!rung.stopped_by.empty() || !(off < closest)) continue;
+    closest = off;
+    curve.example = k;
+    curve.times = rung.times;
+    curve.energy_errors = rung.energy_errors;
+    curve.stage_seconds = rung.stage_seconds;
+  }
+  return curve;
+}
+
+std::string what_error_is(const CostTruth& truth) {
+  if (truth.by_numbers)
+    return fmt::format("There is no truth to compare places with ({}). So each run is judged as tumble run judges it, and its error is the worst of the scene's numbers over what that number is allowed: up to 1 is right. "
+                       "Where nothing at all is allowed and something is there, a run has no such error and is not drawn.", truth.why_by_numbers);
+  return fmt::format("Errors are against {}: {:.1e} m. The error of a body is how far its centre of mass is out of place, plus the angle by which it is turned wrongly times its radius of gyration; the "
+                     "largest over all movable bodies and samples counts. An error of {:.1e} m, which is as far as bodies move, is no answer, and is not drawn.", truth.what, truth.floor_m, truth.scale_m);
+}
+
+std::vector<Ladder> run_all(const scene::Scene& scene, std::vector<CostWay> ways, const CostTruth& truth, const CostWords& words, const engines::CostOptions& options) {
+  std::vector<Ladder> ladders;
+  const double begun = cpu_seconds(), until = begun + words.budget_s;
+  for (std::size_t k = 0; k < ways.size(); ++k) {
+    if (k > 0 && cpu_seconds() > until) {
+      fmt::print(stderr, "{:>2}/{} {:<28} not run: the budget of {:g} s is used up\n", k + 1, ways.size(), ways[k].name, words.budget_s);
+      continue;
+    }
+    const double left = std::max(0.0, until - cpu_seconds()), share = left / static_cast<double>(ways.size() - k);
+    Ladder ladder{std::move(ways[k]), {}};
+    engines::CostOptions own = options;
+    own.most_of_rung_s = std::max(kLeastRung, std::min(left, kLongest * share));
+    ladder.rungs = engines::run_ladder(scene, ladder.way, truth, share, own, words.steps_s(), words.tolerances, [&](const CostRung& rung) {
+      const std::string found = rung.stopped_by.empty() ? fmt::format("error {:.1e}{}, {}", rung.error_m, truth.by_numbers ? " of allowed" : " m", report::price_of(rung.cpu_s)) : "stopped";
+      fmt::print(stderr, "{:>2}/{} {:<28} {:<16} {:<28} at most {:.0f} s left\n", k + 1, ways.size(), ladder.way.name, fineness_of(rung), found, std::max(0.0, until - cpu_seconds()));
+    });
+    ladders.push_back(std::move(ladder));
+  }
+  return ladders;
+}
+
+/// A file of tests/truths about the same problem tells the truth's error better than two runs of one engine do.
+void check_with_files(const Context& context, const CostSubject& subject, CostTruth& truth) {
+  const std::filesystem::path folder = context.root / "tests" / "truths";
+  if (!std::filesystem::is_directory(folder)) return;
+  for (const auto& file : find_truths(folder)) {
+    const truths::Case known = read_truth(file);
+    engines::check_truth(subject.scene, subject.truth_laws, truths::known_places(subject.scene, known), "tests/truths/" + file.filename().string(), truth);
+  }
+}
+
+report::CostPage page_of(const Context& context, const std::vector<Ladder>& ladders, const CostTruth& truth, const CostSubject& subject) {
+  report::CostPage page;
+  page.title = subject.title;
+  page.about = subject.scene.about;
+  page.truth = truth.what;
+  page.what_error_is = what_error_is(truth);
+  if (truth.by_numbers) {
+    page.error_name = "worst number over what is allowed";
+    page.error_unit.clear();
+    page.marks = {1.0, 0.1};
+  }
+  page.floor = truth.floor_m;
+  page.scale = truth.scale_m;
+  page.record = context.command_line;
+  const double price = middle_price(ladders, truth);
+  for (const Ladder& ladder : ladders) page.curves.push_back(curve_of(ladder, truth, price, is_smooth(subject.scene)));
+  page.readings = verdicts(page);
+  if (truth.by_numbers) page.readings.push_back("Judged by the scene's own numbers, for there is no truth to compare places with: " + truth.why_by_numbers + ".");
+  else if (truth.duration_s < (1.0 - 1e-9) * truth.asked_s)
+    page.readings.push_back(fmt::format("Looked at are the first {:.3g} s of {:.3g} s: {}.", truth.duration_s, truth.asked_s, truth.shortened_by));
+  if (!subject.note.empty()) page.readings.push_back(subject.note);
+  return page;
+}
+
+}  // namespace
+
+const report::CostCurve* cheapest_curve(const report::CostPage& page, double mark) {
+  const report::CostCurve* best = nullptr;
+  for (const report::CostCurve& curve : page.curves) {
+    const report::CostPoint* point = report::cheapest(curve, mark);
+    if (point != nullptr && (best == nullptr || point->cpu_s < report::cheapest(*best, mark)->cpu_s)) best = &curve;
+  }
+  return best;
+}
+
+std::vector<std::string> verdicts(const report::CostPage& page) {
+  std::vector<std::string> words;
+  for (const double mark : page.marks) {
+    const report::CostCurve* best = cheapest_curve(page, mark);
+    if (best == nullptr) words.push_back(fmt::format("{}: nothing here gets there.", report::mark_in_words(page, mark)));
+    else words.push_back(fmt::format("{} costs {} at least: {}, {}.", report::mark_in_words(page, mark), report::price_of(report::cheapest(*best, mark)->cpu_s), best->name, report::cheapest(*best, mark)->fineness));
+  }
+  return words;
+}
+
+MeasuredCost measure_cost(const Context& context, const CostWords& words) {
+  engines::CostOptions options;
+  options.timewarp = engines::fast_timewarp();
+  const CostSubject subject = find_subject(context, words);
+  options.duration_s = words.duration_s ? words.duration_s : subject.duration_s;
+  options.told = [](const std::string& what) { fmt::print(stderr, "tumble: {}\n", what); };
+  std::string why;
+  const std::optional<CostTruth> found = engines::try_truth(subject.scene, subject.truth_laws, options, why);
+  if (!found && subject.scene.checks.empty()) throw UserError(subject.scene.name, "there is no truth to compare with (" + why + "), and the scene has no numbers to be judged by", "Give it \"checks\", or a shorter --duration-s.");
+  CostTruth truth = found ? *found : engines::by_numbers(subject.scene, options, why);
+  if (!found) fmt::print(stderr, "tumble: no truth ({}): runs are judged by the scene's numbers\n", why);
+  if (found) check_with_files(context, subject, truth);
+  const std::vector<Ladder> ladders = run_all(subject.scene, subject.ways, truth, words, options);
+  MeasuredCost measured;
+  measured.page = page_of(context, ladders, truth, subject);
+  if (truth.by_numbers) measured.against = fmt::format("judged by its numbers, over {:.3g} s: the worst of them over what it is allowed [-]", truth.duration_s);
+  else measured.against = fmt::format("error: against {}: {:.1e} m, over {:.3g} s", truth.what, truth.floor_m, truth.duration_s);
+  measured.duration_s = truth.duration_s;
+  measured.asked_s = truth.asked_s;
+  const auto unwritten = [](const Ladder& ladder) { return !ladder.rungs.empty() && ladder.rungs.back().not_attempted; };
+  measured.not_attempted = std::any_of(ladders.begin(), ladders.end(), unwritten);
+  return measured;
+}
+
+}  // namespace tumble::cli

@@ -1,0 +1,39 @@
+/// What accuracy costs with a submission's own methods, for its page: error against steps and against force evaluations, beside the
+/// reference, and a sentence that reads each curve.
+///
+/// Prices are counts, never seconds, so that the same submission gives the same bytes. No points hang on any of it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "framework/grading/course.h"
+#include "framework/report/plot.h"
+
+namespace tumble::grading {
+
+struct CostLine {
+  std::string reading;                  // the sentence
+  bool is_right = false;                // it does what its method promises
+  bool is_attempted = true;
+};
+
+struct CostSection {
+  std::string scene;                    // its title; empty: nothing is measured of this module
+  std::string truth;                    // what errors are measured against
+  std::vector<CostLine> lines;          // of the submission
+  std::vector<report::Plot> plots;
+};
+
+struct CostSectionOptions {
+  double call_wall_s = 3.0;             // a call that takes longer has hung: it ends its own curve
+  double session_wall_s = 60.0;         // of all calls of one curve; right ones take less than a second on an idle machine
+};
+
+/// Measures a module where it says that this is done (ModuleKind::cost). Its calls go to the sandbox; what hangs or crashes there ends its
+/// own curve, and costs nothing else.
+/// @param submission  a shared object; never loaded into this process
+CostSection measure_cost(const Course& course, const std::string& id, const std::filesystem::path& submission, const CostSectionOptions& options = {});
+
+}  // namespace tumble::grading

@@ -1,0 +1,120 @@
+// Iterative solvers and root finders to compare with: what they solve, and that their tolerance is what they keep.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "framework/core/error.h"
+#include "framework/dynamics/iterative_solvers.h"
+#include "framework/dynamics/root_methods.h"
+
+namespace tumble {
+namespace {
+
+constexpr int kLinks = 6;
+
+/// A chain of six bodies, each held to the one before; the first is infinitely heavy. Rows along directions that turn, off the centres.
+struct Chain {
+  std::vector<Constraint> constraints;
+  std::vector<ConstrainedBody> bodies;
+};
+
+Chain chain() {
+  Chain chain;
+  for (int i = 0; i <= kLinks; ++i) {
+    ConstrainedBody body{i == 0 ? 0.0 : 1.0 / i, i == 0 ? Matrix3d(Matrix3d::Zero()) : Matrix3d(Vector3d(1.0, 2.0, 3.0).asDiagonal()), Vector6d::Zero()};
+    if (i > 0) body.free_acceleration << 0.1 * i, 0.0, -9.81, 0.3, -0.2 * i, 0.1;
+    chain.bodies.push_back(body);
+    if (i == 0) continue;
+    ConstraintRow row;
+    const Vector3d n(std::cos(i), std::sin(i), 0.5), arm(0.1, 0.2 * i, -0.1);
+    row.jacobian_a << n, arm.cross(n);
+    row.jacobian_b << -n, arm.cross(-n);
+    row.value = 0.01 * i;
+    row.rate = 0.0;
+    row.velocity_product = 0.2 * i;
+    chain.constraints.push_back({i, i - 1, row});
+  }
+  return chain;
+}
+
+/// J u of every row, where a row's bodies go by u.
+double along(const Constraint& constraint, const std::vector<Vector6d>& u) { return constraint.row.jacobian_a.dot(u[constraint.body_a]) + constraint.row.jacobian_b.dot(u[constraint.body_b]); }
+
+/// How far C'' is from what is wanted, with the multipliers applied as forces.
+double residual_of(const Chain& chain, const VectorXd& lambda, const VectorXd& wanted) {
+  std::vector<Vector6d> u;
+  for (const ConstrainedBody& body : chain.bodies) u.push_back(body.free_acceleration);
+  for (std::size_t i = 0; i < chain.constraints.size(); ++i)
+    for (const auto& [body, jacobian] : {std::pair{chain.constraints[i].body_a, chain.constraints[i].row.jacobian_a}, std::pair{chain.constraints[i].body_b, chain.constraints[i].row.jacobian_b}}) {
+      u[body].head<3>() += chain.bodies[body].inverse_mass * lambda[static_cast<Eigen::Index>(i)] * jacobian.head<3>();
+      u[body].tail<3>() += chain.bodies[body].inverse_inertia_world * (lambda[static_cast<Eigen::Index>(i)] * jacobian.tail<3>());
+    }
+  double most = 0.0;
+  for (std::size_t i = 0; i < chain.constraints.size(); ++i) most = std::max(most, std::abs(along(chain.constraints[i], u) + chain.constraints[i].row.velocity_product - wanted[static_cast<Eigen::Index>(i)]));
+  return most;
+}
+
+TEST(Gradients, MultipliersHoldTheLinksToTheTolerance) {
+  const Chain links = chain();
+  const VectorXd wanted = VectorXd::LinSpaced(kLinks, -1.0, 1.0);
+  for (const double tolerance : {1e-2, 1e-6, 1e-12}) {
+    Laws laws;
+    solve_links_by_gradients(tolerance, laws);
+    // The right-hand side is below 40 m/s^2 in every row, 100 in the 2-norm.
+    EXPECT_LE(residual_of(links, laws.constraint_multipliers(links.constraints, links.bodies, wanted), wanted), 100.0 * tolerance) << tolerance;
+  }
+}
+
+TEST(Gradients, CorrectionBringsEveryRowBack) {
+  const Chain links = chain();
+  const VectorXd error = VectorXd::LinSpaced(kLinks, 0.01, 0.06);
+  Laws laws;
+  solve_links_by_gradients(1e-13, laws);
+  const VectorXd change = laws.constraint_correction(links.constraints, links.bodies, error);
+  ASSERT_EQ(change.size(), 6 * (kLinks + 1));
+  std::vector<Vector6d> u;
+  for (int k = 0; k <= kLinks; ++k) u.push_back(change.segment<6>(6 * k));
+  for (int i = 0; i < kLinks; ++i) EXPECT_NEAR(along(links.constraints[i], u), -error[i], 1e-12);   // 1e-13 of 0.1, some roundings
+}
+
+TEST(Sweeps, ForcesPushOnlyAndOnlyWhereBodiesTouch) {
+  MatrixXd A(3, 3);
+  A << 2.0, 0.5, 0.1, 0.5, 1.5, -0.2, 0.1, -0.2, 1.0;
+  const VectorXd b = (VectorXd(3) << -4.0, -1.0, 2.0).finished();   // the third wants to part
+  Laws laws;
+  solve_contacts_by_sweeps(1e-13, laws);
+  const VectorXd f = laws.contact_forces(A, b), a = A * f + b;
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_GE(f[i], 0.0);
+    EXPECT_GE(a[i], -1e-11);                  // 1e-13 of the largest force, times entries of A
+    EXPECT_NEAR(f[i] * a[i], 0.0, 1e-10);
+  }
+  EXPECT_GT(f[0], 0.0);
+  EXPECT_EQ(f[2], 0.0);
+}
+
+TEST(RootMethods, ReachTheirToleranceOnAFallingBody) {
+  // 2 - t - 4.905 t^2, which closes at (-1 + sqrt(1 + 8 4.905)) / (2 4.905); a bracket of half a second.
+  const ScalarFunction gap = [](double t) { return 2.0 - t - 4.905 * t * t; }, rate = [](double t) { return -1.0 - 9.81 * t; };
+  const double exact = (-1.0 + std::sqrt(1.0 + 8.0 * 4.905)) / (2.0 * 4.905);
+  for (const RootMethod& method : root_methods())
+    for (const double tolerance : {1e-3, 1e-6, 1e-9, 1e-12}) {
+      const RootResult found = method.find(gap, rate, 0.3, 0.8, tolerance);
+      EXPECT_EQ(found.status, RootStatus::kConverged) << method.word;
+      EXPECT_NEAR(found.time, exact, tolerance) << method.word;
+      EXPECT_GT(found.evaluations, 0) << method.word;
+    }
+}
+
+TEST(RootMethods, SayWhereThereIsNoSignChange) {
+  for (const RootMethod& method : root_methods()) EXPECT_EQ(method.find([](double) { return 1.0; }, [](double) { return 0.0; }, 0.0, 1.0, 1e-6).status, RootStatus::kNoSignChange) << method.word;
+  EXPECT_THROW(root_method_named("newtn"), UserError);
+}
+
+TEST(RootMethods, NewtonLooksAtFewerGapsThanBisection) {
+  const ScalarFunction gap = [](double t) { return 2.0 - t - 4.905 * t * t; }, rate = [](double t) { return -1.0 - 9.81 * t; };
+  EXPECT_LT(3 * root_method_named("newton").find(gap, rate, 0.3, 0.8, 1e-12).evaluations, root_method_named("bisection").find(gap, rate, 0.3, 0.8, 1e-12).evaluations);
+}
+
+}  // namespace
+}  // namespace tumble

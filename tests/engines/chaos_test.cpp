@@ -1,0 +1,37 @@
+// A scene in which errors grow has a truth for a while only.
+#include <gtest/gtest.h>
+
+#include "framework/core/error.h"
+#include "framework/engines/cost/cost.h"
+#include "framework/engines/truths/memory_scene.h"
+#include "tests/support/test_laws.h"
+
+namespace tumble::testing {
+namespace {
+
+using engines::CostOptions;
+
+/// Six balls between four walls: each meeting of two makes an error some three times as large.
+scene::Scene billiard() {
+  scene::Scene scene = truths::empty_scene("billiard", 60.0, 1e-3);
+  const std::pair<Vector3d, Vector3d> walls[] = {{{-2, 0, 0}, {1, 0, 0}}, {{2, 0, 0}, {-1, 0, 0}}, {{0, -2, 0}, {0, 1, 0}}, {{0, 2, 0}, {0, -1, 0}}};
+  for (const auto& [place, normal] : walls) scene.bodies.push_back(truths::wall("wall " + std::to_string(scene.bodies.size()), place, normal, 1.0));
+  for (int i = 0; i < 6; ++i)
+    scene.bodies.push_back(truths::ball("ball " + std::to_string(i), 1.0, 0.3, Vector3d(-1.4 + 1.3 * (i % 3), -0.7 + 1.45 * (i / 3), 0.0), Vector3d(3.0 - i, 1.0 + 0.7 * i, 0.0), 1.0));
+  return scene;
+}
+
+TEST(Truth, OfChaosHoldsForAWhileAndIsRefusedForLonger) {
+  CostOptions options;
+  std::string why;
+  const auto truth = engines::try_truth(billiard(), test_laws(), options, why);
+  ASSERT_TRUE(truth) << why;
+  EXPECT_GT(truth->duration_s, 1.0);    // errors of 1e-16 grow by e a collision: some forty of them, seconds
+  EXPECT_LT(truth->duration_s, 59.0);
+  EXPECT_LE(truth->floor_m, 1e-4 * truth->scale_m);
+  options.shorten = false;
+  EXPECT_THROW(engines::find_truth(billiard(), test_laws(), options), UserError);
+}
+
+}  // namespace
+}  // namespace tumble::testing

@@ -1,0 +1,88 @@
+// What accuracy costs, as a part of a graded report: sentences, counts, and what a module that hangs costs.
+#include <chrono>
+#include <cstdlib>
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "framework/grading/build_submission.h"
+#include "framework/grading/cost_section.h"
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+
+class CostInAReport : public ::testing::Test {
+ protected:
+  CostInAReport() {
+    std::string name = (fs::temp_directory_path() / "tumble-cost-section-XXXXXX").string();
+    folder_ = ::mkdtemp(name.data());
+    register_assignments(registry_);
+    course_ = {TUMBLE_SOURCE_DIR, TUMBLE_BINARY_DIR, &registry_, "test"};
+  }
+  ~CostInAReport() override {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+
+  /// The stub with another function in place of one of its own.
+  CostSection of_stub(const std::string& function = "", const std::string& body = "") const {
+    std::ifstream in(fs::path(TUMBLE_SOURCE_DIR) / "assignments/a2_integration/a2_integration.cpp");
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    if (!function.empty()) {
+      const auto begin = text.find("VectorXd " + function + "("), end = text.find("\n}\n", begin);
+      text.replace(begin, end + 3 - begin, "VectorXd " + function + "(const OdeFunction& f, double t, const VectorXd& y, double h) {\n" + body + "\n}\n");
+    }
+    const fs::path source = folder_ / "a2_integration.cpp", object = folder_ / "a2.so";
+    std::ofstream(source) << text;
+    const BuiltSubmission built = build_submission(course_, "a2", source, object);
+    EXPECT_EQ(built.outcome, BuiltSubmission::Outcome::kBuilt) << built.said;
+    return measure_cost(course_, "a2", object);
+  }
+
+  fs::path folder_;
+  modules::Registry registry_;
+  Course course_;
+};
+
+TEST_F(CostInAReport, WhatIsNotWrittenIsSaidAndNotJudged) {
+  const CostSection section = of_stub();
+  ASSERT_EQ(section.lines.size(), 3u);   // Euler, RK4, the module as a whole
+  for (const CostLine& line : section.lines) {
+    EXPECT_FALSE(line.is_attempted) << line.reading;
+    EXPECT_NE(line.reading.find("not written yet"), std::string::npos) << line.reading;
+  }
+}
+
+TEST_F(CostInAReport, AModuleThatHangsCostsItsOwnCurveAndLittleTime) {
+  const auto begun = std::chrono::steady_clock::now();
+  const CostSection section = of_stub("rk4_step", "for (volatile int k = 0; k < 1;) {}\n  return y + h * f(t, y);");
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+  ASSERT_EQ(section.lines.size(), 3u);
+  EXPECT_NE(section.lines[1].reading.find("no answer within"), std::string::npos) << section.lines[1].reading;
+  EXPECT_FALSE(section.lines[1].is_right);
+  EXPECT_FALSE(section.lines[0].is_attempted) << section.lines[0].reading;   // what comes before stands
+  EXPECT_LT(seconds, 60.0);   // two curves of 3 s, compiler and reference beside; without a limit it would be for ever
+}
+
+TEST_F(CostInAReport, AModuleThatIsNotAboutStepsHasNoSuchPart) { EXPECT_TRUE(measure_cost(course_, "a1", folder_ / "none.so").scene.empty()); }
+
+TEST_F(CostInAReport, AStepOfHalfTheLengthIsNoEulerAndReadsTheSameTwice) {
+  const std::string half = "return y + 0.5 * h * f(t, y);";
+  const CostSection one = of_stub("euler_step", half), two = of_stub("euler_step", half);
+  EXPECT_FALSE(one.lines[0].is_right) << one.lines[0].reading;
+  EXPECT_TRUE(one.lines[0].is_attempted);
+  ASSERT_EQ(one.plots.size(), two.plots.size());
+  for (std::size_t k = 0; k < one.plots.size(); ++k) EXPECT_EQ(report::svg_of(one.plots[k]), report::svg_of(two.plots[k]));
+  EXPECT_EQ(one.lines[0].reading, two.lines[0].reading);
+}
+
+TEST_F(CostInAReport, AnEulerStepShowsOrderOne) {   // the lecture's own formula: nothing is given away
+  const CostSection section = of_stub("euler_step", "return y + h * f(t, y);");
+  EXPECT_TRUE(section.lines[0].is_right) << section.lines[0].reading;
+  EXPECT_NE(section.lines[0].reading.find("as it should (1)"), std::string::npos) << section.lines[0].reading;
+}
+
+}  // namespace
+}  // namespace tumble::grading
