@@ -30,7 +30,8 @@ namespace fs = std::filesystem;
 using engines::CheckResult;
 
 std::string modules_line(const ChosenLaws& chosen) {
-  return fmt::format("impulses by {} · motion by {}", chosen.laws.impulse_source, chosen.laws.integrator_source);
+  const std::string line = fmt::format("impulses by {} · motion by {}", chosen.laws.impulse_source, chosen.laws.integrator_source);
+  return chosen.laws.scheduling ? line + " · scheduled by " + chosen.laws.scheduling_source : line;
 }
 
 const char* name_of(EventKind kind) {
@@ -155,7 +156,7 @@ scene::Scene judged_part(scene::Scene scene, const RunWords& words) {
 void add_run_words(CLI::App& verb, RunWords& words) {
   verb.add_option("scene", words.scene, "A scene file, or the bare name of one under assignments/*/scenes")->required()->type_name("SCENE");
   verb.add_option("--modules", words.modules, "Whose laws: student, reference, library, or a submission (PATH.cpp, PATH.so, a folder: in the sandbox); for all or each: a1=student,a2=library")->type_name("WORDS");
-  verb.add_option("--engine", words.engine, "rd: retroactive detection with fixed step; ca: conservative advancement; tw: timewarp; ordered: event by event, the reference")->capture_default_str();
+  verb.add_option("--engine", words.engine, "rd: retroactive detection with fixed step; ca: conservative advancement; tw: timewarp; ordered: event by event, the reference; default: the scene's own, or rd")->type_name("WORD");
   verb.add_option("--propagator", words.propagator, "laws: bodies go by the laws' integration (rd's default); auto: in closed form where nothing but gravity acts")->type_name("WORD");
   verb.add_option("--n", words.n, "Size of a scene whose size is a parameter: atoms, gas, pong, pong_ghosts")->check(CLI::PositiveNumber);
   verb.add_option("--step-s", words.step_s, "Step of the integrator [s] instead of the scene's")->check(CLI::PositiveNumber);

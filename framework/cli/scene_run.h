@@ -14,7 +14,7 @@ namespace tumble::cli {
 struct RunWords {
   std::string scene;                   // a path, or a bare name
   std::string modules;
-  std::string engine = "rd", propagator;
+  std::string engine, propagator;   // engine empty: the scene's, or rd
   std::optional<int> n;                // of a scene whose size is a parameter
   std::optional<double> step_s, duration_s;
   std::string png, sheet, video, trajectory, html;   // files to write; empty: none

@@ -32,6 +32,7 @@ void put_into(const ModuleKind& kind, const AnyModule& module, const std::string
   kind.bind(module, alone);
   if (alone.collision_impulse) laws.impulse_source = source;
   if (alone.integrate_step) laws.integrator_source = source;
+  if (alone.scheduling) laws.scheduling_source = source;
 }
 
 // The laws of a scene with one module's functions in their place: right neighbours around it, so that a slip is seen once.
@@ -50,6 +51,7 @@ Laws laws_around(const Course& course, const ModuleKind& kind, const AnyModule& 
       if (other->id != kind.id && needs(scene, other->id) == needed)
         if (const AnyModule reference = reference_of(course, *other)) put_into(*other, reference, "reference", laws);
   }
+  if (!needs(scene, kind.id)) laws.scheduling = {};   // a reference's, that nobody asked for
   put_into(kind, module, source, laws);
   return laws;
 }

@@ -41,6 +41,7 @@ struct ModuleKind {
   /// Families of truths (engines/truths) whose values this module's functions give directly, by name.
   std::map<std::string, std::function<void(const AnyModule&, const truths::Case&, truths::Comparison&)>> truth_families;
   std::vector<NamedMethod> methods;        // empty where the module is not about integration
+  bool is_scheduler = false;               // it decides in which order a world goes on, not how: only who names it gets it
 };
 
 class Registry {
@@ -78,6 +79,9 @@ class Registry {
   void add_method(const std::string& name, double order, Member Module::*function) {
     kinds_.at(Module::kId).methods.push_back({name, order, [function](const AnyModule& module) { return static_cast<const Module*>(module.get())->*function; }});
   }
+
+  /// A registered module that decides the order in which a world goes on.
+  void mark_scheduler(const std::string& id) { kinds_.at(id).is_scheduler = true; }
 
   /// @throws UserError naming the known ids
   const ModuleKind& find(const std::string& id) const;
