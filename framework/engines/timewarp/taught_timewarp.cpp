@@ -81,6 +81,13 @@ class TaughtTimewarp {
   std::optional<Found> look(int a, int b, double from, double to);
   CheckFinding finding_of(int a, int b, double t, const std::optional<Found>& found);
 
+  // The end of the run is a time to look, too: nothing in it goes unseen because the next look is due behind it.
+  double due(const ScheduledEvent& check) const { return check.safe_time < run_.duration() ? std::min(check.stamp.time, run_.duration()) : check.stamp.time; }
+  void put_check(int id, ScheduledEvent check) {
+    check.stamp.time = due(check);
+    queue_.put(id, check);
+  }
+
   void integrate(int body, double t);
   void step_to(int body, double to);
   void find_pairs(int body, double from);
@@ -168,7 +175,7 @@ void TaughtTimewarp::check(int id) {
   ScheduledEvent next = event;
   next.safe_time = decision.next.safe_time;
   next.stamp.time = decision.next.stamp.time;
-  queue_.put(id, next);
+  put_check(id, next);
 }
 
 std::optional<Found> TaughtTimewarp::look(int a, int b, double from, double to) {
@@ -273,6 +280,7 @@ void TaughtTimewarp::find_pairs(int body, double from) {
     ScheduledEvent check{{process(body).local_time(), 0, WorkKind::kCollision, pair.first, pair.second}, std::min(from, local_time(other)), {}};
     for (const int receiver : {pair.first, pair.second})
       if (world().can_move(receiver)) check.receivers.push_back(receiver);
+    check.stamp.time = due(check);
     pairs_[pair] = queue_.add(check);
     ++run_.counters.candidate_pairs;
   }
@@ -313,7 +321,7 @@ void TaughtTimewarp::roll_back(const std::vector<Rollback>& first, const std::st
     const ScheduledEvent answer = decide_.after_rollback(event, plan);
     moved.stamp.time = answer.stamp.time;
     moved.safe_time = answer.safe_time;
-    queue_.put(id, moved);
+    put_check(id, moved);
   }
   for (const Rollback& rollback : plan) drop_pairs_of(rollback.body);
 }
