@@ -1,4 +1,6 @@
 // Who goes back, and how far (A4.7, A4.8); what becomes of events then (A4.9).
+#include <algorithm>
+
 #include "tests/a4_timewarp/a4_fixtures.h"
 
 namespace tumble::a4_testing {
@@ -45,8 +47,9 @@ TEST(PlanRollback, TheEarliestMessageCounts) {
 
 TEST(PlanRollback, ADeeperMessageIsFollowedAgain) {
   // C is reached first at 1.25 (nothing of it after), then at 0.75, which takes its impact with D along.
-  const std::vector<Effect> effects{effect(1.25, A, C), effect(1.0, C, D), effect(0.75, B, C), effect(0.625, A, B)};
-  expect_rollbacks(a4_module().plan_rollback(effects, {back(A, kHit)}), {back(A, kHit), back(B, impact(0.625, A, B)), back(C, impact(0.75, B, C)), back(D, impact(1.0, C, D))},
+  std::vector<Effect> effects{effect(1.25, A, C), effect(1.0, C, D), effect(0.75, B, C), effect(0.625, A, B)};
+  for (int order = 0; order < 2; ++order, std::reverse(effects.begin(), effects.end()))   // in whatever order they come
+    expect_rollbacks(a4_module().plan_rollback(effects, {back(A, kHit)}), {back(A, kHit), back(B, impact(0.625, A, B)), back(C, impact(0.75, B, C)), back(D, impact(1.0, C, D))},
                    {.scene = "A hit B at 0.625 s, B hit C at 0.75 s, C hit D at 1 s, A hit C at 1.25 s. A goes back to 0.5 s", .slip = "C is reached at 1.25 s and then deeper, at 0.75 s: only the deeper one reaches D", .handout = equation(8)});
 }
 

@@ -24,7 +24,7 @@ TEST(Scheduler, HandsABlowAlongARow) {
   expect_the_references_trace(scene_of(bodies, 5.0, 0.25), 15, "five balls in a row between two walls, the first one moving");
 }
 
-TEST(Scheduler, KeepsABoxOfBallsInOrder) { expect_the_references_trace(balls_in_a_box(8, 401, 4.0), 30, "eight balls in a box"); }
+TEST(Scheduler, KeepsABoxOfBallsInOrder) { expect_the_references_trace(balls_in_a_box(6, 401, 2.5), 15, "six balls in a box"); }
 
 TEST(Scheduler, DoesNotDisturbWhoIsFarAway) {
   // Left: a pair that meets often. Right: a ball that meets nobody.
@@ -36,9 +36,9 @@ TEST(Scheduler, DoesNotDisturbWhoIsFarAway) {
 }
 
 TEST(Scheduler, ForgetsWhatIsCertain) {
-  const Trajectory run = expect_the_references_trace(balls_in_a_box(8, 402, 6.0), 40, "eight balls in a box for 6 s");
-  // 60 steps a ball and twice as many impacts, if nothing were forgotten. No check waits longer than ten steps, so no more than some 20 states a ball are needed.
-  expect_true(count(run, "states_kept") <= 8 * 30, "at most 240 states at any time", std::to_string(count(run, "states_kept")), {.scene = "eight balls in a box for 6 s, steps of 0.1 s", .slip = "states_to_purge forgets nothing, or global virtual time lags behind", .handout = equation(12)});
+  const Trajectory run = expect_the_references_trace(balls_in_a_box(3, 402, 8.0), 25, "three balls in a box for 8 s");
+  // 80 steps a ball and more than as many states of checks and impacts, if nothing were forgotten. No check waits longer than ten steps, so no more than some 20 states a ball are needed.
+  expect_true(count(run, "states_kept") <= 3 * 30, "at most 90 states at any time", std::to_string(count(run, "states_kept")), {.scene = "three balls in a box for 8 s, steps of 0.1 s", .slip = "states_to_purge forgets nothing, or global virtual time lags behind", .handout = equation(12)});
 }
 
 }  // namespace

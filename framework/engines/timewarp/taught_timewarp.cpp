@@ -19,7 +19,8 @@ namespace tumble::engines {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr std::size_t kFewProcesses = 16;         // so few, and global virtual time is asked for after every event
+constexpr std::size_t kFewProcesses = 4;          // so few, and global virtual time is asked for after every event; else once an event and process
+constexpr std::size_t kWorthPurging = 6;          // states of a body: fewer are not worth the question
 constexpr std::size_t kMostMoves = 50000;         // of virtual times kept for the chart
 constexpr std::size_t kMostEventsAtOneGvt = 20000;   // before a run is stopped in which nothing becomes certain
 
@@ -76,6 +77,7 @@ class TaughtTimewarp {
   void loop();
   void work_at(int id);
   void redraw(int id);
+  const KeptState& state_at(int body, double t);
   void check(int id);
   void collide(int id, const Found& found, const CheckDecision& decision);
   std::optional<Found> look(int a, int b, double from, double to);
@@ -160,11 +162,18 @@ void TaughtTimewarp::redraw(int id) {
   queue_.add({{std::min(next, run_.duration()), kLastGeneration, WorkKind::kRedraw, -1, -1}, kInfinity, {}});
 }
 
+const KeptState& TaughtTimewarp::state_at(int body, double t) {
+  if (const KeptState* state = process(body).at(t)) return *state;
+  throw StoppedRun(fmt::format("{} is asked for at t = {:.9g} s, and its earliest state is that of {:.9g} s, with global virtual time at {:.9g} s. Likely: too many were purged (states_to_purge), a check is due at a time long gone, or global virtual time is too late",
+                               name(body), t, process(body).states().front().time, gvt_));
+}
+
 // ---- A collision check -------------------------------------------------------------------------------------------------
 
 void TaughtTimewarp::check(int id) {
   const ScheduledEvent event = queue_.event(id);
   const int a = event.stamp.body_a, b = event.stamp.body_b;
+  for (const int body : event.receivers) state_at(body, std::min(event.safe_time, event.stamp.time));   // or the run stops here
   ++run_.counters.pair_checks;
   const std::optional<Found> found = look(a, b, event.safe_time, event.stamp.time);
   const CheckDecision decision = decide_.on_collision_check(event, finding_of(a, b, event.stamp.time, found), run_.step());
@@ -216,7 +225,7 @@ std::optional<Found> TaughtTimewarp::look(int a, int b, double from, double to) 
 CheckFinding TaughtTimewarp::finding_of(int a, int b, double t, const std::optional<Found>& found) {
   CheckFinding finding;
   if (found) finding.contact = stamp_of(found->key);
-  const auto flight_at = [&](int body) { return world().can_move(body) ? process(body).at(t)->flight : world().first_flight(body); };
+  const auto flight_at = [&](int body) { return world().can_move(body) ? state_at(body, t).flight : world().first_flight(body); };
   const Flight f = flight_at(a), g = flight_at(b);
   const collision::MotionState x = world().motion_at(a, f, t), y = world().motion_at(b, g, t);
   const collision::MotionBounds of_a = world().bounds(a, f), of_b = world().bounds(b, g);
@@ -321,7 +330,7 @@ void TaughtTimewarp::roll_back(const std::vector<Rollback>& first, const std::st
     const ScheduledEvent answer = decide_.after_rollback(event, plan);
     moved.stamp.time = answer.stamp.time;
     moved.safe_time = answer.safe_time;
-    put_check(id, moved);
+    if (moved.stamp.time != event.stamp.time || moved.safe_time != event.safe_time) put_check(id, moved);
   }
   for (const Rollback& rollback : plan) drop_pairs_of(rollback.body);
 }
@@ -336,6 +345,7 @@ void TaughtTimewarp::roll_back_one(const Rollback& rollback, const std::string& 
     if (state.time > to) return true;
     const Flight& flight = state.flight;
     if (flight.partner < 0) return false;   // the run's start
+    if (flight.begin < to) return false;
     const Stamp begin{flight.begin, flight.generation, WorkKind::kCollision, std::min(rollback.body, flight.partner), std::max(rollback.body, flight.partner)};
     return !decide_.comes_before(begin, rollback.stamp);
   };
@@ -380,10 +390,11 @@ void TaughtTimewarp::look_at_gvt(bool is_over) {
 }
 
 void TaughtTimewarp::commit() {
+  // Insertion: bears an order that is none, and asks little where things came in order.
+  for (std::size_t k = 1; k < executed_.size(); ++k)
+    for (std::size_t i = k; i > 0 && decide_.comes_before(executed_[i].effect.stamp, executed_[i - 1].effect.stamp); --i) std::swap(executed_[i], executed_[i - 1]);
   for (;;) {
-    std::size_t first = executed_.size();
-    for (std::size_t k = 0; k < executed_.size(); ++k)
-      if (first == executed_.size() || decide_.comes_before(executed_[k].effect.stamp, executed_[first].effect.stamp)) first = k;
+    const std::size_t first = 0;
     const Stamp frame{run_.next_frame(), kLastGeneration, WorkKind::kRedraw, -1, -1};
     const bool has_frame = frame.time <= drawn_until_, has_impact = first < executed_.size();
     if (!has_frame && !has_impact) return;
@@ -419,7 +430,7 @@ void TaughtTimewarp::purge() {
   for (const int body : world().movers()) {
     const std::size_t count = process(body).states().size();
     kept += count;
-    if (count < 2) continue;
+    if (count < kWorthPurging) continue;
     const std::size_t purged = decide_.states_to_purge(process(body).times(), gvt_);
     if (purged >= count) throw StoppedRun(fmt::format("states_to_purge gives away {} of the {} states of {}: none is left to go on from", purged, count, name(body)));
     if (purged == 0) continue;

@@ -5,7 +5,7 @@ namespace tumble::a4_testing {
 namespace {
 
 TEST(Scheduler, KeepsOtherBoxesInOrder) {
-  for (const std::uint64_t seed : {441, 442, 443}) expect_the_references_trace(balls_in_a_box(6, seed, 3.0), 15, "six balls in a box, seed " + std::to_string(seed));
+  for (const std::uint64_t seed : {441, 442, 443}) expect_the_references_trace(balls_in_a_box(4, seed, 2.5), 8, "four balls in a box, seed " + std::to_string(seed));
 }
 
 TEST(Scheduler, KeepsBouncingBallsInOrder) {
