@@ -165,6 +165,9 @@ void add_run_words(CLI::App& verb, RunWords& words) {
   verb.add_option("--sheet", words.sheet, "Write a contact sheet (.png)")->type_name("FILE");
   verb.add_option("--video", words.video, "Write a video (.mp4)")->type_name("FILE");
   verb.add_option("--trajectory", words.trajectory, "Write the recorded run, every frame and event")->type_name("FILE");
+  verb.add_option("--virtual-times", words.virtual_times, "Of a timewarp on a module's decisions: write a chart (.png) of local virtual times, rollbacks and global virtual time")->type_name("FILE");
+  verb.add_option("--moves", words.moves, "Of --virtual-times: after which moves of the scheduler, such as 3,8,9; default: before and after the first rollbacks")->delimiter(',')->type_name("LIST");
+  verb.add_option("--chart-until-s", words.chart_until_s, "Of --virtual-times: how far it goes [s]")->check(CLI::PositiveNumber);
   add_page_words(verb, words);
   verb.add_option("--speed", words.speed, "Seconds of the run in a second of video: 0.25 is slow motion")->check(CLI::Range(1e-6, 1e6))->capture_default_str();
   verb.add_option("--size", words.size, "Of pictures and video, in pixels")->type_name("WxH")->capture_default_str();

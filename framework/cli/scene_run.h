@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "framework/cli/module_choice.h"
 #include "framework/cli/verb.h"
@@ -18,6 +19,9 @@ struct RunWords {
   std::optional<int> n;                // of a scene whose size is a parameter
   std::optional<double> step_s, duration_s;
   std::string png, sheet, video, trajectory, html;   // files to write; empty: none
+  std::string virtual_times;           // file of a chart; empty: none
+  std::vector<std::size_t> moves;      // of the scheduler, that it shows
+  std::optional<double> chart_until_s; // as far as it goes
   std::string beside;                  // how a second run in the page differs; see run_page.h
   double at_s = -1.0;                  // of the PNG; negative: the end
   double speed = 1.0;                  // of the video: 0.25 is slow motion
