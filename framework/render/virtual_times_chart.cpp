@@ -49,7 +49,7 @@ double tick_spacing(double range) {
 std::vector<std::size_t> telling_moves(const VirtualTimes& times) {
   std::vector<std::size_t> moves;
   for (std::size_t k = 0; k < times.moves.size() && moves.size() < kMostCharts; ++k) {
-    const auto is_back = [&](std::size_t i) { return i < times.moves.size() && times.moves[i].to_s < times.moves[i].from_s; };
+    const auto is_back = [&](std::size_t i) { return i < times.moves.size() && !(times.moves[i].to_s > times.moves[i].from_s); };
     if (!is_back(k) && is_back(k + 1)) moves.push_back(k + 1);   // before it
     if (is_back(k) && !is_back(k + 1)) moves.push_back(k + 1);   // after it
   }
@@ -122,7 +122,7 @@ class Chart {
     }
     for (std::size_t k = since; k < until; ++k) {
       const VirtualTimes::Move& move = times_.moves[k];
-      if (!(move.to_s < move.from_s)) continue;
+      if (move.to_s > move.from_s) continue;
       const double y = bars + kRow * static_cast<double>(move.process);
       // Only where it has not gone again meanwhile.
       hatch(image_, x(std::max(move.to_s, local[static_cast<std::size_t>(move.process)])), y, x(move.from_s), y + kBar);
@@ -135,7 +135,9 @@ class Chart {
     std::string back;
     for (std::size_t k = since; k < until; ++k) {
       const VirtualTimes::Move& move = times_.moves[k];
-      if (move.to_s < move.from_s) back += fmt::format("{}{} back from {:.4g} to {:.4g} s", back.empty() ? "" : ", ", times_.processes[static_cast<std::size_t>(move.process)], move.from_s, move.to_s);
+      if (move.to_s > move.from_s) continue;
+      const std::string& name = times_.processes[static_cast<std::size_t>(move.process)];
+      back += (back.empty() ? "" : ", ") + (move.to_s < move.from_s ? fmt::format("{} back from {:.4g} to {:.4g} s", name, move.from_s, move.to_s) : fmt::format("{} forgets what it did at {:.4g} s", name, move.to_s));
     }
     return fmt::format("After move {}: {}{}GVT {:.4g} s", until, back, back.empty() ? "" : "; ", gvt);
   }
