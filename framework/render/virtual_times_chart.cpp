@@ -104,7 +104,7 @@ class Chart {
   }
 
   void draw_one(std::size_t which, double top) {
-    const std::size_t until = moves_[which], since = which > 0 ? moves_[which - 1] : 0;
+    const std::size_t until = moves_[which], since = which > 0 ? moves_[which - 1] : until - 1;
     std::vector<double> local(times_.processes.size(), 0.0);
     double gvt = 0.0;
     for (std::size_t k = 0; k < until; ++k) {

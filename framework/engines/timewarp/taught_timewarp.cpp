@@ -378,7 +378,7 @@ void TaughtTimewarp::look_at_gvt(bool is_over) {
   for (const int body : world().movers()) local_times.push_back({body, process(body).local_time()});
   for (const int id : queue_.ids()) events.push_back(queue_.event(id));
   const double gvt = is_over ? kInfinity : decide_.global_virtual_time(local_times, events);
-  if (gvt < gvt_) throw StoppedRun(fmt::format("global virtual time falls from {:.9g} to {:.9g} s: what is certain stays certain", gvt_, gvt));
+  if (gvt < gvt_) throw StoppedRun(fmt::format("global virtual time falls from {:.9g} to {:.9g} s: what is certain stays certain. Likely: it had been too late, for want of a local time or a safe time", gvt_, gvt));
   if (!(gvt > gvt_)) return;
   gvt_ = gvt;
   since_gvt_ = 0;

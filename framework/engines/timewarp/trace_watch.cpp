@@ -45,6 +45,9 @@ void TraceWatch::event(const Event& event) {
 }
 
 void TraceWatch::frame(const Frame& frame) {
+  if (events_ < reference_.events.size() && reference_.events[events_].time <= frame.time)
+    throw StoppedRun(fmt::format("committed event {} is missing: expected {}; found the frame at t = {:.9g} s. Likely: {}", events_ + 1, told(reference_.events[events_]), frame.time,
+                                 "an impact was lost (the interval that holds it was never looked at, or the check that had found it was forgotten), or the frame was shown before it was certain (may_commit)"));
   if (frames_ < reference_.frames.size()) {
     const Frame& expected = reference_.frames[frames_];
     for (std::size_t i = 0; i < frame.poses.size(); ++i) {
