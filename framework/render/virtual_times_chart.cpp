@@ -111,7 +111,7 @@ class Chart {
       local[static_cast<std::size_t>(times_.moves[k].process)] = times_.moves[k].to_s;
       gvt = times_.moves[k].global_virtual_time_s;
     }
-    writer_.write(image_, writer_.fitted(head(since, until, gvt), 14, image_.width - 32, true), 16, top + 24, 14, plain(kDark), Align::kLeft, true);
+    writer_.write(image_, writer_.fitted(head(since, until, gvt), 13.5, image_.width - 24, true), 16, top + 24, 13.5, plain(kDark), Align::kLeft, true);
     const double bars = top + kHead, bottom = bars + kRow * static_cast<double>(local.size());
     for (const double t : ticks()) fill(image_, x(t), bars - 4, x(t) + 1, bottom, kGrid);
     for (std::size_t i = 0; i < local.size(); ++i) {
@@ -139,7 +139,7 @@ class Chart {
       const std::string& name = times_.processes[static_cast<std::size_t>(move.process)];
       back += (back.empty() ? "" : ", ") + (move.to_s < move.from_s ? fmt::format("{} back from {:.4g} to {:.4g} s", name, move.from_s, move.to_s) : fmt::format("{} forgets what it did at {:.4g} s", name, move.to_s));
     }
-    return fmt::format("After move {}: {}{}GVT {:.4g} s", until, back, back.empty() ? "" : "; ", gvt);
+    return fmt::format("After move {}, GVT {:.4g} s{}{}", until, gvt, back.empty() ? "" : ": ", back);
   }
 
   std::vector<double> ticks() const {

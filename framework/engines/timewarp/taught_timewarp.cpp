@@ -401,8 +401,10 @@ void TaughtTimewarp::commit() {
     const bool is_frame = has_frame && (!has_impact || decide_.comes_before(frame, executed_[first].effect.stamp));
     const Stamp next = is_frame ? frame : executed_[first].effect.stamp;
     if (!decide_.may_commit(next, gvt_)) return;
-    if (is_frame) commit_frame();
-    else commit_impact(first);
+    naming(fmt::format("with global virtual time at {:.9g} s", gvt_), [&] {
+      if (is_frame) commit_frame();
+      else commit_impact(first);
+    });
     committed_ = next;
   }
 }
