@@ -47,13 +47,13 @@ void TraceWatch::event(const Event& event) {
 void TraceWatch::frame(const Frame& frame) {
   if (events_ < reference_.events.size() && reference_.events[events_].time <= frame.time)
     throw StoppedRun(fmt::format("committed event {} is missing: expected {}; found the frame at t = {:.9g} s. Likely: {}", events_ + 1, told(reference_.events[events_]), frame.time,
-                                 "an impact was lost (the interval that holds it was never looked at, or the check that had found it was forgotten), or the frame was shown before it was certain (may_commit)"));
+                                 "an impact was lost (the interval that holds it was never looked at, or the check that had found it was forgotten), or the frame was shown before it was certain (global_virtual_time, may_commit)"));
   if (frames_ < reference_.frames.size()) {
     const Frame& expected = reference_.frames[frames_];
     for (std::size_t i = 0; i < frame.poses.size(); ++i) {
       if (frame.poses[i].com_world == expected.poses[i].com_world && frame.poses[i].world_from_body.coeffs() == expected.poses[i].world_from_body.coeffs()) continue;
       const Vector3d &e = expected.poses[i].com_world, &f = frame.poses[i].com_world;
-      throw StoppedRun(fmt::format("the frame at t = {:.9g} s is not the ordered reference's: '{}' is expected at ({:.6g}, {:.6g}, {:.6g}) m; found at ({:.6g}, {:.6g}, {:.6g}) m. Likely: it was shown before it was certain (may_commit), or after an "
+      throw StoppedRun(fmt::format("the frame at t = {:.9g} s is not the ordered reference's: '{}' is expected at ({:.6g}, {:.6g}, {:.6g}) m; found at ({:.6g}, {:.6g}, {:.6g}) m. Likely: it was shown before it was certain (global_virtual_time, may_commit), or after an "
                                    "impact that is lost",
                                    frame.time, reference_.bodies[i].name, e.x(), e.y(), e.z(), f.x(), f.y(), f.z()));
     }
