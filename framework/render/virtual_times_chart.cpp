@@ -137,7 +137,7 @@ class Chart {
       const VirtualTimes::Move& move = times_.moves[k];
       if (move.to_s > move.from_s) continue;
       const std::string& name = times_.processes[static_cast<std::size_t>(move.process)];
-      back += (back.empty() ? "" : ", ") + (move.to_s < move.from_s ? fmt::format("{} back from {:.4g} to {:.4g} s", name, move.from_s, move.to_s) : fmt::format("{} forgets what it did at {:.4g} s", name, move.to_s));
+      back += (back.empty() ? "" : ", ") + (move.to_s < move.from_s ? fmt::format("{} back from {:.4g} to {:.4g} s", name, move.from_s, move.to_s) : fmt::format("{} forgets {:.4g} s", name, move.to_s));
     }
     return fmt::format("After move {}, GVT {:.4g} s{}{}", until, gvt, back.empty() ? "" : ": ", back);
   }
