@@ -42,6 +42,7 @@ class TaughtProcess {
  public:
   TaughtProcess(const FlightWorld& world, int body);
 
+  int body() const { return body_; }
   const std::vector<KeptState>& states() const { return states_; }
   double local_time() const { return states_.back().time; }
   const Flight& flight() const { return states_.back().flight; }

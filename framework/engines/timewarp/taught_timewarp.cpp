@@ -6,13 +6,13 @@
 
 #include <fmt/format.h>
 
-#include "framework/collision/gap.h"
 #include "framework/engines/events/flight_run.h"
 #include "framework/engines/events/ordered.h"
 #include "framework/engines/guarded_laws.h"
 #include "framework/engines/timewarp/guarded_scheduling.h"
 #include "framework/engines/timewarp/taught_process.h"
 #include "framework/engines/timewarp/taught_queue.h"
+#include "framework/engines/timewarp/taught_search.h"
 #include "framework/engines/timewarp/trace_watch.h"
 
 namespace tumble::engines {
@@ -32,14 +32,6 @@ struct Executed {
   std::vector<Event> more;
   std::set<int> taken_back{};   // by which of its processes
 };
-
-/// The earliest impact of a pair in an interval that nobody has worked at.
-struct Found {
-  EventKey key;
-  std::uint32_t serial_a, serial_b;   // of the flights
-};
-
-Stamp stamp_of(const EventKey& key) { return {key.time, key.generation, WorkKind::kCollision, key.body_a, key.body_b}; }
 
 class TaughtTimewarp {
  public:
@@ -79,9 +71,7 @@ class TaughtTimewarp {
   void redraw(int id);
   const KeptState& state_at(int body, double t);
   void check(int id);
-  void collide(int id, const Found& found, const CheckDecision& decision);
-  std::optional<Found> look(int a, int b, double from, double to);
-  CheckFinding finding_of(int a, int b, double t, const std::optional<Found>& found);
+  void collide(int id, const FoundImpact& found, const CheckDecision& decision);
 
   // The end of the run is a time to look, too: nothing in it goes unseen because the next look is due behind it.
   double due(const ScheduledEvent& check) const { return check.safe_time < run_.duration() ? std::min(check.stamp.time, run_.duration()) : check.stamp.time; }
@@ -90,7 +80,10 @@ class TaughtTimewarp {
     queue_.put(id, check);
   }
 
-  void integrate(int body, double t);
+  // By whole steps, past t where they do not fit: an optimist.
+  void integrate(int body, double t) {
+    while (process(body).local_time() < t) step_to(body, process(body).local_time() + run_.step());
+  }
   void step_to(int body, double to);
   void find_pairs(int body, double from);
   void drop_pairs_of(int body);
@@ -103,7 +96,9 @@ class TaughtTimewarp {
   void commit_impact(std::size_t which);
   void commit_frame();
   void purge();
-  void move(int body, double from, double to);
+  void move(int body, double from, double to) {
+    if (times_.moves.size() < kMostMoves) times_.moves.push_back({place_[static_cast<std::size_t>(body)], from, to, gvt_});
+  }
 
   TraceWatch watch_;
   FlightRun run_;
@@ -175,8 +170,12 @@ void TaughtTimewarp::check(int id) {
   const int a = event.stamp.body_a, b = event.stamp.body_b;
   for (const int body : event.receivers) state_at(body, std::min(event.safe_time, event.stamp.time));   // or the run stops here
   ++run_.counters.pair_checks;
-  const std::optional<Found> found = look(a, b, event.safe_time, event.stamp.time);
-  const CheckDecision decision = decide_.on_collision_check(event, finding_of(a, b, event.stamp.time, found), run_.step());
+  const double t = event.stamp.time;
+  const std::optional<FoundImpact> found = find_impact(run_, process(a), process(b), event.safe_time, t);
+  const auto flight_at = [&](int body) { return world().can_move(body) ? state_at(body, t).flight : world().first_flight(body); };
+  CheckFinding finding = closeness(world(), a, flight_at(a), b, flight_at(b), t);
+  if (found) finding.contact = stamp_of(found->key);
+  const CheckDecision decision = decide_.on_collision_check(event, finding, run_.step());
   if (decision.collides && !found) throw StoppedRun(fmt::format("on_collision_check says that {} and {} collide, and nothing was found in [{:.9g}, {:.9g}] s", name(a), name(b), event.safe_time, event.stamp.time));
   if (decision.collides) collide(id, *found, decision);
   const auto pair = pairs_.find({a, b});
@@ -187,57 +186,7 @@ void TaughtTimewarp::check(int id) {
   put_check(id, next);
 }
 
-std::optional<Found> TaughtTimewarp::look(int a, int b, double from, double to) {
-  // The flights of a body: states of the same serial are one.
-  struct Part {
-    Flight flight;
-    double end;                        // [s]
-    std::optional<EventKey> end_key;   // of what ended it
-  };
-  const auto parts_of = [&](int body) {
-    std::vector<Part> parts;
-    if (!world().can_move(body)) return std::vector<Part>{{world().first_flight(body), kInfinity, std::nullopt}};
-    for (const KeptState& state : process(body).states()) {
-      if (!parts.empty() && parts.back().flight.serial == state.flight.serial) continue;
-      if (!parts.empty()) {
-        parts.back().end = state.flight.begin;
-        parts.back().end_key = EventKey{state.flight.begin, state.flight.generation, EventClass::kCollision, std::min(body, state.flight.partner), std::max(body, state.flight.partner)};
-      }
-      parts.push_back({state.flight, kInfinity, std::nullopt});
-    }
-    return parts;
-  };
-  std::optional<Found> first;
-  for (const Part& f : parts_of(a))
-    for (const Part& g : parts_of(b)) {
-      const double low = std::max({from, f.flight.begin, g.flight.begin}), high = std::min({to, f.end, g.end});
-      if (low > high) continue;
-      const double time = run_.impacts().first_impact(a, f.flight, b, g.flight, low, high, run_.cost);
-      if (!(time >= low && time <= high)) continue;
-      const EventKey key = key_of_impact(a, f.flight, b, g.flight, time);
-      // One of them had been hit before, or this very impact was worked at.
-      if ((f.end_key && !(key < *f.end_key)) || (g.end_key && !(key < *g.end_key))) continue;
-      if (!first || key < first->key) first = Found{key, f.flight.serial, g.flight.serial};
-    }
-  return first;
-}
-
-CheckFinding TaughtTimewarp::finding_of(int a, int b, double t, const std::optional<Found>& found) {
-  CheckFinding finding;
-  if (found) finding.contact = stamp_of(found->key);
-  const auto flight_at = [&](int body) { return world().can_move(body) ? state_at(body, t).flight : world().first_flight(body); };
-  const Flight f = flight_at(a), g = flight_at(b);
-  const collision::MotionState x = world().motion_at(a, f, t), y = world().motion_at(b, g, t);
-  const collision::MotionBounds of_a = world().bounds(a, f), of_b = world().bounds(b, g);
-  finding.gap = std::max(0.0, collision::compute_gap(world().shape(a), x.pose, world().shape(b), y.pose).distance);
-  const auto turning = [&](int body, double rate) { return rate > 0 ? rate * world().radius(body) : 0.0; };   // a half-space has no radius, and does not turn
-  finding.closing_speed = (x.velocity_world - y.velocity_world).norm() + turning(a, of_a.angular_speed) + turning(b, of_b.angular_speed);
-  finding.closing_acceleration = (of_a.acceleration_world - of_b.acceleration_world).norm() + of_a.acceleration_deviation + of_b.acceleration_deviation +
-                                 turning(a, of_a.angular_speed * of_a.angular_speed + of_a.angular_acceleration) + turning(b, of_b.angular_speed * of_b.angular_speed + of_b.angular_acceleration);
-  return finding;
-}
-
-void TaughtTimewarp::collide(int id, const Found& found, const CheckDecision& decision) {
+void TaughtTimewarp::collide(int id, const FoundImpact& found, const CheckDecision& decision) {
   const EventKey& key = found.key;
   const int bodies[] = {key.body_a, key.body_b};
   queue_.park(id);   // it comes back as decided; the rollback must not put it in twice
@@ -265,11 +214,6 @@ void TaughtTimewarp::collide(int id, const Found& found, const CheckDecision& de
 }
 
 // ---- Integration and pairs ---------------------------------------------------------------------------------------------
-
-// By whole steps, past t where they do not fit: an optimist.
-void TaughtTimewarp::integrate(int body, double t) {
-  while (process(body).local_time() < t) step_to(body, process(body).local_time() + run_.step());
-}
 
 void TaughtTimewarp::step_to(int body, double to) {
   const double from = process(body).local_time();
@@ -440,10 +384,6 @@ void TaughtTimewarp::purge() {
     drop_pairs_of(body);
   }
   run_.counters.states_kept = std::max(run_.counters.states_kept, kept);
-}
-
-void TaughtTimewarp::move(int body, double from, double to) {
-  if (times_.moves.size() < kMostMoves) times_.moves.push_back({place_[static_cast<std::size_t>(body)], from, to, gvt_});
 }
 
 }  // namespace
