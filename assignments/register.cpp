@@ -4,6 +4,7 @@
 #include "assignments/a2_integration/a2_binding.h"
 #include "assignments/a2_integration/a2_truths.h"
 #include "assignments/a3_constraints/a3_binding.h"
+#include "assignments/a4_timewarp/a4_binding.h"
 #include "framework/modules/registry.h"
 
 namespace tumble {
@@ -12,6 +13,8 @@ void register_assignments(modules::Registry& registry) {
   registry.add<a1::Module>("a1_impulse", "Impulse", a1::bind);
   registry.add<a2::Module>("a2_integration", "Integration", a2::bind);
   registry.add<a3::Module>("a3_constraints", "Constraints", a3::bind);
+  registry.add<a4::Module>("a4_timewarp", "Timewarp", a4::bind);
+  registry.mark_scheduler("a4");
   registry.add_method("euler_step", 1, &a2::Module::euler_step);
   registry.add_method("rk4_step", 4, &a2::Module::rk4_step);
   registry.show_cost("a1", {"collide_off_centre_e05", 2.0});

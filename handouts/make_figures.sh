@@ -10,3 +10,6 @@ for scene in collide_off_centre_e05 bullet_thin_wall t_handle; do
 done
 ./tumble run newtons_cradle_springs --modules a1=reference,a2=reference,a3=reference --sheet "$folder/newtons_cradle_springs.png"
 ./tumble run arch --modules a1=reference,a2=reference,a3=reference --png "$folder/arch.png"
+./tumble run cradle_in_flight --modules a1=reference,a4=reference --virtual-times "$folder/cradle_in_flight.png" --moves 38,46,51 --chart-until-s 1
+./tumble run late_hit --modules a1=reference,a4=reference --virtual-times "$folder/late_hit_found.png" --moves 12,14 --chart-until-s 1.2
+./tumble run late_hit --modules a1=reference,a4=reference --virtual-times "$folder/late_hit_undone.png" --moves 15,18,26,28 --chart-until-s 1.3

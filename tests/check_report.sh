@@ -12,7 +12,7 @@ fault() { echo "check_report: $*" >&2; faults=$((faults + 1)); }
 [ -s "$demo/index.html" ] || { fault "$demo/index.html is missing"; exit 1; }
 
 # Scores: the reference has them all, the untouched starter none, the flawed submission some.
-for assignment in a1 a2 a3; do
+for assignment in a1 a2 a3 a4; do
   book=$demo/$assignment/gradebook.csv
   [ -s "$book" ] || { fault "$book is missing"; continue; }
   score() { awk -F, -v who="$1" '{ gsub(/"/, "") } $1 == who { print $NF }' "$book"; }

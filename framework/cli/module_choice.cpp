@@ -91,6 +91,7 @@ void bind_module(const ModuleKind& kind, const AnyModule& module, const std::str
   if (alone.collision_impulse) laws.impulse_source = kind.id + ' ' + source;
   if (alone.integrate_step) laws.integrator_source = kind.id + ' ' + source;
   if (alone.constraint_multipliers) laws.constraint_source = kind.id + ' ' + source;
+  if (alone.scheduling) laws.scheduling_source = kind.id + ' ' + source;
 }
 
 bool is_path(const std::string& word) { return !word.empty() && word != "student" && word != "reference" && word != "library"; }
@@ -228,7 +229,7 @@ ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const 
     // One word for all modules is meant for those that the scene is about and those there are: "reference" where a later
     // assignment has none yet.
     const bool for_all = told != words.end() && told->first.empty() && (told->second == "reference" || told->second == "student");
-    if (for_all && !is_about(scene, *kind) && !fs::exists(built(context, kind->id, told->second))) chosen[kind->id] = otherwise;
+    if (for_all && !is_about(scene, *kind) && (kind->is_scheduler || !fs::exists(built(context, kind->id, told->second)))) chosen[kind->id] = otherwise;
     if (told == words.end() || !is_path(told->second)) continue;
     files[kind->id] = file_for(context, *kind, told->second, told->first.empty());
     // A submission of another assignment beside it: this one must not be paid for, so it is right where it can be.
@@ -241,6 +242,9 @@ ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const 
     const std::string word = best_available(context, kind->id);
     if (chosen[kind->id].empty() && fs::exists(built(context, kind->id, word))) bind_module(*kind, load_word(context, *kind, word), word, result.laws);
   }
+  // A scheduler is asked only where the scene is about it, or somebody named it: the framework has a faster one.
+  result.laws.scheduling = {};
+  result.laws.scheduling_source = "none";
   // Over these the library's laws of motion, over those what was chosen.
   const Laws library = library_laws();
   result.laws.integrate_step = library.integrate_step;

@@ -29,7 +29,7 @@ std::string asked_of(const RunWords& words) { return words.accuracy_m ? fmt::for
 void check_words(const RunWords& words) {
   const std::string asked = words.accuracy_m || words.budget_s ? asked_of(words) : "";
   if (words.accuracy_m && words.budget_s) throw UserError(asked + " --budget-s", "an error and a time are both asked for", "Give one: the other follows from it.");
-  const bool chosen = words.step_s || words.engine != "rd" || !words.propagator.empty() || !words.method.empty() || words.tolerance;
+  const bool chosen = words.step_s || !words.engine.empty() || !words.propagator.empty() || !words.method.empty() || words.tolerance;
   if (!asked.empty() && chosen) throw UserError(asked, "it chooses engine, method and step, and one of these is given too", "Leave out --engine, --propagator, --method, --tolerance and --step-s.");
   if (words.method.empty() && words.tolerance) throw UserError(fmt::format("--tolerance {:g}", *words.tolerance), "no method is named that has one", "For example --method dopri5 --tolerance 1e-8.");
   if (words.method.empty()) return;

@@ -8,8 +8,10 @@
 #include <fmt/format.h>
 
 #include "framework/engines/run.h"
+#include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/grading/worker_connection.h"
 #include "framework/report/player.h"
+#include "framework/report/virtual_times_panel.h"
 
 namespace tumble::cli {
 namespace {
@@ -56,6 +58,7 @@ Second second_run(const Context& context, const scene::Scene& scene, const Chose
   const ChosenLaws other = choose_laws(context, scene, with_changes(mine, parse_module_words(beside.modules, context.registry)));
   engines::RunOptions options;
   options.engine = beside.engine.empty() ? words.engine : beside.engine;
+  options.timewarp = engines::fast_timewarp();
   options.step_s = beside.step_s ? beside.step_s : words.step_s;
   options.duration_s = words.duration_s;
   options.command = context.command_line;
@@ -112,6 +115,7 @@ void write_page(const Context& context, const scene::Scene& scene, const ChosenL
   if (words.html.empty()) return;
   report::PlayerOptions options;
   options.root = context.root;
+  if (!run.virtual_times.moves.empty()) options.panels.push_back(report::virtual_times_panel(run.virtual_times));
   std::vector<report::PlayedRun> runs;
   Second second;
   if (!words.beside.empty()) second = second_run(context, scene, chosen, run, words);

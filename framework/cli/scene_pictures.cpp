@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "framework/render/picture.h"
+#include "framework/render/virtual_times_chart.h"
 
 namespace tumble::cli {
 
@@ -17,6 +18,14 @@ void write_pictures(const Context& context, const scene::Scene& scene, const Tra
     const double end = run.frames.empty() ? 0.0 : run.frames.back().time;
     render::write_picture(words.png, scene, run, words.at_s < 0 ? end : words.at_s, options);
     told(words.png);
+  }
+  if (!words.virtual_times.empty()) {
+    render::ChartOptions chart;
+    chart.moves = words.moves;
+    chart.to_s = words.chart_until_s.value_or(0.0);
+    chart.title = scene.title;
+    render::write_virtual_times_chart(words.virtual_times, run.virtual_times, chart);
+    told(words.virtual_times);
   }
   if (!words.sheet.empty()) {
     render::write_contact_sheet(words.sheet, scene, run, 9, options);

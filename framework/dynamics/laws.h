@@ -12,6 +12,7 @@
 #include "framework/dynamics/body.h"
 #include "framework/dynamics/constraint.h"
 #include "framework/dynamics/ode.h"
+#include "framework/dynamics/scheduling.h"
 
 namespace tumble {
 
@@ -51,9 +52,13 @@ struct Laws {
   /// Whether a collision that came in this slowly is the beginning of a lasting contact.
   std::function<bool(double approach_speed, double restitution, double rest_speed)> ends_in_contact;
 
+  // Decisions of a timewarp scheduler (assignment a4). Filled: --engine tw asks them.
+  Scheduling scheduling;
+
   std::string impulse_source = "none";      // who provides the impulse laws, for pictures and records
   std::string integrator_source = "none";   // who provides integration
   std::string constraint_source = "none";   // who provides springs, rods and contact forces
+  std::string scheduling_source = "none";   // who provides the scheduler
 };
 
 /// Laws of motion from Boost.Odeint (classical Runge-Kutta) and Boost.Math (TOMS 748 bracketing); no impulse laws.

@@ -27,6 +27,7 @@ class WorldSink final : public TrajectorySink {
   void frame(const Frame& frame) override;
   void event(const Event& event) override;
   void end(const Counters& counters, const std::string& stopped_by) override { sink_.end(counters, stopped_by); }
+  void virtual_times(const VirtualTimes& times) override { sink_.virtual_times(times); }
 
  private:
   TrajectorySink& sink_;

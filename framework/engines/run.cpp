@@ -10,6 +10,7 @@
 #include "framework/engines/events/ordered.h"
 #include "framework/engines/local_origin.h"
 #include "framework/engines/retroactive.h"
+#include "framework/engines/timewarp/taught_timewarp.h"
 
 namespace tumble::engines {
 namespace {
@@ -48,11 +49,12 @@ void check_laws(const scene::Scene& scene, const Laws& laws) {
   }
 }
 
-Engine engine_of(const RunOptions& options) {
+Engine engine_of(const RunOptions& options, const Laws& laws) {
   if (options.engine == "rd") return run_retroactive;
   if (options.engine == "ca") return run_advancement;
   if (options.engine == "ordered") return run_ordered;
   if (options.engine == "tw") {
+    if (laws.scheduling) return run_taught_timewarp;
     if (options.timewarp) return options.timewarp;
     throw UserError("--engine tw", "nobody has written a scheduler for it: that is assignment a4", "use rd or ca, or run with a module that has one");
   }
@@ -73,8 +75,10 @@ const std::vector<std::pair<std::string, std::string>>& engine_words() {
   return words;
 }
 
-void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink) {
-  const Engine engine = engine_of(options);
+void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& asked, TrajectorySink& sink) {
+  RunOptions options = asked;
+  if (options.engine.empty()) options.engine = scene.engine.empty() ? "rd" : scene.engine;
+  const Engine engine = engine_of(options, laws);
   if (!options.propagator.empty() && options.propagator != "laws" && options.propagator != "auto")
     throw UserError("--propagator " + options.propagator, "expected laws (the laws' integration) or auto (closed forms where nothing but gravity acts)", "For example --propagator auto.");
   if (options.propagator == "laws" && options.engine != "rd")

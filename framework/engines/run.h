@@ -28,9 +28,9 @@ struct RunOptions;
 using Engine = std::function<void(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink)>;
 
 struct RunOptions {
-  std::string engine = "rd";               // a word of engine_words()
+  std::string engine;                      // a word of engine_words(); empty: the scene's, or rd
   TimewarpTrial trial;
-  Engine timewarp;                         // what "tw" is; empty: nobody has written a scheduler
+  Engine timewarp;                         // what "tw" is where the laws hold no scheduling; empty: nobody has written a scheduler
   std::string propagator;                  // "laws": bodies go by the laws' integration; "auto": in closed form where nothing but gravity acts.
                                            // Empty: laws for rd, which shows a student's work; the others know closed forms only
   std::optional<double> step_s;            // overrides the scene's

@@ -22,6 +22,7 @@ void put_into(const ModuleKind& kind, const AnyModule& module, const std::string
   kind.bind(module, alone);
   if (alone.collision_impulse) laws.impulse_source = source;
   if (alone.integrate_step) laws.integrator_source = source;
+  if (alone.scheduling) laws.scheduling_source = source;
 }
 
 }  // namespace
@@ -46,6 +47,7 @@ Laws laws_around(const Course& course, const ModuleKind& kind, const AnyModule& 
       if (other->id != kind.id && needs(scene, other->id) == needed)
         if (const AnyModule reference = reference_of(course, *other)) put_into(*other, reference, "reference", laws);
   }
+  if (!needs(scene, kind.id)) laws.scheduling = {};   // a reference's, that nobody asked for
   if (module) put_into(kind, module, source, laws);
   return laws;
 }

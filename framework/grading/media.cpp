@@ -6,6 +6,7 @@
 #include "framework/grading/plain_text.h"
 #include "framework/render/picture.h"
 #include "framework/report/player.h"
+#include "framework/report/virtual_times_panel.h"
 #include "framework/scene/load_scene.h"
 
 namespace tumble::grading {
@@ -71,6 +72,7 @@ void write_page(const scene::Scene& scene, const std::vector<render::LabelledRun
   report::PlayerOptions player;
   player.root = course.root;
   std::vector<report::PlayedRun> played;
+  if (!runs.empty() && !runs.front().trajectory.virtual_times.moves.empty()) player.panels.push_back(report::virtual_times_panel(runs.front().trajectory.virtual_times));
   for (const render::LabelledRun& run : runs) played.push_back({run.trajectory, run.label});
   media.page = scene.name + ".html";
   report::write_player(folder / media.page, scene, played, player);

@@ -49,6 +49,7 @@ struct ModuleKind {
   std::map<std::string, std::function<void(const AnyModule&, const truths::Case&, truths::Comparison&)>> truth_families;
   std::vector<NamedMethod> methods;        // empty where the module is not about integration
   CostShowcase cost;
+  bool is_scheduler = false;               // it decides in which order a world goes on, not how: only who names it gets it
 };
 
 class Registry {
@@ -88,6 +89,8 @@ class Registry {
   }
 
   void show_cost(const std::string& id, const CostShowcase& showcase) { kinds_.at(id).cost = showcase; }
+  /// A registered module that decides the order in which a world goes on.
+  void mark_scheduler(const std::string& id) { kinds_.at(id).is_scheduler = true; }
 
   /// @throws UserError naming the known ids
   const ModuleKind& find(const std::string& id) const;

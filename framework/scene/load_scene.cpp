@@ -106,6 +106,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& file) {
   scene.title = root.at("title");
   read(root, "about", scene.about);
   read(root, "needs", scene.needs);
+  read(root, "engine", scene.engine);
   scene.duration_s = root.at("duration_s");
   read(root, "step_s", scene.step_s);
   read(root, "rest_speed_m_s", scene.rest_speed_m_s);

@@ -184,6 +184,7 @@ struct Scene {
   std::optional<double> grid_spacing_m;   // drawn on the ground plane z = grid_height_m
   double grid_height_m = 0.0;
   std::vector<CheckSpec> checks;
+  std::string engine;               // that the scene is about ("tw"); empty: any
   std::vector<std::string> needs;   // module ids whose laws the scene is about, e.g. {"a1"}
 };
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "framework/core/math.h"
+#include "framework/trajectory/virtual_times.h"
 
 namespace tumble {
 
@@ -82,6 +83,7 @@ struct Trajectory {
   std::vector<Frame> frames;       // in order of time, the first at 0
   std::vector<Event> events;       // in order of time
   Counters counters;
+  VirtualTimes virtual_times;      // of a timewarp that tells them; not kept in files
   std::string stopped_by;          // empty: ran to the end; else what stopped it (body, time, effect), frames kept up to there
 };
 
@@ -93,6 +95,8 @@ class TrajectorySink {
   virtual void frame(const Frame& frame) = 0;
   virtual void event(const Event& event) = 0;
   virtual void end(const Counters& counters, const std::string& stopped_by) = 0;
+  /// What a timewarp scheduler did, before the end; most engines have nothing to tell.
+  virtual void virtual_times(const VirtualTimes&) {}
 };
 
 /// Keeps everything in memory.
@@ -102,6 +106,7 @@ class TrajectoryRecorder final : public TrajectorySink {
   void frame(const Frame& frame) override { trajectory_.frames.push_back(frame); }
   void event(const Event& event) override { trajectory_.events.push_back(event); }
   void end(const Counters& counters, const std::string& stopped_by) override;
+  void virtual_times(const VirtualTimes& times) override { trajectory_.virtual_times = times; }
   const Trajectory& trajectory() const { return trajectory_; }
 
  private:

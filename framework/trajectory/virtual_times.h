@@ -7,7 +7,8 @@
 namespace tumble {
 
 struct VirtualTimes {
-  /// One process (body, group, multibody) integrated on, or rolled back where `to_s` lies before `from_s`.
+  /// One process (body, group, multibody) integrated on, or rolled back where `to_s` is not later than `from_s`
+  /// (equal: it forgets what it did at that very time).
   struct Move {
     int process;
     double from_s, to_s;              // its local virtual time before and after

@@ -9,7 +9,7 @@ cd "$folder"
 unset TUMBLE_ROOT TUMBLE_BUILD
 ./tumble test
 
-for assignment in a1 a2 a3; do
+for assignment in a1 a2 a3 a4; do
   set +e
   verdicts=$(./tumble check "$assignment")
   code=$?

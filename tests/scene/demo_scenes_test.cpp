@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "assignments/a3_constraints/a3_binding.h"
+#include "assignments/a4_timewarp/a4_binding.h"
 #include "framework/engines/judge.h"
 #include "framework/engines/run.h"
 #include "framework/modules/load.h"
@@ -27,13 +28,14 @@ scene::Scene demo_scene(const std::string& name) {
   throw std::runtime_error("no demo scene " + name);
 }
 
-/// Right laws of all assignments: impulses and motion in other words than any solution, springs, rods and contacts the reference's.
+/// Right laws of all assignments: impulses and motion in other words than any solution, springs, rods, contacts and scheduling the reference's.
 Laws right_laws() {
   modules::Registry registry;
   register_assignments(registry);
   Laws laws = test_laws();
-  const auto file = fs::path(TUMBLE_BINARY_DIR) / "modules" / "a3_reference.so";
-  a3::bind(*std::static_pointer_cast<const a3::Module>(modules::load_module(registry.find("a3"), file)), laws);
+  const auto load = [&](const std::string& id) { return modules::load_module(registry.find(id), fs::path(TUMBLE_BINARY_DIR) / "modules" / (id + "_reference.so")); };
+  a3::bind(*std::static_pointer_cast<const a3::Module>(load("a3")), laws);
+  a4::bind(*std::static_pointer_cast<const a4::Module>(load("a4")), laws);
   return laws;
 }
 

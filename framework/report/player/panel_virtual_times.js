@@ -17,7 +17,7 @@ panelKinds.virtual_times = (box, data, player) => {
     for (let i = 0; i < k; ++i) {
       const [process, from, to] = moves[i];
       times[process] = to;
-      if (to < from) undone.push({ process, from, to, age: k - i });
+      if (to <= from) undone.push({ process, from, to, age: k - i });
     }
     return { times, undone, gvt: k > 0 ? moves[k - 1][3] : 0 };
   };
@@ -65,7 +65,7 @@ panelKinds.virtual_times = (box, data, player) => {
     g.fillStyle = '#a82c00';
     g.fillRect(x(cursor), kTop, 1.2, bottom - kTop);
     const last = k > 0 ? moves[k - 1] : null;
-    words.textContent = `Move ${k} of ${moves.length}: ` + (last ? `${names[last[0]]} ${last[2] < last[1] ? 'rolled back' : 'on'} from ${short(last[1])} to ${short(last[2])} s; ` : '') +
+    words.textContent = `Move ${k} of ${moves.length}: ` + (last ? `${names[last[0]]} ${last[2] <= last[1] ? 'rolled back' : 'on'} from ${short(last[1])} to ${short(last[2])} s; ` : '') +
       `global virtual time ${short(gvt)} s; ${undone.length} rollback${undone.length === 1 ? '' : 's'} so far`;
   };
   slider.addEventListener('input', draw);

@@ -1,0 +1,77 @@
+/// A process of the teaching timewarp: the states of one body from global to local virtual time, and the box that it swept meanwhile.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <queue>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "framework/engines/events/flight_world.h"
+#include "framework/engines/timewarp/active_pairs.h"
+
+namespace tumble::engines {
+
+/// The least box around boxes that come and go: six heaps, of minima and maxima along each axis. What has gone is thrown away when it
+/// comes to the top.
+/// Source: B. Mirtich, "Timewarp rigid body simulation", SIGGRAPH 2000.   Cost: O(log boxes) each, on average
+class SweptBox {
+ public:
+  void add(std::uint64_t id, const Box& box);
+  void remove(std::uint64_t id) { alive_.erase(id); }
+  /// Overlaps nothing where there is no box.
+  Box box() const;
+
+ private:
+  using Bound = std::pair<double, std::uint64_t>;
+  static constexpr std::size_t kAxes = 3;
+
+  std::set<std::uint64_t> alive_;
+  mutable std::array<std::priority_queue<Bound>, 2 * kAxes> bounds_;   // of -low, then of high
+};
+
+/// Where a body was at one time, and on which flight: what it takes to go on from there.
+struct KeptState {
+  std::uint64_t id;      // no two states of a body that ever were have the same
+  double time;           // [s]
+  Flight flight;
+};
+
+class TaughtProcess {
+ public:
+  TaughtProcess(const FlightWorld& world, int body);
+
+  int body() const { return body_; }
+  const std::vector<KeptState>& states() const { return states_; }
+  double local_time() const { return states_.back().time; }
+  const Flight& flight() const { return states_.back().flight; }
+  Box swept() const { return swept_.box(); }
+  /// The state that holds at t: the last one not later. nullptr: it is forgotten
+  const KeptState* at(double t) const;
+  /// The times of the states, ascending.
+  std::vector<double> times() const;
+
+  /// One integration step along the flight that it is on.
+  void integrate_to(double t);
+  /// Goes on another flight from now on. @pre flight.begin == local_time(), or the states reach no farther
+  void begin(const Flight& flight);
+  /// Forgets the latest state, or the `count` oldest.
+  void drop_latest();
+  void drop_oldest(std::size_t count);
+
+ private:
+  void push(double time, const Flight& flight, const Box& box);
+  Box box_of(const Flight& flight, double from, double to) const;
+
+  const FlightWorld& world_;
+  int body_;
+  std::vector<KeptState> states_;   // never empty after construction, but while a rollback goes on
+  SweptBox swept_;
+  std::uint64_t next_id_ = 0;
+};
+
+/// Around an immovable body for a whole run; infinite for a half-space.
+Box box_of_immovable(const FlightWorld& world, int body, double duration);
+
+}  // namespace tumble::engines

@@ -1,0 +1,75 @@
+/// The event queue of the teaching timewarp: in the order that a scheduler says, whatever order that is.
+#pragma once
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "framework/dynamics/scheduling.h"
+
+namespace tumble::engines {
+
+/// Events by number. One that is in the queue waits for its turn; one that is parked or has been popped is kept, and waits for nothing.
+class TaughtQueue {
+ public:
+  explicit TaughtQueue(std::function<bool(const Stamp&, const Stamp&)> comes_before) : comes_before_(std::move(comes_before)) {}
+
+  /// @return its number
+  int add(const ScheduledEvent& event) {
+    const int id = next_id_++;
+    put(id, event);
+    return id;
+  }
+  /// Puts an event in, with new times, or where it was: what stood for it in the heap is stale then.
+  void put(int id, const ScheduledEvent& event) {
+    Entry& entry = entries_[id];
+    entry.event = event;
+    heap_.push_back({event.stamp, id, ++entry.version});
+    std::push_heap(heap_.begin(), heap_.end(), later());
+  }
+  void park(int id) { ++entries_.at(id).version; }
+  void remove(int id) { entries_.erase(id); }
+  const ScheduledEvent& event(int id) const { return entries_.at(id).event; }
+  /// Of all events, popped and parked ones too; ascending.
+  std::vector<int> ids() const {
+    std::vector<int> ids;
+    for (const auto& [id, entry] : entries_) ids.push_back(id);
+    return ids;
+  }
+
+  /// The front, which is not in the queue any more, but kept; nothing where the queue is empty.
+  std::optional<int> pop() {
+    while (!heap_.empty()) {
+      std::pop_heap(heap_.begin(), heap_.end(), later());
+      const Item front = heap_.back();
+      heap_.pop_back();
+      const auto entry = entries_.find(front.id);
+      if (entry != entries_.end() && entry->second.version == front.version) return front.id;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  struct Entry {
+    ScheduledEvent event;
+    unsigned version = 0;
+  };
+  struct Item {
+    Stamp stamp;
+    int id;
+    unsigned version;
+  };
+  // The standard heap keeps the largest in front. An order that is none makes it pop in a wrong order, and nothing worse.
+  std::function<bool(const Item&, const Item&)> later() const {
+    return [this](const Item& x, const Item& y) { return comes_before_(y.stamp, x.stamp); };
+  }
+
+  std::function<bool(const Stamp&, const Stamp&)> comes_before_;
+  std::map<int, Entry> entries_;
+  std::vector<Item> heap_;
+  int next_id_ = 0;
+};
+
+}  // namespace tumble::engines

@@ -1,0 +1,65 @@
+#include "framework/engines/timewarp/taught_search.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "framework/collision/gap.h"
+
+namespace tumble::engines {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+}  // namespace
+
+std::optional<FoundImpact> find_impact(FlightRun& run, const TaughtProcess& of_a, const TaughtProcess& of_b, double from, double to) {
+  const FlightWorld& world = run.world();
+  const int a = of_a.body(), b = of_b.body();
+  // The flights of a body: states of the same serial are one.
+  struct Part {
+    Flight flight;
+    double end;                        // [s]
+    std::optional<EventKey> end_key;   // of what ended it
+  };
+  const auto parts_of = [&](const TaughtProcess& process) {
+    const int body = process.body();
+    std::vector<Part> parts;
+    if (!world.can_move(body)) return std::vector<Part>{{world.first_flight(body), kInfinity, std::nullopt}};
+    for (const KeptState& state : process.states()) {
+      if (!parts.empty() && parts.back().flight.serial == state.flight.serial) continue;
+      if (!parts.empty()) {
+        parts.back().end = state.flight.begin;
+        parts.back().end_key = EventKey{state.flight.begin, state.flight.generation, EventClass::kCollision, std::min(body, state.flight.partner), std::max(body, state.flight.partner)};
+      }
+      parts.push_back({state.flight, kInfinity, std::nullopt});
+    }
+    return parts;
+  };
+  std::optional<FoundImpact> first;
+  for (const Part& f : parts_of(of_a))
+    for (const Part& g : parts_of(of_b)) {
+      const double low = std::max({from, f.flight.begin, g.flight.begin}), high = std::min({to, f.end, g.end});
+      if (low > high) continue;
+      const double time = run.impacts().first_impact(a, f.flight, b, g.flight, low, high, run.cost);
+      if (!(time >= low && time <= high)) continue;
+      const EventKey key = key_of_impact(a, f.flight, b, g.flight, time);
+      // One of them had been hit before, or this very impact was worked at.
+      if ((f.end_key && !(key < *f.end_key)) || (g.end_key && !(key < *g.end_key))) continue;
+      if (!first || key < first->key) first = FoundImpact{key, f.flight.serial, g.flight.serial};
+    }
+  return first;
+}
+
+CheckFinding closeness(const FlightWorld& world, int a, const Flight& f, int b, const Flight& g, double t) {
+  CheckFinding finding;
+  const collision::MotionState x = world.motion_at(a, f, t), y = world.motion_at(b, g, t);
+  const collision::MotionBounds of_a = world.bounds(a, f), of_b = world.bounds(b, g);
+  finding.gap = std::max(0.0, collision::compute_gap(world.shape(a), x.pose, world.shape(b), y.pose).distance);
+  const auto turning = [&](int body, double rate) { return rate > 0 ? rate * world.radius(body) : 0.0; };   // a half-space has no radius, and does not turn
+  finding.closing_speed = (x.velocity_world - y.velocity_world).norm() + turning(a, of_a.angular_speed) + turning(b, of_b.angular_speed);
+  finding.closing_acceleration = (of_a.acceleration_world - of_b.acceleration_world).norm() + of_a.acceleration_deviation + of_b.acceleration_deviation +
+                                 turning(a, of_a.angular_speed * of_a.angular_speed + of_a.angular_acceleration) + turning(b, of_b.angular_speed * of_b.angular_speed + of_b.angular_acceleration);
+  return finding;
+}
+
+}  // namespace tumble::engines

@@ -1,0 +1,36 @@
+/// The judge of a scheduler: what it commits, compared with the ordered reference as it is committed, to the last bit.
+#pragma once
+
+#include <string>
+
+#include "framework/trajectory/trajectory.h"
+
+namespace tumble::engines {
+
+/// Passes a run on, and stops it (StoppedRun) at the first event or frame that is not the reference's: expected, found, and what that
+/// points to.
+class TraceWatch final : public TrajectorySink {
+ public:
+  /// @param reference  the ordered run of the scene; what it did not reach is not judged. Must outlive this
+  TraceWatch(TrajectorySink& sink, const Trajectory& reference) : sink_(sink), reference_(reference) {}
+
+  void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override { sink_.begin(info, bodies); }
+  void frame(const Frame& frame) override;
+  void event(const Event& event) override;
+  void end(const Counters& counters, const std::string& stopped_by) override { sink_.end(counters, stopped_by); }
+  void virtual_times(const VirtualTimes& times) override { sink_.virtual_times(times); }
+
+  /// Why the run is not over yet though it ended: an event of the reference that never came. Empty: all came.
+  std::string missing() const;
+  std::size_t events() const { return events_; }
+
+ private:
+  std::string told(const Event& event) const;
+  std::string likely(const Event& expected, const Event& found) const;
+
+  TrajectorySink& sink_;
+  const Trajectory& reference_;
+  std::size_t events_ = 0, frames_ = 0;   // passed on
+};
+
+}  // namespace tumble::engines

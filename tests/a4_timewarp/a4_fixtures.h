@@ -1,0 +1,76 @@
+/// What the tests of a4 share: events and effects in few words, words for what was found, and small scenes driven by the scheduler
+/// under test.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "assignments/a4_timewarp/a4_timewarp.h"
+#include "framework/modules/under_test.h"
+#include "framework/scene/scene.h"
+#include "framework/trajectory/trajectory.h"
+#include "tests/support/story.h"
+
+namespace tumble::a4_testing {
+
+using namespace tumble::testing;
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Bodies of stories, by number.
+inline constexpr std::int32_t A = 0, B = 1, C = 2, D = 3, E = 4, kWall = 9;
+
+/// The module under test, whichever of its three bodies is behind it.
+inline const a4::Module& a4_module() { return modules::under_test<a4::Module>(); }
+
+/// Handout anchor of equation (A4.n).
+inline std::string equation(int n) { return "handouts/a4_timewarp.md#eq-a4-" + std::to_string(n); }
+
+// ---- Events in few words -----------------------------------------------------------------------------------------------
+
+inline Stamp impact(double time, std::int32_t a, std::int32_t b, std::uint32_t generation = 0) { return {time, generation, WorkKind::kCollision, a, b}; }
+/// @param receivers  empty: both bodies
+ScheduledEvent collision_check(std::int32_t a, std::int32_t b, double safe_time, double time, std::vector<std::int32_t> receivers = {});
+ScheduledEvent group_check(std::vector<std::int32_t> members, double safe_time, double time);
+ScheduledEvent callback(std::int32_t body, double time);
+ScheduledEvent redraw(double time);
+/// An impact that was worked at. @param processes  empty: both bodies
+Effect effect(double time, std::int32_t a, std::int32_t b, std::vector<std::int32_t> processes = {});
+/// A body back to before the impact of two others, or of itself and another.
+inline Rollback back(std::int32_t body, const Stamp& stamp) { return {body, stamp}; }
+
+// ---- Words -------------------------------------------------------------------------------------------------------------
+
+bool same(const Stamp& x, const Stamp& y);
+bool same(const Rollback& x, const Rollback& y);
+std::string name_of(std::int32_t body);
+std::string show(const Stamp& stamp);
+std::string show(const ScheduledEvent& event);
+std::string show(const std::vector<Rollback>& rollbacks);
+std::string show(const std::vector<std::vector<std::int32_t>>& groups);
+using testing::show;
+
+/// The same rollbacks in the same order.
+void expect_rollbacks(const std::vector<Rollback>& found, const std::vector<Rollback>& expected, const Story& story);
+/// The two times that a decision may change; the rest must be as it was.
+void expect_times(const ScheduledEvent& found, const ScheduledEvent& before, double safe_time, double time, const Story& story);
+
+// ---- Whole scenes ------------------------------------------------------------------------------------------------------
+
+/// Balls of radius 0.1 m and 1 kg, restitution 1.
+scene::BodySpec ball(const std::string& name, const Vector3d& position, const Vector3d& velocity);
+/// A wall that is a half-space; its normal points to where the balls are.
+scene::BodySpec wall(const std::string& name, const Vector3d& position, const Vector3d& normal);
+scene::Scene scene_of(std::vector<scene::BodySpec> bodies, double duration_s, double step_s);
+/// n balls at lot's places in a box of walls, at speeds of about 1 m/s.
+scene::Scene balls_in_a_box(int n, std::uint64_t seed, double duration_s);
+
+/// The scene by the framework's teaching timewarp on the decisions under test.
+Trajectory run_by_the_scheduler(const scene::Scene& scene);
+/// The same, which must end well: every committed event the ordered reference's, and at least so many of them.
+Trajectory expect_the_references_trace(const scene::Scene& scene, std::size_t least_events, const std::string& what);
+
+}  // namespace tumble::a4_testing
