@@ -4,6 +4,7 @@
 
 #include "framework/engines/events/flight_frames.h"
 #include "framework/engines/events/impacts_of_flights.h"
+#include "framework/engines/events/link_measures.h"
 #include "framework/engines/events/meeting_of_flights.h"
 #include "framework/engines/run.h"
 #include "framework/engines/run_counters.h"
@@ -27,7 +28,12 @@ class FlightRun {
   double step() const { return step_; }
 
   /// What the impact of two flights does. Stops the run (StoppedRun, with time and names) where the laws fail.
+  /// @post where processes took part (`begun` is not empty) all their members' flights end here
   Meeting meet(const EventKey& key, const Flight& f, const Flight& g);
+  /// When a body's flight ends by itself, if that is at `to` or before; nothing otherwise, and for all but a process's first member.
+  std::optional<EventKey> own_end(int body, const Flight& flight, double to) const;
+  /// What that does.
+  Meeting end_of_passage(const EventKey& key, const Flight& flight);
 
   /// Commits an impact. @pre keys come in order
   void commit(const EventKey& key, const Event& first, const std::vector<Event>& more);
@@ -44,17 +50,22 @@ class FlightRun {
   RunCounters counters;
 
  private:
+  Meeting meet_as_processes(const EventKey& key, const Flight& f, const Flight& g);
+  void commit_switches(double until);
   double frame_time(long k) const { return static_cast<double>(k) / rate_; }
-  std::string name(int body) const { return "'" + world_.world().bodies[body].name + "'"; }
+  std::string name(int body) const { return body < 0 ? "itself" : "'" + world_.world().bodies[body].name + "'"; }
 
-  FlightWorld world_;
   const Laws laws_;   // guarded
   double step_, duration_, rate_;
+  FlightWorld world_;
   ImpactsOfFlights impacts_;
   MeetingOfFlights meetings_;
   TrajectorySink& sink_;
   EventKey last_{-1.0, 0, EventClass::kCollision, -1, -1};
   long next_ = 0;
+  std::vector<Event> switches_;    // of point forces, in order of time; known from the start
+  std::size_t switched_ = 0;
+  std::unique_ptr<LinkMeasures> links_;
 };
 
 }  // namespace tumble::engines

@@ -46,16 +46,25 @@ class OrderedRun {
   }
 
   void process(const EventKey& key) {
-    const Meeting meeting = run_.meet(key, flights_[key.body_a], flights_[key.body_b]);
+    const Meeting meeting = key.kind == EventClass::kProcess ? run_.end_of_passage(key, flights_[key.body_a]) : run_.meet(key, flights_[key.body_a], flights_[key.body_b]);
     run_.commit(meeting);
-    if (run_.world().can_move(key.body_a)) flights_[key.body_a] = meeting.a;
-    if (run_.world().can_move(key.body_b)) flights_[key.body_b] = meeting.b;
+    std::vector<int> changed;
+    if (meeting.begun.empty()) {
+      changed = {key.body_a, key.body_b};
+      if (run_.world().can_move(key.body_a)) flights_[key.body_a] = meeting.a;
+      if (run_.world().can_move(key.body_b)) flights_[key.body_b] = meeting.b;
+    }
+    for (const BegunFlight& begun : meeting.begun) {
+      run_.world().release(flights_[begun.body]);
+      flights_[begun.body] = begun.flight;
+      changed.push_back(begun.body);
+    }
     begin_ = key.time;
-    const auto hit = [&](int body) { return body == key.body_a || body == key.body_b; };
+    const auto is_changed = [&](int body) { return std::find(changed.begin(), changed.end(), body) != changed.end(); };
     for (const int c : run_.world().movers()) {
-      if (hit(c) || hit(first_of_[c].body_a) || hit(first_of_[c].body_b)) first_of_[c] = first_among_all(c);
+      if (is_changed(c) || is_changed(first_of_[c].body_a) || is_changed(first_of_[c].body_b)) first_of_[c] = first_among_all(c);
       else
-        for (const int body : {key.body_a, key.body_b}) first_of_[c] = std::min(first_of_[c], impact_of(c, body));
+        for (const int body : changed) first_of_[c] = std::min(first_of_[c], impact_of(c, body));
     }
   }
 
@@ -66,7 +75,7 @@ class OrderedRun {
   }
 
   EventKey first_among_all(int a) {
-    EventKey first = kNever;
+    EventKey first = run_.own_end(a, flights_[a], end_).value_or(kNever);
     for (int b = 0; b < run_.world().size(); ++b) first = std::min(first, impact_of(a, b));
     return first;
   }

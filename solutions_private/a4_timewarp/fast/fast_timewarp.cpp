@@ -10,6 +10,7 @@
 #include "framework/engines/timewarp/active_pairs.h"
 #include "framework/engines/timewarp/event_queue.h"
 #include "framework/engines/timewarp/flight_histories.h"
+#include "solutions_private/a4_timewarp/fast/changes.h"
 #include "solutions_private/a4_timewarp/fast/lengths.h"
 
 namespace tumble::a4 {
@@ -64,7 +65,12 @@ class FastTimewarp {
   void fetch(const Due& due) const;
   Due next_legal();
   void advance(int body);
+  void advance_member(int body, const Flight& flight, double from, double to);
   void collide(const Due& due);
+  bool look_up(const Due& due, int side, std::size_t& place) const;
+  void begin_flights(const Due& due, engines::Meeting meeting);
+  int first_member(int body) const { return run_.world().first_member(body, histories_[body].back()); }
+  void set_horizon(int body, double t);
   void find_obstacles(int body, const Flight& flight, double from, double to);
   void check(int body, const Flight& flight, double from, double to, int other);
   void offer(int body, const Flight& flight, int other, const Flight& its, double time, const Flight* its_next);
@@ -72,11 +78,13 @@ class FastTimewarp {
   Box swept_box(int body, double from, double to) const;
   void roll_back(int body, std::size_t keep);
   void begin_flight(int body, Flight flight, std::uint32_t serial);
+  void forget(const Flight& flight);
   void schedule(int body);
   void commit_before(double t);
-  bool still_stands(int body, std::uint32_t serial) const { return !run_.world().can_move(body) || histories_[body].find(serial) < histories_[body].size(); }
+  bool still_stands(int body, std::uint32_t serial) const { return body < 0 || !run_.world().can_move(body) || histories_[body].find(serial) < histories_[body].size(); }
   const Flight& immovable(int body) const { return run_.world().first_flight(body); }
   EventKey begin_of(int body, const Flight& flight) const {
+    if (flight.change >= 0) return changes_.key(flight.change);
     return {flight.begin, flight.generation, EventClass::kCollision, std::min(body, flight.partner), std::max(body, flight.partner)};
   }
   double global_virtual_time() const { return queue_.empty() ? kInfinity : std::min(queue_.front().key.time, now_); }
@@ -85,6 +93,7 @@ class FastTimewarp {
   engines::TimewarpTrial trial_;
   Random random_;
   FlightHistories histories_;
+  Changes changes_;
   std::vector<Process, LargePages<Process>> processes_;     // by body
   std::vector<int> planes_;            // half-spaces
   Lengths lengths_;
@@ -126,7 +135,7 @@ void FastTimewarp::run() {
   } catch (const engines::StoppedRun& stop) {
     stopped_by = stop.what();
   }
-  run_.counters.states_kept = histories_.most_kept();
+  run_.counters.states_kept = histories_.most_kept() + (run_.world().processes() ? run_.world().processes()->passages().most_kept() : 0);
   run_.end(stopped_by);
 }
 
@@ -135,7 +144,8 @@ void FastTimewarp::loop() {
   if (trial_.shuffle)
     for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random_.below(i)]);
   now_ = 0.0;
-  for (const int body : order) advance(body);
+  for (const int body : order)
+    if (first_member(body) == body) advance(body);
   now_ = kInfinity;
   while (!queue_.empty() && queue_.front().key.time <= run_.duration()) {
     if (trial_.rollback_every > 0 && ++worked_at_ % static_cast<std::uint64_t>(trial_.rollback_every) == 0) {
@@ -143,8 +153,8 @@ void FastTimewarp::loop() {
       const double back_to = std::max(global_virtual_time(), std::min(processes_[body].horizon, run_.duration()) - random_.between(0.0, trial_.rollback_s));
       if (back_to < processes_[body].horizon) {
         roll_back(body, histories_[body].at(back_to) + 1);
-        processes_[body].horizon = back_to;
-        schedule(body);
+        set_horizon(body, back_to);
+        schedule(first_member(body));
       }
     }
     const Due due = trial_.disorder_s > 0 ? next_legal() : queue_.pop();
@@ -184,10 +194,10 @@ Due FastTimewarp::next_legal() {
 }
 
 void FastTimewarp::work_at(const Due& due) {
-  if (due.key.kind == EventClass::kCollision) return collide(due);
+  if (due.key.kind != EventClass::kAdvance) return collide(due);
   Process& process = processes_[due.key.body_a];
   if (process.ticket != due.serial_a) return;
-  if (process.horizon >= run_.duration()) process.horizon = kInfinity;   // nothing is left to find
+  if (process.horizon >= run_.duration()) set_horizon(due.key.body_a, kInfinity);   // nothing is left to find
   else advance(due.key.body_a);
 }
 
@@ -197,6 +207,7 @@ void FastTimewarp::work_at(const Due& due) {
 // forms go from window to window, as their impacts are searched.
 double FastTimewarp::horizon_after(int body, const Flight& flight, double t) const {
   const FlightWorld& world = run_.world();
+  if (flight.passage >= 0) return std::min(run_.duration(), world.smooth_until(flight, t, kInfinity));
   if (flight.is_resting || !world.collides(body)) return run_.duration();
   if (!world.is_ball(body)) return std::min(run_.duration(), run_.impacts().window_end(t));
   const double way = lengths_.way;
@@ -212,6 +223,13 @@ Box FastTimewarp::swept_box(int body, double from, double to) const {
   for (std::size_t k = history.at(from); k < history.size(); ++k) {
     const Flight& flight = history[k];
     const double begin = std::max(from, flight.begin), end = k + 1 < history.size() ? history[k + 1].begin : to, s = end - begin;
+    if (flight.passage >= 0) {
+      Box way;
+      world.take_in_way(body, flight, begin, end, way.low, way.high);
+      const Vector3d margin = Vector3d::Constant(world.radius(body) * (1 + kSlack)) + kSlack * (way.high - way.low) + 1e-14 * (way.low.cwiseAbs() + way.high.cwiseAbs());
+      box.take_in({way.low - margin, way.high + margin});
+      continue;
+    }
     const Vector3d first = world.position(body, flight, begin), last = world.position(body, flight, end);
     const Vector3d margin = world.acceleration(body, flight).cwiseAbs() * (s * s / 8) + Vector3d::Constant(world.radius(body) * (1 + kSlack)) + kSlack * (last - first).cwiseAbs() +
                             1e-14 * (first.cwiseAbs() + last.cwiseAbs());
@@ -220,28 +238,45 @@ Box FastTimewarp::swept_box(int body, double from, double to) const {
   return box;
 }
 
+// All members of a process go on together; `body` is the first of them.
 void FastTimewarp::advance(int body) {
-  Process& process = processes_[body];
   const Flight flight = histories_[body].back();
-  const double from = process.horizon, to = horizon_after(body, flight, from);
+  const double from = processes_[body].horizon;
+  double to = horizon_after(body, flight, from);
+  const auto own_end = run_.own_end(body, flight, to);
+  if (own_end) to = own_end->time;
+  found_.clear();
+  if (own_end && own_end->time >= from) found_.push_back({*own_end, flight.serial, 0});
+  if (flight.passage < 0) advance_member(body, flight, from, to);
+  else
+    for (const int member : run_.world().members(body, flight)) advance_member(member, histories_[member].back(), from, to);
+  // The process goes no farther than the first impact it knows of; what comes behind is looked for again if that one fails.
+  for (const Due& due : found_) to = std::min(to, due.key.time);
+  set_horizon(body, to);
+  for (const Due& due : found_)
+    if (due.key.time <= to) queue_.push(due);
+  schedule(body);
+}
+
+void FastTimewarp::advance_member(int body, const Flight& flight, double from, double to) {
   ++run_.counters.steps;
   ++run_.counters.integrations;
   pairs_.set_box(body, swept_box(body, std::min(from, global_virtual_time()), to));
-  found_.clear();
   find_obstacles(body, flight, from, to);
   pairs_.for_each_partner(body, [&](int other) { check(body, flight, from, to, other); });
-  // The process goes no farther than the first impact it knows of; what comes behind is looked for again if that one fails.
-  process.horizon = to;
-  for (const Due& due : found_) process.horizon = std::min(process.horizon, due.key.time);
-  for (const Due& due : found_)
-    if (due.key.time <= process.horizon) queue_.push(due);
-  schedule(body);
+}
+
+void FastTimewarp::set_horizon(int body, double t) {
+  const Flight& flight = histories_[body].back();
+  processes_[body].horizon = t;
+  if (flight.passage >= 0)
+    for (const int member : run_.world().members(body, flight)) processes_[member].horizon = t;
 }
 
 void FastTimewarp::find_obstacles(int body, const Flight& flight, double from, double to) {
   Process& process = processes_[body];
   if (planes_.empty() || flight.is_resting) return;
-  if (!run_.world().is_ball(body)) {
+  if (!run_.world().is_ball(body) || flight.passage >= 0) {
     for (const int plane : planes_) check(body, flight, from, to, plane);
     return;
   }
@@ -274,6 +309,13 @@ void FastTimewarp::check(int body, const Flight& flight, double from, double to,
     if (time >= from && time <= to) offer(body, flight, other, immovable(other), time, nullptr);
     return;
   }
+  if (flight.passage >= 0 && histories_[other].back().passage == flight.passage) {   // two of one process: asked about once
+    if (other < body) return;
+    const Flight& its = histories_[other].back();
+    const double time = run_.impacts().first_impact(body, flight, other, its, from, to, run_.cost);
+    if (time >= from && time <= to) offer(body, flight, other, its, time, nullptr);
+    return;
+  }
   const double until = std::min(to, processes_[other].horizon);
   if (!(until > from)) return;   // the other will find it
   const FlightHistory& history = histories_[other];
@@ -298,30 +340,36 @@ void FastTimewarp::schedule(int body) {
 
 // ---- An impact ---------------------------------------------------------------------------------------------------------
 
+// Whether the flight that an event speaks of is there and the event still to come on it.
+bool FastTimewarp::look_up(const Due& due, int side, std::size_t& place) const {
+  const int body = side == 0 ? due.key.body_a : due.key.body_b;
+  if (body < 0 || !run_.world().can_move(body)) return true;
+  // Rolled back since the event was found: on the way there something else may come first. It will be found again.
+  if (processes_[body].horizon < due.key.time) return false;
+  const FlightHistory& history = histories_[body];
+  place = history.find(side == 0 ? due.serial_a : due.serial_b);
+  if (place == history.size()) return false;   // taken back
+  if (place + 1 == history.size()) return true;
+  return due.key < begin_of(body, history[place + 1]);   // else hit before, or known twice
+}
+
 void FastTimewarp::collide(const Due& due) {
   const FlightWorld& world = run_.world();
   const int bodies[] = {due.key.body_a, due.key.body_b};
   const std::uint32_t serials[] = {due.serial_a, due.serial_b};
   std::size_t places[] = {0, 0};
+  for (int side = 0; side < 2; ++side)
+    if (!look_up(due, side, places[side])) return;
   for (int side = 0; side < 2; ++side) {
     const int body = bodies[side];
-    if (!world.can_move(body)) continue;
-    // Rolled back since the event was found: on the way there something else may come first. It will be found again.
-    if (processes_[body].horizon < due.key.time) return;
-    const FlightHistory& history = histories_[body];
-    places[side] = history.find(serials[side]);
-    if (places[side] == history.size()) return;                                                                     // taken back
-    if (places[side] + 1 < history.size() && begin_of(body, history[places[side] + 1]) < due.key) return;           // hit before
-    if (places[side] + 1 < history.size() && begin_of(body, history[places[side] + 1]) == due.key) return;          // known twice
-  }
-  for (int side = 0; side < 2; ++side) {
-    const int body = bodies[side];
-    if (!world.can_move(body)) continue;
+    if (body < 0 || !world.can_move(body)) continue;
     if (places[side] + 1 < histories_[body].size()) roll_back(body, places[side] + 1);
     if (processes_[body].horizon > due.key.time) ++run_.counters.undone_integrations;
   }
   const auto flight_of = [&](int side) -> const Flight& { return world.can_move(bodies[side]) ? histories_[bodies[side]][histories_[bodies[side]].find(serials[side])] : immovable(bodies[side]); };
+  if (due.key.kind == EventClass::kProcess) return begin_flights(due, run_.end_of_passage(due.key, flight_of(0)));
   engines::Meeting meeting = run_.meet(due.key, flight_of(0), flight_of(1));
+  if (!meeting.begun.empty()) return begin_flights(due, std::move(meeting));
   const std::uint32_t serial_a = world.can_move(bodies[0]) ? processes_[bodies[0]].next_serial++ : 0;
   const std::uint32_t serial_b = world.can_move(bodies[1]) ? processes_[bodies[1]].next_serial++ : 0;
   meeting.a.partner_serial = serial_b;
@@ -333,11 +381,33 @@ void FastTimewarp::collide(const Due& due) {
     if (world.can_move(body)) advance(body);
 }
 
+// What an event does to processes: all that it begins is noted as one change, so that all of it can be taken back.
+void FastTimewarp::begin_flights(const Due& due, engines::Meeting meeting) {
+  const int change = changes_.add(due.key);
+  std::uint32_t serials[] = {0, 0};
+  for (engines::BegunFlight& begun : meeting.begun) {
+    const std::uint32_t serial = processes_[begun.body].next_serial++;
+    if (begun.body == due.key.body_a) serials[0] = serial;
+    if (begun.body == due.key.body_b) serials[1] = serial;
+    begun.flight.change = change;
+    changes_.note(change, begun.body, serial);
+    begin_flight(begun.body, begun.flight, serial);
+  }
+  executed_.push_back({due.key, serials[0], serials[1], meeting.first, std::move(meeting.more)});
+  for (const engines::BegunFlight& begun : meeting.begun)
+    if (histories_[begun.body].back().serial == begun.flight.serial && first_member(begun.body) == begun.body && processes_[begun.body].horizon == due.key.time) advance(begun.body);
+}
+
 void FastTimewarp::begin_flight(int body, Flight flight, std::uint32_t serial) {
   flight.serial = serial;
-  histories_.purge(body, committed_);
+  histories_.purge(body, committed_, [&](const Flight& purged) { forget(purged); });
   histories_.push(body, flight);
   processes_[body].horizon = flight.begin;
+}
+
+void FastTimewarp::forget(const Flight& flight) {
+  run_.world().release(flight);
+  if (flight.change >= 0) changes_.release(flight.change);
 }
 
 // Drops the flights of a body from place `keep` on, and by anti-messages those of others that began with them, and so on.
@@ -354,13 +424,23 @@ void FastTimewarp::roll_back(int body, std::size_t keep) {
       histories_.pop(now);
       ++run_.counters.undone_integrations;
       processes_[now].horizon = std::min(processes_[now].horizon, dropped.begin);
+      if (dropped.change >= 0) {
+        for (const auto& [body, serial] : changes_.began(dropped.change)) {
+          const std::size_t effect = histories_[body].find(serial);
+          if (effect == histories_[body].size()) continue;
+          ++run_.counters.anti_messages;
+          to_drop_.emplace_back(body, effect);
+        }
+        forget(dropped);
+        continue;
+      }
       if (!run_.world().can_move(dropped.partner)) continue;
       const std::size_t effect = histories_[dropped.partner].find(dropped.partner_serial);
       if (effect == histories_[dropped.partner].size()) continue;   // taken back already
       ++run_.counters.anti_messages;
       to_drop_.emplace_back(dropped.partner, effect);
     }
-    schedule(now);
+    if (first_member(now) == now) schedule(now);
   }
 }
 
@@ -385,6 +465,7 @@ void FastTimewarp::commit_before(double t) {
   executed_.erase(executed_.begin(), executed_.begin() + static_cast<std::ptrdiff_t>(done));
   draw_before(t);
   committed_ = std::min(t, run_.duration());
+  if (run_.world().processes()) run_.world().processes()->passages().forget_before(committed_);
 }
 
 }  // namespace
