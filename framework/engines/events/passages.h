@@ -1,8 +1,8 @@
 /// Passages: the motion of processes that links, forces or lasting contacts keep from flying freely, each from the discontinuity that
 /// began it to its next.
 ///
-/// A passage is to such a process what a flight is to a free body, and flights name theirs. It is worked out step by step, with its own
-/// fixed step from its own beginning, as far as somebody asks; where it leads depends on its beginning alone, whoever asks, and when. Some
+/// A passage is to such a process what a flight is to a free body, and flights name theirs. It is worked out step by step, as far as
+/// somebody asks; where it leads depends on its beginning alone, whoever asks, and when. Some
 /// end by themselves: an impact within the process, a contact that begins or opens. Membership of a passage never changes: what joins or
 /// leaves begins others.
 #pragma once
@@ -79,7 +79,6 @@ class Passages {
     std::optional<PassageEnd> end;
     Machine* machine = nullptr;
     int holders = 0, idle = 0;
-    std::int64_t grid = 0;                  // steps of full length since its beginning
   };
 
   Passage& at(int passage) { return *passages_[static_cast<std::size_t>(passage)]; }

@@ -196,7 +196,7 @@ Due FastTimewarp::next_legal() {
 void FastTimewarp::work_at(const Due& due) {
   if (due.key.kind != EventClass::kAdvance) return collide(due);
   Process& process = processes_[due.key.body_a];
-  if (process.ticket != due.serial_a) return;
+  if (process.ticket != due.serial_a || first_member(due.key.body_a) != due.key.body_a) return;
   if (process.horizon >= run_.duration()) set_horizon(due.key.body_a, kInfinity);   // nothing is left to find
   else advance(due.key.body_a);
 }
