@@ -21,7 +21,7 @@ TEST(Debug, Scene) {
   for (const Trajectory* run : {&reference, &tw}) {
     std::printf("----\n");
     for (const Event& e : run->events)
-      if (std::abs(e.time - t) < 0.02) std::printf("%.9f kind %d  %d %d  j %.4g vn %.4g -> %.4g\n", e.time, int(e.kind), e.body_a, e.body_b, e.impulse, e.normal_velocity_before, e.normal_velocity_after);
+      if (std::abs(e.time - t) < std::atof(std::getenv("DT") ? std::getenv("DT") : "0.02")) std::printf("%.9f kind %d  %d %d  j %.4g vn %.4g -> %.4g\n", e.time, int(e.kind), e.body_a, e.body_b, e.impulse, e.normal_velocity_before, e.normal_velocity_after);
   }
 }
 

@@ -90,6 +90,7 @@ void FlightWorld::start_processes() {
   Processes::Start start = processes_->start(states, touching);
   for (BegunFlight& begun : start.flights) first_[begun.body] = begun.flight;
   start_events_ = std::move(start.events);
+  std::sort(start_events_.begin(), start_events_.end(), [](const Event& a, const Event& b) { return std::pair(a.body_a, a.body_b) < std::pair(b.body_a, b.body_b); });
 }
 
 bool FlightWorld::may_collide(int a, int b) const {
@@ -118,7 +119,7 @@ void FlightWorld::refuse_overlap(const scene::Scene& scene) {
                     depth > 0 ? fmt::format("{} overlap at the start, by about {:.3g} m", both, depth) : fmt::format("at the start one of the {} is inside the other", both),
                     "move one of them away (\"position_m\") until they are apart or just touch");
   }
-  for (int round = 0; round < kMostNudges; ++round) {
+  for (int round = 0; round < kMostNudges && !scene.contact; ++round) {   // processes draw their members apart themselves
     bool clean = true;
     for (const auto& [a, b] : pairs) {
       const collision::Gap gap = collision::compute_gap(shape(a), pose(a), shape(b), pose(b));
