@@ -20,6 +20,8 @@ TEST(Debug, Scene) {
   const double t = std::atof(std::getenv("T") ? std::getenv("T") : "1e9");
   for (const Trajectory* run : {&reference, &tw}) {
     std::printf("----\n");
+    if (std::getenv("ENERGY"))
+      for (const Frame& f : run->frames) std::printf("E %.5f %.9g gap %.3g contacts %zu\n", f.time, f.kinetic_energy + f.potential_energy, f.smallest_gap, f.contacts.size());
     for (const Event& e : run->events)
       if (std::abs(e.time - t) < std::atof(std::getenv("DT") ? std::getenv("DT") : "0.02")) std::printf("%.9f kind %d  %d %d  j %.4g vn %.4g -> %.4g\n", e.time, int(e.kind), e.body_a, e.body_b, e.impulse, e.normal_velocity_before, e.normal_velocity_after);
   }

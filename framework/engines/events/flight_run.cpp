@@ -44,7 +44,14 @@ namespace {
 
 // All flights that an event begins.
 Meeting finished(const EventKey& key, std::vector<BegunFlight> begun, const std::vector<Event>& events) {
-  Meeting meeting{key, {}, {}, std::move(begun), 0.0, events.front(), {events.begin() + 1, events.end()}};
+  Meeting meeting;
+  meeting.key = key;
+  meeting.begun = std::move(begun);
+  meeting.is_silent = events.empty();
+  if (!events.empty()) {
+    meeting.first = events.front();
+    meeting.more.assign(events.begin() + 1, events.end());
+  }
   for (BegunFlight& flight : meeting.begun) {
     flight.flight.generation = key.generation;
     flight.flight.partner = flight.body == key.body_a ? key.body_b : flight.body == key.body_b ? key.body_a : -1;
@@ -88,11 +95,20 @@ void FlightRun::commit_switches(double until) {
   for (; switched_ < switches_.size() && switches_[switched_].time < until; ++switched_) sink_.event(switches_[switched_]);
 }
 
-void FlightRun::commit(const EventKey& key, const Event& first, const std::vector<Event>& more) {
+void FlightRun::commit(const Meeting& meeting) {
+  if (!meeting.is_silent) return commit(meeting.key, meeting.first, meeting.more);
+  pass(meeting.key);
+}
+
+void FlightRun::pass(const EventKey& key) {
   if (!(last_ < key))
     throw PreconditionError(fmt::format("events are committed in their order: {} and {} at {:.17g} s ({}) after {} and {} at {:.17g} s ({})", name(key.body_a), name(key.body_b), key.time, key.generation,
                                         name(last_.body_a), name(last_.body_b), last_.time, last_.generation));
   last_ = key;
+}
+
+void FlightRun::commit(const EventKey& key, const Event& first, const std::vector<Event>& more) {
+  pass(key);
   commit_switches(std::nextafter(key.time, 2 * key.time + 1));
   ++counters.discontinuities;
   sink_.event(first);

@@ -37,7 +37,9 @@ class FlightRun {
 
   /// Commits an impact. @pre keys come in order
   void commit(const EventKey& key, const Event& first, const std::vector<Event>& more);
-  void commit(const Meeting& meeting) { commit(meeting.key, meeting.first, meeting.more); }
+  void commit(const Meeting& meeting);
+  /// Commits a change of membership that nothing is said of. @pre keys come in order
+  void pass(const EventKey& key);
   /// The next frame that is not committed yet; infinite when there is none. [s]
   double next_frame() const { return frame_time(next_) <= duration_ ? frame_time(next_) : std::numeric_limits<double>::infinity(); }
   /// Commits the frame at next_frame(). @pre every event before it is committed, none after it

@@ -20,6 +20,7 @@ struct Meeting {
   double impulse = 0.0;        // sum of the impulses along the normal [N s]
   Event first;                 // the first impulse, or the rest that came without one
   std::vector<Event> more;     // flat landings take several; coming to rest
+  bool is_silent = false;      // members of a process only part: nothing is said of it
 };
 
 struct MeetingRules {

@@ -87,7 +87,8 @@ void Passages::take_step(Passage& passage) {
   }
   passage.steps.push_back(std::move(outcome.step));
   most_kept_ = std::max(most_kept_, ++kept_);
-  if (outcome.events.empty()) passage.front.emplace(std::move(outcome.after));
+  const bool is_one = passage.start->near.empty() || !falls_apart_(outcome.after);
+  if (outcome.events.empty() && is_one) passage.front.emplace(std::move(outcome.after));
   else passage.end.emplace(PassageEnd{passage.steps.back().end, std::move(outcome.after), std::move(outcome.events)});
 }
 

@@ -21,12 +21,14 @@ namespace tumble::engines {
 struct PassageEnd {
   double time;                       // [s]
   ProcessState after;
-  std::vector<Event> events;
+  std::vector<Event> events;         // none where members only have come too far apart to be one process
 };
 
 class Passages {
  public:
   Passages(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules, RunCounters& counters);
+  /// @param falls_apart  whether the members of a state are one process no more
+  void ask(std::function<bool(const ProcessState&)> falls_apart) { falls_apart_ = std::move(falls_apart); }
   Passages(const Passages&) = delete;
   Passages& operator=(const Passages&) = delete;
 
@@ -91,6 +93,7 @@ class Passages {
 
   const World& whole_;
   ShapeOf shape_of_;
+  std::function<bool(const ProcessState&)> falls_apart_;
   const Laws& laws_;
   ProcessRules rules_;
   RunCounters& counters_;

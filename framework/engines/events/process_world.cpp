@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kMicroInterval = 0.01;   // of the step: a pair that meets again sooner, and slowly, is sent apart (as retroactive.cpp)
 constexpr int kMostPassings = 100;        // of a blow to and fro between bodies that touch and bodies that are joined
+constexpr double kTogether = 2.0;         // steps
 constexpr double kNear = 1e-6;            // of the sizes: pairs farther apart do not touch
 
 std::vector<const collision::CollisionShape*> shapes_of(const WorldPart& part, const ShapeOf& shape_of) {
@@ -104,8 +105,26 @@ ProcessState ProcessWorld::save() const {
     if (moving_.time() - time < rules_.step) state.met.emplace(whole(pair), time);
   if (!has_contacts()) return state;
   for (const BodyPair& pair : contacts_->lasting()) state.lasting.insert(whole(pair));
+  if (moving_.world().contact->plastic_impacts == scene::PlasticImpacts::kInStep) note_near(state);
   state.contacts.emplace(*contacts_);
   return state;
+}
+
+// Where blows are dealt with in the step, bodies that come together again at once are no other group meanwhile: they would meet again and
+// again, each time as if for the first.
+void ProcessWorld::note_near(ProcessState& state) const {
+  const auto speed = [&](int body) {
+    const Body now = moving_.body_at_impact(body);
+    return now.velocity_world.norm() + now.omega_world.norm() * moving_.shape(body).bounding_radius();
+  };
+  for (std::size_t i = 0; i < part_.members.size(); ++i)
+    for (std::size_t j = i + 1; j < part_.members.size(); ++j) {
+      const int a = part_.members[i], b = part_.members[j];
+      if (std::min(moving_.world().bodies[a].restitution, moving_.world().bodies[b].restitution) > 0 || !moving_.may_collide(a, b)) continue;
+      const double within = kTogether * rules_.step * (speed(a) + speed(b));
+      if ((moving_.state(a).com_world - moving_.state(b).com_world).norm() > moving_.shape(a).bounding_radius() + moving_.shape(b).bounding_radius() + within) continue;
+      if (meetings_.gap({a, b}).distance <= within) state.near.emplace(members_[i], members_[j]);
+    }
 }
 
 void ProcessWorld::save_controls(ProcessState& state) const {

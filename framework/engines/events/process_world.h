@@ -35,6 +35,7 @@ struct ProcessState {
   std::map<int, Vector3d> force_points_body;    // by force that acts
   std::map<BodyPair, double> met;               // when pairs met last [s]
   std::set<BodyPair> lasting;                   // pairs in lasting contact
+  std::set<BodyPair> near;                      // pairs without restitution that meet within a step or two: they stay together (in_step)
   std::optional<LastingContacts> contacts;      // what contacts remember; of the process world that made this state, and for it alone
 
   const RigidBodyState& state_of(int body) const;
@@ -102,6 +103,7 @@ class ProcessWorld {
   void load(const ProcessState& from);
   ProcessState save() const;
   void save_controls(ProcessState& state) const;
+  void note_near(ProcessState& state) const;
   double load_forces(const ProcessState& from);
   void begin_step(double target);
   void require_numbers() const;

@@ -38,6 +38,7 @@ Processes::Processes(const World& whole, ShapeOf shape_of, const Laws& laws, Pro
     : whole_(whole), passages_(whole, std::move(shape_of), laws, rules, counters), linked_(whole.bodies.size(), -1) {
   for (const std::vector<int>& group : groups_of_linked_bodies(whole))
     for (const int body : group) linked_[static_cast<std::size_t>(body)] = group.front();
+  passages_.ask([this](const ProcessState& state) { return components_of(state).size() > 1; });
 }
 
 bool Processes::is_pushed(int body, double t) const {
@@ -102,14 +103,19 @@ ProcessState Processes::together(const ProcessState& a, const ProcessState& b) {
   return both;
 }
 
-std::vector<BegunFlight> Processes::sort(const ProcessState& state) {
+std::vector<std::vector<int>> Processes::components_of(const ProcessState& state) const {
   Components components(state.members);
   for (const int body : state.members)
     if (const int first = linked_[static_cast<std::size_t>(body)]; first >= 0) components.join(first, body);
-  for (const auto& [a, b] : state.lasting)
-    if (components.has(a) && components.has(b)) components.join(a, b);
+  for (const std::set<BodyPair>* pairs : {&state.lasting, &state.near})
+    for (const auto& [a, b] : *pairs)
+      if (components.has(a) && components.has(b)) components.join(a, b);
+  return components.all();
+}
+
+std::vector<BegunFlight> Processes::sort(const ProcessState& state) {
   std::vector<BegunFlight> flights;
-  for (const std::vector<int>& members : components.all()) {
+  for (const std::vector<int>& members : components_of(state)) {
     const int first = members.front();
     const bool touches = std::any_of(state.lasting.begin(), state.lasting.end(), [&](const BodyPair& pair) { return pair.first == first || pair.second == first; });
     const bool flies = members.size() == 1 && linked_[static_cast<std::size_t>(first)] < 0 && !touches && !is_pushed(first, state.time);
@@ -151,6 +157,8 @@ ProcessState Processes::component(const ProcessState& state, const std::vector<i
     if (whole(pair)) part.met.emplace(pair, time);
   for (const BodyPair& pair : state.lasting)
     if (whole(pair)) part.lasting.insert(pair);
+  for (const BodyPair& pair : state.near)
+    if (whole(pair)) part.near.insert(pair);
   return part;
 }
 

@@ -39,6 +39,7 @@ class Processes {
   std::vector<BegunFlight> sort(const ProcessState& state);
 
  private:
+  std::vector<std::vector<int>> components_of(const ProcessState& state) const;
   ProcessState component(const ProcessState& state, const std::vector<int>& members) const;
   bool is_pushed(int body, double t) const;
 

@@ -52,6 +52,7 @@ struct Executed {
   std::uint32_t serial_a, serial_b;   // of the flights it began
   Event first;
   std::vector<Event> more;
+  bool is_silent = false;             // nothing is said of it
 };
 
 class FastTimewarp {
@@ -393,7 +394,7 @@ void FastTimewarp::begin_flights(const Due& due, engines::Meeting meeting) {
     changes_.note(change, begun.body, serial);
     begin_flight(begun.body, begun.flight, serial);
   }
-  executed_.push_back({due.key, serials[0], serials[1], meeting.first, std::move(meeting.more)});
+  executed_.push_back({due.key, serials[0], serials[1], meeting.first, std::move(meeting.more), meeting.is_silent});
   for (const engines::BegunFlight& begun : meeting.begun)
     if (first_member(begun.body) == begun.body) advance(begun.body);
 }
@@ -460,7 +461,8 @@ void FastTimewarp::commit_before(double t) {
     const Executed& event = executed_[done];
     if (!still_stands(event.key.body_a, event.serial_a) || !still_stands(event.key.body_b, event.serial_b)) continue;   // taken back
     draw_before(event.key.time);
-    run_.commit(event.key, event.first, event.more);
+    if (event.is_silent) run_.pass(event.key);
+    else run_.commit(event.key, event.first, event.more);
   }
   executed_.erase(executed_.begin(), executed_.begin() + static_cast<std::ptrdiff_t>(done));
   draw_before(t);
