@@ -154,9 +154,9 @@ void add_arm(int number, const Vector3d& foot, Random& random, Scene& scene) {
     motor.amplitude_rad = k % 2 == 0 ? 0.8 : 0.25;
     motor.frequency_hz = 0.7;
     motor.phase_rad = phase + 0.4 * k;
-    motor.stiffness_n_m_rad = 400.0 * weight;
-    motor.damping_n_m_s_rad = 25.0 * weight;
-    motor.period_s = 1.0 / 240.0;
+    motor.stiffness_n_m_rad = 250.0 * weight;
+    motor.damping_n_m_s_rad = 12.0 * weight;
+    motor.period_s = 1.0 / 960.0;
     scene.motors.push_back(motor);
   }
   for (std::size_t i = 0; i < names.size(); ++i)

@@ -78,7 +78,7 @@ std::string Passages::names(const std::vector<int>& members) const {
 void Passages::take_step(Passage& passage) {
   // Steps end on a grid that all processes share, as frames do: bodies in contact fit each other's surfaces where steps end.
   const double now = passage.front->time, due = (std::floor((now + kNoStep * rules_.step) / rules_.step) + 1) * rules_.step;
-  ProcessWorld::Outcome outcome = naming(names(passage.start->members), [&] { return passage.machine->world->step(*passage.front, due); });
+  ProcessWorld::Outcome outcome = naming(fmt::format("at t = {:.6f} s, {}", now, names(passage.start->members)), [&] { return passage.machine->world->step(*passage.front, due); });
   passage.idle = outcome.step.end > now ? 0 : passage.idle + 1;
   if (passage.idle > kMostIdleSteps) throw StoppedRun(fmt::format("at t = {:.6f} s, {}: time stands still, its bodies meet again and again", now, names(passage.start->members)));
   while (passage.steps.size() > 1 && passage.steps.front().end < forgotten_ - 2 * rules_.step) {

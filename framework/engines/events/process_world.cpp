@@ -224,7 +224,7 @@ std::vector<ContactPoint> ProcessWorld::forces() const {
 void ProcessWorld::require_numbers() const {
   for (const int member : part_.members)
     if (!pack(moving_.state(member)).allFinite())
-      throw StoppedRun(fmt::format("at t = {:.6f} s, body {}: its state is not a number (integrator: {}; impulses: {})", moving_.time(), name(member), laws_.integrator_source, laws_.impulse_source));
+      throw StoppedRun(fmt::format("body {}: its state is not a number (integrator: {}; impulses: {})", name(member), laws_.integrator_source, laws_.impulse_source));
 }
 
 // ---- Impacts ---------------------------------------------------------------------------------------------------------------
