@@ -10,6 +10,7 @@
 #include "framework/engines/run.h"
 #include "framework/grading/worker_connection.h"
 #include "framework/report/player.h"
+#include "framework/report/virtual_times_panel.h"
 
 namespace tumble::cli {
 namespace {
@@ -108,10 +109,11 @@ void check_page_words(const Context& context, const RunWords& words) {
   if (!beside.recording.empty() && !fs::exists(beside.recording)) throw UserError(beside.recording, "there is no such recording", "Make one with --trajectory FILE.");
 }
 
-void write_page(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const Trajectory& run, const RunWords& words) {
+void write_page(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const Trajectory& run, const RunWords& words, const VirtualTimes& times) {
   if (words.html.empty()) return;
   report::PlayerOptions options;
   options.root = context.root;
+  if (!times.moves.empty()) options.panels.push_back(report::virtual_times_panel(times));
   std::vector<report::PlayedRun> runs;
   Second second;
   if (!words.beside.empty()) second = second_run(context, scene, chosen, run, words);

@@ -216,7 +216,8 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   engines::RunOptions options;
   options.engine = words.engine;
   options.propagator = words.propagator;
-  options.timewarp = engines::fast_timewarp();
+  VirtualTimes times;
+  options.timewarp = engines::fast_timewarp(words.html.empty() ? nullptr : &times);
   options.step_s = words.step_s;
   options.duration_s = words.duration_s;
   options.command = context.command_line;
@@ -246,7 +247,7 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
     fmt::print(stderr, "wrote {}\n", words.trajectory);
   }
   if (!run.frames.empty()) write_pictures(context, scene, run, words, size);
-  if (!run.frames.empty()) write_page(context, scene, chosen, run, words);
+  if (!run.frames.empty()) write_page(context, scene, chosen, run, words, times);
 
   bool passed = run.stopped_by.empty();
   for (const auto& check : checks) passed = passed && check.passed;

@@ -2,9 +2,11 @@
 // whatever order processes work, and what a world of all bodies does.
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include <gtest/gtest.h>
 
+#include "framework/core/error.h"
 #include "framework/scene/load_scene.h"
 #include "tests/engines/event_scenes.h"
 #include "tests/engines/reference_laws.h"
@@ -114,6 +116,88 @@ TEST(AdversarialOrderOfProcesses, LeavesLinkedBodiesTraceAsItIs) { expect_hard_o
 
 // Towers fuse, are hit, come apart, and all of it is taken back again and again: groups below whose birth the rollback goes as well.
 TEST(AdversarialOrderOfProcesses, LeavesGroupsInContactAsTheyAre) { expect_hard_orders_change_nothing(tower_and_projectile(5.0), 20); }
+
+// ---- Groups that come and go -----------------------------------------------------------------------------------------------
+
+/// Pairs in lasting contact at a time, as a run's events tell.
+std::set<std::pair<int, int>> together(const Trajectory& run, double t) {
+  std::set<std::pair<int, int>> pairs;
+  for (const Event& event : run.events) {
+    if (event.time > t) break;
+    if (event.kind == EventKind::kContact) pairs.insert({event.body_a, event.body_b});
+    if (event.kind == EventKind::kBreak) pairs.erase({event.body_a, event.body_b});
+  }
+  return pairs;
+}
+
+// The tower fuses block by block; the shot comes while it stands, and is found after much of it has been worked at.
+TEST(ContactGroup, ThatSplitsUnderRollbackHasTheReferencesMembersAtAllTimes) {
+  const scene::Scene scene = tower_and_projectile(5.0);
+  const Trajectory reference = run_with("ordered", scene), run = run_with("tw", scene, {7, true, 0.3, 4, 0.2});
+  std::size_t most = 0, least = 100;
+  for (int k = 0; k <= 1000; ++k) {
+    const double t = scene.duration_s * k / 1000;
+    const auto expected = together(reference, t);
+    ASSERT_EQ(expected, together(run, t)) << "at " << t;
+    most = std::max(most, expected.size());
+    if (t > 0.5) least = std::min(least, expected.size());
+  }
+  EXPECT_GE(most, 3U);     // it stood
+  EXPECT_LT(least, most);  // and came apart
+}
+
+// ---- Callbacks -------------------------------------------------------------------------------------------------------------
+
+Trajectory run_with_callbacks(const std::string& engine, const scene::Scene& scene, const std::vector<engines::Callback>& callbacks, const TimewarpTrial& trial = {}) {
+  TrajectoryRecorder recorder;
+  engines::RunOptions options;
+  options.engine = engine;
+  options.timewarp = engines::fast_timewarp();
+  options.trial = trial;
+  options.callbacks = callbacks;
+  engines::run_scene(scene, laws(), options, recorder);
+  return recorder.trajectory();
+}
+
+// Each is handed to all balls at once; the local virtual times of most lie beyond it by then.
+TEST(LateCallback, ActsOnceInTheCommittedTraceHoweverOftenItWasTakenBack) {
+  const scene::Scene scene = sized("gas", 60, 1.0);
+  std::vector<engines::Callback> callbacks;
+  std::vector<int> all;
+  for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i)
+    if (!scene.bodies[static_cast<std::size_t>(i)].immovable) all.push_back(i);
+  int calls = 0;
+  for (const double time : {0.31, 0.31, 0.6180339})
+    callbacks.push_back({time, all, [&calls](int body, RigidBodyState& state) {
+                           ++calls;
+                           state.momentum_world += Vector3d(0.1, 0.02 * (body % 5), -0.1);
+                         }});
+  const Trajectory reference = run_with_callbacks("ordered", scene, callbacks);
+  ASSERT_EQ(calls, 180);
+  const auto acts = [](const Trajectory& run) { return std::count_if(run.events.begin(), run.events.end(), [](const Event& event) { return event.kind == EventKind::kControl; }); };
+  EXPECT_EQ(acts(reference), 180);
+  EXPECT_EQ(difference(reference, run_with_callbacks("ca", scene, callbacks)), "");
+  EXPECT_EQ(difference(reference, run_with_callbacks("tw", scene, callbacks)), "");
+  calls = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Trajectory run = run_with_callbacks("tw", scene, callbacks, {seed, true, 0.2, 7, 0.1});
+    ASSERT_EQ(difference(reference, run), "") << "seed " << seed;
+    EXPECT_EQ(acts(run), 180);
+  }
+  EXPECT_GT(calls, 20 * 180);   // some were taken back
+}
+
+TEST(LateCallback, ChangesProcessesToo) {
+  const scene::Scene scene = pendula_and_balls(4, 0.8);
+  const std::vector<engines::Callback> callbacks{{0.25, {0, 1, 4}, [](int, RigidBodyState& state) { state.momentum_world.y() += 0.3; }}};
+  const Trajectory reference = run_with_callbacks("ordered", scene, callbacks);
+  EXPECT_EQ(difference(reference, run_with_callbacks("ca", scene, callbacks)), "");
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) ASSERT_EQ(difference(reference, run_with_callbacks("tw", scene, callbacks, {seed, true, 0.2, 5, 0.05})), "") << "seed " << seed;
+}
+
+TEST(LateCallback, IsRefusedByTheWorldOfAllBodies) {
+  EXPECT_THROW(run_with_callbacks("rd", pendula_and_balls(1, 0.1), {{0.05, {0}, [](int, RigidBodyState&) {}}}), UserError);
+}
 
 // ---- As a world of all bodies does it --------------------------------------------------------------------------------------
 

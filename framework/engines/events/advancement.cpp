@@ -20,6 +20,8 @@ constexpr double kSearched = 1e-9;  // of a pair's size: so near, the sign of th
 constexpr double kShy = 1e-9;       // of a bound, taken off: rounding may have made it later than the impact
 constexpr double kSlack = 1e-9;     // of coordinates, on boxes: pairs that just touch are looked at
 
+constexpr std::uint32_t kAnyFlight = std::numeric_limits<std::uint32_t>::max();   // a callback finds its bodies on whatever flight they are
+
 struct Bound {
   EventKey key;                     // when it falls due; of an impact where it is exact
   bool is_exact;
@@ -61,11 +63,12 @@ class AdvancementRun {
     for (int i = 0; i < run_.world().size(); ++i) boxes_.push_back(box_of(i));
     for (const auto& [a, b] : collision::overlapping_pairs(boxes_)) look_ahead(a, b);
     for (const int body : run_.world().movers()) look_for_own_end(body);
+    for (std::size_t k = called_; k < run_.callbacks().size() && run_.callbacks()[k].time < end_; ++k) queue_.push({run_.callbacks()[k], true, kAnyFlight, kAnyFlight});
     while (!queue_.empty() && queue_.top().key.time < end_ && queue_.top().key.time <= run_.duration()) {
       const Bound bound = queue_.top();
       queue_.pop();
       const int a = bound.key.body_a, b = bound.key.body_b;
-      if (flights_[a].serial != bound.serial_a || (b >= 0 && flights_[b].serial != bound.serial_b)) continue;
+      if (bound.serial_a != kAnyFlight && (flights_[a].serial != bound.serial_a || (b >= 0 && flights_[b].serial != bound.serial_b))) continue;
       advance_all(bound.key.time);
       if (bound.is_exact) work_at(bound.key);
       else look_ahead(a, b);
@@ -114,9 +117,16 @@ class AdvancementRun {
     if (const auto key = run_.own_end(body, flights_[body], end_)) queue_.push({*key, true, flights_[body].serial, 0});
   }
 
+  Meeting outcome_of(const EventKey& key) {
+    if (key.kind == EventClass::kProcess) return run_.end_of_passage(key, flights_[key.body_a]);
+    if (key.kind == EventClass::kCollision) return run_.meet(key, flights_[key.body_a], flights_[key.body_b]);
+    ++called_;
+    return run_.call(key, [this](int body) -> const Flight& { return flights_[body]; });
+  }
+
   void work_at(const EventKey& key) {
     const int a = key.body_a, b = key.body_b;
-    Meeting meeting = key.kind == EventClass::kProcess ? run_.end_of_passage(key, flights_[a]) : run_.meet(key, flights_[a], flights_[b]);
+    Meeting meeting = outcome_of(key);
     run_.commit(meeting);
     std::vector<int> changed;
     if (meeting.begun.empty()) {
@@ -174,6 +184,7 @@ class AdvancementRun {
   std::priority_queue<Bound, std::vector<Bound>, Later> queue_;
   double time_ = 0.0, end_ = 0.0;                      // [s]
   std::uint32_t serial_ = 0;
+  std::size_t called_ = 0;                             // callbacks
 };
 
 }  // namespace

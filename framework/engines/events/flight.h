@@ -12,6 +12,7 @@ namespace tumble::engines {
 enum class EventClass : std::uint8_t {
   kCollision = 1,
   kProcess = 2,      // a process's own: an impact within it, a contact that begins or opens; body_a is its first body, body_b -1
+  kCallback = 3,     // a callback changes bodies; body_a is the first of them, body_b -1, the generation its place in the list
   kAdvance = 255     // a process goes on; never committed
 };
 

@@ -1,5 +1,7 @@
 #include "framework/engines/events/flight_run.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
@@ -16,7 +18,12 @@ constexpr double kMicroInterval = 0.01;   // of the step: a pair that meets agai
 FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink)
     : laws_(guarded(laws)), step_(options.step_s.value_or(scene.step_s)), duration_(options.duration_s.value_or(scene.duration_s)), rate_(options.frame_rate_hz),
       world_(scene, options.engine, laws_, {step_, scene.rest_speed_m_s}, counters), impacts_(world_, laws_.find_impact_time, step_),
-      meetings_(world_, laws_, {scene.rest_speed_m_s, kMicroInterval * step_}), sink_(sink) {
+      meetings_(world_, laws_, {scene.rest_speed_m_s, kMicroInterval * step_}), sink_(sink), callbacks_(options.callbacks) {
+  for (std::size_t k = 0; k < callbacks_.size(); ++k) {
+    require(!callbacks_[k].bodies.empty() && std::is_sorted(callbacks_[k].bodies.begin(), callbacks_[k].bodies.end()) && (k == 0 || callbacks_[k - 1].time <= callbacks_[k].time),
+            "callbacks come in order of time, each with its bodies in order");
+    callback_keys_.push_back({callbacks_[k].time, static_cast<std::uint32_t>(k), EventClass::kCallback, callbacks_[k].bodies.front(), -1});
+  }
   if (!world_.processes()) return;
   refuse_unstable_springs(world_.world(), laws_, {step_, duration_}, scene.file.empty() ? scene.name : scene.file.string(), counters.notices);
   links_ = std::make_unique<LinkMeasures>(world_, laws_);
@@ -88,6 +95,25 @@ Meeting FlightRun::end_of_passage(const EventKey& key, const Flight& flight) {
   const PassageEnd* end = world_.processes()->passages().end_by(flight.passage, key.time);
   require(end != nullptr, "a passage ends where own_end said");
   return finished(key, world_.processes()->sort(end->after), end->events);
+}
+
+Meeting FlightRun::call(const EventKey& key, const FlightOf& flight_of) {
+  const Callback& callback = callbacks_[key.generation];
+  ++counters.callback_calls;
+  Processes& processes = world_.all_processes();
+  std::vector<BegunFlight> begun;
+  std::vector<Event> events;
+  for (const int body : callback.bodies) {
+    if (std::any_of(begun.begin(), begun.end(), [&](const BegunFlight& known) { return known.body == body; })) continue;   // with one before it
+    const Flight& flight = flight_of(body);
+    ProcessState state = processes.state_of(body, flight, flight.passage < 0 ? world_.state(body, flight, key.time) : RigidBodyState{}, key.time);
+    for (std::size_t k = 0; k < state.members.size(); ++k)
+      if (std::binary_search(callback.bodies.begin(), callback.bodies.end(), state.members[k])) callback.act(state.members[k], state.states[k]);
+    for (BegunFlight& next : processes.sort(state)) begun.push_back(std::move(next));
+  }
+  for (const int body : callback.bodies) events.push_back({key.time, EventKind::kControl, body, -1, world_.position(body, flight_of(body), key.time), Vector3d::UnitZ(), 0.0, 0.0});
+  std::sort(begun.begin(), begun.end(), [](const BegunFlight& a, const BegunFlight& b) { return a.body < b.body; });
+  return finished(key, std::move(begun), events);
 }
 
 // Forces are switched at times that stand fast: what is said of it has its place among what is committed, whoever runs.

@@ -35,6 +35,12 @@ class FlightRun {
   /// What that does.
   Meeting end_of_passage(const EventKey& key, const Flight& flight);
 
+  /// Callbacks of the run, by their keys, in order.
+  const std::vector<EventKey>& callbacks() const { return callback_keys_; }
+  const std::vector<int>& receivers(const EventKey& callback) const { return callbacks_[callback.generation].bodies; }
+  /// What a callback does. @param flight_of  the flights that its bodies are on when it acts
+  Meeting call(const EventKey& callback, const FlightOf& flight_of);
+
   /// Commits an impact. @pre keys come in order
   void commit(const EventKey& key, const Event& first, const std::vector<Event>& more);
   void commit(const Meeting& meeting);
@@ -68,6 +74,8 @@ class FlightRun {
   std::vector<Event> switches_;    // of point forces, in order of time; known from the start
   std::size_t switched_ = 0;
   std::unique_ptr<LinkMeasures> links_;
+  std::vector<Callback> callbacks_;
+  std::vector<EventKey> callback_keys_;
 };
 
 }  // namespace tumble::engines

@@ -36,10 +36,6 @@ std::string unfollowed_entry(const scene::Scene& scene) {
   return "";
 }
 
-bool has_processes(const scene::Scene& scene) {
-  return !scene.springs.empty() || !scene.rods.empty() || !scene.joints.empty() || !scene.drags.empty() || !scene.point_forces.empty() || scene.contact;
-}
-
 FlightWorld::FlightWorld(const scene::Scene& scene, const std::string& engine, const Laws& laws, ProcessRules rules, RunCounters& counters) {
   const std::string where = scene.file.empty() ? scene.name : scene.file.string();
   if (const std::string entry = unfollowed_entry(scene); !entry.empty())
@@ -69,9 +65,8 @@ FlightWorld::FlightWorld(const scene::Scene& scene, const std::string& engine, c
   }
   turning_.resize(first_.size());
   refuse_overlap(scene);
-  if (!has_processes(scene)) return;
   processes_ = std::make_unique<Processes>(world_, [this](int body) { return &shape(body); }, laws, rules, counters);
-  start_processes();
+  if (processes_->holds_any()) start_processes();
 }
 
 // Bodies that are linked, pushed, or in contact from the start.

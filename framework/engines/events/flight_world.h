@@ -51,7 +51,8 @@ class FlightWorld {
   const Flight& first_flight(int body) const { return first_[body]; }
 
   /// Processes; null where every body of the scene flies freely at all times.
-  Processes* processes() const { return processes_.get(); }
+  Processes* processes() const { return processes_->holds_any() ? processes_.get() : nullptr; }
+  Processes& all_processes() const { return *processes_; }
   /// What is said of contacts that hold where the run begins.
   const std::vector<Event>& start_events() const { return start_events_; }
   /// The bodies that move with this one, ascending: itself alone on a free flight.
@@ -59,7 +60,7 @@ class FlightWorld {
   int first_member(int body, const Flight& flight) const { return flight.passage < 0 ? body : processes_->passages().members(flight.passage).front(); }
   /// Whether what the two do to each other is the affair of their process, and no event of two flights.
   bool is_internal(int a, const Flight& f, int b, const Flight& g) const {
-    if (!processes_ || !processes_->holds_contacts()) return false;
+    if (!processes_->holds_contacts()) return false;
     return (f.passage >= 0 && (f.passage == g.passage || !can_move(b))) || (g.passage >= 0 && !can_move(a));
   }
   /// A flight is dropped or will not be asked about again: once a flight.
@@ -142,7 +143,5 @@ class FlightWorld {
 
 /// The first entry of a scene that event-ordered engines cannot follow, in words; empty: they can.
 std::string unfollowed_entry(const scene::Scene& scene);
-/// Whether some of its bodies do not fly freely at all times.
-bool has_processes(const scene::Scene& scene);
 
 }  // namespace tumble::engines

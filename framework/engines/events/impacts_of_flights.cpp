@@ -144,9 +144,10 @@ double ImpactsOfFlights::in_windows(int a, const Flight& f, int b, const Flight&
   std::optional<collision::Motion> motion_a, motion_b;
   for (std::int64_t k = window_of(std::max(from, begin)); window_begin(k) < to; ++k) {
     const double high = window_begin(k + 1);
-    for (double low = std::max(begin, window_begin(k)); low < high;) {
-      const double end = of_pieces ? world_.smooth_until(g, low, world_.smooth_until(f, low, high)) : high;
+    for (double low = std::max(begin, window_begin(k)), end = low; low < high && low < to; low = end) {
+      end = of_pieces ? world_.smooth_until(g, low, world_.smooth_until(f, low, high)) : high;
       if (!(end > low)) return kInfinity;   // one of them has ended
+      if (!(end > from)) continue;
       ++cost.pair_checks;
       if (may_meet(a, f, b, g, low, end)) {
         if (!motion_a || of_pieces) {
@@ -156,7 +157,6 @@ double ImpactsOfFlights::in_windows(int a, const Flight& f, int b, const Flight&
         const auto impact = collision::first_impact(world_.shape(a), *motion_a, world_.shape(b), *motion_b, low, end, options, &cost.narrow);
         if (impact) return impact->time;
       }
-      low = end;
     }
   }
   return kInfinity;

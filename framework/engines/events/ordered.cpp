@@ -39,6 +39,7 @@ class OrderedRun {
       EventKey next = kNever;
       for (const int a : run_.world().movers())
         if (first_of_[a] < next) next = first_of_[a];
+      if (called_ < run_.callbacks().size()) next = std::min(next, run_.callbacks()[called_]);
       if (!(next.time < end_) || next.time > run_.duration()) return;
       draw_before(next.time);
       process(next);
@@ -46,7 +47,7 @@ class OrderedRun {
   }
 
   void process(const EventKey& key) {
-    const Meeting meeting = key.kind == EventClass::kProcess ? run_.end_of_passage(key, flights_[key.body_a]) : run_.meet(key, flights_[key.body_a], flights_[key.body_b]);
+    const Meeting meeting = outcome_of(key);
     run_.commit(meeting);
     std::vector<int> changed;
     if (meeting.begun.empty()) {
@@ -68,6 +69,13 @@ class OrderedRun {
     }
   }
 
+  Meeting outcome_of(const EventKey& key) {
+    if (key.kind == EventClass::kProcess) return run_.end_of_passage(key, flights_[key.body_a]);
+    if (key.kind == EventClass::kCollision) return run_.meet(key, flights_[key.body_a], flights_[key.body_b]);
+    ++called_;
+    return run_.call(key, [this](int body) -> const Flight& { return flights_[body]; });
+  }
+
   EventKey impact_of(int a, int b) {
     if (a == b || !run_.world().may_collide(a, b)) return kNever;
     const double time = run_.impacts().first_impact(a, flights_[a], b, flights_[b], begin_, end_, run_.cost);
@@ -87,6 +95,7 @@ class OrderedRun {
   FlightRun run_;
   std::vector<Flight> flights_;       // by body
   std::vector<EventKey> first_of_;    // by body: the first impact it takes part in, in this window
+  std::size_t called_ = 0;            // callbacks
   double begin_ = 0.0, end_ = 0.0;    // what is looked through [s]
 };
 

@@ -66,7 +66,8 @@ class Passages {
   /// A small world of these members, for a question or two. @param still  an immovable body that one of them meets; -1: none
   ProcessWorld& world_of(const std::vector<int>& members, int still = -1);
 
-  std::size_t steps_kept() const { return kept_; }
+  /// Passages that somebody holds.
+  std::size_t alive() const { return passages_.size() - free_.size(); }
   std::size_t most_kept() const { return most_kept_; }
 
  private:

@@ -17,6 +17,8 @@ class Processes {
   Processes(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules, RunCounters& counters);
 
   Passages& passages() { return passages_; }
+  /// Whether some body of the world may not fly freely at some time.
+  bool holds_any() const { return holds_any_; }
   /// Whether lasting contacts are asked for: what happens within a process is then its own affair.
   bool holds_contacts() const { return whole_.contact.has_value(); }
 
@@ -45,6 +47,7 @@ class Processes {
 
   const World& whole_;
   Passages passages_;
+  bool holds_any_;
   std::vector<int> linked_;     // by body: the least body that links tie it to; -1: no link
 };
 

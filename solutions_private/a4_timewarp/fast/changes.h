@@ -33,6 +33,8 @@ class Changes {
   void release(int change) {
     if (--changes_[static_cast<std::size_t>(change)].holders == 0) free_.push_back(change);
   }
+  /// Changes of which flights are left.
+  std::size_t alive() const { return changes_.size() - free_.size(); }
 
  private:
   struct Change {

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/core/error.h"
 #include "framework/core/random.h"
 #include "framework/engines/events/flight_run.h"
 #include "framework/engines/guarded_laws.h"
 #include "framework/engines/timewarp/active_pairs.h"
 #include "framework/engines/timewarp/event_queue.h"
+#include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/engines/timewarp/flight_histories.h"
 #include "solutions_private/a4_timewarp/fast/changes.h"
 #include "solutions_private/a4_timewarp/fast/lengths.h"
@@ -57,11 +59,12 @@ struct Executed {
 
 class FastTimewarp {
  public:
-  FastTimewarp(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink);
+  FastTimewarp(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record);
   void run();
 
  private:
   void loop();
+  void check_nothing_leaked();
   void work_at(const Due& due);
   void fetch(const Due& due) const;
   Due next_legal();
@@ -69,9 +72,12 @@ class FastTimewarp {
   void advance_member(int body, const Flight& flight, double from, double to);
   void collide(const Due& due);
   bool look_up(const Due& due, int side, std::size_t& place) const;
+  void call(const Due& due);
+  void expect_callback(const EventKey& key);
   void begin_flights(const Due& due, engines::Meeting meeting);
   int first_member(int body) const { return run_.world().first_member(body, histories_[body].back()); }
   void set_horizon(int body, double t);
+  void move(int body, double t);
   void find_obstacles(int body, const Flight& flight, double from, double to);
   void check(int body, const Flight& flight, double from, double to, int other);
   void offer(int body, const Flight& flight, int other, const Flight& its, double time, const Flight* its_next);
@@ -101,18 +107,23 @@ class FastTimewarp {
   ActivePairs pairs_;
   engines::EventQueue<Due> queue_;
   std::vector<Executed> executed_;
+  std::vector<bool> called_;           // by callback: executed, and not taken back
   std::vector<std::pair<int, std::size_t>> to_drop_;   // of roll_back, kept for its memory
   std::vector<Due> found_;             // of advance
   double now_ = kInfinity;             // of the event that is worked at: it is in the queue no more, but not done [s]
   double committed_ = 0.0;             // everything before is committed [s]
   std::size_t commit_at_ = kCommitAfter;   // size of executed_ at which global virtual time is looked at
   std::uint64_t worked_at_ = 0;
+  VirtualTimes* record_;               // null: nobody wants to know
+  double recorded_global_ = 0.0;       // [s]
 };
 
-FastTimewarp::FastTimewarp(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink)
+FastTimewarp::FastTimewarp(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record)
     : run_(scene, laws, options, sink), trial_(options.trial), random_(options.trial.seed), histories_(static_cast<std::size_t>(run_.world().size())),
-      processes_(static_cast<std::size_t>(run_.world().size())), lengths_(lengths_for(run_.world())), pairs_(run_.world().size(), lengths_.cell), queue_(bin_for(run_.world(), lengths_.way, run_.duration())) {
+      processes_(static_cast<std::size_t>(run_.world().size())), lengths_(lengths_for(run_.world())), pairs_(run_.world().size(), lengths_.cell), queue_(bin_for(run_.world(), lengths_.way, run_.duration())), record_(record) {
   const FlightWorld& world = run_.world();
+  if (record_)
+    for (const int i : world.movers()) record_->processes.push_back(world.world().bodies[i].name);
   for (const int i : world.movers()) histories_.push(i, world.first_flight(i));
   for (const int i : world.obstacles()) {
     processes_[i].horizon = kInfinity;
@@ -133,6 +144,7 @@ void FastTimewarp::run() {
   std::string stopped_by;
   try {
     loop();
+    check_nothing_leaked();
   } catch (const engines::StoppedRun& stop) {
     stopped_by = stop.what();
   }
@@ -140,11 +152,21 @@ void FastTimewarp::run() {
   run_.end(stopped_by);
 }
 
+// Every flight that began has been dropped, forgotten or is among the last: what is left of passages and changes without one would never
+// have been freed.
+void FastTimewarp::check_nothing_leaked() {
+  for (const int body : run_.world().movers())
+    for (std::size_t k = 0; k < histories_[body].size(); ++k) forget(histories_[body][k]);
+  require(run_.world().all_processes().passages().alive() == 0 && changes_.alive() == 0, "no passage or change outlives its flights");
+}
+
 void FastTimewarp::loop() {
   std::vector<int> order = run_.world().movers();
   if (trial_.shuffle)
     for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random_.below(i)]);
   now_ = 0.0;
+  called_.assign(run_.callbacks().size(), false);
+  for (const EventKey& callback : run_.callbacks()) expect_callback(callback);
   for (const int body : order)
     if (first_member(body) == body) advance(body);
   now_ = kInfinity;
@@ -195,6 +217,7 @@ Due FastTimewarp::next_legal() {
 }
 
 void FastTimewarp::work_at(const Due& due) {
+  if (due.key.kind == EventClass::kCallback) return call(due);
   if (due.key.kind != EventClass::kAdvance) return collide(due);
   Process& process = processes_[due.key.body_a];
   if (process.ticket != due.serial_a || first_member(due.key.body_a) != due.key.body_a) return;
@@ -267,11 +290,23 @@ void FastTimewarp::advance_member(int body, const Flight& flight, double from, d
   pairs_.for_each_partner(body, [&](int other) { check(body, flight, from, to, other); });
 }
 
+// A body's local virtual time goes on, or back.
+void FastTimewarp::move(int body, double t) {
+  double& horizon = processes_[body].horizon;
+  if (record_ && t != horizon && record_->moves.size() < engines::kMostMoves) {
+    const auto until_end = [&](double time) { return std::min(time, run_.duration()); };
+    const auto row = std::lower_bound(run_.world().movers().begin(), run_.world().movers().end(), body) - run_.world().movers().begin();
+    recorded_global_ = std::max(recorded_global_, until_end(global_virtual_time()));
+    record_->moves.push_back({static_cast<int>(row), until_end(horizon), until_end(t), recorded_global_});
+  }
+  horizon = t;
+}
+
 void FastTimewarp::set_horizon(int body, double t) {
   const Flight& flight = histories_[body].back();
-  processes_[body].horizon = t;
+  move(body, t);
   if (flight.passage >= 0)
-    for (const int member : run_.world().members(body, flight)) processes_[member].horizon = t;
+    for (const int member : run_.world().members(body, flight)) move(member, t);
 }
 
 void FastTimewarp::find_obstacles(int body, const Flight& flight, double from, double to) {
@@ -382,6 +417,33 @@ void FastTimewarp::collide(const Due& due) {
     if (world.can_move(body)) advance(body);
 }
 
+// ---- A callback --------------------------------------------------------------------------------------------------------
+
+void FastTimewarp::expect_callback(const EventKey& key) {
+  called_[key.generation] = false;
+  queue_.push({key, 0, 0});
+}
+
+// Whatever its bodies have done beyond its time was done without it, and is taken back.
+void FastTimewarp::call(const Due& due) {
+  if (called_[due.key.generation]) return;
+  bool is_early = false;
+  for (const int body : run_.receivers(due.key))
+    if (processes_[body].horizon < due.key.time) {   // taken out of its order: its bodies first have to come as far
+      advance(first_member(body));
+      is_early = true;
+    }
+  if (is_early) return queue_.push(due);
+  for (const int body : run_.receivers(due.key)) {
+    const FlightHistory& history = histories_[body];
+    std::size_t place = history.size();
+    while (place > 1 && due.key < begin_of(body, history[place - 1])) --place;
+    if (place < history.size()) roll_back(body, place);
+  }
+  called_[due.key.generation] = true;
+  begin_flights(due, run_.call(due.key, [this](int body) -> const Flight& { return histories_[body].back(); }));
+}
+
 // What an event does to processes: all that it begins is noted as one change, so that all of it can be taken back.
 void FastTimewarp::begin_flights(const Due& due, engines::Meeting meeting) {
   const int change = changes_.add(due.key);
@@ -403,7 +465,7 @@ void FastTimewarp::begin_flight(int body, Flight flight, std::uint32_t serial) {
   flight.serial = serial;
   histories_.purge(body, committed_, [&](const Flight& purged) { forget(purged); });
   histories_.push(body, flight);
-  processes_[body].horizon = flight.begin;
+  move(body, flight.begin);
 }
 
 void FastTimewarp::forget(const Flight& flight) {
@@ -424,8 +486,9 @@ void FastTimewarp::roll_back(int body, std::size_t keep) {
       const Flight dropped = history.back();
       histories_.pop(now);
       ++run_.counters.undone_integrations;
-      processes_[now].horizon = std::min(processes_[now].horizon, dropped.begin);
+      move(now, std::min(processes_[now].horizon, dropped.begin));
       if (dropped.change >= 0) {
+        if (const EventKey& key = changes_.key(dropped.change); key.kind == EventClass::kCallback && called_[key.generation]) expect_callback(key);
         for (const auto& [body, serial] : changes_.began(dropped.change)) {
           const std::size_t effect = histories_[body].find(serial);
           if (effect == histories_[body].size()) continue;
@@ -472,6 +535,8 @@ void FastTimewarp::commit_before(double t) {
 
 }  // namespace
 
-void run_fast_timewarp(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink) { FastTimewarp(scene, laws, options, sink).run(); }
+void run_fast_timewarp(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record) {
+  FastTimewarp(scene, laws, options, sink, record).run();
+}
 
 }  // namespace tumble::a4
