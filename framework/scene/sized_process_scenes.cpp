@@ -59,7 +59,7 @@ Scene scene_of(double duration, double step) {
 namespace {
 
 constexpr double kWheel = 0.22;          // radius [m]
-constexpr double kLane = 1.6;            // between pendula [m]: they swing past each other
+constexpr double kLane = 1.0;            // between pendula [m]: those that swing far meet their neighbours
 constexpr double kRod = 1.5;             // [m]
 
 // A motor asks for a turn that is never reached: full torque at a standstill, none at 10 rad/s.
@@ -111,7 +111,7 @@ Scene cars(int n) {
     const Vector3d pivot((i / across - 0.5 * (across - 1)) * kLane, (i % across - 0.5 * (across - 1)) * kLane, 0.42 + kRod);
     const double lean = random.between(0.1, 0.35), way = random.between(0.0, 2 * std::numbers::pi);
     BodySpec bob = body_at(fmt::format("bob_{}", i + 1), SphereSpec{0.12}, 0.5, pivot + kRod * Vector3d(std::sin(lean) * std::cos(way), std::sin(lean) * std::sin(way), -std::cos(lean)), i);
-    bob.restitution = 0.5;
+    bob.restitution = 0.9;
     scene.rods.push_back({fmt::format("rod_{}", i + 1), {"", pivot}, {bob.name, Vector3d::Zero()}, kRod});
     scene.bodies.push_back(bob);
   }
@@ -155,9 +155,13 @@ void add_arm(int number, const Vector3d& foot, Random& random, Scene& scene) {
     motor.frequency_hz = 0.7;
     motor.phase_rad = phase + 0.4 * k;
     motor.stiffness_n_m_rad = 250.0 * weight;
-    motor.damping_n_m_s_rad = 12.0 * weight;
-    motor.period_s = 1.0 / 960.0;
+    motor.damping_n_m_s_rad = 1.2 * weight;   // held for 1/240 s it must not turn a light link round
+    motor.period_s = 1.0 / 240.0;
     scene.motors.push_back(motor);
+    DragSpec drag;
+    drag.body = names.back();
+    drag.linear_n_s_m = 0.5;
+    scene.drags.push_back(drag);
   }
   for (std::size_t i = 0; i < names.size(); ++i)
     for (std::size_t j = i + 1; j < names.size(); ++j) scene.apart.emplace_back(names[i], names[j]);
