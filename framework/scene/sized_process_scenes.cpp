@@ -155,13 +155,9 @@ void add_arm(int number, const Vector3d& foot, Random& random, Scene& scene) {
     motor.frequency_hz = 0.7;
     motor.phase_rad = phase + 0.4 * k;
     motor.stiffness_n_m_rad = 250.0 * weight;
-    motor.damping_n_m_s_rad = 1.2 * weight;   // held for 1/240 s it must not turn a light link round
-    motor.period_s = 1.0 / 240.0;
+    motor.damping_n_m_s_rad = 12.0 * weight;
+    motor.period_s = 1.0 / 960.0;   // held longer, such a torque would throw the light links about
     scene.motors.push_back(motor);
-    DragSpec drag;
-    drag.body = names.back();
-    drag.linear_n_s_m = 0.5;
-    scene.drags.push_back(drag);
   }
   for (std::size_t i = 0; i < names.size(); ++i)
     for (std::size_t j = i + 1; j < names.size(); ++j) scene.apart.emplace_back(names[i], names[j]);
