@@ -5,6 +5,7 @@
 
 #include "framework/cli/scene_run.h"
 #include "framework/trajectory/trajectory.h"
+#include "framework/trajectory/virtual_times.h"
 
 namespace tumble::cli {
 
@@ -28,6 +29,7 @@ BesideWords parse_beside(const std::string& text);
 void check_page_words(const Context& context, const RunWords& words);
 
 /// Makes the second run where --beside asks for one, writes words.html, and says so on stderr. Nothing where words.html is empty.
+/// @param times  what timewarp's processes did; empty: nothing is shown of it
 /// @throws UserError naming what does not fit
 void write_page(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const Trajectory& run, const RunWords& words);
 

@@ -20,6 +20,7 @@
 #include "framework/core/nearest_word.h"
 #include "framework/engines/judge.h"
 #include "framework/engines/run.h"
+#include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/grading/worker_connection.h"
 #include "framework/scene/load_scene.h"
 #include "framework/scene/sized_scenes.h"
@@ -161,7 +162,7 @@ void add_run_words(CLI::App& verb, RunWords& words) {
   verb.add_option("--modules", words.modules, "Whose laws: student, reference, library, or a submission (PATH.cpp, PATH.so, a folder: in the sandbox); for all or each: a1=student,a2=library")->type_name("WORDS");
   verb.add_option("--engine", words.engine, "rd: retroactive detection with fixed step; ca: conservative advancement; tw: timewarp; ordered: event by event, the reference; default: the scene's own, or rd")->type_name("WORD");
   verb.add_option("--propagator", words.propagator, "laws: bodies go by the laws' integration (rd's default); auto: in closed form where nothing but gravity acts")->type_name("WORD");
-  verb.add_option("--n", words.n, "Size of a scene whose size is a parameter: atoms, gas, pong, pong_ghosts")->check(CLI::PositiveNumber);
+  verb.add_option("--n", words.n, "Size of a scene whose size is a parameter: such as atoms, pong, cars, avalanche")->check(CLI::PositiveNumber);
   verb.add_option("--step-s", words.step_s, "Step of the integrator [s] instead of the scene's")->check(CLI::PositiveNumber);
   verb.add_option("--png", words.png, "Write one picture")->type_name("FILE");
   verb.add_option("--at-s", words.at_s, "Instant of the picture [s]; default the end")->check(CLI::NonNegativeNumber);
@@ -228,7 +229,9 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   const PictureSize size = parse_size(words.size);   // refused before the run, not after it
   check_page_words(context, words);
   for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
-  const PlannedRun plan = plan_run(context, scene, chosen, words);
+  PlannedRun plan = plan_run(context, scene, chosen, words);
+  VirtualTimes times;   // of the fast scheduler; the teaching one tells them to the recorder
+  if (!words.html.empty()) plan.options.timewarp = engines::fast_timewarp(&times);
   TrajectoryRecorder recorder;
   const auto start = std::chrono::steady_clock::now();
   const double cpu_before = cpu_seconds();
@@ -242,6 +245,7 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   Trajectory run = recorder.trajectory();
   if (!ended.empty()) run.stopped_by = ended;
+  if (run.virtual_times.moves.empty()) run.virtual_times = std::move(times);
 
   const auto checks = engines::judge_run(judged_part(scene, words), run);
   const std::string searched = plan.search ? search_in_words(*plan.search, run, cpu_s) : "";

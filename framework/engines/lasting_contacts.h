@@ -40,6 +40,7 @@ class LastingContacts {
   /// Pairs that touch at the start and do not approach faster than the rest speed; overlaps of a rounding are taken back.
   void begin_where_touching(const std::vector<Pair>& pairs);
   bool lasts(Pair pair) const { return lasting_.contains(pair); }
+  const std::set<Pair>& lasting() const { return lasting_; }
 
   /// Gives the bodies in contact their paths for the step that has begun. @param candidates  pairs whose boxes meet, sorted
   /// @return an earlier target to begin the step again with: where a contact stops sliding

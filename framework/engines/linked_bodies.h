@@ -35,6 +35,15 @@ class LinkedBodies {
   const std::vector<int>& fixed_ends() const { return fixed_; }
   /// What its motors hold until they look again, by motor. [N m]
   const std::vector<double>& torques() const { return torques_; }
+  /// When each looks again, by motor. [s]
+  const std::vector<double>& next_looks() const { return next_looks_; }
+  /// Its motors, in the world's list.
+  const std::vector<int>& motors() const { return motors_; }
+  /// Goes on with what motors held at another time. @param torques, next_looks  by motor
+  void remember(std::vector<double> torques, std::vector<double> next_looks) {
+    torques_ = std::move(torques);
+    next_looks_ = std::move(next_looks);
+  }
   bool has_constraints() const { return (built::kRod && !rods_.empty()) || (built::kJoint && !joints_.empty()); }
 
   /// Control laws whose time has come look and set their torques. @return the next time at which one looks; infinite without

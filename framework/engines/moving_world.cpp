@@ -32,13 +32,16 @@ double measure_path_bend(const Laws& laws) {
 
 }  // namespace
 
-MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters)
-    : world_(std::move(world)), laws_(laws), counters_(counters), rests_(world_.bodies.size()), asleep_(world_.bodies.size(), 0), force_points_body_(world_.point_forces.size()),
+MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters) : MovingWorld(std::move(world), laws, counters, {}) {}
+
+MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters, std::vector<const collision::CollisionShape*> shapes)
+    : world_(std::move(world)), laws_(laws), counters_(counters), shapes_(std::move(shapes)), rests_(world_.bodies.size()), asleep_(world_.bodies.size(), 0), force_points_body_(world_.point_forces.size()),
       paths_(world_.bodies.size()), told_of_shortening_(world_.bodies.size(), false),
       told_of_aliasing_(world_.bodies.size(), false) {
-  for (const WorldBody& body : world_.bodies) {
-    shapes_.emplace_back(body.shape);
-    states_.push_back(body.state);
+  for (const WorldBody& body : world_.bodies) states_.push_back(body.state);
+  if (shapes_.empty()) {
+    for (const WorldBody& body : world_.bodies) own_shapes_.emplace_back(body.shape);
+    for (const collision::CollisionShape& shape : own_shapes_) shapes_.push_back(&shape);
   }
   path_bend_ = measure_path_bend(laws);
   group_of_.assign(world_.bodies.size(), -1);
@@ -47,6 +50,16 @@ MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters)
     linked_.emplace_back(world_, laws_, counters_, [this](int body, const RigidBodyState& state) { return wrench_on(body, state); }, std::move(bodies));
     linked_.back().project(states_, 0.0);
   }
+}
+
+void MovingWorld::stand_at(double time, const std::vector<RigidBodyState>& states) {
+  time_ = target_ = time;
+  states_ = states;
+}
+
+void MovingWorld::set_active_forces(std::vector<int> active, std::vector<Vector3d> points_body) {
+  active_forces_ = std::move(active);
+  force_points_body_ = std::move(points_body);
 }
 
 bool MovingWorld::may_collide(int a, int b) const {
@@ -278,7 +291,7 @@ collision::MotionState MovingWorld::motion_at(int body, double t) {
   // The rate of the path, which for a method of first order is not the state's momentum over the mass.
   const Inertia& inertia = world_.bodies[body].inertia;
   motion.velocity_world = inertia.inverse_mass * states_[body].momentum_world + (t - time_) * paths_[body].acceleration_world;
-  if (!shapes_[body].is_ball()) motion.omega_world = omega_of(state, inertia);
+  if (!shapes_[body]->is_ball()) motion.omega_world = omega_of(state, inertia);
   return motion;
 }
 
@@ -293,7 +306,7 @@ collision::MotionBounds MovingWorld::work_out_bounds(int body) {
   }
   if (paths_[body].smooth) return paths_[body].smooth->bounds();
   bounds.acceleration_world = paths_[body].acceleration_world;
-  if (shapes_[body].is_ball()) return bounds;  // however it turns, it looks the same
+  if (shapes_[body]->is_ball()) return bounds;  // however it turns, it looks the same
   bound_turning(body, target_ - time_, bounds);
   return bounds;
 }
@@ -304,7 +317,7 @@ collision::Motion MovingWorld::motion(int body) {
 }
 
 collision::SweptBox MovingWorld::swept_box(int body) {
-  const double radius = shapes_[body].bounding_radius();
+  const double radius = shapes_[body]->bounding_radius();
   const double h = target_ - time_;
   const Vector3d start = path(body, time_).com_world, end = path(body, target_).com_world;
   // Between its ends a parabola leaves their box by at most a h^2 / 8; a shaken body by at most its amplitude.

@@ -30,15 +30,24 @@ struct Rest {
 class MovingWorld {
  public:
   MovingWorld(World world, const Laws& laws, RunCounters& counters);
+  /// The same with solids that were prepared before: what a body's `shape` in the world says is not looked at.
+  /// @param shapes  by body; stay where they are as long as this lives
+  MovingWorld(World world, const Laws& laws, RunCounters& counters, std::vector<const collision::CollisionShape*> shapes);
   MovingWorld(const MovingWorld&) = delete;
   MovingWorld& operator=(const MovingWorld&) = delete;
+
+  /// Stands at another time in other states; no step is under way.
+  void stand_at(double time, const std::vector<RigidBodyState>& states);
+  /// The forces that act, and the points of the bodies that they act on (by force of the world, body frame).
+  void set_active_forces(std::vector<int> active, std::vector<Vector3d> points_body);
+  const std::vector<Vector3d>& force_points_body() const { return force_points_body_; }
 
   /// From here on bodies that nothing but gravity acts on go in closed form instead of along the laws' integration.
   void go_in_closed_form();
 
   const World& world() const { return world_; }
   int size() const { return static_cast<int>(world_.bodies.size()); }
-  const collision::CollisionShape& shape(int body) const { return shapes_[body]; }
+  const collision::CollisionShape& shape(int body) const { return *shapes_[body]; }
   double time() const { return time_; }
 
   /// Committed state of a movable body.
@@ -75,6 +84,8 @@ class MovingWorld {
   void set_path(int body, const RigidBodyState& start, const RigidBodyState& end);
   /// Where the step leads without what set_path has added.
   const RigidBodyState& path_end(int body) const { return paths_[body].end; }
+  /// The path that set_path has given, or that links have; nothing where the laws are asked at every instant.
+  const std::optional<SmoothPath>& smooth_path(int body) const { return paths_[body].smooth; }
 
   /// Begins a step from the committed time: works out the motion's bounds and where all come out.
   void begin_step(double target);
@@ -130,7 +141,8 @@ class MovingWorld {
   World world_;
   const Laws& laws_;
   RunCounters& counters_;
-  std::vector<collision::CollisionShape> shapes_;
+  std::vector<collision::CollisionShape> own_shapes_;           // empty where they were prepared before
+  std::vector<const collision::CollisionShape*> shapes_;
   std::vector<RigidBodyState> states_;
   std::vector<std::optional<Rest>> rests_;
   std::vector<char> asleep_;                     // asked for often: a byte each is read faster than a bit

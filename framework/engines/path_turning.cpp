@@ -118,7 +118,7 @@ bool MovingWorld::shorten_step(const std::vector<std::pair<int, int>>& pairs) {
   double duration = asked;
   int fastest = -1;
   for (const int body : bodies) {
-    if (!can_move(body) || shapes_[body].is_ball() || paths_[body].smooth) continue;   // however a ball turns, it looks the same; a smooth path's bounds are exact
+    if (!can_move(body) || shapes_[body]->is_ball() || paths_[body].smooth) continue;   // however a ball turns, it looks the same; a smooth path's bounds are exact
     const double resolved = resolved_duration(body, duration);
     if (resolved < duration) fastest = body;
     duration = resolved;

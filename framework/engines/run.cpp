@@ -87,6 +87,7 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& as
   if (!(step > 0) || !std::isfinite(step)) throw UserError(scene.name, "the step must be a positive time", "give \"step_s\" in seconds");
   if (!(duration >= 0) || !std::isfinite(duration)) throw UserError(scene.name, "the duration must not be negative", "give \"duration_s\" in seconds");
   if (!(options.frame_rate_hz > 0)) throw UserError("--frame-rate-hz", "must be positive", "60 suits most scenes");
+  if (!options.callbacks.empty() && options.engine == "rd") throw UserError("--engine rd", "callbacks are executed by the engines that go from event to event", "use ordered, ca or tw");
   check_laws(scene, laws);
 
   TrajectoryInfo info;

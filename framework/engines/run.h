@@ -23,6 +23,14 @@ struct TimewarpTrial {
   double rollback_s = 0.0;       // by up to this
 };
 
+/// What a program does to bodies while they move: at `time` it is handed the state of each of `bodies`, and may change velocities (not
+/// places). It must depend on nothing else: an engine that goes back in time calls it again, and only what it did last is committed.
+struct Callback {
+  double time;                   // [s]
+  std::vector<int> bodies;       // movable, ascending
+  std::function<void(int body, RigidBodyState& state)> act;
+};
+
 struct RunOptions;
 /// An engine that stands outside the framework: timewarp, whose scheduler is an assignment's (see framework/README.md).
 using Engine = std::function<void(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink)>;
@@ -36,6 +44,7 @@ struct RunOptions {
   std::optional<double> step_s;            // overrides the scene's
   std::optional<double> duration_s;        // overrides the scene's
   double frame_rate_hz = 60.0;             // of recorded frames
+  std::vector<Callback> callbacks;         // in order of time; of the engines that go from event to event
   std::string command;                     // for the record
 };
 

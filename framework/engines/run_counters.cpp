@@ -30,6 +30,7 @@ Counters RunCounters::named() const {
                   {"joint_calls", joint_calls},
                   {"drag_calls", drag_calls},
                   {"motor_calls", motor_calls},
+                  {"callback_calls", callback_calls},
                   {"constraint_solves", constraint_solves},
                   {"constraint_corrections", constraint_corrections},
                   {"contact_solves", contact_solves},

@@ -48,6 +48,9 @@ class SequentialImpacts {
     contact_rest_speed_ = rest_speed;
     law_ = law;
   }
+  /// When pairs met last: what a run that goes on from another time has to know. [s]
+  const std::map<std::pair<int, int>, double>& last_meetings() const { return last_meeting_; }
+  void remember(std::map<std::pair<int, int>, double> last_meetings) { last_meeting_ = std::move(last_meetings); }
   /// Whether an impact of the pair at this speed begins a lasting contact.
   bool stays(const World& world, const TouchingPair& pair, double approach_speed) const;
 

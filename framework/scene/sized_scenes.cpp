@@ -10,6 +10,7 @@
 #include "framework/core/error.h"
 #include "framework/core/nearest_word.h"
 #include "framework/core/random.h"
+#include "framework/scene/sized_process_scenes.h"
 
 namespace tumble::scene {
 namespace {
@@ -201,13 +202,29 @@ Scene pong(int n, bool pass) {
   return scene;
 }
 
+Scene make(const std::string& name, int n) {
+  if (name == "atoms") return atoms(n);
+  if (name == "gas") return gas(n);
+  if (name == "cars") return cars(n);
+  if (name == "robots") return robots(n);
+  if (name == "avalanche") return avalanche(n);
+  if (name == "dominoes_row") return dominoes(n);
+  if (name == "cradle") return cradle(n);
+  return pong(n, name == "pong_ghosts");
+}
+
 }  // namespace
 
 const std::vector<SizedScene>& sized_scenes() {
   static const std::vector<SizedScene> scenes = {{"pong", "Pong: balls on a table", "balls", 200},
                                                  {"pong_ghosts", "Pong: balls that ignore each other", "balls", 200},
                                                  {"gas", "Gas: balls in a box", "balls", 200},
-                                                 {"atoms", "Atoms: balls and molecules of water in a divided box", "bodies, a third of them molecules", 300}};
+                                                 {"atoms", "Atoms: balls and molecules of water in a divided box", "bodies, a third of them molecules", 300},
+                                                 {"cars", "Cars: vehicles among pendula", "pendula; a vehicle of five bodies for every hundred", 400},
+                                                 {"robots", "Robots: arms that hit blocks", "arms of eight links, with two blocks each", 20},
+                                                 {"avalanche", "Avalanche: rocks come down a slope", "rocks", 300},
+                                                 {"dominoes_row", "Dominoes: a row of them", "dominoes", 20},
+                                                 {"cradle", "Newton's cradle", "balls", 20}};
   return scenes;
 }
 
@@ -223,11 +240,12 @@ Scene make_sized_scene(const std::string& name, int n) {
   const auto found = std::find(names.begin(), names.end(), name);
   if (found == names.end()) throw UserError(name, "is no scene with a size." + did_you_mean(name, names), "Use one of " + fmt::format("{}", fmt::join(names, ", ")) + ".");
   if (n < 1 || n > kMostBodies) throw UserError(fmt::format("--n {}", n), fmt::format("expected from 1 to {}", kMostBodies), "Give the number of bodies.");
-  Scene scene = name == "atoms" ? atoms(n) : name == "gas" ? gas(n) : pong(n, name == "pong_ghosts");
+  Scene scene = make(name, n);
   const SizedScene& sized = sized_scenes()[static_cast<std::size_t>(found - names.begin())];
   scene.name = name;
   scene.title = fmt::format("{} (n = {})", sized.title, n);
   scene.hash = fmt::format("{} n={}", name, n);
+  if (scene.duration_s > 0) return scene;   // one that chose its own
   scene.duration_s = 2.0;
   scene.step_s = 1.0 / 30.0;
   return scene;

@@ -2,6 +2,7 @@
 // rd_auto is rd in closed form, as the other two go.
 //   bench_engines [--scene NAME] [--n N,N,...] [--engines rd,ca,tw] [--duration-s T]
 // Without words: the table of TIMEWARP's figures (gas of balls from 10^2 to 10^5 bodies, atoms of 300, balls alone).
+// "processes" as the scene: cars, robots and avalanche, growing.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -15,7 +16,7 @@
 #include "framework/engines/run.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/scene/sized_scenes.h"
-#include "tests/support/test_laws.h"
+#include "tests/engines/reference_laws.h"
 
 namespace tumble::testing {
 namespace {
@@ -50,6 +51,14 @@ struct Row {
   Tally tally;
 };
 
+// Springs, rods and contacts need a3.
+const Laws& laws_for(const scene::Scene& scene) {
+  static const Laws plain = test_laws();
+  if (!scene.contact && scene.joints.empty() && scene.rods.empty()) return plain;
+  static const Laws reference = reference_laws();
+  return reference;
+}
+
 constexpr double kShort = 1.0;   // [s] of CPU: what takes longer is run once
 
 Row measure(const scene::Scene& scene, const std::string& engine, double duration) {
@@ -61,7 +70,7 @@ Row measure(const scene::Scene& scene, const std::string& engine, double duratio
   options.frame_rate_hz = 1e-3;   // one frame: pictures are no part of this
   Row row;
   const double begin = cpu_seconds();
-  engines::run_scene(scene, test_laws(), options, row.tally);
+  engines::run_scene(scene, laws_for(scene), options, row.tally);
   row.seconds = cpu_seconds() - begin;
   if (!row.tally.stopped_by.empty()) std::printf("    stopped: %s\n", row.tally.stopped_by.c_str());
   return row;
@@ -130,6 +139,12 @@ int main(int argc, char** argv) {
     else return std::fprintf(stderr, "bench_engines: %s is no flag of mine\n", argv[i]), 2;
   }
   std::printf("%-8s %8s %-8s %10s %10s %10s %8s %9s %12s %10s %12s %9s\n", "scene", "n", "engine", "int/n/s", "checks/n/s", "coll/n/s", "undone", "kept", "coll/s CPU", "CPU s", "us/n/sim s", "w h");
+  if (scene == "processes") {
+    for (const int n : {40, 100, 400}) table("cars", n, {"rd", "ca", "tw"}, 1.0);
+    for (const int n : {2, 6, 20}) table("robots", n, {"rd", "ca", "tw"}, 1.0);
+    for (const int n : {10, 20, 40}) table("avalanche", n, {"rd", "ca", "tw"}, 2.0);
+    return 0;
+  }
   if (!scene.empty()) {
     for (const std::string& n : parts(sizes)) table(scene, std::atoi(n.c_str()), parts(engines), duration);
     return 0;

@@ -189,15 +189,20 @@ TEST(Engines, TakeOneBodyNoneAndOneWithoutSize) {
   }
 }
 
-TEST(Engines, RefuseWhatNoFlightFollowsAndSayWhich) {
-  scene::Scene scene = scene_of({ball("ball", 0.1, 1.0, {0, 0, 1}, Vector3d::Zero())}, 1.0);
-  scene.drags.push_back({"ball", 0.1, 0.0});
+// Groups that keep their own time have no common step at whose end to fall asleep.
+TEST(Engines, RefuseSleepAndSaySo) {
+  scene::Scene scene = scene_of({ball("ball", 0.1, 1.0, {0, 0, 1}, Vector3d::Zero()), plane("floor", {0, 0, 0}, {0, 0, 1})}, 1.0);
+  scene.contact = scene::ContactSpec{};
+  scene.contact->sleep = true;
+  Laws laws = test_laws();   // sleep is refused before a law of contacts is asked for
+  laws.ends_in_contact = [](double, double, double) { return true; };
+  laws.contact_forces = [](const MatrixXd&, const VectorXd& b) { return VectorXd(VectorXd::Zero(b.size())); };
   for (const char* engine : kEventEngines) {
     try {
-      run_by(engine, scene);
-      FAIL() << engine << " took a scene with drag";
+      run_by(engine, scene, {}, 60.0, laws);
+      FAIL() << engine << " took a scene with sleep";
     } catch (const UserError& error) {
-      EXPECT_NE(std::string(error.what()).find("the drag on 'ball'"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("\"sleep\""), std::string::npos) << error.what();
       EXPECT_NE(std::string(error.what()).find("--engine rd"), std::string::npos) << error.what();
     }
   }

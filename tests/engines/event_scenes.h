@@ -10,14 +10,14 @@
 
 namespace tumble::testing {
 
-inline Trajectory run_by(const std::string& engine, const scene::Scene& scene, const engines::TimewarpTrial& trial = {}, double frame_rate_hz = 60.0) {
+inline Trajectory run_by(const std::string& engine, const scene::Scene& scene, const engines::TimewarpTrial& trial = {}, double frame_rate_hz = 60.0, const Laws& laws = test_laws()) {
   TrajectoryRecorder recorder;
   engines::RunOptions options;
   options.engine = engine;
   options.timewarp = engines::fast_timewarp();
   options.trial = trial;
   options.frame_rate_hz = frame_rate_hz;
-  engines::run_scene(scene, test_laws(), options, recorder);
+  engines::run_scene(scene, laws, options, recorder);
   return recorder.trajectory();
 }
 

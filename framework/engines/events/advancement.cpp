@@ -16,9 +16,11 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // A pair whose gap would be bridged by a bound this part of the step or less is searched for its impact: creeping on would
 // move all bodies once a bound, and a bound gains a fixed part of what is left.
 constexpr double kWorthCreeping = 0.1;
-constexpr double kTouching = 1e-9;  // of a pair's size: so near, the sign of the gap is rounding's, and is judged in one place, by the search
+constexpr double kSearched = 1e-9;  // of a pair's size: so near, the sign of the gap is rounding's, and is judged in one place, by the search
 constexpr double kShy = 1e-9;       // of a bound, taken off: rounding may have made it later than the impact
 constexpr double kSlack = 1e-9;     // of coordinates, on boxes: pairs that just touch are looked at
+
+constexpr std::uint32_t kAnyFlight = std::numeric_limits<std::uint32_t>::max();   // a callback finds its bodies on whatever flight they are
 
 struct Bound {
   EventKey key;                     // when it falls due; of an impact where it is exact
@@ -60,13 +62,15 @@ class AdvancementRun {
     boxes_.clear();
     for (int i = 0; i < run_.world().size(); ++i) boxes_.push_back(box_of(i));
     for (const auto& [a, b] : collision::overlapping_pairs(boxes_)) look_ahead(a, b);
+    for (const int body : run_.world().movers()) look_for_own_end(body);
+    for (std::size_t k = called_; k < run_.callbacks().size() && run_.callbacks()[k].time < end_; ++k) queue_.push({run_.callbacks()[k], true, kAnyFlight, kAnyFlight});
     while (!queue_.empty() && queue_.top().key.time < end_ && queue_.top().key.time <= run_.duration()) {
       const Bound bound = queue_.top();
       queue_.pop();
       const int a = bound.key.body_a, b = bound.key.body_b;
-      if (flights_[a].serial != bound.serial_a || flights_[b].serial != bound.serial_b) continue;
+      if (bound.serial_a != kAnyFlight && (flights_[a].serial != bound.serial_a || (b >= 0 && flights_[b].serial != bound.serial_b))) continue;
       advance_all(bound.key.time);
-      if (bound.is_exact) collide(bound.key);
+      if (bound.is_exact) work_at(bound.key);
       else look_ahead(a, b);
     }
     advance_all(std::min(end_, run_.duration()));
@@ -86,7 +90,7 @@ class AdvancementRun {
   // A new lower bound on the pair's impact, if it lies within the step.
   void look_ahead(int a, int b) {
     const FlightWorld& world = run_.world();
-    if (!world.may_collide(a, b)) return;
+    if (!world.may_collide(a, b) || world.is_internal(a, flights_[a], b, flights_[b])) return;
     const StageTimer timer(run_.counters.collision_seconds);
     double due;
     bool is_exact = true;
@@ -96,10 +100,12 @@ class AdvancementRun {
       ++run_.cost.pair_checks;
       ++run_.cost.narrow.gap_evaluations;
       const auto motion = [&](int i) { return world.motion_at(i, flights_[i], time_); };
-      const double left = end_ - time_;
-      const auto bound = collision::bound_time_apart(world.shape(a), motion(a), world.bounds(a, flights_[a]), world.shape(b), motion(b), world.bounds(b, flights_[b]), left);
-      if (bound.duration >= left && bound.gap >= kTouching * std::min(world.radius(a), world.radius(b))) return;
-      is_exact = bound.duration < kWorthCreeping * run_.step() || bound.gap < kTouching * std::min(world.radius(a), world.radius(b));
+      // A bound holds as far as the two motions are of one piece.
+      const double left = world.smooth_until(flights_[a], time_, world.smooth_until(flights_[b], time_, end_)) - time_;
+      if (!(left > 0)) return;
+      const auto bound = collision::bound_time_apart(world.shape(a), motion(a), world.bounds(a, flights_[a], time_), world.shape(b), motion(b), world.bounds(b, flights_[b], time_), left);
+      if (time_ + left >= end_ && bound.duration >= left && bound.gap >= kSearched * std::min(world.radius(a), world.radius(b))) return;
+      is_exact = bound.duration < kWorthCreeping * run_.step() || bound.gap < kSearched * std::min(world.radius(a), world.radius(b));
       due = is_exact ? run_.impacts().first_impact(a, flights_[a], b, flights_[b], time_, end_, run_.cost) : time_ + (1 - kShy) * bound.duration;
     }
     if (!(due < end_)) return;
@@ -107,21 +113,41 @@ class AdvancementRun {
     queue_.push({key, is_exact, flights_[key.body_a].serial, flights_[key.body_b].serial});
   }
 
-  void collide(const EventKey& key) {
+  void look_for_own_end(int body) {
+    if (const auto key = run_.own_end(body, flights_[body], end_)) queue_.push({*key, true, flights_[body].serial, 0});
+  }
+
+  Meeting outcome_of(const EventKey& key) {
+    if (key.kind == EventClass::kProcess) return run_.end_of_passage(key, flights_[key.body_a]);
+    if (key.kind == EventClass::kCollision) return run_.meet(key, flights_[key.body_a], flights_[key.body_b]);
+    ++called_;
+    return run_.call(key, [this](int body) -> const Flight& { return flights_[body]; });
+  }
+
+  void work_at(const EventKey& key) {
     const int a = key.body_a, b = key.body_b;
-    Meeting meeting = run_.meet(key, flights_[a], flights_[b]);
+    Meeting meeting = outcome_of(key);
     run_.commit(meeting);
-    for (const auto& [body, flight] : {std::pair{a, &meeting.a}, std::pair{b, &meeting.b}}) {
-      if (!run_.world().can_move(body)) continue;
-      flight->serial = ++serial_;
-      flights_[body] = *flight;
-      boxes_[body] = box_of(body);
+    std::vector<int> changed;
+    if (meeting.begun.empty()) {
+      for (const auto& [body, flight] : {std::pair{a, &meeting.a}, std::pair{b, &meeting.b}})
+        if (run_.world().can_move(body)) meeting.begun.push_back({body, *flight});
+    } else {
+      for (const BegunFlight& begun : meeting.begun) run_.world().release(flights_[begun.body]);
     }
-    look_ahead(a, b);
-    for (const int body : {a, b})
-      if (run_.world().can_move(body))
-        for (int other = 0; other < run_.world().size(); ++other)
-          if (other != a && other != b && touches(body, other)) look_ahead(body, other);
+    for (BegunFlight& begun : meeting.begun) {
+      begun.flight.serial = ++serial_;
+      flights_[begun.body] = begun.flight;
+      boxes_[begun.body] = box_of(begun.body);
+      changed.push_back(begun.body);
+    }
+    if (key.kind == EventClass::kCollision) look_ahead(a, b);
+    const auto pair_at_hand = [&](int body, int other) { return key.kind == EventClass::kCollision && std::minmax(body, other) == std::minmax(a, b); };
+    for (const int body : changed) {
+      look_for_own_end(body);
+      for (int other = 0; other < run_.world().size(); ++other)
+        if (other != body && !pair_at_hand(body, other) && touches(body, other) && !(other < body && std::find(changed.begin(), changed.end(), other) != changed.end())) look_ahead(body, other);
+    }
   }
 
   // What the body sweeps until the step's end: a parabola leaves the box of its ends by at most a s^2 / 8.
@@ -129,6 +155,12 @@ class AdvancementRun {
     const FlightWorld& world = run_.world();
     const Flight& flight = flights_[body];
     const bool moves = world.can_move(body) || !world.is_still(body);
+    if (flight.passage >= 0) {
+      collision::SweptBox box{Vector3d::Constant(kInfinity), Vector3d::Constant(-kInfinity), true};
+      world.take_in_way(body, flight, time_, end_, box.low, box.high);
+      const Vector3d margin = Vector3d::Constant(world.radius(body) * (1 + kSlack)) + 1e-14 * (box.low.cwiseAbs() + box.high.cwiseAbs());
+      return {box.low - margin, box.high + margin, true};
+    }
     const Vector3d from = world.position(body, flight, time_), to = world.position(body, flight, end_);
     double bulge = world.acceleration(body, flight).norm();
     if (!world.can_move(body)) {
@@ -152,6 +184,7 @@ class AdvancementRun {
   std::priority_queue<Bound, std::vector<Bound>, Later> queue_;
   double time_ = 0.0, end_ = 0.0;                      // [s]
   std::uint32_t serial_ = 0;
+  std::size_t called_ = 0;                             // callbacks
 };
 
 }  // namespace

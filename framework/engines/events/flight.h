@@ -9,7 +9,12 @@
 namespace tumble::engines {
 
 /// What happens at one instant, in the order in which it does when the generation is the same.
-enum class EventClass : std::uint8_t { kCollision = 1, kAdvance = 255 };   // kAdvance: a process goes on; never committed
+enum class EventClass : std::uint8_t {
+  kCollision = 1,
+  kProcess = 2,      // a process's own: an impact within it, a contact that begins or opens; body_a is its first body, body_b -1
+  kCallback = 3,     // a callback changes bodies; body_a is the first of them, body_b -1, the generation its place in the list
+  kAdvance = 255     // a process goes on; never committed
+};
 
 /// The total order of what is committed: time, generation, kind, bodies. Two events of a run never have the same key, so that no result
 /// depends on the order in which events were found or worked at.
@@ -21,7 +26,7 @@ struct EventKey {
   double time;                  // [s]
   std::uint32_t generation;
   EventClass kind;
-  std::int32_t body_a, body_b;  // body_a < body_b
+  std::int32_t body_a, body_b;  // body_a < body_b, where there are two
 
   std::tuple<double, std::uint32_t, EventClass, std::int32_t, std::int32_t> as_tuple() const { return {time, generation, kind, body_a, body_b}; }
 };
@@ -33,7 +38,8 @@ inline bool operator<(const EventKey& x, const EventKey& y) {
 }
 
 /// The motion of a body from one discontinuity to its next, whenever that is: the centre of mass on a parabola, the turning free.
-/// This is the state that a process of timewarp keeps: a body's history is a row of flights.
+/// This is the state that a process of timewarp keeps: a body's history is a row of flights. Bodies that move together (linked, pushed, in
+/// lasting contact) share a passage (passages.h), which says where they are; their flights name it and begin and end together.
 struct Flight {
   double begin = 0.0;                                   // [s]
   Vector3d com_world = Vector3d::Zero();                // at `begin` [m]
@@ -44,7 +50,15 @@ struct Flight {
   std::uint32_t partner_serial = 0;                     // the partner's flight that began with the same event
   std::uint32_t generation = 0;                         // of that event
   std::uint32_t serial = 0;                             // no two flights of a body that ever were have the same
+  std::int32_t passage = -1;                            // of the process that the body is part of; -1: it flies freely
+  std::int32_t change = -1;                             // the scheduler's own: what it knows of the event that began it
   bool is_resting = false;                              // on an immovable support: keeps its place
+};
+
+/// A flight that an event has begun.
+struct BegunFlight {
+  int body;
+  Flight flight;
 };
 
 }  // namespace tumble::engines

@@ -1,9 +1,12 @@
 #include "framework/engines/events/flight_run.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
 #include "framework/engines/guarded_laws.h"
+#include "framework/engines/stability.h"
 
 namespace tumble::engines {
 namespace {
@@ -13,10 +16,23 @@ constexpr double kMicroInterval = 0.01;   // of the step: a pair that meets agai
 }  // namespace
 
 FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink)
-    : world_(scene, options.engine), laws_(guarded(laws)), step_(options.step_s.value_or(scene.step_s)), duration_(options.duration_s.value_or(scene.duration_s)),
-      rate_(options.frame_rate_hz), impacts_(world_, laws_.find_impact_time, step_), meetings_(world_, laws_, {scene.rest_speed_m_s, kMicroInterval * step_}), sink_(sink) {}
+    : laws_(guarded(laws)), step_(options.step_s.value_or(scene.step_s)), duration_(options.duration_s.value_or(scene.duration_s)), rate_(options.frame_rate_hz),
+      world_(scene, options.engine, laws_, {step_, scene.rest_speed_m_s}, counters), impacts_(world_, laws_.find_impact_time, step_),
+      meetings_(world_, laws_, {scene.rest_speed_m_s, kMicroInterval * step_}), sink_(sink), callbacks_(options.callbacks) {
+  for (std::size_t k = 0; k < callbacks_.size(); ++k) {
+    require(!callbacks_[k].bodies.empty() && std::is_sorted(callbacks_[k].bodies.begin(), callbacks_[k].bodies.end()) && (k == 0 || callbacks_[k - 1].time <= callbacks_[k].time),
+            "callbacks come in order of time, each with its bodies in order");
+    callback_keys_.push_back({callbacks_[k].time, static_cast<std::uint32_t>(k), EventClass::kCallback, callbacks_[k].bodies.front(), -1});
+  }
+  if (!world_.processes()) return;
+  refuse_unstable_springs(world_.world(), laws_, {step_, duration_}, scene.file.empty() ? scene.name : scene.file.string(), counters.notices);
+  links_ = std::make_unique<LinkMeasures>(world_, laws_);
+  switches_ = force_switches(world_.world(), duration_);
+  for (const Event& event : world_.start_events()) sink_.event(event);
+}
 
 Meeting FlightRun::meet(const EventKey& key, const Flight& f, const Flight& g) {
+  if (f.passage >= 0 || g.passage >= 0 || (world_.processes() && world_.processes()->holds_contacts())) return meet_as_processes(key, f, g);
   const auto subject = [&] { return fmt::format("bodies {} and {}", name(key.body_a), name(key.body_b)); };
   if (key.generation > kMostGenerations)
     throw StoppedRun(fmt::format("at t = {:.6f} s, {}: time stands still, impacts cause each other without end; a lasting contact is needed there, or a larger \"rest_speed_m_s\"", key.time, subject()));
@@ -31,11 +47,95 @@ Meeting FlightRun::meet(const EventKey& key, const Flight& f, const Flight& g) {
   }
 }
 
-void FlightRun::commit(const EventKey& key, const Event& first, const std::vector<Event>& more) {
+namespace {
+
+// All flights that an event begins.
+Meeting finished(const EventKey& key, std::vector<BegunFlight> begun, const std::vector<Event>& events) {
+  Meeting meeting;
+  meeting.key = key;
+  meeting.begun = std::move(begun);
+  meeting.is_silent = events.empty();
+  if (!events.empty()) {
+    meeting.first = events.front();
+    meeting.more.assign(events.begin() + 1, events.end());
+  }
+  for (BegunFlight& flight : meeting.begun) {
+    flight.flight.generation = key.generation;
+    flight.flight.partner = flight.body == key.body_a ? key.body_b : flight.body == key.body_b ? key.body_a : -1;
+  }
+  for (const Event& event : events) meeting.impulse += event.impulse;
+  return meeting;
+}
+
+}  // namespace
+
+Meeting FlightRun::meet_as_processes(const EventKey& key, const Flight& f, const Flight& g) {
+  const int a = key.body_a, b = key.body_b;
+  if (key.generation > kMostGenerations)
+    throw StoppedRun(fmt::format("at t = {:.6f} s, bodies {} and {}: time stands still, impacts cause each other without end; a larger \"rest_speed_m_s\" is needed", key.time, name(a), name(b)));
+  Processes& processes = *world_.processes();
+  ++counters.impacts;
+  const auto state_of = [&](int body, const Flight& flight) { return processes.state_of(body, flight, flight.passage < 0 ? world_.state(body, flight, key.time) : RigidBodyState{}, key.time); };
+  const bool one = f.passage >= 0 && f.passage == g.passage;
+  const ProcessState state = !world_.can_move(a) ? state_of(b, g) : !world_.can_move(b) || one ? state_of(a, f) : Processes::together(state_of(a, f), state_of(b, g));
+  const int still = processes.holds_contacts() ? -1 : !world_.can_move(a) ? a : !world_.can_move(b) ? b : -1;
+  const ProcessWorld::Change change = naming(fmt::format("at t = {:.6f} s, bodies {} and {}", key.time, name(a), name(b)), [&] { return processes.passages().world_of(state.members, still).collide({a, b}, state); });
+  return finished(key, processes.sort(change.after), change.events);
+}
+
+std::optional<EventKey> FlightRun::own_end(int body, const Flight& flight, double to) const {
+  if (flight.passage < 0 || !world_.processes()->holds_contacts() || world_.first_member(body, flight) != body) return std::nullopt;
+  const PassageEnd* end = world_.processes()->passages().end_by(flight.passage, to);
+  if (!end) return std::nullopt;
+  return EventKey{end->time, end->time == flight.begin ? flight.generation + 1 : 0, EventClass::kProcess, body, -1};
+}
+
+Meeting FlightRun::end_of_passage(const EventKey& key, const Flight& flight) {
+  if (key.generation > kMostGenerations) throw StoppedRun(fmt::format("at t = {:.6f} s, body {}: time stands still among the bodies that touch it", key.time, name(key.body_a)));
+  const PassageEnd* end = world_.processes()->passages().end_by(flight.passage, key.time);
+  require(end != nullptr, "a passage ends where own_end said");
+  return finished(key, world_.processes()->sort(end->after), end->events);
+}
+
+Meeting FlightRun::call(const EventKey& key, const FlightOf& flight_of) {
+  const Callback& callback = callbacks_[key.generation];
+  ++counters.callback_calls;
+  Processes& processes = world_.all_processes();
+  std::vector<BegunFlight> begun;
+  std::vector<Event> events;
+  for (const int body : callback.bodies) {
+    if (std::any_of(begun.begin(), begun.end(), [&](const BegunFlight& known) { return known.body == body; })) continue;   // with one before it
+    const Flight& flight = flight_of(body);
+    ProcessState state = processes.state_of(body, flight, flight.passage < 0 ? world_.state(body, flight, key.time) : RigidBodyState{}, key.time);
+    for (std::size_t k = 0; k < state.members.size(); ++k)
+      if (std::binary_search(callback.bodies.begin(), callback.bodies.end(), state.members[k])) callback.act(state.members[k], state.states[k]);
+    for (BegunFlight& next : processes.sort(state)) begun.push_back(std::move(next));
+  }
+  for (const int body : callback.bodies) events.push_back({key.time, EventKind::kControl, body, -1, world_.position(body, flight_of(body), key.time), Vector3d::UnitZ(), 0.0, 0.0});
+  std::sort(begun.begin(), begun.end(), [](const BegunFlight& a, const BegunFlight& b) { return a.body < b.body; });
+  return finished(key, std::move(begun), events);
+}
+
+// Forces are switched at times that stand fast: what is said of it has its place among what is committed, whoever runs.
+void FlightRun::commit_switches(double until) {
+  for (; switched_ < switches_.size() && switches_[switched_].time < until; ++switched_) sink_.event(switches_[switched_]);
+}
+
+void FlightRun::commit(const Meeting& meeting) {
+  if (!meeting.is_silent) return commit(meeting.key, meeting.first, meeting.more);
+  pass(meeting.key);
+}
+
+void FlightRun::pass(const EventKey& key) {
   if (!(last_ < key))
     throw PreconditionError(fmt::format("events are committed in their order: {} and {} at {:.17g} s ({}) after {} and {} at {:.17g} s ({})", name(key.body_a), name(key.body_b), key.time, key.generation,
                                         name(last_.body_a), name(last_.body_b), last_.time, last_.generation));
   last_ = key;
+}
+
+void FlightRun::commit(const EventKey& key, const Event& first, const std::vector<Event>& more) {
+  pass(key);
+  commit_switches(std::nextafter(key.time, 2 * key.time + 1));
   ++counters.discontinuities;
   sink_.event(first);
   for (const Event& event : more) sink_.event(event);
@@ -43,11 +143,15 @@ void FlightRun::commit(const EventKey& key, const Event& first, const std::vecto
 
 void FlightRun::commit_frame(const FlightOf& flight_of) {
   const StageTimer timer(counters.record_seconds);
-  sink_.frame(frame_of(world_, next_frame(), flight_of));
+  commit_switches(next_frame());
+  Frame frame = frame_of(world_, next_frame(), flight_of);
+  if (links_) links_->measure(frame, flight_of);
+  sink_.frame(frame);
   ++next_;
 }
 
 void FlightRun::end(const std::string& stopped_by) {
+  if (stopped_by.empty()) commit_switches(std::nextafter(duration_, 2 * duration_ + 1));
   counters.pair_checks += cost.pair_checks;
   counters.collision.gap_evaluations += cost.narrow.gap_evaluations;
   counters.collision.root_findings += cost.narrow.root_findings;

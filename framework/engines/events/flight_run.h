@@ -4,6 +4,7 @@
 
 #include "framework/engines/events/flight_frames.h"
 #include "framework/engines/events/impacts_of_flights.h"
+#include "framework/engines/events/link_measures.h"
 #include "framework/engines/events/meeting_of_flights.h"
 #include "framework/engines/run.h"
 #include "framework/engines/run_counters.h"
@@ -27,11 +28,24 @@ class FlightRun {
   double step() const { return step_; }
 
   /// What the impact of two flights does. Stops the run (StoppedRun, with time and names) where the laws fail.
+  /// @post where processes took part (`begun` is not empty) all their members' flights end here
   Meeting meet(const EventKey& key, const Flight& f, const Flight& g);
+  /// When a body's flight ends by itself, if that is at `to` or before; nothing otherwise, and for all but a process's first member.
+  std::optional<EventKey> own_end(int body, const Flight& flight, double to) const;
+  /// What that does.
+  Meeting end_of_passage(const EventKey& key, const Flight& flight);
+
+  /// Callbacks of the run, by their keys, in order.
+  const std::vector<EventKey>& callbacks() const { return callback_keys_; }
+  const std::vector<int>& receivers(const EventKey& callback) const { return callbacks_[callback.generation].bodies; }
+  /// What a callback does. @param flight_of  the flights that its bodies are on when it acts
+  Meeting call(const EventKey& callback, const FlightOf& flight_of);
 
   /// Commits an impact. @pre keys come in order
   void commit(const EventKey& key, const Event& first, const std::vector<Event>& more);
-  void commit(const Meeting& meeting) { commit(meeting.key, meeting.first, meeting.more); }
+  void commit(const Meeting& meeting);
+  /// Commits a change of membership that nothing is said of. @pre keys come in order
+  void pass(const EventKey& key);
   /// The next frame that is not committed yet; infinite when there is none. [s]
   double next_frame() const { return frame_time(next_) <= duration_ ? frame_time(next_) : std::numeric_limits<double>::infinity(); }
   /// Commits the frame at next_frame(). @pre every event before it is committed, none after it
@@ -44,17 +58,24 @@ class FlightRun {
   RunCounters counters;
 
  private:
+  Meeting meet_as_processes(const EventKey& key, const Flight& f, const Flight& g);
+  void commit_switches(double until);
   double frame_time(long k) const { return static_cast<double>(k) / rate_; }
-  std::string name(int body) const { return "'" + world_.world().bodies[body].name + "'"; }
+  std::string name(int body) const { return body < 0 ? "itself" : "'" + world_.world().bodies[body].name + "'"; }
 
-  FlightWorld world_;
   const Laws laws_;   // guarded
   double step_, duration_, rate_;
+  FlightWorld world_;
   ImpactsOfFlights impacts_;
   MeetingOfFlights meetings_;
   TrajectorySink& sink_;
   EventKey last_{-1.0, 0, EventClass::kCollision, -1, -1};
   long next_ = 0;
+  std::vector<Event> switches_;    // of point forces, in order of time; known from the start
+  std::size_t switched_ = 0;
+  std::unique_ptr<LinkMeasures> links_;
+  std::vector<Callback> callbacks_;
+  std::vector<EventKey> callback_keys_;
 };
 
 }  // namespace tumble::engines

@@ -14,9 +14,8 @@
 namespace tumble::engines {
 namespace {
 
-// Contacts closer than this many roundings of their coordinates touch at the start (as meetings.h).
-constexpr double kTouching = 64 * std::numeric_limits<double>::epsilon();
 constexpr double kRounding = 1e-14;   // of coordinates, so that bodies that just touch are looked at
+constexpr double kTouchingAtStart = 1e-9;   // of the smaller body: ten shells of lasting_contacts.cpp
 constexpr int kMostNudges = 20;       // a few roundings are taken back in as many rounds
 
 // Shapes that many bodies share are prepared once: equal balls, boxes, and models of the same file at the same scale.
@@ -33,21 +32,14 @@ bool is_driven(const scene::PrescribedMotion& m) { return !m.velocity_m_s.isZero
 }  // namespace
 
 std::string unfollowed_entry(const scene::Scene& scene) {
-  const auto named = [](const char* kind, const std::string& name) { return fmt::format("the {} '{}'", kind, name); };
-  if (!scene.springs.empty()) return named("spring", scene.springs.front().name);
-  if (!scene.rods.empty()) return named("rod", scene.rods.front().name);
-  if (!scene.joints.empty()) return named("joint", scene.joints.front().name);
-  if (!scene.motors.empty()) return named("motor in hinge", scene.motors.front().joint);
-  if (!scene.drags.empty()) return named("drag on", scene.drags.front().body);
-  if (!scene.point_forces.empty()) return named("point force on", scene.point_forces.front().body);
-  if (scene.contact) return "\"contact\" (bodies that lie, slide, roll and are stacked)";
+  if (scene.contact && scene.contact->sleep) return "\"sleep\" of \"contact\"";
   return "";
 }
 
-FlightWorld::FlightWorld(const scene::Scene& scene, const std::string& engine) {
+FlightWorld::FlightWorld(const scene::Scene& scene, const std::string& engine, const Laws& laws, ProcessRules rules, RunCounters& counters) {
   const std::string where = scene.file.empty() ? scene.name : scene.file.string();
   if (const std::string entry = unfollowed_entry(scene); !entry.empty())
-    throw UserError(where, fmt::format("{} is not followed by --engine {}, which moves bodies that nothing but gravity and impacts act on", entry, engine), "use --engine rd");
+    throw UserError(where, fmt::format("{} is not followed by --engine {}: groups of bodies keep their own time there", entry, engine), "leave it out, or use --engine rd");
   world_ = build_world(scene);
   if (world_.gravity_world) gravity_world_ = *world_.gravity_world;
   std::map<std::string, int> known;
@@ -73,6 +65,27 @@ FlightWorld::FlightWorld(const scene::Scene& scene, const std::string& engine) {
   }
   turning_.resize(first_.size());
   refuse_overlap(scene);
+  processes_ = std::make_unique<Processes>(world_, [this](int body) { return &shape(body); }, laws, rules, counters);
+  if (processes_->holds_any()) start_processes();
+}
+
+// Bodies that are linked, pushed, or in contact from the start.
+void FlightWorld::start_processes() {
+  std::vector<RigidBodyState> states;
+  for (int i = 0; i < size(); ++i) {
+    states.push_back(world_.bodies[i].state);
+    states.back().com_world = first_[i].com_world;
+  }
+  std::vector<BodyPair> touching;
+  for (const auto& [a, b] : near_at_start_) {
+    if (!world_.contact) break;
+    const auto pose = [&](int k) { return collision::Pose{first_[k].com_world, first_[k].world_from_body}; };
+    if (collision::gap_distance(shape(a), pose(a), shape(b), pose(b)) <= kTouchingAtStart * std::min(radius(a), radius(b))) touching.emplace_back(a, b);
+  }
+  Processes::Start start = processes_->start(states, touching);
+  for (BegunFlight& begun : start.flights) first_[begun.body] = begun.flight;
+  start_events_ = std::move(start.events);
+  std::sort(start_events_.begin(), start_events_.end(), [](const Event& a, const Event& b) { return std::pair(a.body_a, a.body_b) < std::pair(b.body_a, b.body_b); });
 }
 
 bool FlightWorld::may_collide(int a, int b) const {
@@ -90,6 +103,7 @@ void FlightWorld::refuse_overlap(const scene::Scene& scene) {
   }
   auto pairs = collision::overlapping_pairs(boxes);
   std::erase_if(pairs, [&](const auto& pair) { return !may_collide(pair.first, pair.second); });
+  near_at_start_ = pairs;
   const auto pose = [&](int k) { return collision::Pose{first_[k].com_world, first_[k].world_from_body}; };
   for (const auto& [a, b] : pairs) {
     const double allowance = kTouching * collision::gap_scale(shape(a), pose(a), shape(b), pose(b));
@@ -100,7 +114,7 @@ void FlightWorld::refuse_overlap(const scene::Scene& scene) {
                     depth > 0 ? fmt::format("{} overlap at the start, by about {:.3g} m", both, depth) : fmt::format("at the start one of the {} is inside the other", both),
                     "move one of them away (\"position_m\") until they are apart or just touch");
   }
-  for (int round = 0; round < kMostNudges; ++round) {
+  for (int round = 0; round < kMostNudges && !scene.contact; ++round) {   // processes draw their members apart themselves
     bool clean = true;
     for (const auto& [a, b] : pairs) {
       const collision::Gap gap = collision::compute_gap(shape(a), pose(a), shape(b), pose(b));
@@ -116,6 +130,10 @@ void FlightWorld::refuse_overlap(const scene::Scene& scene) {
 
 Spin FlightWorld::spin(int body, const Flight& flight, double t) const {
   // Most balls do not turn at all, and what rests turns evenly (it is a ball, or it does not turn).
+  if (flight.passage >= 0) {
+    const RigidBodyState now = processes_->passages().body_state(flight.passage, body, t);
+    return {now.world_from_body, inertia(body).inverse_inertia_body * (now.world_from_body.conjugate() * now.angular_momentum_world)};
+  }
   if (!facts_[body].can_move || t == flight.begin || flight.omega_body.isZero(0.0)) return {flight.world_from_body, flight.omega_body};
   const Spin start{flight.world_from_body, flight.omega_body};
   if (!rotations_[body].is_asymmetric()) return rotations_[body].after(start, t - flight.begin);
@@ -147,11 +165,13 @@ FlightWorld::Turning& FlightWorld::turning(int body, const Flight& flight) const
 }
 
 collision::MotionState FlightWorld::motion_at(int body, const Flight& flight, double t) const {
+  if (flight.passage >= 0) return processes_->passages().motion_at(flight.passage, body, t);
   const Spin now = spin(body, flight, t);
   return {{position(body, flight, t), now.world_from_body}, velocity(body, flight, t), now.world_from_body * now.omega_body};
 }
 
-collision::MotionBounds FlightWorld::bounds(int body, const Flight& flight) const {
+collision::MotionBounds FlightWorld::bounds(int body, const Flight& flight, double t) const {
+  if (flight.passage >= 0) return processes_->passages().motion_in_step(flight.passage, body, t).bounds;
   collision::MotionBounds bounds;
   bounds.acceleration_world = acceleration(body, flight);
   if (!facts_[body].can_move) {
@@ -166,7 +186,27 @@ collision::MotionBounds FlightWorld::bounds(int body, const Flight& flight) cons
   return bounds;
 }
 
+collision::Motion FlightWorld::motion_from(int body, const Flight& flight, double low) const {
+  if (flight.passage >= 0) return processes_->passages().motion_in_step(flight.passage, body, low);
+  return {[this, body, at = &flight](double t) { return motion_at(body, *at, t); }, bounds(body, flight, low)};
+}
+
+// A path whose second derivative is at most a leaves the box of its ends by at most a s^2 / 8.
+void FlightWorld::take_in_way(int body, const Flight& flight, double from, double to, Vector3d& low, Vector3d& high) const {
+  const auto take = [&](const Vector3d& first, const Vector3d& last, const Vector3d& acceleration, double s) {
+    const Vector3d bulge = acceleration * (s * s / 8);
+    low = low.cwiseMin(first.cwiseMin(last) - bulge);
+    high = high.cwiseMax(first.cwiseMax(last) + bulge);
+  };
+  if (flight.passage < 0) return take(position(body, flight, from), position(body, flight, to), acceleration(body, flight).cwiseAbs(), to - from);
+  processes_->passages().for_each_step(flight.passage, body, from, to, [&](const ProcessStep& step, std::size_t member, double begin, double end) {
+    const collision::MotionBounds bounds = step.paths.empty() ? collision::MotionBounds{} : step.paths[member].bounds();
+    take(step.state_at(member, begin).com_world, step.state_at(member, end).com_world, bounds.acceleration_world.cwiseAbs() + Vector3d::Constant(bounds.acceleration_deviation), end - begin);
+  });
+}
+
 RigidBodyState FlightWorld::state(int body, const Flight& flight, double t) const {
+  if (flight.passage >= 0) return processes_->passages().body_state(flight.passage, body, t);
   const Spin now = spin(body, flight, t);
   RigidBodyState state{position(body, flight, t), now.world_from_body, Vector3d::Zero(), Vector3d::Zero()};
   if (!facts_[body].can_move) return state;

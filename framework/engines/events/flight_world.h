@@ -1,4 +1,4 @@
-/// The bodies of a scene as event-ordered engines see them: each alone, on flights in closed form.
+/// The bodies of a scene as event-ordered engines see them: each alone, on flights in closed form, or on a passage of its process.
 ///
 /// Sources: ballistic flight; free rotation by dynamics/free_rotation.h. Immovable bodies go by their prescribed motion: they have no
 /// process and are never rolled back.
@@ -15,14 +15,16 @@
 #include "framework/dynamics/spin_series.h"
 #include "framework/dynamics/world.h"
 #include "framework/engines/events/flight.h"
+#include "framework/engines/events/processes.h"
 
 namespace tumble::engines {
 
 class FlightWorld {
  public:
   /// @param engine  named where the scene is refused
-  /// @throws UserError naming the scene's entry that moves bodies other than along free flights, or two bodies that overlap at the start
-  FlightWorld(const scene::Scene& scene, const std::string& engine);
+  /// @param laws, rules  for processes
+  /// @throws UserError naming the scene's entry that is not followed, or two bodies that overlap at the start
+  FlightWorld(const scene::Scene& scene, const std::string& engine, const Laws& laws, ProcessRules rules, RunCounters& counters);
   FlightWorld(const FlightWorld&) = delete;
   FlightWorld& operator=(const FlightWorld&) = delete;
 
@@ -48,21 +50,51 @@ class FlightWorld {
   /// The flight of a body at the start of the run, touching bodies drawn apart by what rounding made them overlap.
   const Flight& first_flight(int body) const { return first_[body]; }
 
+  /// Processes; null where every body of the scene flies freely at all times.
+  Processes* processes() const { return processes_->holds_any() ? processes_.get() : nullptr; }
+  Processes& all_processes() const { return *processes_; }
+  /// What is said of contacts that hold where the run begins.
+  const std::vector<Event>& start_events() const { return start_events_; }
+  /// The bodies that move with this one, ascending: itself alone on a free flight.
+  std::vector<int> members(int body, const Flight& flight) const { return flight.passage < 0 ? std::vector<int>{body} : processes_->passages().members(flight.passage); }
+  int first_member(int body, const Flight& flight) const { return flight.passage < 0 ? body : processes_->passages().members(flight.passage).front(); }
+  /// Whether what the two do to each other is the affair of their process, and no event of two flights.
+  bool is_internal(int a, const Flight& f, int b, const Flight& g) const {
+    if (!processes_->holds_contacts()) return false;
+    return (f.passage >= 0 && (f.passage == g.passage || !can_move(b))) || (g.passage >= 0 && !can_move(a));
+  }
+  /// A flight is dropped or will not be asked about again: once a flight.
+  void release(const Flight& flight) const {
+    if (flight.passage >= 0) processes_->passages().release(flight.passage);
+  }
+  /// How far from `low` the flight's motion is of one piece, at most to `high`; `low` itself where it has ended by then. [s]
+  double smooth_until(const Flight& flight, double low, double high) const {
+    return flight.passage < 0 ? high : std::min(high, processes_->passages().step_end(flight.passage, low));
+  }
+  /// Takes the places of the centre over [from, to] into the corners of a box. [m]
+  void take_in_way(int body, const Flight& flight, double from, double to, Vector3d& low, Vector3d& high) const;
+
+  /// @pre flight.passage < 0
   Vector3d acceleration(int body, const Flight& flight) const { return facts_[body].can_move && !flight.is_resting ? gravity_world_ : Vector3d(Vector3d::Zero()); }
   /// @pre t >= flight.begin
   Vector3d position(int body, const Flight& flight, double t) const {
     if (!facts_[body].can_move) return facts_[body].is_still ? flight.com_world : prescribed_position(world_.bodies[body], t);
+    if (flight.passage >= 0) return processes_->passages().body_state(flight.passage, body, t).com_world;
     const double tau = t - flight.begin;
     if (flight.is_resting || tau == 0.0) return flight.com_world;
     return flight.com_world + tau * (flight.velocity_world + (0.5 * tau) * gravity_world_);
   }
   Vector3d velocity(int body, const Flight& flight, double t) const {
     if (!facts_[body].can_move) return prescribed_velocity(world_.bodies[body], t);
+    if (flight.passage >= 0) return inertia(body).inverse_mass * processes_->passages().body_state(flight.passage, body, t).momentum_world;
     return flight.is_resting ? flight.velocity_world : Vector3d(flight.velocity_world + (t - flight.begin) * gravity_world_);
   }
   Spin spin(int body, const Flight& flight, double t) const;
   collision::MotionState motion_at(int body, const Flight& flight, double t) const;
-  collision::MotionBounds bounds(int body, const Flight& flight) const;
+  /// @param t  the bounds hold from here on as far as the motion is of one piece
+  collision::MotionBounds bounds(int body, const Flight& flight, double t) const;
+  /// From `low` on as far as the motion is of one piece. Both stay where they are as long as it is asked.
+  collision::Motion motion_from(int body, const Flight& flight, double low) const;
   RigidBodyState state(int body, const Flight& flight, double t) const;
   /// As impulses need it.
   Body body_at(int body, const Flight& flight, double t) const;
@@ -93,7 +125,7 @@ class FlightWorld {
   Turning& turning(int body, const Flight& flight) const;
 
   void refuse_overlap(const scene::Scene& scene);
-  void draw_apart();
+  void start_processes();
 
   World world_;
   Vector3d gravity_world_ = Vector3d::Zero();
@@ -104,6 +136,9 @@ class FlightWorld {
   std::vector<Matter, LargePages<Matter>> matter_;  // by body
   std::vector<int> movers_, obstacles_;
   std::vector<Flight> first_;
+  std::vector<BodyPair> near_at_start_;
+  std::vector<Event> start_events_;
+  std::unique_ptr<Processes> processes_;
 };
 
 /// The first entry of a scene that event-ordered engines cannot follow, in words; empty: they can.

@@ -41,6 +41,7 @@ std::int64_t ImpactsOfFlights::window_of(double t) const {
 }
 
 bool ImpactsOfFlights::has_closed_form(int a, const Flight& f, int b, const Flight& g) const {
+  if (f.passage >= 0 || g.passage >= 0) return false;
   if (world_.is_half_space(a) || world_.is_half_space(b)) {
     const int plane = world_.is_half_space(a) ? a : b, other = world_.is_half_space(a) ? b : a;
     return world_.is_ball(other) && world_.is_still(plane);
@@ -53,6 +54,7 @@ bool ImpactsOfFlights::has_closed_form(int a, const Flight& f, int b, const Flig
 double ImpactsOfFlights::first_impact(int a, const Flight& f, int b, const Flight& g, double from, double to, CheckCost& cost) const {
   // A resting ball and its support do not meet.
   if ((f.is_resting && (g.is_resting || !world_.can_move(b))) || (g.is_resting && !world_.can_move(a))) return kInfinity;
+  if (world_.is_internal(a, f, b, g)) return kInfinity;
   if (!has_closed_form(a, f, b, g)) return in_windows(a, f, b, g, from, to, cost);
   ++cost.pair_checks;
   if (world_.is_half_space(a)) return of_ball_and_plane(b, g, f);
@@ -96,6 +98,7 @@ double ImpactsOfFlights::of_ball_and_plane(int ball, const Flight& f, const Flig
 bool ImpactsOfFlights::may_meet(int a, const Flight& f, int b, const Flight& g, double low, double high) const {
   const auto driven = [&](int body) { return !world_.can_move(body) && !world_.is_still(body); };
   if (driven(a) || driven(b)) return true;
+  if (f.passage >= 0 || g.passage >= 0) return may_meet_on_passage(a, f, b, g, low, high);
   const double s = high - low, bulge = (world_.acceleration(a, f) - world_.acceleration(b, g)).norm() * s * s / 8;
   if (world_.is_half_space(a) || world_.is_half_space(b)) {
     const bool a_is_plane = world_.is_half_space(a);
@@ -110,28 +113,51 @@ bool ImpactsOfFlights::may_meet(int a, const Flight& f, int b, const Flight& g, 
   return (from + part * way).norm() <= (world_.radius(a) + world_.radius(b)) * (1 + kSlack) + bulge;
 }
 
+bool ImpactsOfFlights::may_meet_on_passage(int a, const Flight& f, int b, const Flight& g, double low, double high) const {
+  struct Corners {
+    Vector3d low = Vector3d::Constant(kInfinity), high = Vector3d::Constant(-kInfinity);
+  };
+  const auto way = [&](int body, const Flight& flight) {
+    Corners box;
+    world_.take_in_way(body, flight, low, high, box.low, box.high);
+    return box;
+  };
+  if (world_.is_half_space(a) || world_.is_half_space(b)) {
+    const bool a_is_plane = world_.is_half_space(a);
+    const int body = a_is_plane ? b : a;
+    const Corners box = a_is_plane ? way(b, g) : way(a, f);
+    const Flight& plane = a_is_plane ? f : g;
+    const Vector3d normal = plane.world_from_body * Vector3d::UnitZ(), middle = 0.5 * (box.low + box.high), half = 0.5 * (box.high - box.low);
+    return normal.dot(middle - plane.com_world) - normal.cwiseAbs().dot(half) <= world_.radius(body) * (1 + kSlack);
+  }
+  const Corners of_a = way(a, f), of_b = way(b, g);
+  const Vector3d apart = (of_a.low - of_b.high).cwiseMax(of_b.low - of_a.high).cwiseMax(Vector3d::Zero());
+  return apart.norm() <= (world_.radius(a) + world_.radius(b)) * (1 + kSlack);
+}
+
+// Windows stand fast; within one, what is of one piece is searched at once. All of it depends on the two flights alone.
 double ImpactsOfFlights::in_windows(int a, const Flight& f, int b, const Flight& g, double from, double to, CheckCost& cost) const {
   if (a > b) return in_windows(b, g, a, f, from, to, cost);   // one order, so that the answer has one rounding
   const double begin = std::max(f.begin, g.begin);
-  struct Mover {
-    const FlightWorld& world;
-    int body;
-    const Flight& flight;
-  };
-  const Mover mover_a{world_, a, f}, mover_b{world_, b, g};
-  std::optional<collision::Motion> motion_a, motion_b;
+  const bool of_pieces = f.passage >= 0 || g.passage >= 0;
   const collision::ImpactOptions options{root_finder_};
+  std::optional<collision::Motion> motion_a, motion_b;
   for (std::int64_t k = window_of(std::max(from, begin)); window_begin(k) < to; ++k) {
-    const double low = std::max(begin, window_begin(k)), high = window_begin(k + 1);
-    ++cost.pair_checks;
-    if (!may_meet(a, f, b, g, low, high)) continue;
-    if (!motion_a) {
-      const auto motion_of = [](const Mover* m) { return collision::Motion{[m](double t) { return m->world.motion_at(m->body, m->flight, t); }, m->world.bounds(m->body, m->flight)}; };
-      motion_a = motion_of(&mover_a);
-      motion_b = motion_of(&mover_b);
+    const double high = window_begin(k + 1);
+    for (double low = std::max(begin, window_begin(k)), end = low; low < high && low < to; low = end) {
+      end = of_pieces ? world_.smooth_until(g, low, world_.smooth_until(f, low, high)) : high;
+      if (!(end > low)) return kInfinity;   // one of them has ended
+      if (!(end > from)) continue;
+      ++cost.pair_checks;
+      if (may_meet(a, f, b, g, low, end)) {
+        if (!motion_a || of_pieces) {
+          motion_a = world_.motion_from(a, f, low);
+          motion_b = world_.motion_from(b, g, low);
+        }
+        const auto impact = collision::first_impact(world_.shape(a), *motion_a, world_.shape(b), *motion_b, low, end, options, &cost.narrow);
+        if (impact) return impact->time;
+      }
     }
-    const auto impact = collision::first_impact(world_.shape(a), *motion_a, world_.shape(b), *motion_b, low, high, options, &cost.narrow);
-    if (impact) return impact->time;
   }
   return kInfinity;
 }

@@ -40,6 +40,7 @@ class ImpactsOfFlights {
   std::int64_t window_of(double t) const;
   bool falls(int body, const Flight& flight) const { return world_.can_move(body) && !flight.is_resting; }
   bool may_meet(int a, const Flight& f, int b, const Flight& g, double low, double high) const;
+  bool may_meet_on_passage(int a, const Flight& f, int b, const Flight& g, double low, double high) const;
   double of_balls(int a, const Flight& f, int b, const Flight& g) const;
   double of_ball_and_plane(int ball, const Flight& f, const Flight& plane) const;
   double in_windows(int a, const Flight& f, int b, const Flight& g, double from, double to, CheckCost& cost) const;

@@ -170,7 +170,7 @@ Flight MeetingOfFlights::flight_of(const Work& work, int body, const Flight& bef
 
 Meeting MeetingOfFlights::meet(const EventKey& key, const Flight& f, const Flight& g) const {
   const int a = key.body_a, b = key.body_b;
-  Work work{{key, {}, {}, 0.0, {}, {}}, f, g, world_.body_at(a, f, key.time), world_.body_at(b, g, key.time), {}, {}, {}, 0.0, false};
+  Work work{{key, {}, {}, {}, 0.0, {}, {}, false}, f, g, world_.body_at(a, f, key.time), world_.body_at(b, g, key.time), {}, {}, {}, 0.0, false};
   const collision::Pose pose_a{work.a.com_world, work.a.world_from_body}, pose_b{work.b.com_world, work.b.world_from_body};
   const collision::CollisionShape &shape_a = world_.shape(a), &shape_b = world_.shape(b);
   work.gap = collision::compute_gap(shape_a, pose_a, shape_b, pose_b);

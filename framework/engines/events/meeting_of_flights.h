@@ -12,13 +12,15 @@
 
 namespace tumble::engines {
 
-/// What the two flights of a pair become.
+/// What the flights of a pair become, or those of a process.
 struct Meeting {
   EventKey key;
   Flight a, b;                 // of key.body_a and key.body_b, from key.time on; serials are the caller's to give
+  std::vector<BegunFlight> begun;   // where processes took part: all flights that begin, and `a` and `b` are not used
   double impulse = 0.0;        // sum of the impulses along the normal [N s]
   Event first;                 // the first impulse, or the rest that came without one
   std::vector<Event> more;     // flat landings take several; coming to rest
+  bool is_silent = false;      // members of a process only part: nothing is said of it
 };
 
 struct MeetingRules {

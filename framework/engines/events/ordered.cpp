@@ -39,6 +39,7 @@ class OrderedRun {
       EventKey next = kNever;
       for (const int a : run_.world().movers())
         if (first_of_[a] < next) next = first_of_[a];
+      if (called_ < run_.callbacks().size()) next = std::min(next, run_.callbacks()[called_]);
       if (!(next.time < end_) || next.time > run_.duration()) return;
       draw_before(next.time);
       process(next);
@@ -46,17 +47,33 @@ class OrderedRun {
   }
 
   void process(const EventKey& key) {
-    const Meeting meeting = run_.meet(key, flights_[key.body_a], flights_[key.body_b]);
+    const Meeting meeting = outcome_of(key);
     run_.commit(meeting);
-    if (run_.world().can_move(key.body_a)) flights_[key.body_a] = meeting.a;
-    if (run_.world().can_move(key.body_b)) flights_[key.body_b] = meeting.b;
-    begin_ = key.time;
-    const auto hit = [&](int body) { return body == key.body_a || body == key.body_b; };
-    for (const int c : run_.world().movers()) {
-      if (hit(c) || hit(first_of_[c].body_a) || hit(first_of_[c].body_b)) first_of_[c] = first_among_all(c);
-      else
-        for (const int body : {key.body_a, key.body_b}) first_of_[c] = std::min(first_of_[c], impact_of(c, body));
+    std::vector<int> changed;
+    if (meeting.begun.empty()) {
+      changed = {key.body_a, key.body_b};
+      if (run_.world().can_move(key.body_a)) flights_[key.body_a] = meeting.a;
+      if (run_.world().can_move(key.body_b)) flights_[key.body_b] = meeting.b;
     }
+    for (const BegunFlight& begun : meeting.begun) {
+      run_.world().release(flights_[begun.body]);
+      flights_[begun.body] = begun.flight;
+      changed.push_back(begun.body);
+    }
+    begin_ = key.time;
+    const auto is_changed = [&](int body) { return std::find(changed.begin(), changed.end(), body) != changed.end(); };
+    for (const int c : run_.world().movers()) {
+      if (is_changed(c) || is_changed(first_of_[c].body_a) || is_changed(first_of_[c].body_b)) first_of_[c] = first_among_all(c);
+      else
+        for (const int body : changed) first_of_[c] = std::min(first_of_[c], impact_of(c, body));
+    }
+  }
+
+  Meeting outcome_of(const EventKey& key) {
+    if (key.kind == EventClass::kProcess) return run_.end_of_passage(key, flights_[key.body_a]);
+    if (key.kind == EventClass::kCollision) return run_.meet(key, flights_[key.body_a], flights_[key.body_b]);
+    ++called_;
+    return run_.call(key, [this](int body) -> const Flight& { return flights_[body]; });
   }
 
   EventKey impact_of(int a, int b) {
@@ -66,7 +83,7 @@ class OrderedRun {
   }
 
   EventKey first_among_all(int a) {
-    EventKey first = kNever;
+    EventKey first = run_.own_end(a, flights_[a], end_).value_or(kNever);
     for (int b = 0; b < run_.world().size(); ++b) first = std::min(first, impact_of(a, b));
     return first;
   }
@@ -78,6 +95,7 @@ class OrderedRun {
   FlightRun run_;
   std::vector<Flight> flights_;       // by body
   std::vector<EventKey> first_of_;    // by body: the first impact it takes part in, in this window
+  std::size_t called_ = 0;            // callbacks
   double begin_ = 0.0, end_ = 0.0;    // what is looked through [s]
 };
 

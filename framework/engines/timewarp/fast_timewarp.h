@@ -2,11 +2,16 @@
 #pragma once
 
 #include "framework/engines/run.h"
+#include "framework/trajectory/virtual_times.h"
 
 namespace tumble::engines {
 
 /// What `--engine tw` is when no module is asked for; empty in a tree without one. Defined once: with the solutions, or in
 /// no_fast_timewarp.cpp where there are none.
-Engine fast_timewarp();
+/// @param record  where every move of a local virtual time is written, if it is not null; kept by the caller as long as the engine runs.
+///                A long run is written as far as `kMostMoves` go
+Engine fast_timewarp(VirtualTimes* record = nullptr);
+
+constexpr std::size_t kMostMoves = 200'000;
 
 }  // namespace tumble::engines

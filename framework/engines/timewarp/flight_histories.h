@@ -67,8 +67,14 @@ class FlightHistories {
   }
   /// Drops flights that ended before t: nothing before global virtual time is asked for again.
   void purge(int body, double t) {
+    purge(body, t, [](const Flight&) {});
+  }
+  /// Calls `purged(flight)` of each.
+  template <class Purged>
+  void purge(int body, double t, const Purged& purged) {
     FlightHistory& history = histories_[static_cast<std::size_t>(body)];
     while (history.count_ > 1 && history[1].begin < t) {
+      purged(history[0]);
       history.first_ = (history.first_ + 1) & history.mask_;
       --history.count_;
       --kept_;

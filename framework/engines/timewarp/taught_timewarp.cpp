@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/error.h"
+#include "framework/dynamics/world.h"
 #include "framework/engines/events/flight_run.h"
 #include "framework/engines/events/ordered.h"
 #include "framework/engines/guarded_laws.h"
@@ -386,9 +388,21 @@ void TaughtTimewarp::purge() {
   run_.counters.states_kept = std::max(run_.counters.states_kept, kept);
 }
 
+// Bodies that are pushed, hang together or lie on each other are processes of the fast scheduler's only.
+void require_free_flight(const scene::Scene& scene, const RunOptions& options) {
+  const World world = build_world(scene);
+  const std::pair<bool, const char*> entries[] = {{!world.springs.empty(), "springs"}, {!world.rods.empty(), "rods"}, {!world.joints.empty(), "joints"}, {!world.drags.empty(), "drag"},
+                                                  {!world.point_forces.empty(), "point forces"}, {world.contact.has_value(), "\"contact\""}, {!options.callbacks.empty(), "callbacks"}};
+  for (const auto& [is_there, what] : entries)
+    if (is_there)
+      throw UserError(scene.file.empty() ? scene.name : scene.file.string(), fmt::format("it has {}, and a timewarp on the decisions of a module follows free flight and impacts only", what),
+                      "Leave a4 out of --modules: then the fast scheduler runs it, if this tree has one; or take --engine rd.");
+}
+
 }  // namespace
 
 void run_taught_timewarp(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink) {
+  require_free_flight(scene, options);
   TrajectoryRecorder reference;
   std::vector<TrajectoryBody> bodies;
   for (const scene::BodySpec& body : scene.bodies) bodies.push_back({body.name, body.immovable});

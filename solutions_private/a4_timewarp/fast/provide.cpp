@@ -4,6 +4,8 @@
 
 namespace tumble::engines {
 
-Engine fast_timewarp() { return a4::run_fast_timewarp; }
+Engine fast_timewarp(VirtualTimes* record) {
+  return [record](const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink) { a4::run_fast_timewarp(scene, laws, options, sink, record); };
+}
 
 }  // namespace tumble::engines

@@ -1,0 +1,109 @@
+/// Passages: the motion of processes that links, forces or lasting contacts keep from flying freely, each from the discontinuity that
+/// began it to its next.
+///
+/// A passage is to such a process what a flight is to a free body, and flights name theirs. It is worked out step by step, as far as
+/// somebody asks; where it leads depends on its beginning alone, whoever asks, and when. Some
+/// end by themselves: an impact within the process, a contact that begins or opens. Membership of a passage never changes: what joins or
+/// leaves begins others.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "framework/engines/events/process_world.h"
+
+namespace tumble::engines {
+
+/// Where a passage ends by itself, and what comes after.
+struct PassageEnd {
+  double time;                       // [s]
+  ProcessState after;
+  std::vector<Event> events;         // none where members only have come too far apart to be one process
+};
+
+class Passages {
+ public:
+  Passages(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules, RunCounters& counters);
+  /// @param falls_apart  whether the members of a state are one process no more
+  void ask(std::function<bool(const ProcessState&)> falls_apart) { falls_apart_ = std::move(falls_apart); }
+  Passages(const Passages&) = delete;
+  Passages& operator=(const Passages&) = delete;
+
+  /// Begins a passage; its members hold it, each once, until they release it. @return its number
+  int begin(const ProcessState& state);
+  void release(int passage);
+  /// Nobody asks for what lies before this any more. [s]
+  void forget_before(double t) { forgotten_ = t; }
+
+  const std::vector<int>& members(int passage) const { return at(passage).start->members; }
+  double began(int passage) const { return at(passage).start->time; }
+
+  /// Where it ends by itself, if that is at `to` or before; else null.
+  const PassageEnd* end_by(int passage, double to);
+  /// The end of the step that holds t; t itself where the passage has ended there. [s]
+  double step_end(int passage, double t);
+  /// Everything at an instant. @pre the passage has not ended before it
+  ProcessState state_at(int passage, double t);
+  RigidBodyState body_state(int passage, int body, double t);
+  collision::MotionState motion_at(int passage, int body, double t);
+  /// The step that holds t.
+  const ProcessStep& step_at(int passage, double t);
+
+  /// One body along one step: what a search for impacts looks at. @pre low < high lie in one step
+  collision::Motion motion_in_step(int passage, int body, double low);
+  /// Calls work(step, place of the body among the members, from, to) for the steps that cover [from, to]; what lies behind the end is no part.
+  template <class Work>
+  void for_each_step(int passage, int body, double from, double to, const Work& work) {
+    reach(passage, to);
+    const std::size_t member = place(passage, body);
+    for (const ProcessStep& step : at(passage).steps)
+      if (step.end >= from && step.from.time <= to) work(step, member, std::max(from, step.from.time), std::min(to, step.end));
+  }
+
+  /// A small world of these members, for a question or two. @param still  an immovable body that one of them meets; -1: none
+  ProcessWorld& world_of(const std::vector<int>& members, int still = -1);
+
+  /// Passages that somebody holds.
+  std::size_t alive() const { return passages_.size() - free_.size(); }
+  std::size_t most_kept() const { return most_kept_; }
+
+ private:
+  struct Machine {
+    std::unique_ptr<ProcessWorld> world;
+    int users = 0;
+  };
+  struct Passage {
+    std::optional<ProcessState> start;
+    std::deque<ProcessStep> steps;
+    std::optional<ProcessState> front;      // where the last step led
+    std::optional<PassageEnd> end;
+    Machine* machine = nullptr;
+    int holders = 0, idle = 0;
+  };
+
+  Passage& at(int passage) { return *passages_[static_cast<std::size_t>(passage)]; }
+  const Passage& at(int passage) const { return *passages_[static_cast<std::size_t>(passage)]; }
+  Machine& machine_of(const std::vector<int>& members, int still);
+  std::size_t place(int passage, int body) const;
+  void reach(int passage, double t);
+  void take_step(Passage& passage);
+  std::string names(const std::vector<int>& members) const;
+
+  const World& whole_;
+  ShapeOf shape_of_;
+  std::function<bool(const ProcessState&)> falls_apart_;
+  const Laws& laws_;
+  ProcessRules rules_;
+  RunCounters& counters_;
+  std::vector<int> obstacles_;              // immovable ones that lasting contacts may touch
+  std::map<std::pair<std::vector<int>, int>, Machine> machines_;
+  std::vector<std::unique_ptr<Passage>> passages_;
+  std::vector<int> free_;
+  double forgotten_ = 0.0;
+  std::size_t kept_ = 0, most_kept_ = 0;
+};
+
+}  // namespace tumble::engines

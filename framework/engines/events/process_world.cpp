@@ -1,0 +1,304 @@
+#include "framework/engines/events/process_world.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "framework/engines/guarded_laws.h"
+
+namespace tumble::engines {
+namespace {
+
+constexpr double kMicroInterval = 0.01;   // of the step: a pair that meets again sooner, and slowly, is sent apart (as retroactive.cpp)
+constexpr int kMostPassings = 100;        // of a blow to and fro between bodies that touch and bodies that are joined
+constexpr double kTogether = 2.0;         // steps
+constexpr double kNear = 1e-6;            // of the sizes: pairs farther apart do not touch
+
+std::vector<const collision::CollisionShape*> shapes_of(const WorldPart& part, const ShapeOf& shape_of) {
+  std::vector<const collision::CollisionShape*> shapes;
+  for (const int body : part.bodies) shapes.push_back(shape_of(body));
+  return shapes;
+}
+
+}  // namespace
+
+const RigidBodyState& ProcessState::state_of(int body) const { return states[static_cast<std::size_t>(std::lower_bound(members.begin(), members.end(), body) - members.begin())]; }
+
+RigidBodyState ProcessStep::state_at(std::size_t member, double t) const { return t == from.time || paths.empty() ? from.states[member] : paths[member].at(t); }
+
+collision::MotionState ProcessStep::motion_at(std::size_t member, double t, const Inertia& inertia) const {
+  if (t != from.time && !paths.empty()) return paths[member].motion_at(t);
+  const RigidBodyState& state = from.states[member];
+  return {{state.com_world, state.world_from_body}, inertia.inverse_mass * state.momentum_world, omega_of(state, inertia)};
+}
+
+ProcessWorld::ProcessWorld(const World& whole, const ShapeOf& shape_of, const Laws& laws, ProcessRules rules, RunCounters& counters, const std::vector<int>& members, const std::vector<int>& still)
+    : laws_(laws), rules_(rules), counters_(counters), members_(members), part_(part_of(whole, members, still)), moving_(part_.world, laws, counters, shapes_of(part_, shape_of)),
+      meetings_(moving_, laws, counters), impacts_(laws, {rules.rest_speed, kMicroInterval * rules.step}, counters) {
+  if (!built::kContact || !moving_.world().contact) return;
+  impacts_.use_contact_rules(rules.rest_speed, moving_.world().contact->impact_law);
+  contacts_.emplace(moving_, laws, *moving_.world().contact, rules.rest_speed, counters, collector_);
+}
+
+int ProcessWorld::local(int body) const { return static_cast<int>(std::lower_bound(part_.bodies.begin(), part_.bodies.end(), body) - part_.bodies.begin()); }
+
+// ---- A state in, a state out ---------------------------------------------------------------------------------------------
+
+void ProcessWorld::load(const ProcessState& from) {
+  std::vector<RigidBodyState> states = moving_.states();
+  for (std::size_t k = 0; k < members_.size(); ++k) states[static_cast<std::size_t>(part_.members[k])] = from.states[k];
+  moving_.stand_at(from.time, states);
+  for (LinkedBodies& group : moving_.linked_groups()) {
+    std::vector<double> torques, looks;
+    for (const int motor : group.motors()) {
+      const auto held = from.motors.find(part_.motors[static_cast<std::size_t>(motor)]);
+      torques.push_back(held == from.motors.end() ? 0.0 : held->second.torque);
+      looks.push_back(held == from.motors.end() ? 0.0 : held->second.next_look);
+    }
+    group.remember(std::move(torques), std::move(looks));
+  }
+  std::map<BodyPair, double> met;
+  for (const auto& [pair, time] : from.met) met.emplace(local(pair), time);
+  impacts_.remember(std::move(met));
+  collector_.events.clear();
+  if (!has_contacts()) return;
+  contacts_.reset();
+  if (from.contacts) {
+    contacts_.emplace(*from.contacts);
+    return;
+  }
+  contacts_.emplace(moving_, laws_, *moving_.world().contact, rules_.rest_speed, counters_, collector_);
+  const std::uint64_t begun = counters_.contacts_begun;
+  for (const BodyPair& pair : from.lasting) contacts_->begin(local(pair), {});   // it has begun before: what is said of it is not new
+  counters_.contacts_begun = begun;
+  collector_.events.clear();
+}
+
+// Forces act in [start, end). Those that begin now take hold of their point. @return when the next one is switched [s]
+double ProcessWorld::load_forces(const ProcessState& from) {
+  double next = std::numeric_limits<double>::infinity();
+  if (!built::kPointForce) return next;
+  const auto& forces = moving_.world().point_forces;
+  std::vector<int> active;
+  std::vector<Vector3d> points(forces.size(), Vector3d::Zero());
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    for (const double time : {forces[k].start, forces[k].end})
+      if (time > from.time) next = std::min(next, time);
+    if (!(from.time >= forces[k].start && from.time < forces[k].end)) continue;
+    active.push_back(static_cast<int>(k));
+    const auto held = from.force_points_body.find(part_.forces[k]);
+    const RigidBodyState& state = moving_.state(forces[k].body);
+    points[k] = held != from.force_points_body.end() ? held->second : state.world_from_body.conjugate() * (forces[k].point_world - state.com_world);
+  }
+  moving_.set_active_forces(std::move(active), std::move(points));
+  return next;
+}
+
+ProcessState ProcessWorld::save() const {
+  ProcessState state;
+  state.time = moving_.time();
+  state.members = members_;
+  for (const int member : part_.members) state.states.push_back(moving_.state(member));
+  save_controls(state);
+  for (const auto& [pair, time] : impacts_.last_meetings())
+    if (moving_.time() - time < rules_.step) state.met.emplace(whole(pair), time);
+  if (!has_contacts()) return state;
+  for (const BodyPair& pair : contacts_->lasting()) state.lasting.insert(whole(pair));
+  if (moving_.world().contact->plastic_impacts == scene::PlasticImpacts::kInStep) note_near(state);
+  state.contacts.emplace(*contacts_);
+  return state;
+}
+
+// Where blows are dealt with in the step, bodies that come together again at once are no other group meanwhile: they would meet again and
+// again, each time as if for the first.
+void ProcessWorld::note_near(ProcessState& state) const {
+  const auto speed = [&](int body) {
+    const Body now = moving_.body_at_impact(body);
+    return now.velocity_world.norm() + now.omega_world.norm() * moving_.shape(body).bounding_radius();
+  };
+  for (std::size_t i = 0; i < part_.members.size(); ++i)
+    for (std::size_t j = i + 1; j < part_.members.size(); ++j) {
+      const int a = part_.members[i], b = part_.members[j];
+      if (std::min(moving_.world().bodies[a].restitution, moving_.world().bodies[b].restitution) > 0 || !moving_.may_collide(a, b)) continue;
+      const double within = kTogether * rules_.step * (speed(a) + speed(b));
+      if ((moving_.state(a).com_world - moving_.state(b).com_world).norm() > moving_.shape(a).bounding_radius() + moving_.shape(b).bounding_radius() + within) continue;
+      if (meetings_.gap({a, b}).distance <= within) state.near.emplace(members_[i], members_[j]);
+    }
+}
+
+void ProcessWorld::save_controls(ProcessState& state) const {
+  for (const LinkedBodies& group : moving_.linked_groups())
+    for (std::size_t k = 0; k < group.motors().size(); ++k)
+      state.motors[part_.motors[static_cast<std::size_t>(group.motors()[k])]] = {group.torques()[k], group.next_looks()[k]};
+  state.force_points_body.clear();
+  for (const int force : moving_.active_forces()) state.force_points_body[part_.forces[static_cast<std::size_t>(force)]] = moving_.force_points_body()[static_cast<std::size_t>(force)];
+}
+
+ProcessState ProcessWorld::at_start(const std::vector<RigidBodyState>& states) {
+  ProcessState state;
+  state.members = members_;
+  for (const int body : members_) state.states.push_back(states[static_cast<std::size_t>(body)]);
+  load(state);
+  std::vector<RigidBodyState> all = moving_.states();
+  for (LinkedBodies& group : moving_.linked_groups()) group.project(all, 0.0);
+  moving_.stand_at(0.0, all);
+  return save();
+}
+
+std::vector<Event> ProcessWorld::take_events() {
+  std::vector<Event> events = std::move(collector_.events);
+  collector_.events.clear();
+  for (Event& event : events) {
+    event.body_a = whole(event.body_a);
+    event.body_b = whole(event.body_b);
+  }
+  return events;
+}
+
+// ---- A step ----------------------------------------------------------------------------------------------------------------
+
+// Every member goes along a smooth path, so that whoever asks where it is asks one thing.
+void ProcessWorld::begin_step(double target) {
+  moving_.begin_step(target);
+  for (const int member : part_.members)
+    if (!moving_.smooth_path(member)) moving_.set_path(member, moving_.state(member), moving_.path_end(member));
+}
+
+ProcessWorld::Outcome ProcessWorld::step(const ProcessState& start, double due) {
+  load(start);
+  const double next_look = moving_.look(), next_switch = load_forces(start);
+  ProcessState from(start);
+  save_controls(from);
+  ++counters_.steps;
+  begin_step(std::min({due, next_look, next_switch}));
+  std::vector<BodyPair> pairs, near;
+  if (has_contacts()) {
+    pairs = meetings_.candidates();
+    if (keep_contacts(pairs)) {   // a blow at the very start
+      ProcessState after = save();
+      return {{from, from.time, {}, {}}, std::move(after), take_events()};
+    }
+    if (!contacts_->empty()) near = meetings_.candidates();
+  }
+  const std::optional<Earliest> earliest = pairs.empty() ? std::nullopt : meetings_.earliest(pairs);
+  const double reached = earliest ? earliest->time : moving_.target();
+  ProcessStep step{from, reached, {}, forces()};
+  if (reached > from.time)
+    for (const int member : part_.members) step.paths.push_back(*moving_.smooth_path(member));
+  moving_.commit(reached);
+  require_numbers();
+  if (has_contacts()) {
+    if (!pairs.empty() && !meetings_.apart_at_target()) meetings_.separate(pairs);
+    if (!contacts_->commit()) meetings_.separate(near);
+    if (earliest) resolve(near.empty() ? pairs : near, pairs[earliest->pair]);
+  }
+  ProcessState after = save();
+  return {std::move(step), std::move(after), take_events()};
+}
+
+// Bodies in lasting contact get their paths; `pairs` are those among which impacts are left to be looked for.
+// @return whether blows were struck where the step begins
+bool ProcessWorld::keep_contacts(std::vector<BodyPair>& pairs) {
+  while (const auto earlier = contacts_->advance(pairs)) {
+    if (!collector_.events.empty()) return true;
+    begin_step(*earlier);
+    pairs = meetings_.candidates();
+  }
+  if (contacts_->empty()) return false;
+  pairs = meetings_.candidates();   // the paths are others now
+  std::erase_if(pairs, [&](const BodyPair& pair) { return contacts_->keeps(pair); });
+  return false;
+}
+
+std::vector<ContactPoint> ProcessWorld::forces() const {
+  if (!has_contacts()) return {};
+  std::vector<ContactPoint> forces = contacts_->forces();
+  for (ContactPoint& point : forces) {
+    point.body_a = whole(point.body_a);
+    point.body_b = whole(point.body_b);
+  }
+  return forces;
+}
+
+void ProcessWorld::require_numbers() const {
+  for (const int member : part_.members)
+    if (!pack(moving_.state(member)).allFinite())
+      throw StoppedRun(fmt::format("body {}: its state is not a number (integrator: {}; impulses: {})", name(member), laws_.integrator_source, laws_.impulse_source));
+}
+
+// ---- Impacts ---------------------------------------------------------------------------------------------------------------
+
+std::vector<BodyPair> ProcessWorld::near_pairs(std::optional<BodyPair> trigger) const {
+  std::vector<BodyPair> pairs;
+  for (int a = 0; a < moving_.size(); ++a)
+    for (int b = a + 1; b < moving_.size(); ++b) {
+      if (trigger && BodyPair{a, b} == *trigger) {
+        pairs.emplace_back(a, b);
+        continue;
+      }
+      if (!moving_.world().contact || !moving_.may_collide(a, b)) continue;
+      const double reach = moving_.shape(a).bounding_radius() + moving_.shape(b).bounding_radius();
+      if ((moving_.state(a).com_world - moving_.state(b).com_world).norm() > reach * (1 + kNear)) continue;
+      pairs.emplace_back(a, b);
+    }
+  return pairs;
+}
+
+ProcessWorld::Change ProcessWorld::begin_contacts(const ProcessState& state) {
+  load(state);
+  const std::vector<BodyPair> pairs = near_pairs(std::nullopt);
+  meetings_.separate(pairs);
+  contacts_->begin_where_touching(pairs);
+  ProcessState after = save();
+  return {std::move(after), take_events()};
+}
+
+ProcessWorld::Change ProcessWorld::collide(BodyPair pair, const ProcessState& state) {
+  load(state);
+  load_forces(state);
+  const BodyPair trigger = local(pair);
+  const std::vector<BodyPair> pairs = near_pairs(trigger);
+  meetings_.separate(pairs);
+  resolve(pairs, trigger);
+  require_numbers();
+  if (collector_.events.empty()) {   // they met without coming nearer
+    const collision::Gap gap = meetings_.gap(trigger);
+    collector_.event({moving_.time(), EventKind::kCollision, trigger.first, trigger.second, 0.5 * (gap.point_a_world + gap.point_b_world), gap.normal_b_to_a_world, 0.0, 0.0, 0.0});
+  }
+  ProcessState after = save();
+  return {std::move(after), take_events()};
+}
+
+// As a world of all bodies does it (retroactive.cpp): everything that touches, then what rods and joints pass on, until neither changes anything.
+void ProcessWorld::resolve(const std::vector<BodyPair>& pairs, BodyPair trigger) {
+  const StageTimer timer(counters_.impact_seconds);
+  std::vector<TouchingPair> touching;
+  std::size_t trigger_index = 0;
+  for (const BodyPair& pair : pairs) {
+    const collision::Gap gap = meetings_.gap(pair);
+    const bool lasting = has_contacts() && contacts_->lasts(pair) && contacts_->keeps(pair);
+    if (pair != trigger && !lasting && !(gap.distance <= meetings_.touching_distance(pair))) continue;
+    if (pair == trigger) trigger_index = touching.size();
+    touching.push_back({pair.first, pair.second, gap, meetings_.touching_points(pair, gap)});
+  }
+  Resolution resolution = impacts_.resolve(moving_, touching, trigger_index);
+  for (int round = 0; round < kMostPassings && moving_.keep_constraints(resolution.events); ++round) {
+    const Resolution echo = impacts_.resolve(moving_, touching, trigger_index);
+    if (echo.events.empty()) break;
+    resolution.events.insert(resolution.events.end(), echo.events.begin(), echo.events.end());
+  }
+  for (const Event& event : resolution.events) collector_.event(event);
+  if (!resolution.settled)
+    throw StoppedRun(fmt::format("collision (collision_impulse, apply_impulse of {}) left them approaching, however often it was applied: the impulse has no effect, the wrong sign or too little "
+                                 "size, or a lasting contact is needed there", laws_.impulse_source));
+  if (!has_contacts()) return impacts_.push_apart(moving_, touching, resolution.micro_impacts);
+  for (const TouchingPair& pair : touching) {
+    bool slow = true;
+    for (const Event& event : resolution.events)
+      if (event.body_a == pair.a && event.body_b == pair.b) slow = slow && impacts_.stays(moving_.world(), pair, -event.normal_velocity_before);
+    if (slow) contacts_->begin({pair.a, pair.b}, pair.gap);
+  }
+}
+
+}  // namespace tumble::engines

@@ -1,0 +1,166 @@
+#include "framework/engines/events/processes.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace tumble::engines {
+namespace {
+
+// Components of members, by the least of them, in order.
+class Components {
+ public:
+  explicit Components(const std::vector<int>& members) : members_(members), leader_(members.size()) { std::iota(leader_.begin(), leader_.end(), 0); }
+  bool has(int body) const { return std::binary_search(members_.begin(), members_.end(), body); }
+  void join(int a, int b) {
+    const int i = find(place(a)), j = find(place(b));
+    leader_[static_cast<std::size_t>(std::max(i, j))] = std::min(i, j);
+  }
+  std::vector<std::vector<int>> all() {
+    std::vector<std::vector<int>> by_leader(members_.size());
+    for (std::size_t k = 0; k < members_.size(); ++k) by_leader[static_cast<std::size_t>(find(static_cast<int>(k)))].push_back(members_[k]);
+    std::erase_if(by_leader, [](const auto& component) { return component.empty(); });
+    return by_leader;
+  }
+
+ private:
+  int place(int body) const { return static_cast<int>(std::lower_bound(members_.begin(), members_.end(), body) - members_.begin()); }
+  int find(int k) {
+    while (leader_[static_cast<std::size_t>(k)] != k) k = leader_[static_cast<std::size_t>(k)] = leader_[static_cast<std::size_t>(leader_[static_cast<std::size_t>(k)])];
+    return k;
+  }
+  const std::vector<int>& members_;
+  std::vector<int> leader_;
+};
+
+}  // namespace
+
+Processes::Processes(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules, RunCounters& counters)
+    : whole_(whole), passages_(whole, std::move(shape_of), laws, rules, counters),
+      holds_any_(!whole.springs.empty() || !whole.rods.empty() || !whole.joints.empty() || !whole.drags.empty() || !whole.point_forces.empty() || whole.contact.has_value()), linked_(whole.bodies.size(), -1) {
+  for (const std::vector<int>& group : groups_of_linked_bodies(whole))
+    for (const int body : group) linked_[static_cast<std::size_t>(body)] = group.front();
+  passages_.ask([this](const ProcessState& state) { return components_of(state).size() > 1; });
+}
+
+bool Processes::is_pushed(int body, double t) const {
+  return std::any_of(whole_.point_forces.begin(), whole_.point_forces.end(), [&](const PointForce& force) { return force.body == body && t < force.end; });
+}
+
+Processes::Start Processes::start(const std::vector<RigidBodyState>& states, const std::vector<BodyPair>& touching) {
+  std::vector<int> movers;
+  for (int i = 0; i < static_cast<int>(whole_.bodies.size()); ++i)
+    if (!whole_.bodies[static_cast<std::size_t>(i)].immovable()) movers.push_back(i);
+  Components components(movers);
+  std::vector<bool> held(whole_.bodies.size(), false);
+  for (const int body : movers) {
+    const int first = linked_[static_cast<std::size_t>(body)];
+    held[static_cast<std::size_t>(body)] = first >= 0 || is_pushed(body, 0.0);
+    if (first >= 0) components.join(first, body);
+  }
+  for (const auto& [a, b] : touching) {
+    for (const int body : {a, b}) held[static_cast<std::size_t>(body)] = true;
+    if (components.has(a) && components.has(b)) components.join(a, b);
+  }
+  Start start;
+  for (const std::vector<int>& members : components.all()) {
+    if (std::none_of(members.begin(), members.end(), [&](int body) { return held[static_cast<std::size_t>(body)]; })) continue;
+    ProcessWorld& world = passages_.world_of(members);
+    const ProcessState placed = world.at_start(states);
+    if (!holds_contacts()) {
+      for (BegunFlight& begun : sort(placed)) start.flights.push_back(std::move(begun));
+      continue;
+    }
+    const ProcessWorld::Change change = world.begin_contacts(placed);
+    for (BegunFlight& begun : sort(change.after)) start.flights.push_back(std::move(begun));
+    start.events.insert(start.events.end(), change.events.begin(), change.events.end());
+  }
+  return start;
+}
+
+ProcessState Processes::state_of(int body, const Flight& flight, const RigidBodyState& alone, double t) {
+  if (flight.passage >= 0) {
+    ProcessState state = passages_.state_at(flight.passage, t);
+    state.contacts.reset();   // of that passage's own world
+    return state;
+  }
+  ProcessState state;
+  state.time = t;
+  state.members = {body};
+  state.states = {alone};
+  return state;
+}
+
+ProcessState Processes::together(const ProcessState& a, const ProcessState& b) {
+  ProcessState both;
+  both.time = a.time;
+  std::merge(a.members.begin(), a.members.end(), b.members.begin(), b.members.end(), std::back_inserter(both.members));
+  for (const int body : both.members) both.states.push_back(std::binary_search(a.members.begin(), a.members.end(), body) ? a.state_of(body) : b.state_of(body));
+  for (const ProcessState* state : {&a, &b}) {
+    both.motors.insert(state->motors.begin(), state->motors.end());
+    both.force_points_body.insert(state->force_points_body.begin(), state->force_points_body.end());
+    both.met.insert(state->met.begin(), state->met.end());
+    both.lasting.insert(state->lasting.begin(), state->lasting.end());
+  }
+  return both;
+}
+
+std::vector<std::vector<int>> Processes::components_of(const ProcessState& state) const {
+  Components components(state.members);
+  for (const int body : state.members)
+    if (const int first = linked_[static_cast<std::size_t>(body)]; first >= 0) components.join(first, body);
+  for (const std::set<BodyPair>* pairs : {&state.lasting, &state.near})
+    for (const auto& [a, b] : *pairs)
+      if (components.has(a) && components.has(b)) components.join(a, b);
+  return components.all();
+}
+
+std::vector<BegunFlight> Processes::sort(const ProcessState& state) {
+  std::vector<BegunFlight> flights;
+  for (const std::vector<int>& members : components_of(state)) {
+    const int first = members.front();
+    const bool touches = std::any_of(state.lasting.begin(), state.lasting.end(), [&](const BodyPair& pair) { return pair.first == first || pair.second == first; });
+    const bool flies = members.size() == 1 && linked_[static_cast<std::size_t>(first)] < 0 && !touches && !is_pushed(first, state.time);
+    const int passage = flies ? -1 : passages_.begin(members.size() == state.members.size() ? state : component(state, members));
+    for (const int body : members) {
+      const RigidBodyState& now = state.state_of(body);
+      const Inertia& inertia = whole_.bodies[static_cast<std::size_t>(body)].inertia;
+      Flight flight;
+      flight.begin = state.time;
+      flight.com_world = now.com_world;
+      flight.velocity_world = inertia.inverse_mass * now.momentum_world;
+      flight.world_from_body = now.world_from_body;
+      flight.omega_body = inertia.inverse_inertia_body * (now.world_from_body.conjugate() * now.angular_momentum_world);
+      flight.passage = passage;
+      flights.push_back({body, flight});
+    }
+  }
+  std::sort(flights.begin(), flights.end(), [](const BegunFlight& a, const BegunFlight& b) { return a.body < b.body; });
+  return flights;
+}
+
+ProcessState Processes::component(const ProcessState& state, const std::vector<int>& members) const {
+  const auto ours = [&](int body) { return std::binary_search(members.begin(), members.end(), body); };
+  ProcessState part;
+  part.time = state.time;
+  part.members = members;
+  for (const int body : members) part.states.push_back(state.state_of(body));
+  for (const auto& [motor, hold] : state.motors) {
+    const JointLink& joint = whole_.joints[static_cast<std::size_t>(whole_.motors[static_cast<std::size_t>(motor)].joint)];
+    if (ours(joint.a.body) || ours(joint.b.body)) part.motors.emplace(motor, hold);
+  }
+  for (const auto& [force, point] : state.force_points_body)
+    if (ours(whole_.point_forces[static_cast<std::size_t>(force)].body)) part.force_points_body.emplace(force, point);
+  const auto whole = [&](const BodyPair& pair) {
+    const auto fits = [&](int body) { return ours(body) || whole_.bodies[static_cast<std::size_t>(body)].immovable(); };
+    return fits(pair.first) && fits(pair.second);
+  };
+  for (const auto& [pair, time] : state.met)
+    if (whole(pair)) part.met.emplace(pair, time);
+  for (const BodyPair& pair : state.lasting)
+    if (whole(pair)) part.lasting.insert(pair);
+  for (const BodyPair& pair : state.near)
+    if (whole(pair)) part.near.insert(pair);
+  return part;
+}
+
+}  // namespace tumble::engines

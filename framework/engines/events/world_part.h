@@ -1,0 +1,22 @@
+/// A part of a world: the bodies of one process, what is linked to them and pushes them, and the immovable ones they have to do with.
+#pragma once
+
+#include <vector>
+
+#include "framework/dynamics/world.h"
+
+namespace tumble::engines {
+
+struct WorldPart {
+  World world;
+  std::vector<int> bodies;          // by body of the part: its index in the whole, ascending
+  std::vector<int> members;         // by member (in the order they were asked for): its index in the part
+  std::vector<int> motors, forces;  // by motor and point force of the part: its index in the whole
+};
+
+/// @param members  movable bodies, ascending, with everything that a link ties to them
+/// @param still    immovable bodies to take in besides those that links end at
+/// @post solids of the part are points: whoever moves it has the whole's solids
+WorldPart part_of(const World& whole, const std::vector<int>& members, const std::vector<int>& still);
+
+}  // namespace tumble::engines

@@ -1,0 +1,231 @@
+// Bodies that links, forces and lasting contacts hold together are processes: every event-ordered engine commits the same of them, in
+// whatever order processes work, and what a world of all bodies does.
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "framework/core/error.h"
+#include "framework/scene/load_scene.h"
+#include "tests/engines/event_scenes.h"
+#include "tests/engines/reference_laws.h"
+
+namespace tumble::testing {
+namespace {
+
+using engines::TimewarpTrial;
+
+const Vector3d kGravity(0, 0, -9.81);
+
+const Laws& laws() {
+  static const Laws reference = reference_laws();
+  return reference;
+}
+
+Trajectory run_with(const std::string& engine, const scene::Scene& scene, const TimewarpTrial& trial = {}) { return run_by(engine, scene, trial, 60.0, laws()); }
+
+scene::Scene course_scene(const std::string& name, double duration) {
+  scene::Scene scene = scene::load_scene(std::filesystem::path(TUMBLE_SOURCE_DIR) / "assignments/a3_constraints/scenes" / (name + ".json"));
+  scene.duration_s = std::min(scene.duration_s, duration);
+  return scene;
+}
+
+void expect_one_trace(const scene::Scene& scene, std::size_t least) {
+  const Trajectory reference = run_with("ordered", scene);
+  ASSERT_EQ(reference.stopped_by, "");
+  ASSERT_GE(reference.events.size(), least);
+  for (const char* engine : {"tw", "ca"}) EXPECT_EQ(difference(reference, run_with(engine, scene)), "") << engine;
+}
+
+/// Bobs on rods from the ceiling, each a process, and balls in free flight among them; bob 0 is slowed by drag, ball 0 is pushed.
+scene::Scene pendula_and_balls(int pendula, double duration) {
+  std::vector<scene::BodySpec> bodies;
+  scene::Scene scene;
+  for (int i = 0; i < pendula; ++i) {
+    const std::string bob = "bob" + std::to_string(i);
+    bodies.push_back(ball(bob, 0.1, 1.0, {0.45 * i, 0, 0}, {0.8 - 0.2 * i, 0, 0}));
+    scene.rods.push_back({"rod" + std::to_string(i), {"", {0.45 * i, 0, 1}}, {bob, Vector3d::Zero()}, 1.0});
+    bodies.push_back(ball("ball" + std::to_string(i), 0.08, 0.5, {0.45 * i + 0.05, 0.35, 0.02 * i + 0.3}, {0.0, -1.0, 0.6}));
+  }
+  bodies.push_back(plane("wall", {0, -0.8, 0}, {0, 1, 0}));
+  bodies.push_back(plane("floor", {0, 0, -0.4}, {0, 0, 1}));
+  bodies.push_back(plane("back", {0, 0.9, 0}, {0, -1, 0}));
+  scene.name = "pendula";
+  scene.bodies = std::move(bodies);
+  scene.duration_s = duration;
+  scene.gravity_m_s2 = kGravity;
+  scene.stabilisation = scene::StabilisationSpec{};
+  scene.drags.push_back({"bob0", 0.2, 0.0});
+  scene.point_forces.push_back({"ball0", {0.5, 0, 1.0}, {0.05, 0.35, 0.38}, 0.1, 0.3});
+  return scene;
+}
+
+/// A tower of three boxes and a ball shot at it; restitution 0 within the tower.
+scene::Scene tower_and_projectile(double shot_m_s) {
+  std::vector<scene::BodySpec> bodies{plane("floor", {0, 0, 0}, {0, 0, 1})};
+  for (int i = 0; i < 3; ++i) bodies.push_back(box("block" + std::to_string(i), {0.1, 0.1, 0.1}, 1.0, {0, 0, 0.1 + 0.23 * i + 0.02}, Vector3d::Zero()));
+  bodies.push_back(ball("shot", 0.05, 0.4, {-2, 0, 0.33}, {shot_m_s, 0, 0.9}));
+  for (scene::BodySpec& body : bodies) {
+    body.restitution = 0.0;
+    body.friction = 0.4;
+  }
+  scene::Scene scene = scene_of(bodies, 0.9, kGravity);
+  scene.contact = scene::ContactSpec{};
+  return scene;
+}
+
+// ---- One trace ---------------------------------------------------------------------------------------------------------
+
+TEST(Processes, LinkedInTheCoursesScenesCommitTheReferencesTrace) {
+  expect_one_trace(course_scene("newtons_cradle", 1.0), 4);
+  expect_one_trace(course_scene("newtons_cradle_springs", 1.0), 4);
+  expect_one_trace(course_scene("robot_arm", 0.5), 0);
+}
+
+TEST(Processes, InLastingContactInTheCoursesScenesCommitTheReferencesTrace) {
+  expect_one_trace(course_scene("drop_a_box", 1.5), 4);
+  expect_one_trace(course_scene("dropped_on_a_hung_block", 0.6), 50);
+  expect_one_trace(course_scene("card_tent", 0.8), 4);
+  expect_one_trace(course_scene("bounce_to_rolling", 1.0), 4);
+  const scene::Scene dominoes = course_scene("dominoes", 0.4);
+  EXPECT_EQ(difference(run_with("ordered", dominoes), run_with("tw", dominoes)), "");
+}
+
+TEST(Processes, AmongFreeBodiesCommitTheReferencesTrace) {
+  expect_one_trace(pendula_and_balls(6, 1.2), 15);
+  expect_one_trace(tower_and_projectile(5.0), 15);
+}
+
+// ---- Hard orders ---------------------------------------------------------------------------------------------------------
+
+void expect_hard_orders_change_nothing(const scene::Scene& scene, int seeds) {
+  const Trajectory reference = run_with("ordered", scene);
+  std::uint64_t rollbacks = 0, anti_messages = 0;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const Trajectory run = run_with("tw", scene, {static_cast<std::uint64_t>(seed), true, 0.15, 5, 0.05});
+    ASSERT_EQ(difference(reference, run), "") << "seed " << seed;
+    rollbacks += run.counters.counts.at("rollbacks");
+    anti_messages += run.counters.counts.at("anti_messages");
+  }
+  EXPECT_GT(rollbacks, static_cast<std::uint64_t>(5 * seeds));
+  EXPECT_GT(anti_messages, static_cast<std::uint64_t>(seeds));
+}
+
+TEST(AdversarialOrderOfProcesses, LeavesLinkedBodiesTraceAsItIs) { expect_hard_orders_change_nothing(pendula_and_balls(5, 0.9), 20); }
+
+// Towers fuse, are hit, come apart, and all of it is taken back again and again: groups below whose birth the rollback goes as well.
+TEST(AdversarialOrderOfProcesses, LeavesGroupsInContactAsTheyAre) { expect_hard_orders_change_nothing(tower_and_projectile(5.0), 20); }
+
+// ---- Groups that come and go -----------------------------------------------------------------------------------------------
+
+/// Pairs in lasting contact at a time, as a run's events tell.
+std::set<std::pair<int, int>> together(const Trajectory& run, double t) {
+  std::set<std::pair<int, int>> pairs;
+  for (const Event& event : run.events) {
+    if (event.time > t) break;
+    if (event.kind == EventKind::kContact) pairs.insert({event.body_a, event.body_b});
+    if (event.kind == EventKind::kBreak) pairs.erase({event.body_a, event.body_b});
+  }
+  return pairs;
+}
+
+// The tower fuses block by block; the shot comes while it stands, and is found after much of it has been worked at.
+TEST(ContactGroup, ThatSplitsUnderRollbackHasTheReferencesMembersAtAllTimes) {
+  const scene::Scene scene = tower_and_projectile(5.0);
+  const Trajectory reference = run_with("ordered", scene), run = run_with("tw", scene, {7, true, 0.3, 4, 0.2});
+  std::size_t most = 0, least = 100;
+  for (int k = 0; k <= 1000; ++k) {
+    const double t = scene.duration_s * k / 1000;
+    const auto expected = together(reference, t);
+    ASSERT_EQ(expected, together(run, t)) << "at " << t;
+    most = std::max(most, expected.size());
+    if (t > 0.5) least = std::min(least, expected.size());
+  }
+  EXPECT_GE(most, 3U);     // it stood
+  EXPECT_LT(least, most);  // and came apart
+}
+
+// ---- Callbacks -------------------------------------------------------------------------------------------------------------
+
+Trajectory run_with_callbacks(const std::string& engine, const scene::Scene& scene, const std::vector<engines::Callback>& callbacks, const TimewarpTrial& trial = {}) {
+  TrajectoryRecorder recorder;
+  engines::RunOptions options;
+  options.engine = engine;
+  options.timewarp = engines::fast_timewarp();
+  options.trial = trial;
+  options.callbacks = callbacks;
+  engines::run_scene(scene, laws(), options, recorder);
+  return recorder.trajectory();
+}
+
+// Each is handed to all balls at once; the local virtual times of most lie beyond it by then.
+TEST(LateCallback, ActsOnceInTheCommittedTraceHoweverOftenItWasTakenBack) {
+  const scene::Scene scene = sized("gas", 60, 1.0);
+  std::vector<engines::Callback> callbacks;
+  std::vector<int> all;
+  for (int i = 0; i < static_cast<int>(scene.bodies.size()); ++i)
+    if (!scene.bodies[static_cast<std::size_t>(i)].immovable) all.push_back(i);
+  int calls = 0;
+  for (const double time : {0.31, 0.31, 0.6180339})
+    callbacks.push_back({time, all, [&calls](int body, RigidBodyState& state) {
+                           ++calls;
+                           state.momentum_world += Vector3d(0.1, 0.02 * (body % 5), -0.1);
+                         }});
+  const Trajectory reference = run_with_callbacks("ordered", scene, callbacks);
+  ASSERT_EQ(calls, 180);
+  const auto acts = [](const Trajectory& run) { return std::count_if(run.events.begin(), run.events.end(), [](const Event& event) { return event.kind == EventKind::kControl; }); };
+  EXPECT_EQ(acts(reference), 180);
+  EXPECT_EQ(difference(reference, run_with_callbacks("ca", scene, callbacks)), "");
+  EXPECT_EQ(difference(reference, run_with_callbacks("tw", scene, callbacks)), "");
+  calls = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const Trajectory run = run_with_callbacks("tw", scene, callbacks, {seed, true, 0.2, 7, 0.1});
+    ASSERT_EQ(difference(reference, run), "") << "seed " << seed;
+    EXPECT_EQ(acts(run), 180);
+  }
+  EXPECT_GT(calls, 20 * 180);   // some were taken back
+}
+
+TEST(LateCallback, ChangesProcessesToo) {
+  const scene::Scene scene = pendula_and_balls(4, 0.8);
+  const std::vector<engines::Callback> callbacks{{0.25, {0, 1, 4}, [](int, RigidBodyState& state) { state.momentum_world.y() += 0.3; }}};
+  const Trajectory reference = run_with_callbacks("ordered", scene, callbacks);
+  EXPECT_EQ(difference(reference, run_with_callbacks("ca", scene, callbacks)), "");
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) ASSERT_EQ(difference(reference, run_with_callbacks("tw", scene, callbacks, {seed, true, 0.2, 5, 0.05})), "") << "seed " << seed;
+}
+
+TEST(LateCallback, IsRefusedByTheWorldOfAllBodies) {
+  EXPECT_THROW(run_with_callbacks("rd", pendula_and_balls(1, 0.1), {{0.05, {0}, [](int, RigidBodyState&) {}}}), UserError);
+}
+
+// ---- As a world of all bodies does it --------------------------------------------------------------------------------------
+
+// A step of fourth order, cut elsewhere: 1e-8 at 1/240 s, grown by some impacts.
+constexpr double kTruncation = 1e-6;   // s, m
+
+TEST(Processes, MoveAsTheWorldOfAllBodiesDoes) {
+  const scene::Scene scene = pendula_and_balls(6, 0.5);
+  const Trajectory rd = run_with("rd", scene), tw = run_with("tw", scene);
+  ASSERT_EQ(rd.events.size(), tw.events.size());
+  ASSERT_GE(rd.events.size(), 6U);
+  for (std::size_t k = 0; k < rd.events.size(); ++k) {
+    EXPECT_EQ(rd.events[k].kind, tw.events[k].kind) << k;
+    EXPECT_EQ(rd.events[k].body_a, tw.events[k].body_a) << k;
+    EXPECT_NEAR(rd.events[k].time, tw.events[k].time, kTruncation) << k;
+  }
+  for (std::size_t i = 0; i < rd.bodies.size(); ++i) EXPECT_LT((rd.frames.back().poses[i].com_world - tw.frames.back().poses[i].com_world).norm(), 10 * kTruncation) << rd.bodies[i].name;
+}
+
+TEST(Processes, RecordWhatTheirLinksAndContactsPullAndPush) {
+  const Trajectory run = run_with("tw", pendula_and_balls(2, 0.1));
+  // m v^2 / l + m g at the lowest point, slowed by drag: v^2 = 0.64 less a little.
+  EXPECT_NEAR(run.frames.front().rod_tensions.at(0), 0.64 + 9.81, 1e-9);
+  const Trajectory tower = run_with("tw", tower_and_projectile(0.1));
+  double push = 0.0;
+  for (const ContactPoint& point : tower.frames.back().contacts) push += point.body_a == 0 ? -point.force_on_a_world.z() : 0.0;
+  EXPECT_NEAR(push, 3.4 * 9.81, 1e-6 * 30);   // what three blocks weigh, and the shot that has fallen beside them
+}
+
+}  // namespace
+}  // namespace tumble::testing
