@@ -33,10 +33,6 @@ CostWay way_by_method(const Method& method, const Laws& laws) {
   return way;
 }
 
-bool goes_in_closed_form(const scene::Scene& scene) {
-  return scene.springs.empty() && scene.rods.empty() && scene.joints.empty() && scene.drags.empty() && scene.motors.empty() && scene.point_forces.empty() && !scene.contact;
-}
-
 CostWay way_by_engine(const std::string& word, const Laws& laws) {
   CostWay way;
   way.word = word;
@@ -84,7 +80,7 @@ CostWay by_impacts(const std::string& word, const scene::Scene& scene, const Law
   way.controlled = true;
   way.laws = laws;
   way.counted = "gap_evaluations";
-  if (goes_in_closed_form(scene)) way.propagator = "auto";
+  if (engines::goes_in_closed_form(scene)) way.propagator = "auto";
   else way.method = [](double) { return step_of(method_named("fehlberg78"), kTightest); };
   way.tuned = [find = root.find](double tolerance, Laws& tuned) {
     tuned.find_impact_time = [find, tolerance](const ScalarFunction& gap, const ScalarFunction& rate, double low, double high, double) { return find(gap, rate, low, high, tolerance); };
@@ -121,7 +117,7 @@ std::vector<std::string> methods_for(const scene::Scene& scene, const CostWords&
 
 std::vector<std::string> engines_for(const scene::Scene& scene, const CostWords& words) {
   if (!words.engines.empty()) return is_none(words.engines) ? std::vector<std::string>{} : words.engines;
-  if (!goes_in_closed_form(scene)) return {};
+  if (!engines::goes_in_closed_form(scene)) return {};
   return engines::fast_timewarp() ? std::vector<std::string>{"auto", "ca", "tw"} : std::vector<std::string>{"auto", "ca"};
 }
 

@@ -41,8 +41,6 @@ struct CostSubject {
 engines::CostWay way_by_method(const Method& method, const Laws& laws);
 /// @param word  auto (rd with closed forms), ca, tw, ordered
 engines::CostWay way_by_engine(const std::string& word, const Laws& laws);
-/// What nothing but gravity and impacts moves goes in closed form too.
-bool goes_in_closed_form(const scene::Scene& scene);
 
 /// @throws UserError naming what is not known, or does not suit the scene
 CostSubject find_subject(const Context& context, const CostWords& words);

@@ -54,7 +54,7 @@ std::vector<CostWay> ways_for(const Context& context, const scene::Scene& scene,
     own.laws = chosen.laws;
     return {own};
   }
-  if (goes_in_closed_form(scene))
+  if (engines::goes_in_closed_form(scene))
     for (const char* word : {"ca", "tw", "auto"})
       if (std::string(word) != "tw" || engines::fast_timewarp()) ways.push_back(way_by_engine(word, chosen.laws));
   if (words.budget_s) {   // the most accurate first

@@ -343,9 +343,9 @@ TEST_F(CommandLine, AnEngineAndASizeThatThereAreNotAreRefusedWithWhatThereIs) {
   const Said size = type("run bouncing_ball --n 5");
   EXPECT_EQ(size.code, 2);
   EXPECT_TRUE(holds(size.err, "has one size") && holds(size.err, "atoms")) << size.err;
-  const Said scene = type("run newtons_cradle --engine tw --modules reference");
+  const Said scene = type("run bowl --engine tw --modules reference");
   EXPECT_EQ(scene.code, 2);
-  EXPECT_TRUE(holds(scene.err, "rod") && holds(scene.err, "use --engine rd")) << scene.err;
+  EXPECT_TRUE(holds(scene.err, "sleep") && holds(scene.err, "use --engine rd")) << scene.err;
 }
 #endif
 

@@ -81,6 +81,9 @@ struct CostOptions {
   std::function<void(const std::string&)> told;   // progress, in words; empty: nobody listens
 };
 
+/// What nothing but gravity and impacts moves goes in closed form too.
+bool goes_in_closed_form(const scene::Scene& scene);
+
 /// @param laws  right ones: what they do not integrate is part of the truth
 /// @throws UserError where no truth can be had even for a short while
 CostTruth find_truth(const scene::Scene& scene, const Laws& laws, const CostOptions& options);

@@ -53,7 +53,7 @@ std::optional<FoundImpact> find_impact(FlightRun& run, const TaughtProcess& of_a
 CheckFinding closeness(const FlightWorld& world, int a, const Flight& f, int b, const Flight& g, double t) {
   CheckFinding finding;
   const collision::MotionState x = world.motion_at(a, f, t), y = world.motion_at(b, g, t);
-  const collision::MotionBounds of_a = world.bounds(a, f), of_b = world.bounds(b, g);
+  const collision::MotionBounds of_a = world.bounds(a, f, t), of_b = world.bounds(b, g, t);
   finding.gap = std::max(0.0, collision::compute_gap(world.shape(a), x.pose, world.shape(b), y.pose).distance);
   const auto turning = [&](int body, double rate) { return rate > 0 ? rate * world.radius(body) : 0.0; };   // a half-space has no radius, and does not turn
   finding.closing_speed = (x.velocity_world - y.velocity_world).norm() + turning(a, of_a.angular_speed) + turning(b, of_b.angular_speed);
