@@ -61,6 +61,7 @@ namespace {
 constexpr double kWheel = 0.22;          // radius [m]
 constexpr double kLane = 1.0;            // between pendula [m]: those that swing far meet their neighbours
 constexpr double kRod = 1.5;             // [m]
+constexpr double kBob = 0.12;            // [m]
 
 // A motor asks for a turn that is never reached: full torque at a standstill, none at 10 rad/s.
 void add_vehicle(int number, const Vector3d& at, Scene& scene) {
@@ -106,11 +107,17 @@ Scene cars(int n) {
   floor.restitution = 0.5;
   floor.friction = 1.0;
   scene.bodies.push_back(floor);
+  std::vector<Vector3d> bobs;   // where they begin: two that swing towards each other must not begin in each other
   for (int v = 0; v < vehicles; ++v) add_vehicle(v + 1, {-0.5 * kLane * across - 0.6, ((v + 0.5) / vehicles - 0.5) * kLane * across, 0}, scene);
   for (int i = 0; i < n; ++i) {
     const Vector3d pivot((i / across - 0.5 * (across - 1)) * kLane, (i % across - 0.5 * (across - 1)) * kLane, 0.42 + kRod);
-    const double lean = random.between(0.1, 0.35), way = random.between(0.0, 2 * std::numbers::pi);
-    BodySpec bob = body_at(fmt::format("bob_{}", i + 1), SphereSpec{0.12}, 0.5, pivot + kRod * Vector3d(std::sin(lean) * std::cos(way), std::sin(lean) * std::sin(way), -std::cos(lean)), i);
+    Vector3d place;
+    do {
+      const double lean = random.between(0.1, 0.35), way = random.between(0.0, 2 * std::numbers::pi);
+      place = pivot + kRod * Vector3d(std::sin(lean) * std::cos(way), std::sin(lean) * std::sin(way), -std::cos(lean));
+    } while (std::any_of(bobs.begin(), bobs.end(), [&](const Vector3d& other) { return (other - place).norm() < 2.2 * kBob; }));
+    bobs.push_back(place);
+    BodySpec bob = body_at(fmt::format("bob_{}", i + 1), SphereSpec{kBob}, 0.5, place, i);
     bob.restitution = 0.9;
     scene.rods.push_back({fmt::format("rod_{}", i + 1), {"", pivot}, {bob.name, Vector3d::Zero()}, kRod});
     scene.bodies.push_back(bob);

@@ -227,5 +227,16 @@ TEST(Processes, RecordWhatTheirLinksAndContactsPullAndPush) {
   EXPECT_NEAR(push, 3.4 * 9.81, 1e-6 * 30);   // what three blocks weigh, and the shot that has fallen beside them
 }
 
+TEST(SizedScenes, BeginApartAtTheirOwnSize) {
+  for (const scene::SizedScene& sized_scene : scene::sized_scenes()) {
+    const scene::Scene scene = sized(sized_scene.name, sized_scene.default_n, 1e-6);
+    EXPECT_NO_THROW({   // an overlap at the start is refused
+      const Trajectory run = run_with("rd", scene);
+      EXPECT_EQ(run.stopped_by, "") << sized_scene.name;
+      EXPECT_GE(run.frames.front().smallest_gap, 0.0) << sized_scene.name;
+    }) << sized_scene.name;
+  }
+}
+
 }  // namespace
 }  // namespace tumble::testing
