@@ -6,6 +6,7 @@
 #include "framework/core/error.h"
 #include "framework/engines/cost/choice.h"
 #include "framework/engines/truths/memory_scene.h"
+#include "tests/engines/cost_scenes.h"
 
 namespace tumble::testing {
 namespace {
@@ -18,24 +19,7 @@ using engines::CostWay;
 constexpr double kFrames = 60.0;   // Hz
 
 /// A box that tumbles for a second.
-scene::Scene tumbling() {
-  scene::Scene scene = truths::empty_scene("tumbling", 1.0, 1e-3);
-  scene::BodySpec top = truths::point_mass("top", 1.0, Vector3d::Zero(), Vector3d(1.0, 0.0, 0.0));
-  top.inertia_body_kg_m2 = Vector3d(1.0, 2.0, 3.0).asDiagonal();
-  top.omega_world_rad_s = Vector3d(3.0, 2.0, 5.0);
-  scene.bodies = {top};
-  return scene;
-}
-
-CostWay way_of(const std::string& word) {
-  const Method& method = method_named(word);
-  CostWay way;
-  way.name = method.name;
-  way.method = [method](double tolerance) { return step_of(method, tolerance); };
-  way.controlled = method.controlled;
-  way.laws = library_laws();
-  return way;
-}
+scene::Scene tumbling() { return free_top(Vector3d(3.0, 2.0, 5.0)); }
 
 CostTruth truth_at_frames(const scene::Scene& scene) {
   CostOptions options;

@@ -7,6 +7,7 @@
 #include "framework/engines/cost/cost.h"
 #include "framework/engines/cost/reading.h"
 #include "framework/engines/truths/memory_scene.h"
+#include "tests/engines/cost_scenes.h"
 
 namespace tumble::testing {
 namespace {
@@ -16,25 +17,7 @@ using engines::CostTruth;
 using engines::CostWay;
 
 /// A box that spins about no axis of its own, for a second, a third of a turn away from where Euler's method puts it.
-scene::Scene free_top() {
-  scene::Scene scene = truths::empty_scene("free top", 1.0, 1e-3);
-  scene::BodySpec top = truths::point_mass("top", 1.0, Vector3d::Zero(), Vector3d(1.0, 0.0, 0.0));
-  top.inertia_body_kg_m2 = Vector3d(1.0, 2.0, 3.0).asDiagonal();
-  top.omega_world_rad_s = Vector3d(1.0, 0.5, 2.0);
-  scene.bodies = {top};
-  return scene;
-}
-
-CostWay way_of(const std::string& word) {
-  const Method& method = method_named(word);
-  CostWay way;
-  way.name = method.name;
-  way.method = [method](double tolerance) { return step_of(method, tolerance); };
-  way.order = method.order;
-  way.controlled = method.controlled;
-  way.laws = library_laws();
-  return way;
-}
+scene::Scene turning() { return free_top(Vector3d(1.0, 0.5, 2.0)); }
 
 /// A short ladder of steps or tolerances.
 std::vector<CostRung> ladder_of(const scene::Scene& scene, const CostWay& way, const CostTruth& truth) {
@@ -42,7 +25,7 @@ std::vector<CostRung> ladder_of(const scene::Scene& scene, const CostWay& way, c
 }
 
 TEST(Cost, TruthOfAFreeTopIsTheClosedFormToRoundOff) {
-  const CostTruth truth = engines::find_truth(free_top(), library_laws(), {});
+  const CostTruth truth = engines::find_truth(turning(), library_laws(), {});
   EXPECT_NE(truth.what.find("closed form"), std::string::npos) << truth.what;
   EXPECT_EQ(truth.duration_s, 1.0);
   // Two engines, each a few roundings of elliptic functions a sample; a metre is the scale.
@@ -50,7 +33,7 @@ TEST(Cost, TruthOfAFreeTopIsTheClosedFormToRoundOff) {
 }
 
 TEST(Cost, LaddersShowTheOrderOfTheirMethod) {
-  const scene::Scene scene = free_top();
+  const scene::Scene scene = turning();
   const CostTruth truth = engines::find_truth(scene, library_laws(), {});
   for (const char* word : {"euler", "midpoint", "rk4"}) {
     const CostWay way = way_of(word);
@@ -64,7 +47,7 @@ TEST(Cost, LaddersShowTheOrderOfTheirMethod) {
 }
 
 TEST(Cost, AStageThatIsOffIsSaidToBe) {
-  const scene::Scene scene = free_top();
+  const scene::Scene scene = turning();
   const CostTruth truth = engines::find_truth(scene, library_laws(), {});
   CostWay way = way_of("rk4");
   way.name = "your rk4_step";
@@ -79,7 +62,7 @@ TEST(Cost, AStageThatIsOffIsSaidToBe) {
 }
 
 TEST(Cost, AWrongLawDoesNotConverge) {
-  const scene::Scene scene = free_top();
+  const scene::Scene scene = turning();
   const CostTruth truth = engines::find_truth(scene, library_laws(), {});
   CostWay way = way_of("rk4");
   way.laws.state_derivative = [right = way.laws.state_derivative](const RigidBodyState& state, const Inertia& inertia, const Wrench& wrench) -> VectorXd {
@@ -90,7 +73,7 @@ TEST(Cost, AWrongLawDoesNotConverge) {
 }
 
 TEST(Cost, SmallerTolerancesCostMoreEvaluationsAndLessError) {
-  const scene::Scene scene = free_top();
+  const scene::Scene scene = turning();
   const CostTruth truth = engines::find_truth(scene, library_laws(), {});
   const std::vector<CostRung> rungs = ladder_of(scene, way_of("dopri5"), truth);
   ASSERT_EQ(rungs.size(), 4u);
@@ -99,7 +82,7 @@ TEST(Cost, SmallerTolerancesCostMoreEvaluationsAndLessError) {
 }
 
 TEST(Cost, EnergyThatTheMethodLosesIsSeen) {
-  const scene::Scene scene = free_top();
+  const scene::Scene scene = turning();
   const CostTruth truth = engines::find_truth(scene, library_laws(), {});
   const CostRung coarse = engines::run_rung(scene, way_of("euler"), truth, 2, kUnset, {}), fine = engines::run_rung(scene, way_of("rk4"), truth, 8, kUnset, {});
   ASSERT_EQ(coarse.energy_errors.size(), truth.samples.size());

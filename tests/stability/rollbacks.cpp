@@ -47,14 +47,14 @@ void rollback(const Given& given, Findings& findings) {
   const Trajectory reference = run_by("ordered", scene, laws);
   const int seeds = given.is_long ? 200 : 20;
   double worst = 0.0;
-  std::uint64_t rollbacks = 0, undone = 0, done = 0;
+  std::uint64_t rollbacks = 0;
   for (int seed = 1; seed <= seeds; ++seed) {
     const Trajectory run = run_by("tw", scene, laws, {static_cast<std::uint64_t>(seed), true, 0.25, 10, 0.05});
     worst = std::max(worst, differences(reference, run));
     rollbacks += run.counters.counts.at("rollbacks");
   }
   const Trajectory plain = run_by("tw", scene, laws);
-  undone = plain.counters.counts.at("undone_integrations"), done = plain.counters.counts.at("integrations");
+  const std::uint64_t undone = plain.counters.counts.at("undone_integrations"), done = plain.counters.counts.at("integrations");
   findings.at_most(fmt::format("{} orders of processing by lot: bodies of frames that differ from the run in order of time", seeds), worst, 0.0, "", "bit by bit: rolled back is as if it had never been");
   findings.at_least(fmt::format("{} orders of processing by lot: rollbacks a run", seeds), static_cast<double>(rollbacks) / seeds, 10.0, "", "else nothing was tried");
   findings.at_most("in its own order: integrations undone", static_cast<double>(undone) / static_cast<double>(done), 0.15, "", "work in proportion to the events: at most 15 % of it for nothing");
