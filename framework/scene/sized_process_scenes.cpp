@@ -189,8 +189,10 @@ Scene robots(int n) {
       scene.bodies.push_back(block);
     }
   }
-  scene.camera.eye_m = {0.4 * kCell * across, -0.9 * kCell * across - 2, 0.5 * kCell * across + 1.5};
-  scene.camera.target_m = {0.5, 0, 0.4};
+  const int rows = (n - 1) / across + 1;
+  const double middle = 0.5 * (rows - across) * kCell + 0.5 * kLinks * kLink, wide = kCell * std::max(rows, across);   // arms reach out along x
+  scene.camera.eye_m = {middle + 0.3 * wide, -1.15 * wide, 0.7 * wide};
+  scene.camera.target_m = {middle, -0.05 * wide, 0.4};
   return scene;
 }
 
