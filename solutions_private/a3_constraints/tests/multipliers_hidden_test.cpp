@@ -23,6 +23,18 @@ TEST(ConstraintMultipliers, FulfilRandomSystems) {
   }
 }
 
+TEST(ConstraintMultipliers, FindAChainInAnyOrder) {
+  constexpr int kLinks = 300;
+  const Rig in_order = hanging_chain(std::vector<double>(kLinks, 1.0));
+  Rig rig = in_order;
+  rig.scene = "a chain of 300 links of 1 kg hangs at rest, its rods listed in no order";
+  for (int i = 0; i < kLinks; ++i) rig.rows[static_cast<std::size_t>(i)] = in_order.rows[static_cast<std::size_t>(i * 77 % kLinks)];  // 77 and 300 share no factor
+  VectorXd expected(kLinks);
+  for (int i = 0; i < kLinks; ++i) expected[i] = -(kLinks - i * 77 % kLinks) * kGravity;
+  expect_near(rig.multipliers(), expected, 1e-9 * kLinks * kGravity, "N",  // condition 4 n^2 / pi^2 = 4e4
+              {.scene = rig.scene, .slip = "what is counted on is that neighbours in the list are neighbours in the chain", .handout = equation(7)});
+}
+
 TEST(ConstraintMultipliers, CarryTonsOnGrams) {
   for (const double heavy : {1e4, 1e6}) {
     for (const int links : {1, 2, 8, 60}) {
