@@ -58,7 +58,7 @@ int LastingContacts::place(int body, double t, std::map<int, int>& places, const
     if (velocities) pushed.velocity_world = prescribed_velocity(b, t);
   } else {
     pushed.inverse_mass = b.inertia.inverse_mass;
-    pushed.inverse_inertia_world = inverse_inertia_world(b, states[body].world_from_body);
+    pushed.inverse_inertia_world = inverse_inertia_world(b, velocities ? velocities->world_from_body : states[body].world_from_body);
     if (velocities) {
       pushed.velocity_world = b.inertia.inverse_mass * velocities->momentum_world;
       pushed.omega_world = omega_of(*velocities, b.inertia);
@@ -98,12 +98,18 @@ void LastingContacts::add_rows(const Group& group, const std::vector<RigidBodySt
 }
 
 // Over a step of length h, which changes the velocities that the bodies would end with; with h = 0 those that they have now.
-ContactProblem LastingContacts::problem_of(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& states, double h) {
+// With `ends`, the places that contact will leave them in: there a free body's momenta would be other velocities, and impulses change
+// momenta. Without that, a body that spins about its slender axis gains or loses energy in proportion to the step.
+ContactProblem LastingContacts::problem_of(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& states, double h, const std::vector<RigidBodyState>* ends) {
   ContactProblem problem;
   std::map<int, int> places;
   const bool at_once = h == 0.0;
   const double t = at_once ? moving_.time() : moving_.target();
-  for (const int body : group.bodies) place(body, t, places, states, at_once ? &states[body] : &moving_.path_end(body), problem);
+  for (const int body : group.bodies) {
+    RigidBodyState free = at_once ? states[body] : moving_.path_end(body);
+    if (ends) free.world_from_body = (*ends)[body].world_from_body;
+    place(body, t, places, states, &free, problem);
+  }
   for (const Touch& touch : touches) {
     PushingContact contact;
     contact.body_a = place(touch.pair.first, t, places, states, &states[touch.pair.first], problem);
@@ -277,7 +283,8 @@ bool LastingContacts::lands(const std::vector<Touch>& touches, const ContactSolu
 }
 
 // Where the group's bodies come out with these impulses.
-std::vector<RigidBodyState> LastingContacts::ends_of(const Group& group, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing) const {
+// @param at  where the problem took the inertia of the bodies, null: at the end of their free paths
+std::vector<RigidBodyState> LastingContacts::ends_of(const Group& group, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing, const std::vector<RigidBodyState>* at) const {
   std::vector<RigidBodyState> ends = moving_.states();
   for (std::size_t k = 0; k < group.bodies.size(); ++k) {   // the problem's first bodies are the group's
     const int body = group.bodies[k];
@@ -287,13 +294,15 @@ std::vector<RigidBodyState> LastingContacts::ends_of(const Group& group, const C
     if (landing) {
       end.com_world += h * after.linear_world;
       end.world_from_body = turned(end.world_from_body, h * after.angular_world);
+      end.angular_momentum_world = angular_momentum_of(after.angular_world, end.world_from_body, inertia);
     } else {
-      end = moving_.path_end(body);
-      end.com_world += 0.5 * h * (after.linear_world - problem.bodies[k].velocity_world);
-      end.world_from_body = turned(end.world_from_body, 0.5 * h * (after.angular_world - problem.bodies[k].omega_world));
+      const RigidBodyState& free = moving_.path_end(body);
+      const Vector3d turning = after.angular_world - problem.bodies[k].omega_world;
+      end.com_world = free.com_world + 0.5 * h * (after.linear_world - problem.bodies[k].velocity_world);
+      end.world_from_body = turned(free.world_from_body, 0.5 * h * turning);
+      end.angular_momentum_world = free.angular_momentum_world + angular_momentum_of(turning, (at ? (*at)[body] : free).world_from_body, inertia);
     }
     end.momentum_world = inertia.mass * after.linear_world;
-    end.angular_momentum_world = angular_momentum_of(after.angular_world, end.world_from_body, inertia);
   }
   return ends;
 }
@@ -367,8 +376,8 @@ std::vector<LastingContacts::Touch> LastingContacts::touches_midway(const Group&
 
 // @return whether no overlap was left
 bool LastingContacts::give_paths(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& touches_at, const ContactProblem& problem,
-                                 const ContactSolution& solution, double h, bool landing) {
-  std::vector<RigidBodyState> ends = ends_of(group, problem, solution, h, landing);
+                                 const ContactSolution& solution, double h, bool landing, const std::vector<RigidBodyState>* at) {
+  std::vector<RigidBodyState> ends = ends_of(group, problem, solution, h, landing, at);
   std::vector<Held> held;   // where nothing turns, points stay as near as they are
   if (&touches_at != &moving_.states() && !landing && touches.size() <= kPile)
     for (std::size_t i = 0; i < touches.size(); ++i)

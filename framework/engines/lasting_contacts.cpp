@@ -245,13 +245,13 @@ std::optional<double> LastingContacts::take_step(const Group& group, double h) {
   if (!landing && turn > kTurns) {
     middle = moving_.states();
     used = touches_midway(group, touches, ends, middle);
-    problem = problem_of(group, used, middle, h);
+    problem = problem_of(group, used, middle, h, &ends);
     solution = solve(group, problem, h);
     landing = lands(used, solution);
   }
   require_numbers(group, solution);
   if (const auto stop = located ? stop_of_sliding(problem, touches, solution, h) : std::nullopt) return stop;
-  if (!give_paths(group, used, middle.empty() ? moving_.states() : middle, problem, solution, h, landing)) {
+  if (!give_paths(group, used, middle.empty() ? moving_.states() : middle, problem, solution, h, landing, middle.empty() ? nullptr : &ends)) {
     if (!located && group.linked.empty()) return take_pile_step(group, h);
     if (h > kShortest * step_) return moving_.time() + 0.5 * h;
   }

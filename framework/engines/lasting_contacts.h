@@ -120,7 +120,8 @@ class LastingContacts {
   std::vector<Group> groups(const std::vector<Pair>& touching);
   void note_near_pairs(const std::vector<Pair>& candidates);
   std::vector<Touch> touches_of(const Group& group);
-  ContactProblem problem_of(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& states, double h);
+  ContactProblem problem_of(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& states, double h,
+                            const std::vector<RigidBodyState>* ends = nullptr);
   ContactSolution solve(const Group& group, const ContactProblem& problem, double h);
   static Vector3d relative_velocity(const ContactProblem& problem, std::size_t contact, const std::vector<Velocity>& velocities);
   static double approach(const ContactProblem& problem, std::size_t contact, const std::vector<Velocity>& velocities);
@@ -152,14 +153,16 @@ class LastingContacts {
   void keep_warm(const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h);
   std::optional<double> stop_of_sliding(const ContactProblem& problem, const std::vector<Touch>& touches, const ContactSolution& solution, double h);
   static bool lands(const std::vector<Touch>& touches, const ContactSolution& solution);
-  std::vector<RigidBodyState> ends_of(const Group& group, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing) const;
+  std::vector<RigidBodyState> ends_of(const Group& group, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing,
+                                      const std::vector<RigidBodyState>* at = nullptr) const;
   double largest_turn(const Group& group, const std::vector<RigidBodyState>& ends, double h) const;
   std::vector<Touch> touches_midway(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& ends,
                                     std::vector<RigidBodyState>& middle) const;
   static const collision::NearPoint* same_point(Pair pair, const collision::NearPoint& p, const std::vector<RigidBodyState>& p_at, const Points& points,
                                                 const std::vector<RigidBodyState>& at, double near);
   bool give_paths(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& touches_at, const ContactProblem& problem,
-                  const ContactSolution& solution, double h, bool landing);
+                  const ContactSolution& solution, double h, bool landing,
+                  const std::vector<RigidBodyState>* at);
   double add_shifts(const Group& group, const std::vector<Pair>& pairs, const std::vector<RigidBodyState>& states, double t, const std::vector<Held>& held, double reach, std::map<int, int>& places, ContactProblem& problem);
   bool keep_apart(const Group& group, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, const std::vector<Held>& held = {});
   void add_rows(const Group& group, const std::vector<RigidBodyState>& states, double t, const std::map<int, int>& places, bool of_places, ContactProblem& problem);
