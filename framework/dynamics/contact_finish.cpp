@@ -1,6 +1,7 @@
 // Semismooth Newton on Coulomb's law (contact_newton.h).
 #include "framework/dynamics/contact_newton.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -24,6 +25,13 @@ struct Response {
   Matrix3d d;
 };
 
+/// The answer of a contact that sticks, whatever it carries.
+Response sticking_response(const ContactBlock& c, const Vector3d& v, double fade) {
+  Response response{-v / (fade * c.give), Matrix3d::Zero()};
+  response.d.diagonal().setConstant(1 / (fade * c.give));
+  return response;
+}
+
 /// Linearised p = P(p - v / r):  (I - (1 - delta) P') dp = F - P' dv / r,   F = P(z) - p.
 Response law_response(const ContactBlock& c, const Vector3d& p, const Vector3d& v, double r, double fade, double tie) {
   const Vector3d z = p - v / r;
@@ -31,8 +39,7 @@ Response law_response(const ContactBlock& c, const Vector3d& p, const Vector3d& 
   if (z[0] < -tie) return response;  // open
   const double length = z.tail<2>().norm(), radius = c.friction * z[0];
   if (!c.is_frictional() || length <= radius + tie) {
-    response.f = -v / (fade * r);
-    response.d.diagonal().setConstant(1 / (fade * r));
+    response = sticking_response(c, v, fade);
     if (!c.is_frictional()) response.f.tail<2>().setZero();
     return response;
   }
@@ -53,8 +60,8 @@ Response law_response(const ContactBlock& c, const Vector3d& p, const Vector3d& 
 /// The linear equations of one Newton step:   dp + D G (G^T dp) = f   for all contacts and rows at once.
 class StepEquations {
  public:
-  /// False where the matrix fails.
-  bool prepare(const System& system, double fade, BodyMatrix& matrix, const Impulses& now);
+  /// @param held  contacts that stick, where the others are open, whatever Coulomb's law has them do; null: the law. False where the matrix fails.
+  bool prepare(const System& system, double fade, BodyMatrix& matrix, const Impulses& now, const std::vector<bool>* held = nullptr);
   /// The change of all impulses, refined until what is left of the equations is small beside `violation`. True if it got so far.
   bool solve(const BodyMatrix& matrix, double violation, Impulses& change);
 
@@ -71,7 +78,7 @@ class StepEquations {
   std::vector<Vector6d> x_;
 };
 
-bool StepEquations::prepare(const System& system, double fade, BodyMatrix& matrix, const Impulses& now) {
+bool StepEquations::prepare(const System& system, double fade, BodyMatrix& matrix, const Impulses& now, const std::vector<bool>* held) {
   system_ = &system;
   fade_ = fade;
   responses_.assign(system.contacts.size(), Response{Vector3d::Zero(), Matrix3d::Zero()});
@@ -80,7 +87,9 @@ bool StepEquations::prepare(const System& system, double fade, BodyMatrix& matri
   for (std::size_t i = 0; i < responses_.size(); ++i) {
     const ContactBlock& c = system.contacts[i];
     if (!(c.give > 0)) continue;
-    responses_[i] = law_response(c, now.contacts[i], contact_velocity(c, now.y), c.give, fade, kTie * system.speed / c.give);
+    const Vector3d v = contact_velocity(c, now.y);
+    if (held && !(*held)[i]) continue;
+    responses_[i] = held ? sticking_response(c, v, fade) : law_response(c, now.contacts[i], v, c.give, fade, kTie * system.speed / c.give);
     if (responses_[i].d(0, 0) != 0) matrix.add(c, responses_[i].d);
   }
   for (std::size_t i = 0; i < row_pushes_.size(); ++i) {
@@ -155,6 +164,69 @@ Impulses moved(const System& system, const Impulses& impulses, const Impulses& c
 }
 
 }  // namespace
+
+namespace {
+
+/// The impulses that hold these contacts, and all rows, in all directions, whatever they have to be. False where the equations cannot be solved.
+bool hold(const Goal& goal, const std::vector<bool>& held, BodyMatrix& matrix, Progress& trial) {
+  constexpr double kFade = 1e-6;   // not as small as later: nothing is known yet of how well these equations can be solved
+  constexpr int kMostSteps = 6;
+  StepEquations equations;
+  Impulses change;
+  double before = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kMostSteps; ++i) {
+    double largest = 0;
+    for (std::size_t k = 0; k < held.size(); ++k)
+      if (held[k]) largest = std::max(largest, contact_velocity(goal.system.contacts[k], trial.impulses.y).norm());
+    for (const RowBlock& row : goal.system.rows)
+      if (row.give > 0) largest = std::max(largest, std::abs(row_velocity(row, trial.impulses.y)));
+    if (goal.accepts(trial.impulses, largest)) return true;
+    if (!(largest < 0.5 * before) || !equations.prepare(goal.system, kFade, matrix, trial.impulses, &held)) return false;
+    before = largest;
+    ++trial.factorisations;
+    equations.solve(matrix, largest, change);
+    for (std::size_t k = 0; k < held.size(); ++k) trial.impulses.contacts[k] += change.contacts[k];
+    for (std::size_t k = 0; k < goal.system.rows.size(); ++k) trial.impulses.rows[k] += change.rows[k];
+    sum_impulses(goal.system, trial.impulses);
+  }
+  return false;
+}
+
+}  // namespace
+
+bool stick(const Goal& goal, BodyMatrix& matrix, Progress& progress) {
+  constexpr int kMostRounds = 8;
+  const System& system = goal.system;
+  const auto is_smooth = [](const ContactBlock& c) { return !c.is_frictional() && c.give > 0; };
+  if (std::any_of(system.contacts.begin(), system.contacts.end(), is_smooth)) return false;
+  std::vector<bool> held(system.contacts.size());
+  for (std::size_t i = 0; i < held.size(); ++i) held[i] = system.contacts[i].give > 0 && system.contacts[i].base[0] <= goal.violation;
+  for (int round = 0; round < kMostRounds; ++round) {
+    Progress trial;
+    trial.impulses.contacts.assign(system.contacts.size(), Vector3d::Zero());
+    trial.impulses.rows.assign(system.rows.size(), 0.0);
+    sum_impulses(system, trial.impulses);
+    const bool holds = hold(goal, held, matrix, trial);
+    progress.factorisations += trial.factorisations;
+    if (!holds) return false;
+    bool changed = false;
+    for (std::size_t i = 0; i < held.size(); ++i) {
+      const double v = contact_velocity(system.contacts[i], trial.impulses.y)[0];
+      const bool next = held[i] ? trial.impulses.contacts[i][0] >= 0 : system.contacts[i].give > 0 && v < -goal.violation;
+      changed = changed || next != held[i];
+      held[i] = next;
+    }
+    if (changed) continue;
+    trial.impulses = moved(system, trial.impulses, Impulses{std::vector<Vector3d>(held.size(), Vector3d::Zero()), std::vector<double>(system.rows.size(), 0.0), {}}, 0.0);
+    goal.measure(trial);
+    if (!trial.accepted) return false;   // one leaves its cone
+    trial.sweeps = progress.sweeps;
+    trial.factorisations = progress.factorisations;
+    progress = std::move(trial);
+    return true;
+  }
+  return false;
+}
 
 void finish(const Goal& goal, int most_steps, BodyMatrix& matrix, Progress& progress) {
   constexpr double kHelps = 0.5;      // a step that leaves more of the sum of squares is shortened

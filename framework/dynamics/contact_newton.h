@@ -1,6 +1,6 @@
 /// Newton's methods on all contacts at once, for what Gauss-Seidel does slowly. Internal to dynamics.
 ///
-/// Three, which take turns:
+/// Three, which take turns, and before them `stick`:
 /// - `finish`: semismooth Newton on Coulomb's law itself, p = P(p - v / r) for all contacts, r = give. Near the answer its error squares at each step;
 ///   far from it, it may wander, so a step that does not lessen the violation ends it. With the modes found (open, stick, slide) the
 ///   equations of redundant contacts are singular; a compliance delta r keeps them regular and fades as the steps repeat (a proximal
@@ -46,6 +46,10 @@ struct Goal {
 
 /// Steps of semismooth Newton while they help; the sum of squared violations never grows.
 void finish(const Goal& goal, int most_steps, BodyMatrix& matrix, Progress& progress);
+
+/// Contacts held in all directions, those that would have to pull open: a structure that stands. True, and `progress` is that, if none leaves
+/// its cone; otherwise it is as it was.
+bool stick(const Goal& goal, BodyMatrix& matrix, Progress& progress);
 
 /// One problem (C.6) solved, impulses and shift renewed from it. False, and nothing changed: Newton's method did not reach its minimum.
 bool soften(const Goal& goal, double compliance_over_give, BodyMatrix& matrix, Progress& progress);

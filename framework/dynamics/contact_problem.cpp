@@ -2,9 +2,11 @@
 //   1. the guess: at rest with last step's impulses nothing is left to do;
 //   2. Newton's method on Coulomb's law, from the guess: bodies at rest or sliding steadily. From no guess at all it finds the most even
 //      distribution among redundant contacts;
-//   3. block Gauss-Seidel sweeps, which find the modes (open, stick, slide) where many change;
-//   4. Newton's method again, by turns with its convex relative, which cannot get lost (contact_newton.h).
-// Problems too large for 2 and 4 are left to the sweeps.
+//   3. what stands: contacts stick, or are open where they would have to pull. Coulomb's law can have several answers (a rod that jams while
+//      it slides, stones of an arch that could as well slip); this takes the one in which nothing slides, and what is symmetric stays so;
+//   4. block Gauss-Seidel sweeps, which find the modes (open, stick, slide) where many change;
+//   5. Newton's method again, by turns with its convex relative, which cannot get lost (contact_newton.h).
+// Problems too large for 2, 3 and 5 are left to the sweeps.
 #include "framework/dynamics/contact_problem.h"
 
 #include <cmath>
@@ -159,7 +161,8 @@ void iterate(const Goal& goal, const ContactOptions& options, double enough, Pro
   }
   contacts::BodyMatrix matrix(goal.system);
   contacts::finish(goal, kFirstNewtonSteps, matrix, progress);
-  if (!progress.accepted && !(progress.violation.largest <= enough)) Turns(goal, enough, matrix, progress).run(options.most_sweeps);
+  if (progress.accepted || progress.violation.largest <= enough) return;
+  if (!contacts::stick(goal, matrix, progress)) Turns(goal, enough, matrix, progress).run(options.most_sweeps);
 }
 
 ContactSolution describe(const ContactProblem& problem, const System& system, const Impulses& impulses) {

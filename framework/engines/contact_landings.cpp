@@ -131,7 +131,7 @@ bool LastingContacts::strike_what_is_down(const Group& group, const std::vector<
   // Corners of an edge that comes down flat strike together, though rounding takes one of them down first.
   std::vector<Touch> down;
   for (const Touch& touch : touches) {
-    const double size = std::min(moving_.shape(touch.pair.first).bounding_radius(), moving_.shape(touch.pair.second).bounding_radius());
+    const double size = size_of(touch.pair);
     if (is_down(touch) || touch.point.gap < kTogether * size) down.push_back({touch.pair, touch.point, 0.0, false});
   }
   return strike(group, std::move(down));

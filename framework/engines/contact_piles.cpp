@@ -37,7 +37,7 @@ bool LastingContacts::is_pile(const Group& group) const {
 }
 
 double LastingContacts::room_of(Pair pair) const {
-  return kRoom * std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius());
+  return kRoom * size_of(pair);
 }
 
 // Where the group's bodies are at the middle of the step if nothing stops them.

@@ -134,7 +134,7 @@ void LastingContacts::give_guesses(const std::vector<Touch>& touches, const std:
     const auto warm = warm_.find(pair);
     if (warm == warm_.end()) continue;
     const RigidBodyState& a = states[pair.first];
-    const double size = std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius());
+    const double size = size_of(pair);
     for (const Warm& known : warm->second) {
       const Vector3d acted = a.com_world + a.world_from_body * known.point_body_a;
       PushingContact* nearest = nullptr;
@@ -355,7 +355,7 @@ std::vector<LastingContacts::Touch> LastingContacts::touches_midway(const Group&
   for (const Pair& pair : group.pairs) {
     std::size_t to = from;
     while (to < touches.size() && touches[to].pair == pair) ++to;
-    const double near = kMidway * std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius());
+    const double near = kMidway * size_of(pair);
     const Points at_middle = points_at(pair, middle, near), at_end = points_at(pair, ends, near);
     for (std::size_t i = from; i < to; ++i) {
       Touch touch = touches[i];
@@ -433,7 +433,7 @@ double LastingContacts::add_shifts(const Group& group, const std::vector<Pair>& 
                                    std::map<int, int>& places, ContactProblem& problem) {
   double wrong = 0.0;
   for (const Pair& pair : pairs) {
-    const double room = shell(pair), size = std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius());
+    const double room = shell(pair), size = size_of(pair);
     const bool holds = std::any_of(held.begin(), held.end(), [&](const Held& h) { return h.pair == pair; });
     const Points points = points_at(pair, states, std::max({1e3 * room, reach, holds ? kHeldReach * size : 0.0}));
     std::vector<const collision::NearPoint*> at_shell;

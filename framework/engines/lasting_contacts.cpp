@@ -16,11 +16,12 @@ constexpr double kRounding = 64;          // of coordinates far from the origin,
 constexpr double kBand = 8.0;             // shells: nearer than this two touch
 constexpr double kUnseenRoom = 1e-9;      // of the way in a step: what the tolerance of the impulses leaves between bodies that touch
 constexpr double kApart = 32.0;           // shells: farther than this, and than the rest speed goes in a step, a contact has ended
+constexpr double kAssembled = 1e-6;       // of the smaller body: a scene's models have single precision; what does not bounce and is this near at the start stands on each other
 constexpr double kReach = 0.25;           // of the smaller body: points farther away are not looked at
 constexpr double kMostTurn = 0.05;        // rad: a group with contacts that turns twice as far gets shorter steps; what is left is of second order
 constexpr double kMoves = 10.0;             // rest speeds: what holds a group that is slower is an equilibrium, however it trembles
 constexpr double kSlips = 1e-4;           // of the rest speed: slower than this nothing slides, though friction may be all there can be
-constexpr double kTurns = 1e-3;           // rad: a body that turns less in a step meets the same points at its end
+constexpr double kTurns = 1e-5;           // rad: where nothing turns more in a step, forces of its start do for the whole; errors of energy go with this
 
 }  // namespace
 
@@ -33,8 +34,9 @@ void LastingContacts::begin(Pair pair, const collision::Gap& gap) {
 void LastingContacts::begin_where_touching(const std::vector<Pair>& pairs) {
   for (const Pair& pair : pairs) {
     const collision::Gap gap = gap_of(pair, moving_.states());
-    if (gap.distance > shell(pair)) continue;
-    const Points points = points_at(pair, moving_.states(), shell(pair));
+    const double within = std::max(shell(pair), is_dead(pair) ? kAssembled * size_of(pair) : 0.0);
+    if (gap.distance > within) continue;
+    const Points points = points_at(pair, moving_.states(), within);
     const Body a = moving_.body_at_impact(pair.first), b = moving_.body_at_impact(pair.second);
     const bool slow = std::all_of(points.begin(), points.end(), [&](const collision::NearPoint& p) {
       const Vector3d relative = a.velocity_world + a.omega_world.cross(point_of(pair, p) - a.com_world) - b.velocity_world - b.omega_world.cross(point_of(pair, p) - b.com_world);
@@ -68,13 +70,14 @@ double LastingContacts::friction(Pair pair) const {
   return std::min(moving_.world().bodies[pair.first].friction, moving_.world().bodies[pair.second].friction);
 }
 
-bool LastingContacts::plastic(Pair pair) const {
-  return rules_.plastic_impacts == scene::PlasticImpacts::kInStep &&
-         std::min(moving_.world().bodies[pair.first].restitution, moving_.world().bodies[pair.second].restitution) == 0.0;
-}
+bool LastingContacts::is_dead(Pair pair) const { return std::min(moving_.world().bodies[pair.first].restitution, moving_.world().bodies[pair.second].restitution) == 0.0; }
+
+bool LastingContacts::plastic(Pair pair) const { return rules_.plastic_impacts == scene::PlasticImpacts::kInStep && is_dead(pair); }
+
+double LastingContacts::size_of(Pair pair) const { return std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius()); }
 
 double LastingContacts::shell(Pair pair) const {
-  const double size = std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius());
+  const double size = size_of(pair);
   const auto far = [&](int body) { return moving_.world().bodies[body].immovable() ? 0.0 : moving_.state(body).com_world.cwiseAbs().maxCoeff(); };
   return kShell * size + kRounding * kEpsilon * (size + std::max(far(pair.first), far(pair.second)));
 }
@@ -87,7 +90,7 @@ double LastingContacts::reach(Pair pair) {
     const double radius = moving_.shape(body).is_half_space() ? 0.0 : moving_.shape(body).bounding_radius();
     return std::max(start.velocity_world.norm(), end.velocity_world.norm()) + std::max(start.omega_world.norm(), end.omega_world.norm()) * radius;
   };
-  const double size = std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius());
+  const double size = size_of(pair);
   const double way = (reaches_.empty() ? motion(pair.first) + motion(pair.second) : reaches_[pair.first] + reaches_[pair.second]) * h;
   return std::min(kReach * size, way) + kApart * shell(pair);
 }

@@ -106,7 +106,9 @@ class LastingContacts {
     bool found;
   };
 
+  bool is_dead(Pair pair) const;     // does not bounce
   bool plastic(Pair pair) const;
+  double size_of(Pair pair) const;   // radius about the smaller one [m]
   Vector3d point_of(Pair pair, const collision::NearPoint& point) const;
   double shell(Pair pair) const;
   double reach(Pair pair);

@@ -12,13 +12,9 @@ struct Shortfall {
 };
 
 constexpr const char* kEdges = "the normal of two parallel edges that touch is decided by roundings: cut to meet face to face, or against a wall, the same cards stand";
-constexpr const char* kLiesDown = "when the rod comes to lie, contact steps with a turning body bring in energy, a little, of order h: 6e-4 at 1/240 s, 5e-5 at 1/1920 s";
 
 constexpr Shortfall kShortfalls[] = {
     {11, "two loose cards, edge on edge", false, kEdges},
-    {14, "mu = 1.3, 1 s: rise", false, kLiesDown},
-    {14, "mu = 1.4, 1 s: rise", false, kLiesDown},
-    {14, "mu = 2, 1 s: rise", false, kLiesDown},
     {30, "6 x 6 x 6 balls: rise of the energy", true, "impacts taken with the step they fall into ('in_step') let bodies go on for the rest of it: of order h"},
     {30, "6 x 6 x 6 balls, e = 0", true, "216 balls that fall on each other without friction exhaust the memory"},
 };
