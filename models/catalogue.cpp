@@ -54,11 +54,11 @@ TriangleMesh upright(const std::vector<Vector2d>& outline, double half_width) {
   return turned(extrude(outline, {{0, 1, 2}, {0, 2, 3}}, -half_width, half_width), Quaterniond(std::sqrt(0.5), std::sqrt(0.5), 0, 0));
 }
 
-/// A stone of a semicircular arch of 25, thickness 0.12 of its middle radius of 1 m; the arch's centre is the origin.
-TriangleMesh arch_stone() {
-  constexpr double kHalfAngle = kPi / 50, kInner = 0.94, kOuter = 1.06;
-  const double s = std::sin(kHalfAngle), c = std::cos(kHalfAngle);
-  return upright({{-kInner * s, kInner * c}, {kInner * s, kInner * c}, {kOuter * s, kOuter * c}, {-kOuter * s, kOuter * c}}, 0.2);
+/// A stone of a semicircular arch of 25, of middle radius 1 m and this thickness [m]; the arch's centre is the origin.
+TriangleMesh arch_stone(double thickness) {
+  constexpr double kHalfAngle = kPi / 50;
+  const double s = std::sin(kHalfAngle), c = std::cos(kHalfAngle), inner = 1 - thickness / 2, outer = 1 + thickness / 2;
+  return upright({{-inner * s, inner * c}, {inner * s, inner * c}, {outer * s, outer * c}, {-outer * s, outer * c}}, 0.2);
 }
 
 /// A playing card to lean on another at 25 degrees: its top is cut so that the cut is upright when the card leans.
@@ -186,7 +186,8 @@ std::vector<Model> catalogue() {
       {"t_handle.3ds", {{"t_handle", t_handle()}}},
       {"rod.3ds", {{"rod", rod()}}},
       {"wedge.3ds", {{"wedge", wedge()}}},
-      {"arch_stone.3ds", {{"arch_stone", arch_stone()}}},
+      {"arch_stone.3ds", {{"arch_stone", arch_stone(0.12)}}},
+      {"arch_stone_thin.3ds", {{"arch_stone", arch_stone(0.09)}}},
       {"card.3ds", {{"card", card()}}},
       {"rock_1.3ds", {{"rock_1", rock(1, 36, {0.5, 0.42, 0.33})}}},
       {"rock_2.3ds", {{"rock_2", rock(2, 24, {0.45, 0.45, 0.4})}}},
