@@ -7,6 +7,7 @@
 
 #include "framework/core/random.h"
 #include "framework/geometry/shape.h"
+#include "models/mountainside.h"
 #include "models/surfaces.h"
 
 namespace tumble::models {
@@ -191,6 +192,7 @@ std::vector<Model> catalogue() {
       {"rock_1.3ds", {{"rock_1", rock(1, 36, {0.5, 0.42, 0.33})}}},
       {"rock_2.3ds", {{"rock_2", rock(2, 24, {0.45, 0.45, 0.4})}}},
       {"rock_3.3ds", {{"rock_3", rock(3, 48, {0.6, 0.35, 0.25})}}},
+      {"mountainside.3ds", {{"mountainside", mountainside()}}},
       {"water_molecule.3ds", {{"water", water_molecule()}}},
       {"water_hull.3ds", {{"water_hull", water_hull()}}},
       {"dumbbell.3ds", {{"dumbbell", dumbbell()}}},

@@ -198,32 +198,57 @@ Scene robots(int n) {
 
 // ---- Avalanche -----------------------------------------------------------------------------------------------------------
 
+namespace {
+
+// The model mountainside.3ds: downhill along x, a flat valley at z = 0.
+const Vector3d kMountainCentre(-6.93285, -0.00113, 2.33035);   // its centre of mass in its own frame, where bodies are placed by [m]
+constexpr double kMountainWide = 6.6;    // of a piece: pieces stand side by side without a seam [m]
+constexpr double kRockApart = 0.55;      // of rocks at the start [m]
+constexpr double kFirstRow = 5.6;        // uphill of the valley [m]
+constexpr double kSteep = 0.7;           // tangent of the slope
+constexpr double kRelief = 1.0;          // how high the ground reaches above the even slope, with its step, and some room [m]
+constexpr double kMargin = 2.2;          // of ground beside the outermost rocks, both sides together [m]
+
+void add_mountain(double width, Scene& scene) {
+  const int pieces = std::max(1, static_cast<int>(std::ceil((width + kMargin) / kMountainWide)));
+  for (int k = 0; k < pieces; ++k) {
+    BodySpec piece;
+    piece.name = fmt::format("mountain_{}", k + 1);
+    piece.shape = ModelSpec{"mountainside.3ds", "", 1.0};
+    piece.immovable = true;
+    piece.position_m = kMountainCentre + Vector3d(0, (k - 0.5 * (pieces - 1)) * kMountainWide, 0);
+    piece.friction = 0.5;
+    piece.color = Vector3d(0.36, 0.33, 0.27);
+    scene.bodies.push_back(piece);
+  }
+}
+
+}  // namespace
+
 Scene avalanche(int n) {
   Scene scene = scene_of(4.0, 1.0 / 240.0);
   scene.contact = ContactSpec{};
   Random random(23);
-  constexpr double kSlope = 0.62, kApart = 0.55;   // rad; between rocks [m]
-  const int across = std::max(1, static_cast<int>(std::lround(std::sqrt(0.5 * n)))), along = (n + across - 1) / across;
-  BodySpec slope = ground("slope", Vector3d::Zero(), {std::sin(kSlope), 0, std::cos(kSlope)}, kApart * along + 4), valley = ground("valley", Vector3d::Zero(), Vector3d::UnitZ(), kApart * across + 5);
-  for (BodySpec* plane : {&slope, &valley}) {
-    plane->friction = 0.45;
-    scene.bodies.push_back(*plane);
-  }
-  const Vector3d up(-std::cos(kSlope), 0, std::sin(kSlope)), out(std::sin(kSlope), 0, std::cos(kSlope));
+  const int along = std::clamp(static_cast<int>(std::lround(std::sqrt(0.5 * n))), 1, 10), across = (n + along - 1) / along;
+  const double width = kRockApart * across;
+  BodySpec valley = ground("valley", Vector3d::Zero(), Vector3d::UnitZ(), 0.5 * width + 12.0);
+  valley.friction = 0.5;
+  scene.bodies.push_back(valley);
+  add_mountain(width, scene);
   for (int i = 0; i < n; ++i) {
-    const double size = random.between(0.18, 0.3), azimuth = random.between(0.0, 6.28), tilt = random.between(0.0, 3.0);
-    const Vector3d place = (3.0 + (i / across) * kApart) * up + (0.35 + random.between(0.0, 0.4)) * out + Vector3d(0, (i % across - 0.5 * (across - 1)) * kApart, 0);
-    BodySpec rock = body_at(fmt::format("rock_{}", i + 1), ModelSpec{fmt::format("rock_{}.3ds", i % 3 + 1), "", size}, 1.0, place, i);
+    const double size = random.between(0.22, 0.42), azimuth = random.between(0.0, 6.28), tilt = random.between(0.0, 3.0);
+    const double x = -kFirstRow - (i / across) * kRockApart * 0.82, y = (i % across - 0.5 * (across - 1)) * kRockApart;
+    BodySpec rock = body_at(fmt::format("rock_{}", i + 1), ModelSpec{fmt::format("rock_{}.3ds", i % 3 + 1), "", size}, 1.0, {x, y, -kSteep * x + kRelief + random.between(0.0, 0.3)}, i);
     rock.mass_kg.reset();
     rock.density_kg_m3 = 2600.0;
     rock.world_from_body = Quaterniond(Eigen::AngleAxisd(azimuth, Vector3d::UnitZ()) * Eigen::AngleAxisd(tilt, Vector3d::UnitX()));
     rock.restitution = 0.3;
-    rock.friction = 0.45;
+    rock.friction = 0.5;
     scene.bodies.push_back(rock);
   }
-  const double reach = 3.0 + kApart * along;
-  scene.camera.eye_m = {0.9 * reach, -1.3 * reach, 0.8 * reach};
-  scene.camera.target_m = {-0.35 * reach, 0, 0.25 * reach};
+  const double far = std::max(9.0, 0.62 * width + 5.0);
+  scene.camera.eye_m = {0.75 * far, -1.05 * far, 0.62 * far};
+  scene.camera.target_m = {-4.0, 0.0, 2.2};
   return scene;
 }
 
