@@ -223,8 +223,9 @@ const std::vector<SizedScene>& sized_scenes() {
       {"atoms", "Atoms: balls and molecules of water in a divided box", "bodies, a third of them molecules", 300,
        "Elastic balls on the left of the wall, molecules that spin on its right: collisions come at random and concern two bodies each, which is what timewarp is for."},
       {"cars", "Cars: vehicles among pendula", "pendula; a vehicle of five bodies for every hundred", 400, "Vehicles on motors drive into pendula that swing into each other. A vehicle with its wheels is one process, each pendulum another."},
-      {"robots", "Robots: arms that hit blocks", "arms of eight links, with two blocks each", 20, "Arms of eight links swing about and hit blocks that fly. An arm is one process; the others never wait for it."},
-      {"avalanche", "Avalanche: rocks come down a slope", "rocks", 300, "Rocks fall, bounce, slide, roll and pile up. Those in lasting contact move as one process until they part."},
+      {"robots", "Robots: arms that throw blocks", "arms of eight links, with two blocks each", 20,
+       "Each arm carries a block in its hand and throws it. As long as the block lies in the hand, arm and block are one process; in flight it is one of its own, and no arm waits for another."},
+      {"avalanche", "Avalanche: rocks come down a mountainside", "rocks", 300, "Rocks fall, bounce, slide, roll and pile up. Those in lasting contact move as one process until they part."},
       {"dominoes_row", "Dominoes: a row of them", "dominoes", 20, "One push, and a wave goes down the row: each domino matters to its neighbours only, one after the other."},
       {"cradle", "Newton's cradle", "balls", 20, "Hung a millionth of a metre apart, so that the blow goes through ball by ball and the last leaves with the speed of the first."}};
   return scenes;
