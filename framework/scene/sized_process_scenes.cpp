@@ -135,7 +135,7 @@ constexpr int kLinks = 8;
 constexpr double kLink = 0.2;            // length [m]
 constexpr double kShoulder = 0.9;        // above the floor [m]
 constexpr double kCell = 5.0;            // between arms [m]: none reaches another, what they throw may
-constexpr double kSwing = 1.75;          // of the hand about the shoulder, shared by the hinges that lift [rad]
+constexpr double kSwing = 1.75;          // of the hand about the shoulder [rad]
 // The model scoop.3ds: half its width, of its pocket, height, floor [m]. Its centre of mass above the underside is that of the block less the pocket.
 constexpr double kScoop = 0.125, kPocket = 0.1015625, kScoopHigh = 0.1015625, kScoopFloor = 0.015625;
 constexpr double kBlock = 0.0703125;         // half a block's side [m]: some room in the pocket
@@ -143,7 +143,8 @@ constexpr double kBlock = 0.0703125;         // half a block's side [m]: some ro
 // Of a hinge of the arm, counted from the shoulder: about the upright axis; the others lift.
 bool turns_aside(int hinge) { return hinge == 0 || hinge == 4; }
 
-constexpr double kLinkMass = 0.5, kBlockMass = 0.4;   // kg
+constexpr double kShares[kLinks] = {0.0, 0.35, 0.25, 0.2, 0.0, 0.1, 0.06, 0.04};   // of the swing, by hinge: those near the hand bear the least
+constexpr double kLinkMass = 1.0, kBlockMass = 0.3;   // kg
 
 double scoop_centre() {
   const double whole = kScoop * kScoop * kScoopHigh, pocket = kPocket * kPocket * (kScoopHigh - kScoopFloor);
@@ -175,8 +176,8 @@ MotorSpec motor_of(const std::string& hinge, int k, double turn, double rate) {
   motor.amplitude_rad = 0.5 * turn;
   motor.frequency_hz = rate;
   motor.phase_rad = -0.5 * std::numbers::pi;
-  motor.stiffness_n_m_rad = 300.0 * share;
-  motor.damping_n_m_s_rad = 12.0 * share;   // twice as much would shake the links, which are moved by it before the motor looks again
+  motor.stiffness_n_m_rad = 6000.0 * share;
+  motor.damping_n_m_s_rad = 4.0 * std::sqrt(share);   // more would shake the links: a torque is held until the motor looks again
   motor.offset_rad = 0.5 * turn + (turns_aside(k) ? 0.0 : weight_on(k) / motor.stiffness_n_m_rad);
   motor.period_s = 1.0 / 960.0;   // held longer, such a torque would throw the light links about
   return motor;
@@ -185,7 +186,7 @@ MotorSpec motor_of(const std::string& hinge, int k, double turn, double rate) {
 // Stretched out backward along -x, its hand a scoop with a block in it. The hinges that lift swing it up and over: where the hand is slowed
 // down again the block flies on. The other two turn the arm to its sides.
 void add_arm(int number, const Vector3d& foot, Random& random, Scene& scene) {
-  const double rate = random.between(0.55, 0.8), side = random.between(-0.2, 0.2);   // swings a second; how far it turns aside [rad]
+  const double rate = random.between(0.55, 0.7), side = random.between(-0.2, 0.2);   // swings a second; how far it turns aside [rad]
   const Vector3d shoulder = foot + Vector3d(0, 0, kShoulder);
   std::vector<std::string> names;
   for (int k = 0; k < kLinks; ++k) {
@@ -204,7 +205,7 @@ void add_arm(int number, const Vector3d& foot, Random& random, Scene& scene) {
     hinge.point_m = shoulder - Vector3d(k * kLink, 0, 0);
     hinge.axis = turns_aside(k) ? Vector3d::UnitZ() : Vector3d::UnitY();
     scene.joints.push_back(hinge);
-    scene.motors.push_back(motor_of(hinge.name, k, turns_aside(k) ? side : kSwing / (kLinks - 2), rate));
+    scene.motors.push_back(motor_of(hinge.name, k, turns_aside(k) ? side : kSwing * kShares[k], rate));
   }
   for (std::size_t i = 0; i < names.size(); ++i)
     for (std::size_t j = i + 1; j < names.size(); ++j) scene.apart.emplace_back(names[i], names[j]);
@@ -232,7 +233,7 @@ Scene robots(int n) {
   }
   const int rows = (n - 1) / across + 1;
   const double middle = 0.5 * (rows - across) * kCell, wide = kCell * std::max(rows, across);
-  scene.camera.eye_m = {middle + 0.25 * wide, -0.85 * wide - 1.5, 0.4 * wide + 0.6};
+  scene.camera.eye_m = {middle + 0.2 * wide, -0.7 * wide - 1.0, 0.35 * wide + 0.6};
   scene.camera.target_m = {middle + 0.2, 0, 0.8};
   return scene;
 }
@@ -287,9 +288,9 @@ Scene avalanche(int n) {
     rock.friction = 0.5;
     scene.bodies.push_back(rock);
   }
-  const double far = std::max(7.0, 0.5 * width + 4.0);
-  scene.camera.eye_m = {0.75 * far, -1.05 * far, 0.62 * far};
-  scene.camera.target_m = {-4.0, 0.0, 2.2};
+  const double far = std::max(8.0, 0.5 * width + 5.0);
+  scene.camera.eye_m = {0.95 * far, -0.95 * far, 0.55 * far};
+  scene.camera.target_m = {-2.7, 0.0, 1.8};
   return scene;
 }
 
