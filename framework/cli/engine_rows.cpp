@@ -32,6 +32,8 @@ std::string meaning_of(const std::string& engine) {
 
 // Before chaos: how far apart in time the first collisions of each body are at most.
 constexpr std::size_t kFirstCollisions = 5;
+constexpr double kSamePlace = 1e-3;   // [m]: far above roundings, far below what is seen
+constexpr double kSameTime = 1e-9;    // [s], of frames
 
 std::vector<std::vector<double>> first_collisions(const Trajectory& run) {
   std::vector<std::vector<double>> times(run.bodies.size());
@@ -41,6 +43,19 @@ std::vector<std::vector<double>> first_collisions(const Trajectory& run) {
       if (body >= 0 && !run.bodies[static_cast<std::size_t>(body)].immovable && times[static_cast<std::size_t>(body)].size() < kFirstCollisions) times[static_cast<std::size_t>(body)].push_back(event.time);
   }
   return times;
+}
+
+/// How long every body's centre is where the other run has it [s], at the frames that both have; nothing: to the end.
+std::optional<double> parted_at(const Trajectory& reference, const Trajectory& run) {
+  std::size_t k = 0;
+  for (const Frame& frame : run.frames) {
+    while (k < reference.frames.size() && reference.frames[k].time < frame.time - kSameTime) ++k;
+    if (k == reference.frames.size()) break;
+    if (reference.frames[k].time > frame.time + kSameTime) continue;
+    for (std::size_t body = 0; body < frame.poses.size(); ++body)
+      if (!((frame.poses[body].com_world - reference.frames[k].poses[body].com_world).norm() <= kSamePlace)) return frame.time;
+  }
+  return std::nullopt;
 }
 
 std::string agreement_of(const Trajectory& reference, const Trajectory& run) {
@@ -53,7 +68,10 @@ std::string agreement_of(const Trajectory& reference, const Trajectory& run) {
     for (std::size_t k = 0; k < both; ++k, ++compared) farthest = std::max(farthest, std::abs(expected[i][k] - found[i][k]));
     missing += std::max(expected[i].size(), found[i].size()) - both;
   }
-  return fmt::format("first {} collisions of each body within {:.1e} s ({} compared{})", kFirstCollisions, farthest, compared, missing > 0 ? fmt::format(", {} in one only", missing) : "");
+  const auto parted = parted_at(reference, run);
+  const std::string places = parted ? fmt::format("places within 1 mm until {:.2f} s", *parted) : "places within 1 mm to the end";
+  if (compared == 0) return places;   // one of the two does blows within steps, and tells none
+  return fmt::format("{}; first {} collisions of each body within {:.1e} s ({} compared{})", places, kFirstCollisions, farthest, compared, missing > 0 ? fmt::format(", {} in one only", missing) : "");
 }
 
 /// Of the run that is shown: its energy, and how far it came. Counts and time are those of a run without pictures.

@@ -30,7 +30,7 @@ struct Shown {
   double speed;             // seconds of the run in a second of video
   double share, paper_share;
 };
-constexpr Shown kShown[] = {{"atoms", 100, 300, 0.5, 5, 20},     {"cars", 40, 400, 0.5, 10, 300},      {"robots", 3, 20, 0.5, 12, 200}, {"avalanche", 24, 300, 1.0, 20, 2000},
+constexpr Shown kShown[] = {{"atoms", 100, 300, 0.5, 5, 20},     {"cars", 40, 400, 0.5, 10, 300},      {"robots", 4, 20, 0.5, 14, 200}, {"avalanche", 16, 300, 1.0, 20, 2000},
                             {"pong", 200, 2000, 0.5, 5, 200}, {"dominoes_row", 12, 50, 1.0, 14, 100}, {"cradle", 8, 20, 1.0, 5, 10}};
 
 // The slides' sizes are 100 and 200 atoms.

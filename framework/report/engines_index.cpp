@@ -36,10 +36,17 @@ const EngineRow* labelled(const std::vector<EngineRow>& rows, const std::string&
   return nullptr;
 }
 
+/// A label that no line breaks within.
+std::string in_one(const std::string& label) {
+  std::string text;
+  for (const char c : label) text += c == '-' ? "\u2011" : std::string(1, c);
+  return text;
+}
+
 Cell ratio_cell(const EngineRow* row, const EngineRow* timewarp) {
   if (row == nullptr || timewarp == nullptr) return {"\u2013", "", Look::kMuted};
   const double ratio = row->cpu_s / timewarp->cpu_s;
-  return {fmt::format("{:.{}f}", ratio, ratio < 9.95 ? 2 : 0), "", ratio >= 1.0 ? Look::kGood : Look::kPlain};
+  return {fmt::format("{:.{}f}", ratio, ratio < 9.95 ? 2 : 0), "", ratio > 1.0 ? Look::kGood : Look::kPlain};
 }
 
 std::string agreement_in_short(const EnginesScene& scene) {
@@ -122,11 +129,11 @@ Table table_of_ladder(const std::vector<std::vector<EngineRow>>& ladder) {
   for (const auto& rows : ladder)
     for (const EngineRow& row : rows) {
       if (!row.stopped_by.empty()) {
-        table.rows.push_back({{std::to_string(row.bodies)}, {row.label}, {"\u2013"}, {"\u2013"}, {"\u2013"}, {"\u2013"}, {"stopped", "", Look::kBad}, {""}});
+        table.rows.push_back({{std::to_string(row.bodies)}, {in_one(row.label)}, {"\u2013"}, {"\u2013"}, {"\u2013"}, {"\u2013"}, {"stopped", "", Look::kBad}, {""}});
         continue;
       }
       const double integrations = static_cast<double>(count_of(row, "integrations")), body_seconds = row.bodies * row.simulated_s;
-      table.rows.push_back({{std::to_string(row.bodies)}, {row.label}, {fmt::format("{:.3f}", row.w_h)}, {fmt::format("{:.3g}", 1e3 * body_seconds / std::max(1.0, integrations))}, {fmt::format("{:.4g}", integrations / body_seconds)},
+      table.rows.push_back({{std::to_string(row.bodies)}, {in_one(row.label)}, {fmt::format("{:.3f}", row.w_h)}, {fmt::format("{:.3g}", 1e3 * body_seconds / std::max(1.0, integrations))}, {fmt::format("{:.4g}", integrations / body_seconds)},
                             {fmt::format("{:.4g}", static_cast<double>(count_of(row, "pair_checks")) / body_seconds)}, {fmt::format("{:.3g}", row.cpu_s)}, ratio_cell(&row, row_of(rows, "tw"))});
     }
   return table;
@@ -143,7 +150,7 @@ Table table_of_slides(const std::vector<std::vector<EngineRow>>& ladder) {
       const double slide = slide_time(n, label);
       if (slide == 0.0) continue;
       const EngineRow* ours = labelled(rows, label);
-      table.rows.push_back({{std::to_string(n)}, {label}, {fmt::format("{:g}", slide)}, {ours == nullptr ? "\u2013" : fmt::format("{:.3g}", ours->cpu_s)}, {fmt::format("{:.2f}", slide / slide_time(n, "TW"))},
+      table.rows.push_back({{std::to_string(n)}, {in_one(label)}, {fmt::format("{:g}", slide)}, {ours == nullptr ? "\u2013" : fmt::format("{:.3g}", ours->cpu_s)}, {fmt::format("{:.2f}", slide / slide_time(n, "TW"))},
                             ratio_cell(ours, row_of(rows, "tw"))});
     }
   }

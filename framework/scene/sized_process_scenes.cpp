@@ -134,7 +134,7 @@ namespace {
 constexpr int kLinks = 8;
 constexpr double kLink = 0.2;            // length [m]
 constexpr double kShoulder = 0.9;        // above the floor [m]
-constexpr double kCell = 5.0;            // between arms [m]: none reaches another, what they throw may
+constexpr double kCell = 4.4;            // between arms [m]: none reaches another, what they throw may
 constexpr double kSwing = 1.75;          // of the hand about the shoulder [rad]
 // The model scoop.3ds: half its width, of its pocket, height, floor [m]. Its centre of mass above the underside is that of the block less the pocket.
 constexpr double kScoop = 0.125, kPocket = 0.1015625, kScoopHigh = 0.1015625, kScoopFloor = 0.015625;
@@ -233,8 +233,8 @@ Scene robots(int n) {
   }
   const int rows = (n - 1) / across + 1;
   const double middle = 0.5 * (rows - across) * kCell, wide = kCell * std::max(rows, across);
-  scene.camera.eye_m = {middle + 0.2 * wide, -0.7 * wide - 1.0, 0.35 * wide + 0.6};
-  scene.camera.target_m = {middle + 0.2, 0, 0.8};
+  scene.camera.eye_m = {middle + 0.2 * wide + 0.5, -0.62 * wide - 1.5, 0.3 * wide + 0.7};
+  scene.camera.target_m = {middle + 0.4, 0, 0.8};
   return scene;
 }
 
