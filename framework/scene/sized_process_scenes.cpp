@@ -233,7 +233,7 @@ Scene robots(int n) {
   }
   const int rows = (n - 1) / across + 1;
   const double middle = 0.5 * (rows - across) * kCell, wide = kCell * std::max(rows, across);
-  scene.camera.eye_m = {middle + 0.2 * wide + 0.5, -0.62 * wide - 1.5, 0.3 * wide + 0.7};
+  scene.camera.eye_m = {middle + 0.2 * wide + 0.5, -0.78 * wide - 1.6, 0.36 * wide + 0.7};
   scene.camera.target_m = {middle + 0.4, 0, 0.8};
   return scene;
 }
@@ -248,7 +248,7 @@ constexpr double kMountainWide = 6.6;    // of a piece: pieces stand side by sid
 constexpr double kRockApart = 0.7;       // of rocks at the start [m]
 constexpr double kFirstRow = 5.6;        // uphill of the valley [m]
 constexpr double kSteep = 0.7;           // tangent of the slope
-constexpr double kRelief = 1.0;          // how high the ground reaches above the even slope, with its step, and some room [m]
+constexpr double kRelief = 1.45;         // how high the ground reaches above the even slope, with its step, and some room [m]
 constexpr double kMargin = 2.2;          // of ground beside the outermost rocks, both sides together [m]
 
 void add_mountain(double width, Scene& scene) {
