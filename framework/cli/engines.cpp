@@ -31,7 +31,7 @@ std::vector<EngineRow> run_all(const Context& context, const scene::Scene& scene
 
 void run_engines(Context& context, const EnginesWords& words) {
   if (words.scene.empty() || words.scene == kAllScenes) return engines_of_all(context, words);
-  if (words.full || words.no_videos) throw UserError(words.full ? "--full" : "--no-videos", "is of the page of all scenes", "Leave it out, or leave the scene out.");
+  if (words.full || words.small || words.no_videos) throw UserError(words.full ? "--full" : words.small ? "--small" : "--no-videos", "is of the page of all scenes", "Leave it out, or leave the scene out.");
   const scene::Scene scene = find_scene(context, words.scene, words.n);
   const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(words.modules, context.registry));
   for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
@@ -60,6 +60,7 @@ void add_engines(CLI::App& app, Context& context) {
   CLI::App* verb = app.add_subcommand("engines", "Run a scene by every engine and compare what they count, commit and cost");
   verb->add_option("scene", words->scene, "A scene file, the bare name of one, or a scene with a size (atoms, cars, ...); none, or all: the course's scenes on one page")->type_name("SCENE");
   verb->add_flag("--full", words->full, "Of the page of all scenes: sizes as in the paper; takes long");
+  verb->add_flag("--small", words->small, "Of the page of all scenes: four of them, smaller still; takes seconds")->excludes("--full");
   verb->add_flag("--no-videos", words->no_videos, "Of the page of all scenes: tables, plots and players only");
   verb->add_option("--n", words->n, "Size of a scene whose size is a parameter");
   verb->add_option("--sizes", words->sizes, "Sizes to run one after the other: draws work and time against n, e.g. --sizes 50,100,200")->delimiter(',');

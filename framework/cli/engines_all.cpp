@@ -26,15 +26,15 @@ using report::EnginesScene;
 /// How a scene is shown. `share` is about how long its runs and pictures take, against the others: for the time that is left only.
 struct Shown {
   const char* name;
-  int n, paper_n;
+  int small_n, n, paper_n;  // 0: not shown
   double speed;             // seconds of the run in a second of video
   double share, paper_share;
 };
-constexpr Shown kShown[] = {{"atoms", 100, 300, 0.5, 5, 20},     {"cars", 40, 400, 0.5, 10, 300},      {"robots", 4, 20, 0.5, 14, 200}, {"avalanche", 16, 300, 1.0, 20, 2000},
-                            {"pong", 200, 2000, 0.5, 5, 200}, {"dominoes_row", 12, 50, 1.0, 14, 100}, {"cradle", 8, 20, 1.0, 5, 10}};
+constexpr Shown kShown[] = {{"atoms", 60, 100, 300, 0.5, 5, 20},        {"cars", 9, 40, 400, 0.5, 10, 300},     {"robots", 1, 4, 20, 0.5, 14, 200}, {"avalanche", 5, 16, 300, 1.0, 20, 2000},
+                            {"pong", 0, 200, 2000, 0.5, 5, 200}, {"dominoes_row", 0, 12, 50, 1.0, 14, 100}, {"cradle", 0, 8, 20, 1.0, 5, 10}};
 
 // The slides' sizes are 100 and 200 atoms.
-const std::vector<int> kLadder = {25, 50, 100, 200}, kPaperLadder = {50, 100, 200, 400};
+const std::vector<int> kSmallLadder = {25, 50, 100}, kLadder = {25, 50, 100, 200}, kPaperLadder = {50, 100, 200, 400};
 constexpr double kLadderShare = 12, kPaperLadderShare = 100;
 constexpr double kPlayedRate = 60.0, kEnergyRate = 10.0;   // frames a second: of runs that are shown, and of others
 constexpr int kWidth = 960, kHeight = 540;
@@ -54,6 +54,8 @@ class Progress {
   double total_, done_ = 0.0;
   std::chrono::steady_clock::time_point begun_;
 };
+
+int size_of(const EnginesWords& words, const Shown& shown) { return words.full ? shown.paper_n : words.small ? shown.small_n : shown.n; }
 
 std::string modules_of(const Context& context, const EnginesWords& words) {
   if (!words.modules.empty()) return words.modules;
@@ -125,7 +127,7 @@ EnginesScene show(const Context& context, const EnginesWords& words, const Shown
   EnginesScene shown;
   shown.name = which.name;
   try {
-    const int n = words.full ? which.paper_n : which.n;
+    const int n = size_of(words, which);
     const scene::Scene scene = find_scene(context, which.name, n);
     shown.title = scene.title;
     shown.about = scene.about;
@@ -162,7 +164,7 @@ EnginesScene show(const Context& context, const EnginesWords& words, const Shown
 
 std::vector<std::vector<EngineRow>> climb(const Context& context, const EnginesWords& words) {
   std::vector<std::vector<EngineRow>> ladder;
-  for (const int n : words.full ? kPaperLadder : kLadder) {
+  for (const int n : words.full ? kPaperLadder : words.small ? kSmallLadder : kLadder) {
     const scene::Scene scene = find_scene(context, "atoms", n);
     const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(modules_of(context, words), context.registry));
     std::vector<EngineRun> runs;
@@ -173,38 +175,47 @@ std::vector<std::vector<EngineRow>> climb(const Context& context, const EnginesW
   return ladder;
 }
 
+void print_scene(const EnginesScene& scene) {
+  if (!scene.problem.empty()) return fmt::print("{}: FAILED {}\n\n", scene.name, scene.problem);
+  fmt::print("{}\n", scene.title);
+  print_rows(scene.rows);
+  fmt::print("\n");
+}
+
 }  // namespace
 
 void engines_of_all(Context& context, const EnginesWords& words) {
   if (words.n || words.duration_s || words.step_s || !words.sizes.empty()) throw UserError("tumble engines", "sizes, durations and steps belong to one scene", "Name a scene, or leave --n, --sizes, --duration-s and --step-s out.");
   engines_named(words.engines);
+  std::vector<Shown> all;
+  for (const Shown& shown : kShown)
+    if (size_of(words, shown) > 0) all.push_back(shown);
   const auto share_of = [&](const Shown& shown) { return words.full ? shown.paper_share : shown.share; };
   const double ladder_share = words.full ? kPaperLadderShare : kLadderShare;
   double total = ladder_share;
-  for (const Shown& shown : kShown) total += share_of(shown);
+  for (const Shown& shown : all) total += share_of(shown);
   Progress progress(total);
-  const fs::path out = words.out;
   report::EnginesIndex index;
   index.record = context.command_line;
   index.is_full = words.full;
   progress.begin("atoms at several sizes");
   index.ladder = climb(context, words);
   progress.finish(ladder_share);
-  for (const Shown& shown : kShown) {
+  for (const Shown& shown : all) {
     progress.begin(shown.name);
-    index.scenes.push_back(show(context, words, shown, out));
+    index.scenes.push_back(show(context, words, shown, words.out));
     progress.finish(share_of(shown));
     const EnginesScene& scene = index.scenes.back();
-    if (!scene.problem.empty()) fmt::print("{}: FAILED {}\n\n", scene.name, scene.problem);
-    else fmt::print("{}\n", scene.title), print_rows(scene.rows), fmt::print("\n");
     if (!scene.problem.empty() || !scene.is_right) context.exit = ExitCode::kCheckFailed;
-    report::write_engines_index(index, out / "index.html");   // after each scene: whoever stops it early has the page so far
+    report::write_engines_index(index, fs::path(words.out) / "index.html");   // after each scene: whoever stops it early has the page so far
+    if (!words.quiet) print_scene(scene);
   }
+  if (words.quiet) return;
   for (const std::vector<EngineRow>& rows : index.ladder) {
     fmt::print("atoms (n = {})\n", rows.front().bodies);
     print_rows(rows);
   }
-  fmt::print("{}\n", (out / "index.html").string());
+  fmt::print("{}\n", (fs::path(words.out) / "index.html").string());
 }
 
 }  // namespace tumble::cli

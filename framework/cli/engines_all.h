@@ -19,9 +19,12 @@ struct EnginesWords {
   std::optional<double> duration_s, step_s;
   bool full = false;        // sizes as in the paper
   bool no_videos = false;
+  bool small = false;       // a few scenes, smaller still
+  bool quiet = false;       // nothing on stdout: of a report that has more to say
 };
 
 /// Runs them and writes words.out/index.html, with a folder beside it for each scene.
+/// Says in context.exit where a run is not right by its scene's numbers.
 /// @throws UserError for words that belong to one scene
 void engines_of_all(Context& context, const EnginesWords& words);
 

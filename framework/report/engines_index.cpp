@@ -165,7 +165,7 @@ void write_engines_index(const EnginesIndex& index, const std::filesystem::path&
   add_engines(page);
   page.heading("All scenes", 2, "all");
   page.table(table_of_scenes(index.scenes));
-  page.paragraph(std::string("Times are CPU times of this machine in this run; their ratios are what matters. ") + (index.is_full ? "Sizes are those of the paper." : "Sizes are small, so that the page takes minutes; --full runs those of the paper."), Look::kMuted);
+  page.paragraph(std::string("Times are CPU times of this machine in this run; their ratios are what matters. ") + (index.is_full ? "Sizes are those of the paper." : "Sizes are small, so that the page takes little time; ./tumble engines --full runs those of the paper."), Look::kMuted);
   if (!index.ladder.empty()) add_slides(page, index);
   for (const EnginesScene& scene : index.scenes) add_scene(page, scene);
   page.record(index.record);

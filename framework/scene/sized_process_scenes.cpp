@@ -108,12 +108,12 @@ Scene cars(int n) {
   floor.friction = 1.0;
   scene.bodies.push_back(floor);
   std::vector<Vector3d> bobs;   // where they begin: two that swing towards each other must not begin in each other
-  for (int v = 0; v < vehicles; ++v) add_vehicle(v + 1, {-0.5 * kLane * across - 0.6, ((v + 0.5) / vehicles - 0.5) * kLane * across, 0}, scene);
+  for (int v = 0; v < vehicles; ++v) add_vehicle(v + 1, {-0.5 * kLane * across - 0.9, ((v + 0.5) / vehicles - 0.5) * kLane * across, 0}, scene);
   for (int i = 0; i < n; ++i) {
     const Vector3d pivot((i / across - 0.5 * (across - 1)) * kLane, (i % across - 0.5 * (across - 1)) * kLane, 0.42 + kRod);
     Vector3d place;
     do {
-      const double lean = random.between(0.1, 0.35), way = random.between(0.0, 2 * std::numbers::pi);
+      const double lean = random.between(0.25, 0.6), way = random.between(0.0, 2 * std::numbers::pi);
       place = pivot + kRod * Vector3d(std::sin(lean) * std::cos(way), std::sin(lean) * std::sin(way), -std::cos(lean));
     } while (std::any_of(bobs.begin(), bobs.end(), [&](const Vector3d& other) { return (other - place).norm() < 2.2 * kBob; }));
     bobs.push_back(place);
