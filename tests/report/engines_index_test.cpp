@@ -43,6 +43,13 @@ TEST(ModelOfCost, RetroactiveDetectionHasItsTwoLimits) {
   EXPECT_NEAR(*modelled_integrations("rd", kN, kOften, kStep), kN * kN * kOften, kRounding * kN * kN * kOften);
 }
 
+// By hand: lambda = 300 1/s, lambda h = 10.
+TEST(ModelOfCost, GivesTheNumbersOfAtoms) {
+  EXPECT_NEAR(*modelled_integrations("ca", 100, 6.0, 1.0 / 30.0), 93000.0, kRounding * 93000.0);
+  EXPECT_NEAR(*modelled_integrations("tw", 100, 6.0, 1.0 / 30.0), 4800.0, kRounding * 4800.0);
+  EXPECT_NEAR(*modelled_integrations("rd", 100, 6.0, 1.0 / 30.0), 30000.0 * (1.0 + 1.0 / (1.0 - std::exp(-10.0))), 1e-7);
+}
+
 TEST(ModelOfCost, TimewarpGrowsWithTheNumberOfBodiesAndTheOthersWithItsSquare) {
   constexpr double kW = 6.0, kStep = 1e9;   // steps so long that only discontinuities count
   const auto growth = [&](const char* engine) { return *modelled_integrations(engine, 2e6, kW, kStep) / *modelled_integrations(engine, 1e6, kW, kStep); };
