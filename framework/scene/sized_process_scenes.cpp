@@ -289,7 +289,7 @@ Scene avalanche(int n) {
     scene.bodies.push_back(rock);
   }
   const double far = std::max(8.0, 0.5 * width + 5.0);
-  scene.camera.eye_m = {0.95 * far, -0.95 * far, 0.55 * far};
+  scene.camera.eye_m = {0.95 * far, -0.9 * far, 0.7 * far};
   scene.camera.target_m = {-2.7, 0.0, 1.8};
   return scene;
 }
