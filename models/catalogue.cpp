@@ -7,6 +7,7 @@
 
 #include "framework/core/random.h"
 #include "framework/geometry/shape.h"
+#include "models/mountainside.h"
 #include "models/surfaces.h"
 
 namespace tumble::models {
@@ -65,6 +66,25 @@ TriangleMesh arch_stone(double thickness) {
 TriangleMesh card() {
   constexpr double kThickness = 0.02, kLean = 25.0 / 180.0 * kPi;
   return upright({{-kThickness, 0}, {0, 0}, {0, 1}, {-kThickness, 1 + kThickness / std::tan(kLean)}}, 0.36);
+}
+
+/// A tray that is open at the top, its underside at z = 0: what an arm holds a block in.
+TriangleMesh scoop() {
+  constexpr double kOuter = 0.125, kInner = 0.1015625, kHigh = 0.1015625, kFloor = 0.015625;   // as float32 holds them exactly: a block may lie on the floor
+  TriangleMesh mesh;
+  // Rings of four corners: underside, outer rim, inner rim, floor.
+  const double halves[] = {kOuter, kOuter, kInner, kInner}, heights[] = {0.0, kHigh, kHigh, kFloor};
+  for (int ring = 0; ring < 4; ++ring)
+    for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) mesh.vertices.push_back({x * halves[ring], y * halves[ring], heights[ring]});
+  const auto quad = [&](int a, int b, int c, int d) {
+    mesh.faces.push_back({a, b, c});
+    mesh.faces.push_back({a, c, d});
+  };
+  quad(3, 2, 1, 0);
+  for (int ring = 0; ring < 3; ++ring)
+    for (int k = 0; k < 4; ++k) quad(4 * ring + k, 4 * ring + (k + 1) % 4, 4 * ring + 4 + (k + 1) % 4, 4 * ring + 4 + k);
+  quad(12, 13, 14, 15);
+  return mesh;
 }
 
 /// Hull of points scattered about an ellipsoid: a stone as it comes off a beach.
@@ -192,6 +212,8 @@ std::vector<Model> catalogue() {
       {"rock_1.3ds", {{"rock_1", rock(1, 36, {0.5, 0.42, 0.33})}}},
       {"rock_2.3ds", {{"rock_2", rock(2, 24, {0.45, 0.45, 0.4})}}},
       {"rock_3.3ds", {{"rock_3", rock(3, 48, {0.6, 0.35, 0.25})}}},
+      {"scoop.3ds", {{"scoop", scoop()}}},
+      {"mountainside.3ds", {{"mountainside", mountainside()}}},
       {"water_molecule.3ds", {{"water", water_molecule()}}},
       {"water_hull.3ds", {{"water_hull", water_hull()}}},
       {"dumbbell.3ds", {{"dumbbell", dumbbell()}}},

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/cli/engines_all.h"
 #include "framework/cli/verb.h"
 #include "framework/core/files.h"
 #include "framework/grading/grade.h"
@@ -18,6 +19,7 @@ namespace fs = std::filesystem;
 using grading::Grade;
 
 constexpr const char* kPrivate = "solutions_private";
+constexpr const char* kEngines = "engines";   // folder of the comparison
 
 struct Options {
   std::string out = "out/demo";
@@ -74,6 +76,7 @@ void write_index(const Context& context, const std::vector<Graded>& all, const f
     links.push_back({"Stories of " + graded.kind->id, "#stories-" + graded.kind->id});
     links.push_back({"Scenes of " + graded.kind->id, "#scenes-" + graded.kind->id});
   }
+  links.push_back({"Three engines on the paper's scenes", report::link_to(fs::path(kEngines) / "index.html")});
   page.links(links);
   page.heading("Scores", 2, "scores");
   page.paragraph("The reference solution, the stub as students get it, and a submission with mistakes that students make. Each was compiled and run in a sandbox, "
@@ -123,6 +126,10 @@ void demo(Context& context, const Options& options) {
     grade.progress = [kind](const grading::GradeProgress& progress) { tell_progress(kind->id, progress); };
     all.push_back({kind, grading::grade_submissions(course, kind->id, submissions_of(context, *kind), out / kind->id, grade)});
   }
+  EnginesWords engines;
+  engines.out = (out / kEngines).string();
+  engines.small = engines.no_videos = engines.quiet = true;   // tumble engines makes the whole page
+  engines_of_all(context, engines);
   write_index(context, all, out);
   const int surprises = print_table(all);
   fmt::print("{}\n", (out / "index.html").string());

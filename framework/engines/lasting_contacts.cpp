@@ -198,11 +198,28 @@ std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidat
   note_near_pairs(candidates);
   next_warm_.clear();
   next_stuck_.clear();
-  for (const Group& group : groups_)
-    if (const auto earlier = group.pile ? take_pile_step(group, h) : take_step(group, h)) return earlier;
+  if (const auto earlier = take_steps(h)) return earlier;
   warm_ = std::move(next_warm_);
   stuck_ = std::move(next_stuck_);
   return std::nullopt;
+}
+
+// Every group's step. @return the earliest target that one of them asks for: the step begins again for all, and once for many groups is
+// cheaper than once for each. Of ends of sliding, the one that is looked for is that of the earliest.
+std::optional<double> LastingContacts::take_steps(double h) {
+  std::optional<double> earliest;
+  std::optional<Locating> of_earliest;
+  for (const Group& group : groups_) {
+    const std::optional<Locating> before = locating_;
+    const std::optional<double> earlier = group.pile ? take_pile_step(group, h) : take_step(group, h);
+    if (earlier && (!earliest || *earlier < *earliest)) {
+      earliest = earlier;
+      of_earliest = locating_;
+    }
+    locating_ = before;
+  }
+  if (earliest) locating_ = of_earliest;
+  return earliest;
 }
 
 void LastingContacts::note_near_pairs(const std::vector<Pair>& candidates) {

@@ -136,6 +136,7 @@ class LastingContacts {
   bool strike_what_is_down(const Group& group, const std::vector<Touch>& touches);
   bool strike(const Group& group, std::vector<Touch> down);
   double speed(const Group& group) const;
+  std::optional<double> take_steps(double h);
   std::optional<double> take_step(const Group& group, double h);
   void require_numbers(const Group& group, const ContactSolution& solution) const;
   void draw_apart();

@@ -147,21 +147,26 @@ TriangleMesh Stage::surface(const Actor& actor) const {
   return actor.geometry >= kFirstMesh ? meshes_[static_cast<std::size_t>(actor.geometry - kFirstMesh)] : TriangleMesh{};
 }
 
-// An immovable body between the eye and a moving one would hide what is to be seen: it becomes glass, for the whole run.
+// An immovable body between the eye and moving ones would hide what is to be seen: it becomes glass, for the whole run. Ground whose ridges
+// hide one for a moment stays ground.
 void Stage::turn_walls_to_glass() {
   constexpr std::size_t kLooks = 40;
+  constexpr double kMoment = 0.05;   // of all looks at all bodies
   const std::size_t stride = std::max<std::size_t>(1, run_.frames.size() / kLooks);
   for (std::size_t wall = 0; wall < actors_.size(); ++wall) {
     Actor& actor = actors_[wall];
     if (!actor.immovable || actor.geometry < 0 || actor.pass == Pass::kGlass) continue;
     const TriangleMesh shape = surface(actor);
-    bool in_the_way = false;
-    for (std::size_t f = 0; f < run_.frames.size() && !in_the_way; f += stride) {
+    std::size_t looks = 0, hidden = 0;
+    for (std::size_t f = 0; f < run_.frames.size(); f += stride) {
       const Frame& frame = run_.frames[f];
-      for (std::size_t i = 0; i < actors_.size() && !in_the_way; ++i)
-        in_the_way = !actors_[i].immovable && hides(shape, frame.poses[wall], view_at(frame).eye_world, frame.poses[i].com_world);
+      for (std::size_t i = 0; i < actors_.size(); ++i) {
+        if (actors_[i].immovable) continue;
+        ++looks;
+        hidden += hides(shape, frame.poses[wall], view_at(frame).eye_world, frame.poses[i].com_world) ? 1 : 0;
+      }
     }
-    if (in_the_way) actor.pass = Pass::kGlass, actor.opacity = 0.25;
+    if (static_cast<double>(hidden) > kMoment * static_cast<double>(looks)) actor.pass = Pass::kGlass, actor.opacity = 0.25;
   }
 }
 

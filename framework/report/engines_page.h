@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/report/html.h"
 #include "framework/report/plot.h"
 
 namespace tumble::report {
@@ -14,7 +15,9 @@ namespace tumble::report {
 /// One engine's run of one scene.
 struct EngineRow {
   std::string engine, meaning;                 // "tw", "timewarp"
+  std::string label;                           // what a column or a curve is called: "rd", "RD-1/30"
   int bodies = 0;                              // movable
+  double step_s = 0.0;                         // the largest
   double simulated_s = 0.0, cpu_s = 0.0;
   double w_h = 0.0;                            // discontinuities a body and step
   std::map<std::string, std::uint64_t> counts; // of the run's counters
@@ -25,6 +28,12 @@ struct EngineRow {
 
 /// The counts that are compared, in order: name in Counters, heading.
 const std::vector<std::pair<std::string, std::string>>& compared_counts();
+
+/// Nothing counted: 0.
+std::uint64_t count_of(const EngineRow& row, const std::string& name);
+
+/// One column an engine: counts, w h, undone part, time against the quickest.
+Table table_of_engines(const std::vector<EngineRow>& rows);
 
 /// Of a ladder of sizes: work and time against the number of bodies, a curve an engine; steps are counted as integrations.
 std::vector<Plot> plots_against_n(const std::vector<std::vector<EngineRow>>& ladder);

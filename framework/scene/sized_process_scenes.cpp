@@ -108,12 +108,12 @@ Scene cars(int n) {
   floor.friction = 1.0;
   scene.bodies.push_back(floor);
   std::vector<Vector3d> bobs;   // where they begin: two that swing towards each other must not begin in each other
-  for (int v = 0; v < vehicles; ++v) add_vehicle(v + 1, {-0.5 * kLane * across - 0.6, ((v + 0.5) / vehicles - 0.5) * kLane * across, 0}, scene);
+  for (int v = 0; v < vehicles; ++v) add_vehicle(v + 1, {-0.5 * kLane * across - 0.9, ((v + 0.5) / vehicles - 0.5) * kLane * across, 0}, scene);
   for (int i = 0; i < n; ++i) {
     const Vector3d pivot((i / across - 0.5 * (across - 1)) * kLane, (i % across - 0.5 * (across - 1)) * kLane, 0.42 + kRod);
     Vector3d place;
     do {
-      const double lean = random.between(0.1, 0.35), way = random.between(0.0, 2 * std::numbers::pi);
+      const double lean = random.between(0.25, 0.6), way = random.between(0.0, 2 * std::numbers::pi);
       place = pivot + kRod * Vector3d(std::sin(lean) * std::cos(way), std::sin(lean) * std::sin(way), -std::cos(lean));
     } while (std::any_of(bobs.begin(), bobs.end(), [&](const Vector3d& other) { return (other - place).norm() < 2.2 * kBob; }));
     bobs.push_back(place);
@@ -133,41 +133,84 @@ namespace {
 
 constexpr int kLinks = 8;
 constexpr double kLink = 0.2;            // length [m]
-constexpr double kCell = 4.2;            // between arms [m]: none reaches another
+constexpr double kShoulder = 0.9;        // above the floor [m]
+constexpr double kCell = 4.4;            // between arms [m]: none reaches another, what they throw may
+constexpr double kSwing = 1.75;          // of the hand about the shoulder [rad]
+// The model scoop.3ds: half its width, of its pocket, height, floor [m]. Its centre of mass above the underside is that of the block less the pocket.
+constexpr double kScoop = 0.125, kPocket = 0.1015625, kScoopHigh = 0.1015625, kScoopFloor = 0.015625;
+constexpr double kBlock = 0.0703125;         // half a block's side [m]: some room in the pocket
 
-// Swings about its post; springs of its hinges are as stiff as what hangs on them is heavy.
+// Of a hinge of the arm, counted from the shoulder: about the upright axis; the others lift.
+bool turns_aside(int hinge) { return hinge == 0 || hinge == 4; }
+
+constexpr double kShares[kLinks] = {0.0, 0.35, 0.25, 0.2, 0.0, 0.1, 0.06, 0.04};   // of the swing, by hinge: those near the hand bear the least
+constexpr double kLinkMass = 1.0, kBlockMass = 0.3;   // kg
+
+double scoop_centre() {
+  const double whole = kScoop * kScoop * kScoopHigh, pocket = kPocket * kPocket * (kScoopHigh - kScoopFloor);
+  return (0.5 * whole * kScoopHigh - 0.5 * pocket * (kScoopHigh + kScoopFloor)) / (whole - pocket);
+}
+
+BodySpec block_at(const std::string& name, const Vector3d& place, int color) {
+  BodySpec block = body_at(name, BoxSpec{{kBlock, kBlock, kBlock}}, kBlockMass, place, color);
+  block.restitution = 0.0;
+  block.friction = 0.5;
+  return block;
+}
+
+// How far from the shoulder a link's centre is; the hand is the last. [m]
+double arm_of(int link) { return (link + 0.5) * kLink + (link == kLinks - 1 ? 0.05 : 0.0); }
+
+// What a hinge has to hold up while the arm is stretched out. [N m]
+double weight_on(int hinge) {
+  double torque = kBlockMass * (arm_of(kLinks - 1) - hinge * kLink);
+  for (int k = hinge; k < kLinks; ++k) torque += kLinkMass * (arm_of(k) - hinge * kLink);
+  return 9.81 * torque;
+}
+
+// From rest, carrying its weight, to the far end and back: target = weight / stiffness + a (1 - cos(2 pi f t)).
+MotorSpec motor_of(const std::string& hinge, int k, double turn, double rate) {
+  const double share = std::pow(static_cast<double>(kLinks - k) / kLinks, 2.5);   // as stiff as what hangs on it is heavy
+  MotorSpec motor;
+  motor.joint = hinge;
+  motor.amplitude_rad = 0.5 * turn;
+  motor.frequency_hz = rate;
+  motor.phase_rad = -0.5 * std::numbers::pi;
+  motor.stiffness_n_m_rad = 6000.0 * share;
+  motor.damping_n_m_s_rad = 4.0 * std::sqrt(share);   // more would shake the links: a torque is held until the motor looks again
+  motor.offset_rad = 0.5 * turn + (turns_aside(k) ? 0.0 : weight_on(k) / motor.stiffness_n_m_rad);
+  motor.period_s = 1.0 / 960.0;   // held longer, such a torque would throw the light links about
+  return motor;
+}
+
+// Stretched out backward along -x, its hand a scoop with a block in it. The hinges that lift swing it up and over: where the hand is slowed
+// down again the block flies on. The other two turn the arm to its sides.
 void add_arm(int number, const Vector3d& foot, Random& random, Scene& scene) {
-  const double phase = random.between(0.0, 2 * std::numbers::pi);
+  const double rate = random.between(0.55, 0.7), side = random.between(-0.2, 0.2);   // swings a second; how far it turns aside [rad]
+  const Vector3d shoulder = foot + Vector3d(0, 0, kShoulder);
   std::vector<std::string> names;
   for (int k = 0; k < kLinks; ++k) {
-    names.push_back(fmt::format("arm_{}_{}", number, k + 1));
-    BodySpec link = body_at(names.back(), BoxSpec{{0.5 * kLink, 0.04, 0.06}}, 0.5, foot + Vector3d((k + 0.5) * kLink, 0, 0.7), number);
+    const bool is_hand = k == kLinks - 1;
+    names.push_back(is_hand ? fmt::format("hand_{}", number) : fmt::format("arm_{}_{}", number, k + 1));
+    BodySpec link = body_at(names.back(), BoxSpec{{0.5 * kLink, 0.035, 0.045}}, kLinkMass, shoulder - Vector3d(arm_of(k), 0, 0), number);
+    if (is_hand) link.shape = ModelSpec{"scoop.3ds", "", 1.0};
+    link.friction = 0.5;
+    link.restitution = 0.0;
     scene.bodies.push_back(link);
     JointSpec hinge;
     hinge.name = fmt::format("hinge_{}_{}", number, k + 1);
     hinge.kind = JointKind::kHinge;
-    if (k == 0) {
-      hinge.body_a = names[0];
-    } else {
-      hinge.body_a = names[static_cast<std::size_t>(k) - 1];
-      hinge.body_b = names.back();
-    }
-    hinge.point_m = foot + Vector3d(k * kLink, 0, 0.7);
-    hinge.axis = k % 2 == 0 ? Vector3d::UnitZ() : Vector3d::UnitY();
+    hinge.body_a = names[static_cast<std::size_t>(std::max(0, k - 1))];
+    if (k > 0) hinge.body_b = names.back();
+    hinge.point_m = shoulder - Vector3d(k * kLink, 0, 0);
+    hinge.axis = turns_aside(k) ? Vector3d::UnitZ() : Vector3d::UnitY();
     scene.joints.push_back(hinge);
-    const double weight = std::pow(static_cast<double>(kLinks - k) / kLinks, 2.5);
-    MotorSpec motor;
-    motor.joint = hinge.name;
-    motor.amplitude_rad = k % 2 == 0 ? 0.8 : 0.25;
-    motor.frequency_hz = 0.7;
-    motor.phase_rad = phase + 0.4 * k;
-    motor.stiffness_n_m_rad = 250.0 * weight;
-    motor.damping_n_m_s_rad = 12.0 * weight;
-    motor.period_s = 1.0 / 960.0;   // held longer, such a torque would throw the light links about
-    scene.motors.push_back(motor);
+    scene.motors.push_back(motor_of(hinge.name, k, turns_aside(k) ? side : kSwing * kShares[k], rate));
   }
   for (std::size_t i = 0; i < names.size(); ++i)
     for (std::size_t j = i + 1; j < names.size(); ++j) scene.apart.emplace_back(names[i], names[j]);
+  const Vector3d& hand = scene.bodies.back().position_m;
+  scene.bodies.push_back(block_at(fmt::format("block_{}_1", number), hand + Vector3d(0, 0, kScoopFloor - scoop_centre() + kBlock), number + 1));
 }
 
 }  // namespace
@@ -175,55 +218,79 @@ void add_arm(int number, const Vector3d& foot, Random& random, Scene& scene) {
 Scene robots(int n) {
   Scene scene = scene_of(2.0, 1.0 / 240.0);
   scene.stabilisation = StabilisationSpec{};
+  scene.contact = ContactSpec{};
+  scene.contact->plastic_impacts = PlasticImpacts::kInStep;
   Random random(22);
   const int across = std::max(1, static_cast<int>(std::lround(std::sqrt(n))));
-  scene.bodies.push_back(ground("floor", Vector3d::Zero(), Vector3d::UnitZ(), 0.6 * kCell * across));
+  BodySpec floor = ground("floor", Vector3d::Zero(), Vector3d::UnitZ(), 0.6 * kCell * across + 2);
+  floor.friction = 0.6;
+  floor.restitution = 0.5;
+  scene.bodies.push_back(floor);
   for (int i = 0; i < n; ++i) {
     const Vector3d foot((i / across - 0.5 * (across - 1)) * kCell, (i % across - 0.5 * (across - 1)) * kCell, 0);
     add_arm(i + 1, foot, random, scene);
-    for (int k = 0; k < 2; ++k) {
-      const double angle = k == 0 ? 0.5 : -0.5, distance = random.between(0.9, 1.4);
-      BodySpec block = body_at(fmt::format("block_{}_{}", i + 1, k + 1), BoxSpec{{0.09, 0.09, 0.09}}, 0.3, foot + Vector3d(distance * std::cos(angle), distance * std::sin(angle), random.between(0.9, 1.3)), i + k + 1);
-      block.omega_world_rad_s = {random.between(-3.0, 3.0), random.between(-3.0, 3.0), random.between(-3.0, 3.0)};
-      block.restitution = 0.9;
-      scene.bodies.push_back(block);
-    }
+    scene.bodies.push_back(block_at(fmt::format("block_{}_2", i + 1), foot + Vector3d(random.between(1.6, 2.2), random.between(-0.3, 0.3), kBlock), i + 3));   // where the first one flies
   }
   const int rows = (n - 1) / across + 1;
-  const double middle = 0.5 * (rows - across) * kCell + 0.5 * kLinks * kLink, wide = kCell * std::max(rows, across);   // arms reach out along x
-  scene.camera.eye_m = {middle + 0.3 * wide, -1.15 * wide, 0.7 * wide};
-  scene.camera.target_m = {middle, -0.05 * wide, 0.4};
+  const double middle = 0.5 * (rows - across) * kCell, wide = kCell * std::max(rows, across);
+  scene.camera.eye_m = {middle + 0.2 * wide + 0.5, -0.78 * wide - 1.6, 0.36 * wide + 0.7};
+  scene.camera.target_m = {middle + 0.4, 0, 0.8};
   return scene;
 }
 
 // ---- Avalanche -----------------------------------------------------------------------------------------------------------
 
+namespace {
+
+// The model mountainside.3ds: downhill along x, a flat valley at z = 0.
+const Vector3d kMountainCentre(-6.93285, -0.00113, 2.33035);   // its centre of mass in its own frame, where bodies are placed by [m]
+constexpr double kMountainWide = 6.6;    // of a piece: pieces stand side by side without a seam [m]
+constexpr double kRockApart = 0.7;       // of rocks at the start [m]
+constexpr double kFirstRow = 5.6;        // uphill of the valley [m]
+constexpr double kSteep = 0.7;           // tangent of the slope
+constexpr double kRelief = 1.45;         // how high the ground reaches above the even slope, with its step, and some room [m]
+constexpr double kMargin = 2.2;          // of ground beside the outermost rocks, both sides together [m]
+
+void add_mountain(double width, Scene& scene) {
+  const int pieces = std::max(1, static_cast<int>(std::ceil((width + kMargin) / kMountainWide)));
+  for (int k = 0; k < pieces; ++k) {
+    BodySpec piece;
+    piece.name = fmt::format("mountain_{}", k + 1);
+    piece.shape = ModelSpec{"mountainside.3ds", "", 1.0};
+    piece.immovable = true;
+    piece.position_m = kMountainCentre + Vector3d(0, (k - 0.5 * (pieces - 1)) * kMountainWide, 0);
+    piece.friction = 0.5;
+    piece.color = Vector3d(0.36, 0.33, 0.27);
+    scene.bodies.push_back(piece);
+  }
+}
+
+}  // namespace
+
 Scene avalanche(int n) {
   Scene scene = scene_of(4.0, 1.0 / 240.0);
   scene.contact = ContactSpec{};
   Random random(23);
-  constexpr double kSlope = 0.62, kApart = 0.55;   // rad; between rocks [m]
-  const int across = std::max(1, static_cast<int>(std::lround(std::sqrt(0.5 * n)))), along = (n + across - 1) / across;
-  BodySpec slope = ground("slope", Vector3d::Zero(), {std::sin(kSlope), 0, std::cos(kSlope)}, kApart * along + 4), valley = ground("valley", Vector3d::Zero(), Vector3d::UnitZ(), kApart * across + 5);
-  for (BodySpec* plane : {&slope, &valley}) {
-    plane->friction = 0.45;
-    scene.bodies.push_back(*plane);
-  }
-  const Vector3d up(-std::cos(kSlope), 0, std::sin(kSlope)), out(std::sin(kSlope), 0, std::cos(kSlope));
+  const int along = std::clamp(static_cast<int>(std::lround(std::sqrt(0.5 * n))), 1, 10), across = (n + along - 1) / along;
+  const double width = kRockApart * across;
+  BodySpec valley = ground("valley", Vector3d::Zero(), Vector3d::UnitZ(), 0.5 * width + 12.0);
+  valley.friction = 0.5;
+  scene.bodies.push_back(valley);
+  add_mountain(width, scene);
   for (int i = 0; i < n; ++i) {
-    const double size = random.between(0.18, 0.3), azimuth = random.between(0.0, 6.28), tilt = random.between(0.0, 3.0);
-    const Vector3d place = (3.0 + (i / across) * kApart) * up + (0.35 + random.between(0.0, 0.4)) * out + Vector3d(0, (i % across - 0.5 * (across - 1)) * kApart, 0);
-    BodySpec rock = body_at(fmt::format("rock_{}", i + 1), ModelSpec{fmt::format("rock_{}.3ds", i % 3 + 1), "", size}, 1.0, place, i);
+    const double size = random.between(0.3, 0.5), azimuth = random.between(0.0, 6.28), tilt = random.between(0.0, 3.0);
+    const double x = -kFirstRow - (i / across) * kRockApart * 0.82, y = (i % across - 0.5 * (across - 1)) * kRockApart;
+    BodySpec rock = body_at(fmt::format("rock_{}", i + 1), ModelSpec{fmt::format("rock_{}.3ds", i % 3 + 1), "", size}, 1.0, {x, y, -kSteep * x + kRelief + random.between(0.0, 0.3)}, i);
     rock.mass_kg.reset();
     rock.density_kg_m3 = 2600.0;
     rock.world_from_body = Quaterniond(Eigen::AngleAxisd(azimuth, Vector3d::UnitZ()) * Eigen::AngleAxisd(tilt, Vector3d::UnitX()));
     rock.restitution = 0.3;
-    rock.friction = 0.45;
+    rock.friction = 0.5;
     scene.bodies.push_back(rock);
   }
-  const double reach = 3.0 + kApart * along;
-  scene.camera.eye_m = {0.9 * reach, -1.3 * reach, 0.8 * reach};
-  scene.camera.target_m = {-0.35 * reach, 0, 0.25 * reach};
+  const double far = std::max(8.0, 0.5 * width + 5.0);
+  scene.camera.eye_m = {0.95 * far, -0.9 * far, 0.7 * far};
+  scene.camera.target_m = {-2.7, 0.0, 1.8};
   return scene;
 }
 

@@ -216,15 +216,18 @@ Scene make(const std::string& name, int n) {
 }  // namespace
 
 const std::vector<SizedScene>& sized_scenes() {
-  static const std::vector<SizedScene> scenes = {{"pong", "Pong: balls on a table", "balls", 200},
-                                                 {"pong_ghosts", "Pong: balls that ignore each other", "balls", 200},
-                                                 {"gas", "Gas: balls in a box", "balls", 200},
-                                                 {"atoms", "Atoms: balls and molecules of water in a divided box", "bodies, a third of them molecules", 300},
-                                                 {"cars", "Cars: vehicles among pendula", "pendula; a vehicle of five bodies for every hundred", 400},
-                                                 {"robots", "Robots: arms that hit blocks", "arms of eight links, with two blocks each", 20},
-                                                 {"avalanche", "Avalanche: rocks come down a slope", "rocks", 300},
-                                                 {"dominoes_row", "Dominoes: a row of them", "dominoes", 20},
-                                                 {"cradle", "Newton's cradle", "balls", 20}};
+  static const std::vector<SizedScene> scenes = {
+      {"pong", "Pong: balls on a table", "balls", 200, "Elastic balls on a table without friction. Far apart, they have nothing to do with each other: what happens in one corner is no reason to stop in another."},
+      {"pong_ghosts", "Pong: balls that ignore each other", "balls", 200, "The balls meet the walls only. Each is a simulation of its own, and an engine that knows it does the same work for each, however many there are."},
+      {"gas", "Gas: balls in a box", "balls", 200, "Elastic balls without weight. The energy stays, the order of the first collisions is the same by every engine, and chaos takes over after some ten collisions a ball."},
+      {"atoms", "Atoms: balls and molecules of water in a divided box", "bodies, a third of them molecules", 300,
+       "Elastic balls on the left of the wall, molecules that spin on its right: collisions come at random and concern two bodies each, which is what timewarp is for."},
+      {"cars", "Cars: vehicles among pendula", "pendula; a vehicle of five bodies for every hundred", 400, "Vehicles on motors drive into pendula that swing into each other. A vehicle with its wheels is one process, each pendulum another."},
+      {"robots", "Robots: arms that throw blocks", "arms of eight links, with two blocks each", 20,
+       "Each arm carries a block in its hand and throws it. As long as the block lies in the hand, arm and block are one process; in flight it is one of its own, and no arm waits for another."},
+      {"avalanche", "Avalanche: rocks come down a mountainside", "rocks", 300, "Rocks fall, bounce, slide, roll and pile up. Those in lasting contact move as one process until they part."},
+      {"dominoes_row", "Dominoes: a row of them", "dominoes", 20, "One push, and a wave goes down the row: each domino matters to its neighbours only, one after the other."},
+      {"cradle", "Newton's cradle", "balls", 20, "Hung a millionth of a metre apart, so that the blow goes through ball by ball and the last leaves with the speed of the first."}};
   return scenes;
 }
 
@@ -243,6 +246,7 @@ Scene make_sized_scene(const std::string& name, int n) {
   Scene scene = make(name, n);
   const SizedScene& sized = sized_scenes()[static_cast<std::size_t>(found - names.begin())];
   scene.name = name;
+  scene.about = sized.about;
   scene.title = fmt::format("{} (n = {})", sized.title, n);
   scene.hash = fmt::format("{} n={}", name, n);
   if (scene.duration_s > 0) return scene;   // one that chose its own

@@ -16,6 +16,7 @@ struct SizedScene {
   std::string title;
   std::string counts;      // what n counts
   int default_n;
+  std::string about;       // what a viewer should notice
 };
 
 /// All of them, in the order in which they are listed.

@@ -3,6 +3,7 @@
 //   bench_engines [--scene NAME] [--n N,N,...] [--engines rd,ca,tw] [--duration-s T]
 // Without words: the table of TIMEWARP's figures (gas of balls from 10^2 to 10^5 bodies, atoms of 300, balls alone).
 // "processes" as the scene: cars, robots and avalanche, growing.
+// "paper" as the scene: the paper's four scenes at its sizes against their goals, one table and one picture, out/bench/engines.svg.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -13,8 +14,10 @@
 #include <string>
 #include <vector>
 
+#include "framework/core/files.h"
 #include "framework/engines/run.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
+#include "framework/report/plot.h"
 #include "framework/scene/sized_scenes.h"
 #include "tests/engines/reference_laws.h"
 
@@ -101,6 +104,53 @@ void table(const std::string& name, int n, const std::vector<std::string>& engin
       if (engine != "tw") std::printf("%-8s %8d %s/tw %.2f in time\n", name.c_str(), n, engine.c_str(), time / seconds["tw"]);
 }
 
+/// A scene at the paper's size. Retroactive detection needs hours for seconds of the heaviest: all are measured over the same part.
+struct PaperScene {
+  const char* name;
+  int n;
+  double duration;               // [s]
+  double goal_rd, goal_ca;       // of times against timewarp's (TIMEWARP, section 3)
+};
+constexpr PaperScene kPaper[] = {{"atoms", 300, 2.0, 20, 30}, {"cars", 400, 2.0, 5, 5}, {"robots", 20, 0.8, 3, 3}, {"avalanche", 300, 0.7, 5, 5}};
+
+/// w h beside every ratio: discontinuities a body and largest step, of timewarp's run.
+void paper_table(const std::filesystem::path& picture) {
+  report::Plot plot;
+  plot.title = "The paper's scenes: time against timewarp's";
+  plot.x = {"scene (1 atoms, 2 cars, 3 robots, 4 avalanche)", "", report::Scale::kLinear};
+  plot.y = {"time over timewarp's", "", report::Scale::kLog};
+  plot.limits.push_back({1.0, "timewarp"});
+  plot.curves = {{"RD, closed forms", {}, {}, true}, {"CA", {}, {}, true}, {"goal against RD", {}, {}, true}, {"goal against CA", {}, {}, true}};
+  std::printf("%-10s %6s %7s %9s %8s %10s %10s %10s %8s %6s %8s %6s %8s\n", "scene", "n", "sim s", "w h", "n w h", "RD CPU s", "CA CPU s", "TW CPU s", "RD/TW", "goal", "CA/TW", "goal", "undone");
+  double place = 0.0;
+  for (const PaperScene& paper : kPaper) {
+    const scene::Scene scene = scene::make_sized_scene(paper.name, paper.n);
+    int bodies = 0;
+    for (const scene::BodySpec& body : scene.bodies) bodies += body.immovable ? 0 : 1;
+    const double building = measure(scene, "tw", 1e-9).seconds;
+    std::map<std::string, double> seconds;
+    std::map<std::string, std::uint64_t> counts;
+    for (const char* engine : {"rd_auto", "ca", "tw"}) {
+      const Row row = measure(scene, engine, paper.duration);
+      seconds[engine] = std::max(1e-6, row.seconds - building);
+      counts = row.tally.counts;   // timewarp's is the last
+    }
+    const double w_h = 2.0 * static_cast<double>(counts["discontinuities"]) / (bodies * paper.duration) * scene.step_s;
+    const double rd = seconds["rd_auto"] / seconds["tw"], ca = seconds["ca"] / seconds["tw"];
+    std::printf("%-10s %6d %7.2f %9.4f %8.2f %10.3f %10.3f %10.3f %8.2f %6g %8.2f %6g %7.1f%%\n", paper.name, paper.n, paper.duration, w_h, bodies * w_h, seconds["rd_auto"], seconds["ca"], seconds["tw"], rd, paper.goal_rd, ca,
+                paper.goal_ca, 100.0 * static_cast<double>(counts["undone_integrations"]) / std::max(1.0, static_cast<double>(counts["integrations"])));
+    std::fflush(stdout);
+    place += 1.0;
+    const double values[] = {rd, ca, paper.goal_rd, paper.goal_ca};
+    for (std::size_t k = 0; k < plot.curves.size(); ++k) {
+      plot.curves[k].x.push_back(place);
+      plot.curves[k].y.push_back(values[k]);
+    }
+  }
+  write_whole(picture, report::svg_of(plot));
+  std::printf("%s\n", picture.c_str());
+}
+
 /// Elastic collisions lose nothing: over a million of them only roundings add up.
 void energy_over_a_million() {
   engines::RunOptions options;
@@ -139,6 +189,7 @@ int main(int argc, char** argv) {
     else return std::fprintf(stderr, "bench_engines: %s is no flag of mine\n", argv[i]), 2;
   }
   std::printf("%-8s %8s %-8s %10s %10s %10s %8s %9s %12s %10s %12s %9s\n", "scene", "n", "engine", "int/n/s", "checks/n/s", "coll/n/s", "undone", "kept", "coll/s CPU", "CPU s", "us/n/sim s", "w h");
+  if (scene == "paper") return tumble::testing::paper_table("out/bench/engines.svg"), 0;
   if (scene == "processes") {
     for (const int n : {40, 100, 400}) table("cars", n, {"rd", "ca", "tw"}, 1.0);
     for (const int n : {2, 6, 20}) table("robots", n, {"rd", "ca", "tw"}, 1.0);

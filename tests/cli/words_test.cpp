@@ -328,9 +328,21 @@ TEST_F(CommandLine, PokeWantsOneWayToPoint) {
 TEST_F(CommandLine, EnginesAreComparedInATableAndOnAPage) {
   const Said said = type("engines gas --sizes 10,20 --duration-s 0.5 --modules a1=reference");
   EXPECT_EQ(said.code, 0) << said.out << said.err;
-  for (const char* words : {"n = 10", "n = 20", "Anti-messages", "same trace, bit for bit", "out/engines/index.html"}) EXPECT_TRUE(holds(said.out, words)) << words << "\n" << said.out;
-  const std::string page = contents_of(folder_ / "out/engines/index.html");
+  for (const char* words : {"n = 10", "n = 20", "Anti-messages", "same trace, bit for bit", "out/engines/gas/index.html"}) EXPECT_TRUE(holds(said.out, words)) << words << "\n" << said.out;
+  const std::string page = contents_of(folder_ / "out/engines/gas/index.html");
   for (const char* words : {"conservative advancement", "Average integration step", "Error of the energy"}) EXPECT_TRUE(holds(page, words)) << words;
+}
+
+TEST_F(CommandLine, ThePageOfAllEnginesRefusesWhatBelongsToOneSceneAndTheOtherWayRound) {
+  const Said size = type("engines --n 5");
+  EXPECT_EQ(size.code, 2);
+  EXPECT_TRUE(holds(size.err, "belong to one scene")) << size.err;
+  const Said full = type("engines gas --full");
+  EXPECT_EQ(full.code, 2);
+  EXPECT_TRUE(holds(full.err, "page of all scenes")) << full.err;
+  const Said engine = type("engines --engines rd,warp");
+  EXPECT_EQ(engine.code, 2);
+  EXPECT_TRUE(holds(engine.err, "there is no engine of that name")) << engine.err;
 }
 
 TEST_F(CommandLine, AnEngineAndASizeThatThereAreNotAreRefusedWithWhatThereIs) {

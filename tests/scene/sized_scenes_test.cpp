@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
+#include "framework/geometry/solid.h"
 #include "framework/scene/sized_scenes.h"
 
 namespace tumble::testing {
@@ -44,6 +45,16 @@ TEST(SizedScenes, AreTheSameEachTime) {
   }
   EXPECT_EQ(once.hash, again.hash);
   EXPECT_NE(once.hash, scene::make_sized_scene("atoms", 31).hash);
+}
+
+// The scene places the block of ground by its centre of mass, which it knows as numbers.
+TEST(SizedScenes, PlaceTheMountainWhereItsModelIs) {
+  const SolidModel mountain = load_solid(std::filesystem::path(TUMBLE_SOURCE_DIR) / "models/mountainside.3ds");
+  const scene::Scene scene = scene::make_sized_scene("avalanche", 3);
+  const auto piece = std::find_if(scene.bodies.begin(), scene.bodies.end(), [](const scene::BodySpec& body) { return body.name == "mountain_1"; });
+  ASSERT_NE(piece, scene.bodies.end());
+  EXPECT_LT((piece->position_m - mountain.com_mesh).norm(), 1e-4);   // m: its toe lies 10 cm deep in the valley's floor
+  EXPECT_TRUE(piece->immovable);
 }
 
 TEST(SizedScenes, RefuseSizesAndNamesThereAreNone) {

@@ -50,7 +50,7 @@ int Passages::begin(const ProcessState& state) {
   auto passage = std::make_unique<Passage>();
   passage->machine = &machine_of(state.members, -1);
   ++passage->machine->users;
-  passage->start.emplace(state);
+  passage->start.emplace(state.without_memory());
   passage->front.emplace(state);
   passage->holders = static_cast<int>(state.members.size());
   passages_[static_cast<std::size_t>(number)] = std::move(passage);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -25,6 +26,8 @@ std::vector<const collision::CollisionShape*> shapes_of(const WorldPart& part, c
 
 const RigidBodyState& ProcessState::state_of(int body) const { return states[static_cast<std::size_t>(std::lower_bound(members.begin(), members.end(), body) - members.begin())]; }
 
+ProcessState ProcessState::without_memory() const { return {time, members, states, motors, force_points_body, met, lasting, near, std::nullopt}; }
+
 RigidBodyState ProcessStep::state_at(std::size_t member, double t) const { return t == from.time || paths.empty() ? from.states[member] : paths[member].at(t); }
 
 collision::MotionState ProcessStep::motion_at(std::size_t member, double t, const Inertia& inertia) const {
@@ -45,7 +48,7 @@ int ProcessWorld::local(int body) const { return static_cast<int>(std::lower_bou
 
 // ---- A state in, a state out ---------------------------------------------------------------------------------------------
 
-void ProcessWorld::load(const ProcessState& from) {
+void ProcessWorld::load(const ProcessState& from, std::optional<LastingContacts> memory) {
   std::vector<RigidBodyState> states = moving_.states();
   for (std::size_t k = 0; k < members_.size(); ++k) states[static_cast<std::size_t>(part_.members[k])] = from.states[k];
   moving_.stand_at(from.time, states);
@@ -64,8 +67,8 @@ void ProcessWorld::load(const ProcessState& from) {
   collector_.events.clear();
   if (!has_contacts()) return;
   contacts_.reset();
-  if (from.contacts) {
-    contacts_.emplace(*from.contacts);
+  if (memory) {
+    contacts_.emplace(std::move(*memory));
     return;
   }
   contacts_.emplace(moving_, laws_, *moving_.world().contact, rules_.rest_speed, counters_, collector_);
@@ -95,7 +98,8 @@ double ProcessWorld::load_forces(const ProcessState& from) {
   return next;
 }
 
-ProcessState ProcessWorld::save() const {
+// What contacts remember goes with the state: the next load brings its own.
+ProcessState ProcessWorld::save() {
   ProcessState state;
   state.time = moving_.time();
   state.members = members_;
@@ -106,7 +110,7 @@ ProcessState ProcessWorld::save() const {
   if (!has_contacts()) return state;
   for (const BodyPair& pair : contacts_->lasting()) state.lasting.insert(whole(pair));
   if (moving_.world().contact->plastic_impacts == scene::PlasticImpacts::kInStep) note_near(state);
-  state.contacts.emplace(*contacts_);
+  state.contacts.emplace(std::move(*contacts_));
   return state;
 }
 
@@ -165,10 +169,10 @@ void ProcessWorld::begin_step(double target) {
     if (!moving_.smooth_path(member)) moving_.set_path(member, moving_.state(member), moving_.path_end(member));
 }
 
-ProcessWorld::Outcome ProcessWorld::step(const ProcessState& start, double due) {
-  load(start);
+ProcessWorld::Outcome ProcessWorld::step(ProcessState& start, double due) {
+  load(start, std::exchange(start.contacts, std::nullopt));
   const double next_look = moving_.look(), next_switch = load_forces(start);
-  ProcessState from(start);
+  ProcessState from = start.without_memory();
   save_controls(from);
   ++counters_.steps;
   begin_step(std::min({due, next_look, next_switch}));
@@ -177,14 +181,15 @@ ProcessWorld::Outcome ProcessWorld::step(const ProcessState& start, double due) 
     pairs = meetings_.candidates();
     if (keep_contacts(pairs)) {   // a blow at the very start
       ProcessState after = save();
-      return {{from, from.time, {}, {}}, std::move(after), take_events()};
+      const double now = from.time;
+      return {{std::move(from), now, {}, {}}, std::move(after), take_events()};
     }
     if (!contacts_->empty()) near = meetings_.candidates();
   }
   const std::optional<Earliest> earliest = pairs.empty() ? std::nullopt : meetings_.earliest(pairs);
   const double reached = earliest ? earliest->time : moving_.target();
-  ProcessStep step{from, reached, {}, forces()};
-  if (reached > from.time)
+  ProcessStep step{std::move(from), reached, {}, forces()};
+  if (reached > step.from.time)
     for (const int member : part_.members) step.paths.push_back(*moving_.smooth_path(member));
   moving_.commit(reached);
   require_numbers();

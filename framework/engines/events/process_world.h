@@ -39,6 +39,8 @@ struct ProcessState {
   std::optional<LastingContacts> contacts;      // what contacts remember; of the process world that made this state, and for it alone
 
   const RigidBodyState& state_of(int body) const;
+  /// A copy that goes on as if contacts had been asked for the first time; much the cheaper one.
+  ProcessState without_memory() const;
 };
 
 /// What the pages of a scene say about impacts and steps.
@@ -86,7 +88,8 @@ class ProcessWorld {
     std::vector<Event> events;                  // not empty: the process has a discontinuity of its own there
   };
   /// One step, or less: to `due`, to a motor's look, a force's switching, or the first discontinuity among the members.
-  Outcome step(const ProcessState& start, double due);
+  /// @param start  what its contacts remember is taken out of it: nobody goes on from a state twice
+  Outcome step(ProcessState& start, double due);
 
   /// The impact of a pair, of which one or both are members.
   Change collide(BodyPair pair, const ProcessState& state);
@@ -100,8 +103,8 @@ class ProcessWorld {
     std::vector<Event> events;
   };
 
-  void load(const ProcessState& from);
-  ProcessState save() const;
+  void load(const ProcessState& from, std::optional<LastingContacts> memory = std::nullopt);
+  ProcessState save();
   void save_controls(ProcessState& state) const;
   void note_near(ProcessState& state) const;
   double load_forces(const ProcessState& from);

@@ -1,0 +1,205 @@
+#include "framework/cli/engine_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "framework/core/cpu_time.h"
+#include "framework/core/error.h"
+#include "framework/engines/events/trace.h"
+#include "framework/engines/run.h"
+#include "framework/engines/timewarp/fast_timewarp.h"
+
+namespace tumble::cli {
+namespace {
+
+using report::EngineRow;
+
+constexpr int kShortRuns = 4;
+constexpr double kShort = 0.5;        // [s] of CPU: what takes longer is timed once
+constexpr double kNoFrames = 1e-6;    // [1/s], where time is taken
+constexpr double kNoTime = 1e-9;      // steps: a run that ends before anything moves
+
+std::string meaning_of(const std::string& engine) {
+  for (const auto& [word, meaning] : engines::engine_words())
+    if (word == engine) return meaning;
+  std::vector<std::string> words;
+  for (const auto& [word, meaning] : engines::engine_words()) words.push_back(word);
+  throw UserError("--engines " + engine, "there is no engine of that name", fmt::format("Known: {}.", fmt::join(words, ", ")));
+}
+
+// Before chaos: how far apart in time the first collisions of each body are at most.
+constexpr std::size_t kFirstCollisions = 5;
+constexpr double kSamePlace = 1e-3;   // [m]: far above roundings, far below what is seen
+constexpr double kSameTime = 1e-9;    // [s], of frames
+
+using Pairs = std::set<std::pair<int, int>>;
+
+/// Pairs that come to lie on each other: engines tell the blows within a lasting contact differently.
+Pairs in_contact(const Trajectory& run) {
+  Pairs pairs;
+  for (const Event& event : run.events)
+    if (event.kind == EventKind::kContact) pairs.emplace(event.body_a, event.body_b);
+  return pairs;
+}
+
+std::vector<std::vector<double>> first_collisions(const Trajectory& run, const Pairs& left_out, double until) {
+  std::vector<std::vector<double>> times(run.bodies.size());
+  for (const Event& event : run.events) {
+    if (event.kind != EventKind::kCollision || event.time > until || left_out.contains({event.body_a, event.body_b})) continue;
+    for (const int body : {event.body_a, event.body_b})
+      if (body >= 0 && !run.bodies[static_cast<std::size_t>(body)].immovable && times[static_cast<std::size_t>(body)].size() < kFirstCollisions) times[static_cast<std::size_t>(body)].push_back(event.time);
+  }
+  return times;
+}
+
+/// How long every body's centre is where the other run has it [s], at the frames that both have; nothing: to the end.
+std::optional<double> parted_at(const Trajectory& reference, const Trajectory& run) {
+  std::size_t k = 0;
+  for (const Frame& frame : run.frames) {
+    while (k < reference.frames.size() && reference.frames[k].time < frame.time - kSameTime) ++k;
+    if (k == reference.frames.size()) break;
+    if (reference.frames[k].time > frame.time + kSameTime) continue;
+    for (std::size_t body = 0; body < frame.poses.size(); ++body)
+      if (!((frame.poses[body].com_world - reference.frames[k].poses[body].com_world).norm() <= kSamePlace)) return frame.time;
+  }
+  return std::nullopt;
+}
+
+std::string agreement_of(const Trajectory& reference, const Trajectory& run) {
+  if (!engines::compare_traces(reference, run)) return "same trace, bit for bit";
+  const auto parted = parted_at(reference, run);
+  Pairs left_out = in_contact(reference);
+  left_out.merge(in_contact(run));
+  const double until = parted.value_or(std::numeric_limits<double>::infinity());
+  const auto expected = first_collisions(reference, left_out, until), found = first_collisions(run, left_out, until);
+  double farthest = 0.0;
+  std::size_t compared = 0, missing = 0;
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const std::size_t both = std::min(expected[i].size(), found[i].size());
+    for (std::size_t k = 0; k < both; ++k, ++compared) farthest = std::max(farthest, std::abs(expected[i][k] - found[i][k]));
+    missing += std::max(expected[i].size(), found[i].size()) - both;
+  }
+  const std::string places = parted ? fmt::format("places within 1 mm until {:.2f} s", *parted) : "places within 1 mm to the end";
+  if (compared == 0) return places;   // one of the two does blows within steps, and tells none
+  return fmt::format("{}; first {} collisions of each body within {:.1e} s ({} compared{})", places, kFirstCollisions, farthest, compared, missing > 0 ? fmt::format(", {} in one only", missing) : "");
+}
+
+/// Of the run that is shown: its energy, and how far it came. Counts and time are those of a run without pictures.
+void keep(EngineRow& row, const Trajectory& run) {
+  row.stopped_by = run.stopped_by;
+  row.step_s = run.info.step_s;
+  row.simulated_s = run.frames.empty() ? 0.0 : run.frames.back().time;
+  row.w_h = row.simulated_s > 0 ? 2.0 * static_cast<double>(row.counts["discontinuities"]) / (row.bodies * row.simulated_s) * run.info.step_s : 0.0;
+  for (const Frame& frame : run.frames) {
+    const Frame& first = run.frames.front();
+    const double scale = first.kinetic_energy + std::abs(first.potential_energy);
+    row.frame_times.push_back(frame.time);
+    row.energy_error.push_back(std::abs(frame.kinetic_energy + frame.potential_energy - first.kinetic_energy - first.potential_energy) / (scale > 0 ? scale : 1.0));
+  }
+}
+
+/// CPU time of a run without pictures [s]. What comes before the first step (models, shapes, overlaps) is the same for all engines and is
+/// no part of what they cost. The best of several short runs is the least disturbed one.
+/// @param counts  what it counted
+double seconds_of_run(const scene::Scene& scene, const Laws& laws, engines::RunOptions options, std::map<std::string, std::uint64_t>& counts) {
+  options.frame_rate_hz = kNoFrames;
+  engines::RunOptions nothing = options;
+  nothing.duration_s = kNoTime * scene.step_s;
+  const auto seconds_of = [&](const engines::RunOptions& how) {
+    TrajectoryRecorder recorder;
+    const double begin = cpu_seconds();
+    engines::run_scene(scene, laws, how, recorder);
+    const double seconds = cpu_seconds() - begin;
+    counts = recorder.trajectory().counters.counts;
+    return seconds;
+  };
+  double building = seconds_of(nothing), whole = seconds_of(options);
+  for (int k = 1; k < kShortRuns && whole < kShort; ++k) {
+    building = std::min(building, seconds_of(nothing));
+    whole = std::min(whole, seconds_of(options));
+  }
+  return std::max(1e-6, whole - building);
+}
+
+}  // namespace
+
+std::vector<EngineChoice> engines_named(const std::string& words) {
+  std::vector<EngineChoice> choices(1);
+  for (const char c : words) {
+    if (c == ',') choices.emplace_back();
+    else choices.back().engine += c;
+  }
+  for (const EngineChoice& choice : choices) meaning_of(choice.engine);   // refused before anything runs
+  return choices;
+}
+
+EngineRun measure_engine(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const EngineChoice& choice) {
+  engines::RunOptions options;
+  options.engine = choice.engine;
+  if (choice.engine == "rd") options.propagator = choice.propagator;
+  VirtualTimes times;
+  options.timewarp = engines::fast_timewarp();
+  options.step_s = choice.step_s;
+  options.duration_s = choice.duration_s;
+  options.command = context.command_line;
+  EngineRun measured;
+  EngineRow& row = measured.row;
+  row.engine = choice.engine;
+  row.meaning = meaning_of(choice.engine);
+  row.label = choice.label.empty() ? choice.engine : choice.label;
+  for (const scene::BodySpec& body : scene.bodies) row.bodies += body.immovable ? 0 : 1;
+  try {
+    row.cpu_s = seconds_of_run(scene, chosen.laws, options, row.counts);
+    TrajectoryRecorder recorder;
+    options.frame_rate_hz = choice.frame_rate_hz;
+    options.timewarp = engines::fast_timewarp(&times);
+    engines::run_scene(scene, chosen.laws, options, recorder);
+    measured.run = recorder.trajectory();
+  } catch (const UserError& error) {
+    row.stopped_by = error.what();
+    row.counts.clear();
+    return measured;
+  }
+  if (measured.run.virtual_times.moves.empty()) measured.run.virtual_times = std::move(times);
+  keep(row, measured.run);
+  return measured;
+}
+
+void tell_agreement(std::vector<EngineRun>& runs) {
+  std::size_t reference = 0;   // one that goes event by event, if it ran
+  for (std::size_t k = 0; k < runs.size(); ++k)
+    if (runs[k].row.engine != "rd" && runs[k].row.stopped_by.empty()) reference = k;
+  for (std::size_t k = 0; k < runs.size(); ++k)
+    if (!runs[k].row.counts.empty()) runs[k].row.agreement = k == reference ? "the others are compared with this one" : agreement_of(runs[reference].run, runs[k].run);
+}
+
+std::vector<EngineRow> rows_of(const std::vector<EngineRun>& runs) {
+  std::vector<EngineRow> rows;
+  for (const EngineRun& run : runs) rows.push_back(run.row);
+  return rows;
+}
+
+void print_rows(const std::vector<EngineRow>& rows) {
+  double quickest = 1e300;
+  for (const EngineRow& row : rows)
+    if (row.stopped_by.empty()) quickest = std::min(quickest, row.cpu_s);
+  fmt::print("{:<8}", "engine");
+  for (const auto& [name, heading] : report::compared_counts()) fmt::print(" {:>15}", heading);
+  fmt::print(" {:>8} {:>8}  {}\n", "w h", "time", "agreement");
+  for (const EngineRow& row : rows) {
+    fmt::print("{:<8}", row.label);
+    if (row.counts.empty()) {
+      fmt::print(" not run: {}\n", row.stopped_by);
+      continue;
+    }
+    for (const auto& [name, heading] : report::compared_counts()) fmt::print(" {:>15}", report::count_of(row, name));
+    fmt::print(" {:>8.3g} {:>7.2f}x  {}\n", row.w_h, row.cpu_s / quickest, row.stopped_by.empty() ? row.agreement : "STOPPED " + row.stopped_by);
+  }
+}
+
+}  // namespace tumble::cli

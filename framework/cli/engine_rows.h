@@ -1,0 +1,43 @@
+/// What `tumble engines` does with one scene and one engine: run it, take its time, see whether it agrees with the others.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/cli/module_choice.h"
+#include "framework/cli/verb.h"
+#include "framework/report/engines_page.h"
+#include "framework/scene/scene.h"
+#include "framework/trajectory/trajectory.h"
+
+namespace tumble::cli {
+
+/// How a scene is run.
+struct EngineChoice {
+  std::string engine;                    // a word of engines::engine_words()
+  std::string label;                     // of its column; empty: the engine's word
+  std::optional<double> step_s, duration_s;
+  std::string propagator;                // of rd
+  double frame_rate_hz = 10.0;           // of the run that is kept; pictures are no part of the time that is taken
+};
+
+struct EngineRun {
+  report::EngineRow row;
+  Trajectory run;                        // no frames where it did not run
+};
+
+/// The engines named by words with commas between them.
+/// @throws UserError naming the words there are
+std::vector<EngineChoice> engines_named(const std::string& words);
+
+/// Runs the scene, first for its time, then for its frames. What a scene asks for and an engine cannot follow stands in the row.
+EngineRun measure_engine(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const EngineChoice& choice);
+
+/// Says in each row whether it agrees with a run that goes from event to event: traces bit for bit, else until chaos.
+void tell_agreement(std::vector<EngineRun>& runs);
+
+std::vector<report::EngineRow> rows_of(const std::vector<EngineRun>& runs);
+void print_rows(const std::vector<report::EngineRow>& rows);
+
+}  // namespace tumble::cli

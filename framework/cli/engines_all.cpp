@@ -1,0 +1,221 @@
+#include "framework/cli/engines_all.h"
+
+#include <chrono>
+#include <cmath>
+#include <exception>
+
+#include <fmt/format.h>
+
+#include "framework/cli/engine_rows.h"
+#include "framework/cli/scene_run.h"
+#include "framework/core/error.h"
+#include "framework/engines/judge.h"
+#include "framework/render/picture.h"
+#include "framework/report/engines_index.h"
+#include "framework/report/player.h"
+#include "framework/report/virtual_times_panel.h"
+#include "framework/scene/sized_scenes.h"
+
+namespace tumble::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using report::EngineRow;
+using report::EnginesScene;
+
+/// How a scene is shown. `share` is about how long its runs and pictures take, against the others: for the time that is left only.
+struct Shown {
+  const char* name;
+  int small_n, n, paper_n;  // 0: not shown
+  double speed;             // seconds of the run in a second of video
+  double share, paper_share;
+};
+constexpr Shown kShown[] = {{"atoms", 60, 100, 300, 0.5, 5, 20},        {"cars", 9, 40, 400, 0.5, 10, 300},     {"robots", 1, 4, 20, 0.5, 14, 200}, {"avalanche", 5, 16, 300, 1.0, 20, 2000},
+                            {"pong", 0, 200, 2000, 0.5, 5, 200}, {"dominoes_row", 0, 12, 50, 1.0, 14, 100}, {"cradle", 0, 8, 20, 1.0, 5, 10}};
+
+// The slides' sizes are 100 and 200 atoms.
+const std::vector<int> kSmallLadder = {25, 50, 100}, kLadder = {25, 50, 100, 200}, kPaperLadder = {50, 100, 200, 400};
+constexpr double kLadderShare = 12, kPaperLadderShare = 100;
+constexpr double kPlayedRate = 60.0, kEnergyRate = 10.0;   // frames a second: of runs that are shown, and of others
+constexpr int kWidth = 960, kHeight = 540;
+
+/// Says what is being done and how long the rest may take.
+class Progress {
+ public:
+  explicit Progress(double total) : total_(total), begun_(std::chrono::steady_clock::now()) {}
+  void begin(const std::string& what) const {
+    const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
+    const std::string left = done_ > 0 ? fmt::format(" · about {:.0f} s left", std::ceil(spent / done_ * (total_ - done_))) : "";
+    fmt::print(stderr, "[{:3.0f} %] {}{}\n", 100.0 * done_ / total_, what, left);
+  }
+  void finish(double share) { done_ += share; }
+
+ private:
+  double total_, done_ = 0.0;
+  std::chrono::steady_clock::time_point begun_;
+};
+
+int size_of(const EnginesWords& words, const Shown& shown) { return words.full ? shown.paper_n : words.small ? shown.small_n : shown.n; }
+
+std::string modules_of(const Context& context, const EnginesWords& words) {
+  if (!words.modules.empty()) return words.modules;
+  return fs::is_directory(context.root / "solutions_private") ? "reference" : "";   // what is compared is engines, not submissions
+}
+
+/// Each engine as the page shows it. rd goes in closed form where the others do, so that a ratio is of scheduling and not of integration.
+std::vector<EngineChoice> choices_of(const EnginesWords& words) {
+  std::vector<EngineChoice> choices = engines_named(words.engines);
+  for (EngineChoice& choice : choices) {
+    choice.propagator = words.propagator.empty() ? "auto" : words.propagator;
+    for (const char c : choice.engine) choice.label += static_cast<char>(std::toupper(c));
+    choice.frame_rate_hz = choice.engine == "ca" ? kEnergyRate : kPlayedRate;
+  }
+  return choices;
+}
+
+/// Retroactive detection at the two steps of the slides, and the others, at the scene's own.
+std::vector<EngineChoice> choices_of_ladder(const EnginesWords& words) {
+  std::vector<EngineChoice> choices;
+  for (EngineChoice choice : choices_of(words)) {
+    choice.frame_rate_hz = kEnergyRate;
+    if (choice.engine != "rd") {
+      choices.push_back(choice);
+      continue;
+    }
+    for (const int rate : {30, 60}) {
+      choice.label = fmt::format("RD-1/{}", rate);
+      choice.step_s = 1.0 / rate;
+      choices.push_back(choice);
+    }
+  }
+  return choices;
+}
+
+/// The page that plays timewarp's run, and beside it retroactive detection's, with every move of the local virtual times.
+void write_players(const Context& context, const scene::Scene& scene, const std::vector<EngineRun>& runs, const fs::path& file) {
+  report::PlayerOptions options;
+  options.root = context.root;
+  std::vector<report::PlayedRun> played;
+  for (const char* engine : {"tw", "rd"})
+    for (const EngineRun& run : runs) {
+      if (run.row.engine != engine || run.run.frames.empty()) continue;
+      played.push_back({run.run, run.row.label});
+      if (!run.run.virtual_times.moves.empty()) options.panels.push_back(report::virtual_times_panel(run.run.virtual_times));
+    }
+  if (!played.empty()) report::write_player(file, scene, played, options);
+}
+
+const EngineRun* run_to_show(const std::vector<EngineRun>& runs) {
+  for (const char* engine : {"tw", "ca", "rd", "ordered"})
+    for (const EngineRun& run : runs)
+      if (run.row.engine == engine && run.run.frames.size() > 1) return &run;
+  return nullptr;
+}
+
+void add_judgement(const scene::Scene& scene, const std::vector<EngineRun>& runs, EnginesScene& shown) {
+  for (const EngineRun& run : runs) {
+    if (run.run.frames.empty()) continue;
+    for (const engines::CheckResult& check : engines::judge_run(scene, run.run)) {
+      shown.checks.push_back(fmt::format("{}: {} {:.3g} {}(allowed {} {:.3g})", run.row.label, check.kind, check.value == 0.0 ? 0.0 : check.value, check.unit.empty() ? "" : check.unit + " ",
+                                         check.at_least ? "\u2265" : "\u2264", check.threshold == 0.0 ? 0.0 : check.threshold));
+      shown.is_right = shown.is_right && check.passed;
+    }
+  }
+}
+
+EnginesScene show(const Context& context, const EnginesWords& words, const Shown& which, const fs::path& out) {
+  EnginesScene shown;
+  shown.name = which.name;
+  try {
+    const int n = size_of(words, which);
+    const scene::Scene scene = find_scene(context, which.name, n);
+    shown.title = scene.title;
+    shown.about = scene.about;
+    shown.command = fmt::format("./tumble engines {} --n {}", which.name, n);
+    const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(modules_of(context, words), context.registry));
+    std::vector<EngineRun> runs;
+    for (const EngineChoice& choice : choices_of(words)) runs.push_back(measure_engine(context, scene, chosen, choice));
+    tell_agreement(runs);
+    shown.rows = rows_of(runs);
+    add_judgement(scene, runs, shown);
+    const fs::path folder = out / which.name;
+    report::write_engines_page(scene.title, scene.about, shown.rows, {}, context.command_line, folder / "index.html");
+    shown.page = fs::path(which.name) / "index.html";
+    const EngineRun* best = run_to_show(runs);
+    if (best == nullptr) return shown;
+    write_players(context, scene, runs, folder / "player.html");
+    shown.player = fs::path(which.name) / "player.html";
+    render::PictureOptions picture;
+    picture.width = kWidth;
+    picture.height = kHeight;
+    picture.speed = which.speed;
+    picture.root = context.root;
+    render::write_picture(folder / "picture.png", scene, best->run, render::telling_instant(best->run), picture);
+    shown.figure.picture = fs::path(which.name) / "picture.png";
+    shown.figure.caption = fmt::format("{} by {}{}", scene.title, best->row.meaning, which.speed < 1 ? fmt::format(", at {:g} of its speed", which.speed) : "");
+    if (words.no_videos) return shown;
+    render::write_video(folder / "video.mp4", scene, best->run, picture);
+    shown.figure.video = fs::path(which.name) / "video.mp4";
+  } catch (const std::exception& error) {   // what goes wrong in one scene is told in its place
+    shown.problem = error.what();
+  }
+  return shown;
+}
+
+std::vector<std::vector<EngineRow>> climb(const Context& context, const EnginesWords& words) {
+  std::vector<std::vector<EngineRow>> ladder;
+  for (const int n : words.full ? kPaperLadder : words.small ? kSmallLadder : kLadder) {
+    const scene::Scene scene = find_scene(context, "atoms", n);
+    const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(modules_of(context, words), context.registry));
+    std::vector<EngineRun> runs;
+    for (const EngineChoice& choice : choices_of_ladder(words)) runs.push_back(measure_engine(context, scene, chosen, choice));
+    tell_agreement(runs);
+    ladder.push_back(rows_of(runs));
+  }
+  return ladder;
+}
+
+void print_scene(const EnginesScene& scene) {
+  if (!scene.problem.empty()) return fmt::print("{}: FAILED {}\n\n", scene.name, scene.problem);
+  fmt::print("{}\n", scene.title);
+  print_rows(scene.rows);
+  fmt::print("\n");
+}
+
+}  // namespace
+
+void engines_of_all(Context& context, const EnginesWords& words) {
+  if (words.n || words.duration_s || words.step_s || !words.sizes.empty()) throw UserError("tumble engines", "sizes, durations and steps belong to one scene", "Name a scene, or leave --n, --sizes, --duration-s and --step-s out.");
+  engines_named(words.engines);
+  std::vector<Shown> all;
+  for (const Shown& shown : kShown)
+    if (size_of(words, shown) > 0) all.push_back(shown);
+  const auto share_of = [&](const Shown& shown) { return words.full ? shown.paper_share : shown.share; };
+  const double ladder_share = words.full ? kPaperLadderShare : kLadderShare;
+  double total = ladder_share;
+  for (const Shown& shown : all) total += share_of(shown);
+  Progress progress(total);
+  report::EnginesIndex index;
+  index.record = context.command_line;
+  index.is_full = words.full;
+  progress.begin("atoms at several sizes");
+  index.ladder = climb(context, words);
+  progress.finish(ladder_share);
+  for (const Shown& shown : all) {
+    progress.begin(shown.name);
+    index.scenes.push_back(show(context, words, shown, words.out));
+    progress.finish(share_of(shown));
+    const EnginesScene& scene = index.scenes.back();
+    if (!scene.problem.empty() || !scene.is_right) context.exit = ExitCode::kCheckFailed;
+    report::write_engines_index(index, fs::path(words.out) / "index.html");   // after each scene: whoever stops it early has the page so far
+    if (!words.quiet) print_scene(scene);
+  }
+  if (words.quiet) return;
+  for (const std::vector<EngineRow>& rows : index.ladder) {
+    fmt::print("atoms (n = {})\n", rows.front().bodies);
+    print_rows(rows);
+  }
+  fmt::print("{}\n", (fs::path(words.out) / "index.html").string());
+}
+
+}  // namespace tumble::cli

@@ -1,0 +1,31 @@
+/// `tumble engines` without a scene: the scenes of the course and the paper by every engine, on one page.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/cli/verb.h"
+
+namespace tumble::cli {
+
+constexpr const char* kAllScenes = "all";
+
+/// The words of the command line.
+struct EnginesWords {
+  std::string scene, modules, engines = "rd,ca,tw", out = "out/engines", propagator;
+  std::vector<int> sizes;
+  std::optional<int> n;
+  std::optional<double> duration_s, step_s;
+  bool full = false;        // sizes as in the paper
+  bool no_videos = false;
+  bool small = false;       // a few scenes, smaller still
+  bool quiet = false;       // nothing on stdout: of a report that has more to say
+};
+
+/// Runs them and writes words.out/index.html, with a folder beside it for each scene.
+/// Says in context.exit where a run is not right by its scene's numbers.
+/// @throws UserError for words that belong to one scene
+void engines_of_all(Context& context, const EnginesWords& words);
+
+}  // namespace tumble::cli

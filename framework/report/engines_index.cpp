@@ -1,0 +1,175 @@
+#include "framework/report/engines_index.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "framework/report/engines_model.h"
+
+namespace tumble::report {
+namespace {
+
+/// Total time of 2 s of Atoms on the slides' machine, in the slides' unit: compared as ratios only.
+/// Source: the course's slides on B. Mirtich, Timewarp Rigid Body Simulation, SIGGRAPH 2000.
+struct SlideFigure {
+  int atoms;
+  const char* label;
+  double time;
+};
+constexpr SlideFigure kSlides[] = {{100, "RD-1/30", 0.142}, {100, "CA", 1.15}, {100, "TW", 0.147}, {200, "RD-1/30", 2.61}, {200, "CA", 4.74}, {200, "TW", 0.388}};
+
+double slide_time(int atoms, const std::string& label) {
+  for (const SlideFigure& figure : kSlides)
+    if (figure.atoms == atoms && figure.label == label) return figure.time;
+  return 0.0;
+}
+
+const EngineRow* row_of(const std::vector<EngineRow>& rows, const std::string& engine) {
+  for (const EngineRow& row : rows)
+    if (row.engine == engine && row.stopped_by.empty()) return &row;
+  return nullptr;
+}
+
+const EngineRow* labelled(const std::vector<EngineRow>& rows, const std::string& label) {
+  for (const EngineRow& row : rows)
+    if (row.label == label && row.stopped_by.empty()) return &row;
+  return nullptr;
+}
+
+/// A label that no line breaks within.
+std::string in_one(const std::string& label) {
+  std::string text;
+  for (const char c : label) text += c == '-' ? "\u2011" : std::string(1, c);
+  return text;
+}
+
+Cell ratio_cell(const EngineRow* row, const EngineRow* timewarp) {
+  if (row == nullptr || timewarp == nullptr) return {"\u2013", "", Look::kMuted};
+  const double ratio = row->cpu_s / timewarp->cpu_s;
+  return {fmt::format("{:.{}f}", ratio, ratio < 9.95 ? 2 : 0), "", ratio > 1.0 ? Look::kGood : Look::kPlain};
+}
+
+std::string agreement_in_short(const EnginesScene& scene) {
+  std::string words;
+  for (const EngineRow& row : scene.rows)
+    if (row.agreement.find("the others") == std::string::npos) words += (words.empty() ? "" : "; ") + row.label + ": " + (row.stopped_by.empty() ? row.agreement : "stopped");
+  return words;
+}
+
+void add_engines(Page& page) {
+  page.table({"", {{"Engine"}, {"Idea"}, {"What it pays for"}},
+              {{{"RD: retroactive detection"}, {"All bodies take a step; where something has happened meanwhile, all go back to it."}, {"Every discontinuity, of whomever, costs everybody a step done again."}},
+               {{"CA: conservative advancement"}, {"Nobody ever steps past a time at which something may happen; lower bounds wait in a queue."}, {"All advance together, from each bound to the next."}},
+               {{"TW: timewarp"}, {"Each body, or group that touches or is linked, has a time of its own and goes ahead; a late event takes back only those that it concerns."}, {"Pasts are kept until nothing can reach them any more, and a part of the work is undone."}}}});
+}
+
+void add_scene(Page& page, const EnginesScene& scene) {
+  page.heading(scene.title.empty() ? scene.name : scene.title, 2, scene.name);
+  if (!scene.problem.empty()) return page.paragraph(scene.problem, Look::kBad);
+  if (!scene.about.empty()) page.paragraph(scene.about);
+  if (!scene.figure.picture.empty()) page.figures({scene.figure});
+  std::vector<Cell> links;
+  if (!scene.player.empty()) links.push_back({"Play TW beside RD, with the local virtual times", link_to(scene.player)});
+  if (!scene.page.empty()) links.push_back({"Page of its own, with the energy", link_to(scene.page)});
+  if (!links.empty()) page.links(links);
+  page.table(table_of_engines(scene.rows));
+  for (const EngineRow& row : scene.rows) {
+    const std::string what = row.label + " (" + row.meaning + "): ";
+    if (row.stopped_by.empty()) page.paragraph(what + row.agreement + ".");
+    else page.paragraph(what + (row.counts.empty() ? "not run: " : "stopped ") + row.stopped_by, Look::kBad);
+  }
+  std::string checks;
+  for (const std::string& check : scene.checks) checks += check + "\n";
+  if (!checks.empty()) page.fold(scene.is_right ? "The scene's own numbers: right" : "The scene's own numbers: NOT right", checks, !scene.is_right);
+  page.paragraph("Again: " + scene.command, Look::kMuted);
+}
+
+void add_slides(Page& page, const EnginesIndex& index) {
+  page.heading("The slides' tables with our numbers: atoms", 2, "slides");
+  page.paragraph("Balls and molecules of water in a divided box for 2 s, density kept, timed on this machine. RD goes in closed form where the others do, so what differs is who has to move when, not how a body is "
+                 "integrated. RD-1/30 and RD-1/60 have largest steps of 1/30 s and 1/60 s.");
+  for (const Plot& plot : plots_against_n(index.ladder)) page.plot(plot);
+  page.table(table_of_ladder(index.ladder));
+  const Table slides = table_of_slides(index.ladder);
+  if (!slides.rows.empty()) page.table(slides);
+  page.heading("The model of cost, against what was counted", 2, "model");
+  page.paragraph("With lambda = n w / 2 discontinuities a second among n bodies, p = 1 - exp(-lambda h) the chance that a step of h holds one, the slides count integrations a second: RD n lambda (1 + p) / p, CA n (1/h + 3 "
+                 "lambda), TW n (1/h + 3 w). So RD and CA grow with the square of n once n w h is above 2, TW with n. Our engines stay below the model where a free body goes to its next discontinuity in one go: "
+                 "1/h steps a second are then not taken.");
+  page.plot(plot_of_model(index.ladder));
+  page.table(table_of_model(index.ladder));
+}
+
+}  // namespace
+
+Table table_of_scenes(const std::vector<EnginesScene>& scenes) {
+  Table table;
+  table.caption = "Time against timewarp's (above 1: timewarp is quicker). w h: discontinuities a body and largest step; where n w h is above 2, whoever stops all bodies at each discontinuity begins to pay for it.";
+  table.columns = {{"Scene"}, {"Bodies", true}, {"Simulated", true}, {"w h", true}, {"n w h", true}, {"RD / TW", true}, {"CA / TW", true}, {"TW undone", true}, {"Agreement"}};
+  for (const EnginesScene& scene : scenes) {
+    const Cell name{scene.name, "#" + scene.name};
+    if (!scene.problem.empty() || scene.rows.empty()) {
+      table.rows.push_back({name, {"failed", "", Look::kBad}, {""}, {""}, {""}, {""}, {""}, {""}, {scene.problem, "", Look::kMuted}});
+      continue;
+    }
+    const EngineRow& first = scene.rows.front();
+    const EngineRow *tw = row_of(scene.rows, "tw");
+    const double w_h = discontinuities_a_body(scene.rows) * first.step_s;
+    const double undone = tw == nullptr ? 0.0 : 100.0 * static_cast<double>(count_of(*tw, "undone_integrations")) / std::max<double>(1.0, static_cast<double>(count_of(*tw, "integrations")));
+    table.rows.push_back({name, {std::to_string(first.bodies)}, {fmt::format("{:.3g} s", first.simulated_s)}, {fmt::format("{:.3g}", w_h)}, {fmt::format("{:.1f}", first.bodies * w_h)}, ratio_cell(row_of(scene.rows, "rd"), tw),
+                          ratio_cell(row_of(scene.rows, "ca"), tw), {tw == nullptr ? "\u2013" : fmt::format("{:.1f} %", undone)}, {agreement_in_short(scene), "", scene.is_right ? Look::kPlain : Look::kBad}});
+  }
+  return table;
+}
+
+Table table_of_ladder(const std::vector<std::vector<EngineRow>>& ladder) {
+  Table table;
+  table.caption = "Average integration step: simulated time a body over integrations. Work: integrations a body and simulated second. Undone work counts.";
+  table.columns = {{"Bodies", true}, {"Engine"}, {"w h", true}, {"Average step [ms]", true}, {"Work a body [1/s]", true}, {"Pair checks a body [1/s]", true}, {"Total time [s]", true}, {"Against TW", true}};
+  for (const auto& rows : ladder)
+    for (const EngineRow& row : rows) {
+      if (!row.stopped_by.empty()) {
+        table.rows.push_back({{std::to_string(row.bodies)}, {in_one(row.label)}, {"\u2013"}, {"\u2013"}, {"\u2013"}, {"\u2013"}, {"stopped", "", Look::kBad}, {""}});
+        continue;
+      }
+      const double integrations = static_cast<double>(count_of(row, "integrations")), body_seconds = row.bodies * row.simulated_s;
+      table.rows.push_back({{std::to_string(row.bodies)}, {in_one(row.label)}, {fmt::format("{:.3f}", row.w_h)}, {fmt::format("{:.3g}", 1e3 * body_seconds / std::max(1.0, integrations))}, {fmt::format("{:.4g}", integrations / body_seconds)},
+                            {fmt::format("{:.4g}", static_cast<double>(count_of(row, "pair_checks")) / body_seconds)}, {fmt::format("{:.3g}", row.cpu_s)}, ratio_cell(&row, row_of(rows, "tw"))});
+    }
+  return table;
+}
+
+Table table_of_slides(const std::vector<std::vector<EngineRow>>& ladder) {
+  Table table;
+  table.caption = "Total time for 2 s of atoms: the slides' figures (another machine, another scene of the same kind, in the slides' unit) and ours. Ratios are what can be compared.";
+  table.columns = {{"Atoms", true}, {"Engine"}, {"Slides", true}, {"Ours [s]", true}, {"Slides: against TW", true}, {"Ours: against TW", true}};
+  for (const auto& rows : ladder) {
+    if (rows.empty()) continue;
+    const int n = rows.front().bodies;
+    for (const char* label : {"RD-1/30", "CA", "TW"}) {
+      const double slide = slide_time(n, label);
+      if (slide == 0.0) continue;
+      const EngineRow* ours = labelled(rows, label);
+      table.rows.push_back({{std::to_string(n)}, {in_one(label)}, {fmt::format("{:g}", slide)}, {ours == nullptr ? "\u2013" : fmt::format("{:.3g}", ours->cpu_s)}, {fmt::format("{:.2f}", slide / slide_time(n, "TW"))},
+                            ratio_cell(ours, row_of(rows, "tw"))});
+    }
+  }
+  return table;
+}
+
+void write_engines_index(const EnginesIndex& index, const std::filesystem::path& file) {
+  Page page("Three engines, one world", "retroactive detection, conservative advancement and timewarp on the same scenes");
+  std::vector<Cell> links{{"All scenes", "#all"}, {"The slides' tables", "#slides"}, {"The model of cost", "#model"}};
+  for (const EnginesScene& scene : index.scenes) links.push_back({scene.name, "#" + scene.name});
+  page.links(links);
+  add_engines(page);
+  page.heading("All scenes", 2, "all");
+  page.table(table_of_scenes(index.scenes));
+  page.paragraph(std::string("Times are CPU times of this machine in this run; their ratios are what matters. ") + (index.is_full ? "Sizes are those of the paper." : "Sizes are small, so that the page takes little time; ./tumble engines --full runs those of the paper."), Look::kMuted);
+  if (!index.ladder.empty()) add_slides(page, index);
+  for (const EnginesScene& scene : index.scenes) add_scene(page, scene);
+  page.record(index.record);
+  page.write(file);
+}
+
+}  // namespace tumble::report

@@ -1,0 +1,98 @@
+// The comparison of engines as a page: the model of cost in its limits, the slides' figures beside ours, and a scene that failed.
+#include "framework/report/engines_index.h"
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include <gtest/gtest.h>
+
+#include "framework/core/files.h"
+#include "framework/report/engines_model.h"
+
+namespace tumble::testing {
+namespace {
+
+using namespace report;
+
+constexpr double kRounding = 1e-12;
+
+EngineRow row_of(const std::string& engine, const std::string& label, int bodies, double cpu_s, std::uint64_t integrations) {
+  EngineRow row;
+  row.engine = engine;
+  row.label = label;
+  row.meaning = engine;
+  row.bodies = bodies;
+  row.simulated_s = 2.0;
+  row.step_s = 1.0 / 30.0;
+  row.w_h = 0.2;
+  row.cpu_s = cpu_s;
+  row.counts = {{"integrations", integrations}};
+  return row;
+}
+
+std::vector<std::vector<EngineRow>> ladder() {
+  return {{row_of("rd", "RD-1/30", 100, 3.0, 100000), row_of("ca", "CA", 100, 0.5, 50000), row_of("tw", "TW", 100, 0.1, 4000)},
+          {row_of("rd", "RD-1/30", 150, 6.0, 300000), row_of("tw", "TW", 150, 0.2, 6000)}};
+}
+
+// n (1 + p) / p lambda: one integration a step while nothing happens, two a discontinuity where each step holds some.
+TEST(ModelOfCost, RetroactiveDetectionHasItsTwoLimits) {
+  constexpr double kN = 10, kStep = 0.01, kRare = 1e-9, kOften = 1e6;   // w [1/s]
+  EXPECT_NEAR(*modelled_integrations("rd", kN, kRare, kStep), kN / kStep, 1e-9 * kN / kStep);
+  EXPECT_NEAR(*modelled_integrations("rd", kN, kOften, kStep), kN * kN * kOften, kRounding * kN * kN * kOften);
+}
+
+// By hand: lambda = 300 1/s, lambda h = 10.
+TEST(ModelOfCost, GivesTheNumbersOfAtoms) {
+  EXPECT_NEAR(*modelled_integrations("ca", 100, 6.0, 1.0 / 30.0), 93000.0, kRounding * 93000.0);
+  EXPECT_NEAR(*modelled_integrations("tw", 100, 6.0, 1.0 / 30.0), 4800.0, kRounding * 4800.0);
+  EXPECT_NEAR(*modelled_integrations("rd", 100, 6.0, 1.0 / 30.0), 30000.0 * (1.0 + 1.0 / (1.0 - std::exp(-10.0))), 1e-7);
+}
+
+TEST(ModelOfCost, TimewarpGrowsWithTheNumberOfBodiesAndTheOthersWithItsSquare) {
+  constexpr double kW = 6.0, kStep = 1e9;   // steps so long that only discontinuities count
+  const auto growth = [&](const char* engine) { return *modelled_integrations(engine, 2e6, kW, kStep) / *modelled_integrations(engine, 1e6, kW, kStep); };
+  EXPECT_NEAR(growth("tw"), 2.0, kRounding);
+  EXPECT_NEAR(growth("ca"), 4.0, kRounding);
+  EXPECT_NEAR(growth("rd"), 4.0, kRounding);
+  EXPECT_FALSE(modelled_integrations("ordered", 1, 1, 1));
+}
+
+TEST(TablesOfEngines, PutTheSlidesFiguresWhereSizesAreTheSame) {
+  const Table table = table_of_slides(ladder());
+  ASSERT_EQ(table.rows.size(), 3U);   // 100 atoms; the slides have none with 150
+  EXPECT_EQ(table.rows[0][2].text, "0.142");
+  EXPECT_EQ(table.rows[0][4].text, "0.97");   // 0.142 / 0.147
+  EXPECT_EQ(table.rows[0][5].text, "30");     // 3.0 / 0.1
+  EXPECT_EQ(table.rows[1][5].text, "5.00");
+}
+
+TEST(TablesOfEngines, CountStepsAndWork) {
+  const Table table = table_of_ladder(ladder());
+  ASSERT_EQ(table.rows.size(), 5U);
+  EXPECT_EQ(table.rows[0][3].text, "2");      // ms: 100 bodies, 2 s, 100,000 integrations
+  EXPECT_EQ(table.rows[0][4].text, "500");    // integrations a body and second
+  EXPECT_EQ(table_of_model(ladder()).rows.size(), 5U);
+}
+
+TEST(PageOfEngines, TellsEachSceneAndWhatFailed) {
+  EnginesScene fine;
+  fine.name = "atoms";
+  fine.title = "Atoms & molecules";
+  fine.rows = ladder().front();
+  fine.rows[0].agreement = "first 5 collisions of each body within 1e-9 s";
+  EnginesScene failed;
+  failed.name = "cars";
+  failed.problem = "a wheel came off";
+  const PrivateFolder folder;
+  write_engines_index({{fine, failed}, ladder(), false, "tumble engines"}, folder.path() / "index.html");
+  std::ifstream file(folder.path() / "index.html");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  for (const char* words : {"Atoms &amp; molecules", "id=\"atoms\"", "a wheel came off", "Average integration step", "The model of cost", "first 5 collisions", "--full"})
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+  EXPECT_EQ(table_of_scenes({fine, failed}).rows[0][5].text, "30");
+}
+
+}  // namespace
+}  // namespace tumble::testing
