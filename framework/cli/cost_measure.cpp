@@ -12,6 +12,7 @@
 #include "framework/engines/cost/cost.h"
 #include "framework/engines/cost/reading.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
+#include "framework/scene/sized_scenes.h"
 
 namespace tumble::cli {
 namespace {
@@ -22,6 +23,11 @@ using engines::CostWay;
 
 constexpr double kLeastRung = 2.0;   // s of CPU that any run may take
 constexpr double kLongest = 2.0;     // shares of the budget, likewise
+constexpr double kFirstRight = 25.0; // s of CPU that a run may take where there is no truth and none has got through yet: it is all there is to know
+constexpr double kWorthATruth = 0.1; // of the scene: a truth that holds for less says less than its numbers
+constexpr double kSearch = 3.0, kLeastSearch = 6.0;   // budgets, and s of CPU, of the search for a truth
+constexpr double kProbe = 0.1;       // of the budget: of the run that shows whether a scene's size fits into it
+constexpr int kSmaller = 3;          // and else it gets so many times smaller
 
 struct Ladder {
   CostWay way;
@@ -81,16 +87,17 @@ std::string what_error_is(const CostTruth& truth) {
 
 std::vector<Ladder> run_all(const scene::Scene& scene, std::vector<CostWay> ways, const CostTruth& truth, const CostWords& words, const engines::CostOptions& options) {
   std::vector<Ladder> ladders;
-  const double begun = cpu_seconds(), until = begun + words.budget_s;
+  const double begun = cpu_seconds(), until = begun + words.budget();
   for (std::size_t k = 0; k < ways.size(); ++k) {
     if (k > 0 && cpu_seconds() > until) {
-      fmt::print(stderr, "{:>2}/{} {:<28} not run: the budget of {:g} s is used up\n", k + 1, ways.size(), ways[k].name, words.budget_s);
+      fmt::print(stderr, "{:>2}/{} {:<28} not run: the budget of {:g} s is used up\n", k + 1, ways.size(), ways[k].name, words.budget());
       continue;
     }
     const double left = std::max(0.0, until - cpu_seconds()), share = left / static_cast<double>(ways.size() - k);
     Ladder ladder{std::move(ways[k]), {}};
     engines::CostOptions own = options;
-    own.most_of_rung_s = std::max(kLeastRung, std::min(left, kLongest * share));
+    const bool any = std::any_of(ladders.begin(), ladders.end(), [](const Ladder& done) { return std::any_of(done.rungs.begin(), done.rungs.end(), [](const CostRung& rung) { return rung.stopped_by.empty(); }); });
+    own.most_of_rung_s = std::max(truth.by_numbers && !any ? kFirstRight : kLeastRung, std::min(left, kLongest * share));
     ladder.rungs = engines::run_ladder(scene, ladder.way, truth, share, own, words.steps_s(), words.tolerances, [&](const CostRung& rung) {
       const std::string found = rung.stopped_by.empty() ? fmt::format("error {:.1e}{}, {}", rung.error_m, truth.by_numbers ? " of allowed" : " m", report::price_of(rung.cpu_s)) : "stopped";
       fmt::print(stderr, "{:>2}/{} {:<28} {:<16} {:<28} at most {:.0f} s left\n", k + 1, ways.size(), ladder.way.name, fineness_of(rung), found, std::max(0.0, until - cpu_seconds()));
@@ -134,6 +141,28 @@ report::CostPage page_of(const Context& context, const std::vector<Ladder>& ladd
   return page;
 }
 
+struct SizedWords {
+  CostWords words;
+  std::optional<int> usual_n;   // where the scene's usual size was too large
+};
+
+/// A scene whose size is a parameter gets a size of which a run fits into the budget many times, unless one was asked for.
+SizedWords with_size_that_fits(const Context& context, CostWords words, engines::CostOptions options) {
+  const scene::SizedScene* sized = scene::sized_scene_named(words.scene);
+  if (sized == nullptr || words.n || std::filesystem::is_regular_file(words.scene)) return {words, std::nullopt};
+  options.runs = 1;
+  options.most_of_rung_s = kProbe * words.budget();
+  options.duration_s = words.duration_s;
+  for (int n = sized->default_n;; n = std::max(1, n / kSmaller)) {
+    words.n = n;
+    const CostSubject subject = find_subject(context, words);
+    const CostTruth whole = engines::by_numbers(subject.scene, options, "");
+    fmt::print(stderr, "tumble: {} with n = {}: whether a run of it fits into {:.3g} s\n", words.scene, n, options.most_of_rung_s);
+    if (n > 1 && !engines::run_rung(subject.scene, way_by_method(method_named("rk4"), subject.truth_laws), whole, 1, kUnset, options).stopped_by.empty()) continue;
+    return {words, n == sized->default_n ? std::nullopt : std::optional<int>(sized->default_n)};
+  }
+}
+
 }  // namespace
 
 const report::CostCurve* cheapest_curve(const report::CostPage& page, double mark) {
@@ -155,21 +184,31 @@ std::vector<std::string> verdicts(const report::CostPage& page) {
   return words;
 }
 
-MeasuredCost measure_cost(const Context& context, const CostWords& words) {
+MeasuredCost measure_cost(const Context& context, const CostWords& asked) {
   engines::CostOptions options;
   options.timewarp = engines::fast_timewarp();
-  const CostSubject subject = find_subject(context, words);
-  options.duration_s = words.duration_s ? words.duration_s : subject.duration_s;
   options.told = [](const std::string& what) { fmt::print(stderr, "tumble: {}\n", what); };
+  options.most_of_search_s = std::clamp(kSearch * asked.budget(), kLeastSearch, options.most_of_search_s);
+  const auto [words, usual_n] = with_size_that_fits(context, asked, options);
+  CostSubject subject = find_subject(context, words);
+  options.duration_s = words.duration_s ? words.duration_s : subject.duration_s;
+  if (!options.duration_s && !subject.scene.checks.empty()) options.least_share = kWorthATruth;
   std::string why;
   const std::optional<CostTruth> found = engines::try_truth(subject.scene, subject.truth_laws, options, why);
   if (!found && subject.scene.checks.empty()) throw UserError(subject.scene.name, "there is no truth to compare with (" + why + "), and the scene has no numbers to be judged by", "Give it \"checks\", or a shorter --duration-s.");
   CostTruth truth = found ? *found : engines::by_numbers(subject.scene, options, why);
   if (!found) fmt::print(stderr, "tumble: no truth ({}): runs are judged by the scene's numbers\n", why);
   if (found) check_with_files(context, subject, truth);
+  if (truth.by_numbers)   // there the method of integration hardly matters: the usual one comes first
+    std::stable_partition(subject.ways.begin(), subject.ways.end(), [](const CostWay& way) { return way.word == "rk4"; });
   const std::vector<Ladder> ladders = run_all(subject.scene, subject.ways, truth, words, options);
   MeasuredCost measured;
   measured.page = page_of(context, ladders, truth, subject);
+  if (usual_n) {
+    measured.size = fmt::format("n = {}", *words.n);
+    measured.page.title += ", " + measured.size;
+    measured.page.readings.push_back(fmt::format("Looked at with n = {}: at its usual size, {}, one run takes longer than {:.3g} s here. Ask for it with --n {} and a larger --budget-s.", *words.n, *usual_n, kProbe * words.budget(), *usual_n));
+  }
   if (truth.by_numbers) measured.against = fmt::format("judged by its numbers, over {:.3g} s: the worst of them over what it is allowed [-]", truth.duration_s);
   else measured.against = fmt::format("error: against {}: {:.1e} m, over {:.3g} s", truth.what, truth.floor_m, truth.duration_s);
   measured.duration_s = truth.duration_s;
