@@ -37,10 +37,14 @@ struct SceneLine {
 std::string why_not(const report::CostPage& page, double mark) {
   if (page.floor > mark) return fmt::format("truth known to {:.0e} m", page.floor);
   double least = std::numeric_limits<double>::infinity();
+  const report::CostCurve* best = page.curves.empty() ? nullptr : &page.curves.front();
   for (const report::CostCurve& curve : page.curves)
-    for (const report::CostPoint& point : curve.points)
-      if (point.stopped_by.empty() && point.error < least) least = point.error;
-  if (page.error_unit.empty()) return page.curves.empty() ? "nothing was run" : page.curves.front().reading;
+    for (const report::CostPoint& point : curve.points) {
+      if (!point.stopped_by.empty() || !(point.error < least)) continue;
+      least = point.error;
+      best = &curve;
+    }
+  if (page.error_unit.empty()) return best == nullptr ? "nothing was run" : best->reading;
   return std::isfinite(least) ? fmt::format("least {:.1e} m", least) : "nothing gets through";
 }
 

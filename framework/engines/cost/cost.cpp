@@ -161,15 +161,14 @@ CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth
   CostRung rung;
   rung.step_s = way.has_ladder ? stepped.step_s : kUnset;
   if (way.controlled) rung.tolerance = tolerance;
-  double building = std::numeric_limits<double>::infinity(), moving = building;
+  double building = std::numeric_limits<double>::infinity(), whole = building;
   try {
     const double begun = cpu_seconds();
     for (int k = 0; k < options.runs && (k == 0 || cpu_seconds() - begun < kShort); ++k) {
       Measurement run(options.most_of_rung_s);
       run_scene(stepped, laws, how, run);
-      const double before = before_first_step(stepped, laws, how, run);
-      building = std::min(building, before);
-      moving = std::min(moving, run.cpu_s - before);
+      building = std::min(building, before_first_step(stepped, laws, how, run));
+      whole = std::min(whole, run.cpu_s);
       if (k > 0) continue;
       rung.stopped_by = run.run().stopped_by;
       rung.stage_seconds = run.run().counters.stage_seconds;
@@ -191,7 +190,9 @@ CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth
     rung.not_attempted = true;
     return rung;
   }
-  rung.cpu_s = std::max(1e-6, moving);
+  double stages = 0.0;   // what is certainly not building: where that takes far longer than the run, their difference is noise
+  for (const auto& [stage, seconds] : rung.stage_seconds) stages += seconds;
+  rung.cpu_s = std::max({1e-6, whole - building, std::min(stages, whole)});
   rung.building_s = building;
   return rung;
 }
@@ -211,33 +212,64 @@ long outer_steps(const scene::Scene& scene, const CostTruth& truth) {
   return alone ? 1 : std::max(1L, std::lround(interval / (2.0 * scene.step_s)));
 }
 
-std::vector<CostRung> run_ladder(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, double budget_s, const CostOptions& options, const std::vector<double>& steps_s,
-                                 const std::vector<double>& tolerances, const std::function<void(const CostRung&)>& told) {
-  const double interval = truth.duration_s / static_cast<double>(truth.intervals), until = cpu_seconds() + budget_s;
-  const std::vector<double>& asked = way.controlled ? tolerances : steps_s;
-  const std::size_t most = !way.has_ladder ? 1 : !asked.empty() ? asked.size() : way.schedules ? kRungsOfAScheduler : kMostRungs;
-  const int most_worse = scene.contact ? kMostWorseInSteps : kMostWorse;
-  std::vector<CostRung> rungs;
+namespace {
+
+std::size_t most_rungs(const CostWay& way, const std::vector<double>& asked) {
+  if (!way.has_ladder) return 1;
+  return !asked.empty() ? asked.size() : way.schedules ? kRungsOfAScheduler : kMostRungs;
+}
+
+/// Steps per sample of the next rung.
+long steps_of(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, const LadderWords& words, std::size_t k) {
+  const double interval = truth.duration_s / static_cast<double>(truth.intervals);
+  // Motors look and contacts push once a step, and bodies that hang on others and meet something go along a curve through their steps'
+  // ends: there steps shrink with the tolerance, but where something else than the integration is looked at.
+  if ((way.controlled && (way.tuned || steps_are_free(scene))) || !way.has_ladder) return outer_steps(scene, truth);
+  if (!words.steps_s.empty() && !way.controlled) return std::max(1L, std::lround(interval / words.steps_s[k]));
+  return first_steps(scene, truth) << std::min<std::size_t>(k, 20);
+}
+
+}  // namespace
+
+bool ladder_is_done(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, const std::vector<CostRung>& rungs, const LadderWords& words) {
+  if (rungs.empty()) return false;
+  const std::vector<double>& asked = way.controlled ? words.tolerances : words.steps_s;
+  if (rungs.size() >= most_rungs(way, asked) || rungs.back().not_attempted) return true;
+  if (!asked.empty() || way.schedules) return false;
   double least = std::numeric_limits<double>::infinity();
   int worse = 0;
-  for (std::size_t k = 0; k < most; ++k) {
-    const double begun = cpu_seconds();
-    long steps = first_steps(scene, truth) << std::min<std::size_t>(k, 20);
-    // Motors look and contacts push once a step, and bodies that hang on others and meet something go along a curve through their steps'
-    // ends: there steps shrink with the tolerance, but where something else than the integration is looked at.
-    if ((way.controlled && (way.tuned || steps_are_free(scene))) || !way.has_ladder) steps = outer_steps(scene, truth);
-    else if (!asked.empty() && !way.controlled) steps = std::max(1L, std::lround(interval / asked[k]));
-    const double tolerance = !way.controlled ? kUnset : asked.empty() ? std::pow(10.0, -1.0 - static_cast<double>(k)) : asked[k];
-    rungs.push_back(run_rung(scene, way, truth, steps, tolerance, options));
-    told(rungs.back());
-    if (rungs.back().not_attempted) break;
-    const double spent = cpu_seconds() - begun;
+  for (std::size_t k = 0; k < rungs.size(); ++k) {
     const bool is_new = k == 0 || !way.controlled || rungs[k].evaluations > rungs[k - 1].evaluations;   // a tolerance that changes nothing tells nothing
-    worse = rungs.back().error_m < least ? 0 : worse + (is_new ? 1 : 0);
-    least = std::min(least, std::isfinite(rungs.back().error_m) ? rungs.back().error_m : least);
-    const bool reached = !way.schedules && (rungs.back().error_m <= kNearFloor * truth.floor_m || (worse >= most_worse && least < kGood * truth.scale_m));
-    if (asked.empty() && (reached || cpu_seconds() + kGrowth * spent > until)) break;
+    worse = rungs[k].error_m < least ? 0 : worse + (is_new ? 1 : 0);
+    least = std::min(least, std::isfinite(rungs[k].error_m) ? rungs[k].error_m : least);
   }
+  const int most_worse = scene.contact ? kMostWorseInSteps : kMostWorse;
+  return rungs.back().error_m <= kNearFloor * truth.floor_m || (worse >= most_worse && least < kGood * truth.scale_m);
+}
+
+double next_price(const std::vector<CostRung>& rungs) {
+  if (rungs.empty()) return 0.0;
+  const double last = rungs.back().cpu_s + rungs.back().building_s;
+  return kGrowth * (last > kShort ? last : kShort);   // short runs are repeated
+}
+
+void extend_ladder(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, double budget_s, const CostOptions& options, const LadderWords& words, std::vector<CostRung>& rungs,
+                   const std::function<void(const CostRung&)>& told) {
+  const double until = cpu_seconds() + budget_s;
+  const bool is_asked = !(way.controlled ? words.tolerances : words.steps_s).empty();
+  while (!ladder_is_done(scene, way, truth, rungs, words)) {
+    const std::size_t k = rungs.size();
+    const double tolerance = !way.controlled ? kUnset : words.tolerances.empty() ? std::pow(10.0, -1.0 - static_cast<double>(k)) : words.tolerances[k];
+    rungs.push_back(run_rung(scene, way, truth, steps_of(scene, way, truth, words, k), tolerance, options));
+    told(rungs.back());
+    if (!is_asked && cpu_seconds() + next_price(rungs) > until) return;
+  }
+}
+
+std::vector<CostRung> run_ladder(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, double budget_s, const CostOptions& options, const std::vector<double>& steps_s,
+                                 const std::vector<double>& tolerances, const std::function<void(const CostRung&)>& told) {
+  std::vector<CostRung> rungs;
+  extend_ladder(scene, way, truth, budget_s, options, {steps_s, tolerances}, rungs, told);
   return rungs;
 }
 

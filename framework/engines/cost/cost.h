@@ -116,6 +116,18 @@ struct CostRun {
 };
 CostRun run_of(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, long steps, double tolerance, const CostOptions& options);
 
+/// What a ladder was asked for; empty: halvings of the first step, tolerances 0.1, 0.01, ...
+struct LadderWords {
+  std::vector<double> steps_s, tolerances;
+};
+/// Whether nothing more can come of a ladder: the truth's floor is reached, errors do not fall any more, or all that was asked for has been run.
+bool ladder_is_done(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, const std::vector<CostRung>& rungs, const LadderWords& words);
+/// CPU time that the next rung is expected to take. [s]
+double next_price(const std::vector<CostRung>& rungs);
+/// Goes on with a ladder, by one rung at least where it is not done, for so long.
+void extend_ladder(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, double budget_s, const CostOptions& options, const LadderWords& words, std::vector<CostRung>& rungs,
+                   const std::function<void(const CostRung&)>& told);
+
 /// The whole ladder, coarse to fine: until the truth's floor is reached, or the next rung would take more than the budget.
 /// @param told     called after each rung
 /// @param steps_s  steps that were asked for; empty: halvings of the first @param tolerances  the same
