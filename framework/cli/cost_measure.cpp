@@ -23,6 +23,7 @@ using engines::CostWay;
 
 constexpr double kLeastRung = 2.0;   // s of CPU that any run may take
 constexpr double kLeastShare = 0.2;  // or so much of a small budget
+constexpr double kAnAnswer = 0.1;    // of how far bodies move: errors above it do not show where they lead
 constexpr double kForTheBest = 0.4;  // of the budget: to go on where the least error was
 constexpr double kLongest = 2.0;     // shares of the budget, likewise
 constexpr double kFirstRight = 25.0; // s of CPU that a run may take where there is no truth and none has got through yet: it is all there is to know
@@ -149,15 +150,22 @@ class Ladders {
   /// Of the ladders that can go on in what is left, the one that has come closest.
   std::optional<std::size_t> closest() const {
     std::optional<std::size_t> best;
-    double least = std::numeric_limits<double>::infinity();
+    std::pair<double, double> least;
     for (std::size_t k = 0; k < ladders.size(); ++k) {
       const Ladder& ladder = ladders[k];
-      if (ladder.rungs.empty() || ladder.rungs.back().error_m >= least || !ladder.rungs.back().stopped_by.empty()) continue;
-      if (engines::next_price(ladder.rungs) > left() || engines::ladder_is_done(scene_, ladder.way, truth_, ladder.rungs, words_)) continue;
+      if (ladder.rungs.empty() || engines::next_price(ladder.rungs) > left() || engines::ladder_is_done(scene_, ladder.way, truth_, ladder.rungs, words_)) continue;
+      const std::pair<double, double> here{hope(ladder.rungs.back()), engines::next_price(ladder.rungs)};
+      if (best && here >= least) continue;
       best = k;
-      least = ladder.rungs.back().error_m;
+      least = here;
     }
     return best;
+  }
+
+  /// Small is good: an error; then what blew up, for half the step may hold; last what gives answers that are none.
+  double hope(const CostRung& rung) const {
+    if (!rung.stopped_by.empty() || !std::isfinite(rung.error_m)) return truth_.by_numbers ? std::numeric_limits<double>::max() : truth_.scale_m;
+    return truth_.by_numbers || rung.error_m < kAnAnswer * truth_.scale_m ? rung.error_m : 2.0 * truth_.scale_m;
   }
 
   const scene::Scene& scene_;
