@@ -257,6 +257,7 @@ std::vector<std::string> verdicts(const report::CostPage& page) {
 }
 
 MeasuredCost measure_cost(const Context& context, const CostWords& asked) {
+  asked.steps_s();   // refused before anything is run
   engines::CostOptions options;
   options.timewarp = engines::fast_timewarp();
   options.told = [](const std::string& what) { fmt::print(stderr, "tumble: {}\n", what); };
