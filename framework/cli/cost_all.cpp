@@ -1,5 +1,6 @@
 #include "framework/cli/cost_all.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -82,7 +83,15 @@ report::Table table_of(const std::vector<SceneLine>& lines) {
   return table;
 }
 
-std::string peer_cell(const PeerRow* row) { return row == nullptr ? "\u2013" : fmt::format("{} {}", row->engine, report::price_of(row->cpu_s)); }
+std::string peer_cell(const PeerRow* row) { return fmt::format("{} {}", row->engine, report::price_of(row->cpu_s)); }
+
+/// How close rows come that do not get to an error.
+std::string least_of(const std::vector<PeerRow>& rows, const std::string& bench, bool of_others) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const PeerRow& row : rows)
+    if (row.bench == bench && (row.engine == kOurs) != of_others && row.done) least = std::min(least, row.error);
+  return std::isfinite(least) ? fmt::format("\u2013 (least {:.0e})", least) : "\u2013 (does not finish)";
+}
 
 /// @param page  of the peers, to link to, relative to this one
 report::Table table_of_peers(const report::PeerRows& measured, const std::string& page) {
@@ -96,8 +105,8 @@ report::Table table_of_peers(const report::PeerRows& measured, const std::string
     for (const double mark : kMarks) {
       const PeerRow *ours = report::cheapest_row(measured.rows, bench, kOurs, false, mark), *theirs = report::cheapest_row(measured.rows, bench, kOurs, true, mark);
       const bool wins = ours != nullptr && (theirs == nullptr || ours->cpu_s <= theirs->cpu_s);
-      cells.push_back({ours == nullptr ? "\u2013" : report::price_of(ours->cpu_s), "", wins ? Look::kGood : ours == nullptr ? Look::kMuted : Look::kBad});
-      cells.push_back({peer_cell(theirs), "", theirs == nullptr ? Look::kMuted : Look::kPlain});
+      cells.push_back({ours == nullptr ? least_of(measured.rows, bench, false) : report::price_of(ours->cpu_s), "", wins ? Look::kGood : ours == nullptr ? Look::kMuted : Look::kBad});
+      cells.push_back({theirs == nullptr ? least_of(measured.rows, bench, true) : peer_cell(theirs), "", theirs == nullptr ? Look::kMuted : Look::kPlain});
     }
     table.rows.push_back(std::move(cells));
   }
