@@ -18,6 +18,7 @@ namespace tumble::engines {
 namespace {
 
 constexpr double kShort = 0.1;            // s: after so long runs are not repeated
+constexpr double kNoise = 0.02;           // of what comes before the first step: by so much its time differs from run to run
 constexpr double kCoarsest = 16.0;        // of the scene's own step: where a ladder begins
 constexpr int kMostRungs = 14;
 constexpr double kNearFloor = 3.0;        // of the truth's floor: finer runs show nothing
@@ -190,9 +191,12 @@ CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth
     rung.not_attempted = true;
     return rung;
   }
-  double stages = 0.0;   // what is certainly not building: where that takes far longer than the run, their difference is noise
-  for (const auto& [stage, seconds] : rung.stage_seconds) stages += seconds;
-  rung.cpu_s = std::max({1e-6, whole - building, std::min(stages, whole)});
+  rung.cpu_s = std::max(1e-6, whole - building);
+  if (rung.cpu_s < kNoise * building) {   // the difference of two long times is noise: the stages' own clocks know better
+    double stages = 0.0;
+    for (const auto& [stage, seconds] : rung.stage_seconds) stages += seconds;
+    rung.cpu_s = std::max(rung.cpu_s, std::min(stages, whole));
+  }
   rung.building_s = building;
   return rung;
 }
