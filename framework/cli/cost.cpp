@@ -1,5 +1,6 @@
 // tumble cost SCENE: what accuracy costs in a scene, by every method and engine, drawn and read.
 // tumble cost a2: the same for a student's module, against the reference. tumble cost toi: of times of impact. tumble cost all: every scene.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -14,14 +15,16 @@ namespace tumble::cli {
 namespace {
 
 void print(const report::CostPage& page) {
-  fmt::print("{:<30} {:>6}  {:<32}", "", "order", "least error");
+  std::size_t width = 30;
+  for (const report::CostCurve& curve : page.curves) width = std::max(width, curve.name.size());
+  fmt::print("{:<{}} {:>6}  {:<32}", "", width, "order", "least error");
   for (const double mark : page.marks) fmt::print(" {:>14}", report::mark_in_words(page, mark));
   fmt::print("\n");
   for (const report::CostCurve& curve : page.curves) {
     const report::CostPoint* least = nullptr;
     for (const report::CostPoint& point : curve.points)
       if (point.stopped_by.empty() && std::isfinite(point.error) && (least == nullptr || point.error < least->error)) least = &point;
-    fmt::print("{:<30} {:>6}  {:<32}", curve.name, std::isfinite(curve.order) ? fmt::format("{:.2f}", curve.order) : "-",
+    fmt::print("{:<{}} {:>6}  {:<32}", curve.name, width, std::isfinite(curve.order) ? fmt::format("{:.2f}", curve.order) : "-",
                least == nullptr ? "does not get through" : fmt::format("{:.1e}{} at {}", least->error, page.error_unit.empty() ? "" : " " + page.error_unit, least->fineness));
     for (const double mark : page.marks) {
       const report::CostPoint* point = report::cheapest(curve, mark);
@@ -61,18 +64,18 @@ void run_cost(Context& context, const CostWords& words) {
 void add_cost(CLI::App& app, Context& context) {
   auto words = std::make_shared<CostWords>();
   CLI::App* verb = app.add_subcommand("cost", "What accuracy costs: error against CPU time by every method, step and engine, drawn and read");
-  verb->add_option("scene", words->scene, "A scene file, the bare name of one, a scene with a size, an assignment (a1, a2, a3): the student's module against the reference; toi: root finders on times of impact; or all: every scene, and one table")->required()->type_name("SCENE");
+  verb->add_option("scene", words->scene, "A scene file, the bare name of one, a scene with a size, an assignment (a1 to a4): the student's module against the reference; toi: root finders on times of impact; or all: every scene, and one table")->required()->type_name("SCENE");
   verb->add_option("--methods", words->methods, "Methods of integration, with commas: euler, symplectic, midpoint, verlet, rk4, dopri5, fehlberg78, bulirsch-stoer, rosenbrock4 (implicit); none")->delimiter(',');
-  verb->add_option("--engines", words->engines, "Beside rd with each method: auto (rd with closed forms), ca, tw; none")->delimiter(',');
+  verb->add_option("--engines", words->engines, "Beside rd with each method: auto (rd, in closed form where nothing but gravity acts), ca, tw, ordered; none")->delimiter(',');
   verb->add_option("--stabilisations", words->stabilisations, "What keeps rods and joints together, each with RK4: none, baumgarte, projection")->delimiter(',');
   verb->add_option("--impacts", words->impacts, "Which root finder looks for impacts, over its tolerance: bisection, newton, toms748")->delimiter(',');
-  verb->add_option("--solvers", words->solvers, "Iterative solvers in place of direct ones, over their tolerance: gradients (rods and joints), sweeps (contacts without friction)")->delimiter(',');
+  verb->add_option("--solvers", words->solvers, "Iterative solvers in place of direct ones, over their tolerance: gradients (rods and joints), sweeps, newton (lasting contacts)")->delimiter(',');
   verb->add_option("--steps", words->steps, "Steps of the ladder [s], as 1/30,1/60,0.001, instead of halvings until the budget is used")->delimiter(',')->type_name("STEPS");
   verb->add_option("--tolerances", words->tolerances, "Tolerances of methods that control their error, instead of 0.1, 0.01, ...")->delimiter(',')->check(CLI::PositiveNumber);
   verb->add_option("--modules", words->modules, "Whose laws, as for tumble run; of an assignment: whose module is looked at (default student)")->type_name("WORDS");
   verb->add_option("--on", words->on, "Of an assignment: the scene that it is measured on")->type_name("SCENE");
   verb->add_option("--duration-s", words->duration_s, "Simulated time [s] instead of the scene's")->check(CLI::PositiveNumber);
-  verb->add_option("--budget-s", words->budget_s, "CPU time of all ladders together [s]; the truth takes 18 s at most beside")->capture_default_str()->check(CLI::PositiveNumber);
+  verb->add_option("--budget-s", words->budget_s, "CPU time of all ladders together [s], default 36, of all: 4 a scene; the truth takes 18 s at most beside")->check(CLI::PositiveNumber);
   verb->add_option("--n", words->n, "Size of a scene whose size is a parameter");
   verb->add_option("--out", words->out, "Folder in which the page SCENE/index.html is made")->capture_default_str();
   verb->footer("Example: tumble cost double_pendulum --modules reference\n         tumble cost a2 --modules mine/a2_integration.cpp\nTimes are CPU times in this run and are meant to be compared with each other only.");

@@ -1,9 +1,11 @@
 #include "framework/cli/cost_all.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <limits>
 #include <set>
 
 #include <fmt/format.h>
@@ -23,6 +25,7 @@ using report::Look;
 using report::PeerRow;
 
 constexpr double kMarks[] = {1e-3, 1e-6, 1e-9};   // m
+constexpr double kBudget = 4.0;                   // s a scene: sixty take some minutes
 const std::string kOurs = "Tumble";
 
 struct SceneLine {
@@ -31,10 +34,25 @@ struct SceneLine {
   std::optional<MeasuredCost> cost;
 };
 
+/// Why nothing gets to an error.
+std::string why_not(const report::CostPage& page, double mark) {
+  if (page.floor > mark) return fmt::format("truth known to {:.0e} m", page.floor);
+  double least = std::numeric_limits<double>::infinity();
+  const report::CostCurve* best = page.curves.empty() ? nullptr : &page.curves.front();
+  for (const report::CostCurve& curve : page.curves)
+    for (const report::CostPoint& point : curve.points) {
+      if (!point.stopped_by.empty() || !(point.error < least)) continue;
+      least = point.error;
+      best = &curve;
+    }
+  if (page.error_unit.empty()) return best == nullptr ? "nothing was run" : best->reading;
+  return std::isfinite(least) ? fmt::format("least {:.1e} m", least) : "nothing gets through";
+}
+
 /// What is paid for an error, and by what.
 Cell cell_of(const report::CostPage& page, double mark) {
   const report::CostCurve* curve = cheapest_curve(page, mark);
-  if (curve == nullptr) return {"\u2013", "", Look::kMuted};
+  if (curve == nullptr) return {"\u2013 (" + why_not(page, mark) + ")", "", Look::kMuted};
   const report::CostPoint* point = report::cheapest(*curve, mark);
   return {fmt::format("{}: {}, {}", report::price_of(point->cpu_s), curve->name, point->fineness)};
 }
@@ -42,10 +60,10 @@ Cell cell_of(const report::CostPage& page, double mark) {
 /// Scene, then a cell a mark; a scene without a truth says what being right costs.
 report::Table table_of(const std::vector<SceneLine>& lines) {
   report::Table table;
-  table.caption = "CPU time that an error of at most 1e-3, 1e-6, 1e-9 m costs, and what it was reached by. \u2013: nothing that was run gets there.";
+  table.caption = "CPU time that an error of at most 1e-3, 1e-6, 1e-9 m costs, and what it was reached by. \u2013: nothing that was run gets there, and why.";
   table.columns = {{"Scene"}, {"Looked at"}, {"1e-3 m"}, {"1e-6 m"}, {"1e-9 m"}};
   for (const SceneLine& line : lines) {
-    const Cell name{line.scene, line.cost ? line.scene + "/index.html" : ""};
+    const Cell name{line.cost && !line.cost->size.empty() ? line.scene + ", " + line.cost->size : line.scene, line.cost ? line.scene + "/index.html" : ""};
     if (!line.cost) {
       table.rows.push_back({name, {"failed", "", Look::kBad}, {line.problem, "", Look::kMuted}, {""}, {""}});
       continue;
@@ -65,7 +83,15 @@ report::Table table_of(const std::vector<SceneLine>& lines) {
   return table;
 }
 
-std::string peer_cell(const PeerRow* row) { return row == nullptr ? "\u2013" : fmt::format("{} {}", row->engine, report::price_of(row->cpu_s)); }
+std::string peer_cell(const PeerRow* row) { return fmt::format("{} {}", row->engine, report::price_of(row->cpu_s)); }
+
+/// How close rows come that do not get to an error.
+std::string least_of(const std::vector<PeerRow>& rows, const std::string& bench, bool of_others) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const PeerRow& row : rows)
+    if (row.bench == bench && (row.engine == kOurs) != of_others && row.done) least = std::min(least, row.error);
+  return std::isfinite(least) ? fmt::format("\u2013 (least {:.0e})", least) : "\u2013 (does not finish)";
+}
 
 /// @param page  of the peers, to link to, relative to this one
 report::Table table_of_peers(const report::PeerRows& measured, const std::string& page) {
@@ -79,8 +105,8 @@ report::Table table_of_peers(const report::PeerRows& measured, const std::string
     for (const double mark : kMarks) {
       const PeerRow *ours = report::cheapest_row(measured.rows, bench, kOurs, false, mark), *theirs = report::cheapest_row(measured.rows, bench, kOurs, true, mark);
       const bool wins = ours != nullptr && (theirs == nullptr || ours->cpu_s <= theirs->cpu_s);
-      cells.push_back({ours == nullptr ? "\u2013" : report::price_of(ours->cpu_s), "", wins ? Look::kGood : ours == nullptr ? Look::kMuted : Look::kBad});
-      cells.push_back({peer_cell(theirs), "", theirs == nullptr ? Look::kMuted : Look::kPlain});
+      cells.push_back({ours == nullptr ? least_of(measured.rows, bench, false) : report::price_of(ours->cpu_s), "", wins ? Look::kGood : ours == nullptr ? Look::kMuted : Look::kBad});
+      cells.push_back({theirs == nullptr ? least_of(measured.rows, bench, true) : peer_cell(theirs), "", theirs == nullptr ? Look::kMuted : Look::kPlain});
     }
     table.rows.push_back(std::move(cells));
   }
@@ -108,6 +134,7 @@ void print(const report::Table& table) {
 SceneLine line_of(const Context& context, const CostWords& words, const std::string& scene) {
   CostWords own = words;
   own.scene = scene;
+  own.budget_s = words.budget_s.value_or(kBudget);
   SceneLine line{scene, "", std::nullopt};
   try {
     line.cost = measure_cost(context, own);

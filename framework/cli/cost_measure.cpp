@@ -12,6 +12,7 @@
 #include "framework/engines/cost/cost.h"
 #include "framework/engines/cost/reading.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
+#include "framework/scene/sized_scenes.h"
 
 namespace tumble::cli {
 namespace {
@@ -21,7 +22,16 @@ using engines::CostTruth;
 using engines::CostWay;
 
 constexpr double kLeastRung = 2.0;   // s of CPU that any run may take
+constexpr double kLeastShare = 0.2;  // or so much of a small budget
+constexpr double kAnAnswer = 0.1;    // of how far bodies move: errors above it do not show where they lead
+constexpr double kForTheBest = 0.4;  // of the budget: to go on where the least error was
 constexpr double kLongest = 2.0;     // shares of the budget, likewise
+constexpr double kFirstRight = 25.0; // s of CPU that a run may take where there is no truth and none has got through yet: it is all there is to know
+constexpr double kWorthATruth = 0.1; // of the scene: a truth that holds for less says less than its numbers
+constexpr double kSearch = 3.0, kLeastSearch = 6.0;   // budgets, and s of CPU, of the search for a truth
+constexpr double kLeastProbe = 1.0;  // s, and
+constexpr double kProbe = 0.1;       // of the budget: of the run that shows whether a scene's size fits into it
+constexpr int kSmaller = 3;          // and else it gets so many times smaller
 
 struct Ladder {
   CostWay way;
@@ -54,6 +64,7 @@ report::CostCurve curve_of(const Ladder& ladder, const CostTruth& truth, double 
   report::CostCurve curve;
   curve.name = ladder.way.name;
   curve.reading = engines::read_ladder(ladder.way, ladder.rungs, truth, smooth);
+  curve.is_subject = ladder.way.name.starts_with("your ");
   const auto fit = engines::order_of(ladder.way, ladder.rungs, truth);
   if (fit && !ladder.way.controlled) curve.order = fit->order;
   double closest = std::numeric_limits<double>::infinity();
@@ -71,6 +82,25 @@ report::CostCurve curve_of(const Ladder& ladder, const CostTruth& truth, double 
   return curve;
 }
 
+/// What a scheduler does over how far its processes go ahead: much at once is soon taken back, little at once is many steps.
+std::optional<report::Plot> work_of(const std::vector<Ladder>& ladders) {
+  report::Plot plot{"Work against how far a process goes ahead", {"step", "s", report::Scale::kLog}, {"integrations, rollbacks", "-", report::Scale::kLog}, {}, {},
+                    "A scheduler is right or wrong at any step; what the step sets is how much is worked at in vain."};
+  for (const Ladder& ladder : ladders) {
+    if (!ladder.way.schedules) continue;
+    report::Curve all{ladder.way.name + ": integrations", {}, {}, true}, undone{ladder.way.name + ": taken back", {}, {}, true}, rollbacks{ladder.way.name + ": rollbacks", {}, {}, true};
+    for (const CostRung& rung : ladder.rungs) {
+      if (!rung.stopped_by.empty()) continue;
+      for (const auto& [curve, count] : {std::pair{&all, rung.evaluations}, std::pair{&undone, rung.undone}, std::pair{&rollbacks, rung.rollbacks}}) {
+        curve->x.push_back(rung.step_s);
+        curve->y.push_back(static_cast<double>(count));
+      }
+    }
+    plot.curves.insert(plot.curves.end(), {all, undone, rollbacks});
+  }
+  return plot.curves.empty() ? std::nullopt : std::optional<report::Plot>(plot);
+}
+
 std::string what_error_is(const CostTruth& truth) {
   if (truth.by_numbers)
     return fmt::format("There is no truth to compare places with ({}). So each run is judged as tumble run judges it, and its error is the worst of the scene's numbers over what that number is allowed: up to 1 is right. "
@@ -79,26 +109,72 @@ std::string what_error_is(const CostTruth& truth) {
                      "largest over all movable bodies and samples counts. An error of {:.1e} m, which is as far as bodies move, is no answer, and is not drawn.", truth.what, truth.floor_m, truth.scale_m);
 }
 
-std::vector<Ladder> run_all(const scene::Scene& scene, std::vector<CostWay> ways, const CostTruth& truth, const CostWords& words, const engines::CostOptions& options) {
-  std::vector<Ladder> ladders;
-  const double begun = cpu_seconds(), until = begun + words.budget_s;
-  for (std::size_t k = 0; k < ways.size(); ++k) {
-    if (k > 0 && cpu_seconds() > until) {
-      fmt::print(stderr, "{:>2}/{} {:<28} not run: the budget of {:g} s is used up\n", k + 1, ways.size(), ways[k].name, words.budget_s);
-      continue;
-    }
-    const double left = std::max(0.0, until - cpu_seconds()), share = left / static_cast<double>(ways.size() - k);
-    Ladder ladder{std::move(ways[k]), {}};
-    engines::CostOptions own = options;
-    own.most_of_rung_s = std::max(kLeastRung, std::min(left, kLongest * share));
-    ladder.rungs = engines::run_ladder(scene, ladder.way, truth, share, own, words.steps_s(), words.tolerances, [&](const CostRung& rung) {
-      const std::string found = rung.stopped_by.empty() ? fmt::format("error {:.1e}{}, {}", rung.error_m, truth.by_numbers ? " of allowed" : " m", report::price_of(rung.cpu_s)) : "stopped";
-      fmt::print(stderr, "{:>2}/{} {:<28} {:<16} {:<28} at most {:.0f} s left\n", k + 1, ways.size(), ladder.way.name, fineness_of(rung), found, std::max(0.0, until - cpu_seconds()));
-    });
-    ladders.push_back(std::move(ladder));
-  }
-  return ladders;
+bool any_gets_through(const Ladder& ladder) {
+  return std::any_of(ladder.rungs.begin(), ladder.rungs.end(), [](const CostRung& rung) { return rung.stopped_by.empty(); });
 }
+
+/// All ladders within one budget: a first part each, and what is left to those that come closest.
+class Ladders {
+ public:
+  Ladders(const CostSubject& subject, const CostTruth& truth, const CostWords& words, const engines::CostOptions& options)
+      : scene_(subject.scene), truth_(truth), words_{words.steps_s(), words.tolerances}, budget_(words.budget()), options_(options), until_(cpu_seconds() + budget_) {
+    for (const CostWay& way : subject.ways) ladders.push_back({way, {}});
+  }
+
+  void run() {
+    const double first_until = until_ - kForTheBest * budget_;
+    for (std::size_t k = 0; k < ladders.size(); ++k) {
+      if (k > 0 && left() <= 0.0) fmt::print(stderr, "{:>2}/{} {:<28} not run: the budget of {:g} s is used up\n", k + 1, ladders.size(), ladders[k].way.name, budget_);
+      else extend(k, std::max(0.0, first_until - cpu_seconds()) / static_cast<double>(ladders.size() - k));
+    }
+    while (const std::optional<std::size_t> best = closest()) extend(*best, 0.0);
+    std::erase_if(ladders, [](const Ladder& ladder) { return ladder.rungs.empty(); });
+  }
+
+  std::vector<Ladder> ladders;
+
+ private:
+  double left() const { return std::max(0.0, until_ - cpu_seconds()); }
+
+  void extend(std::size_t k, double share) {
+    engines::CostOptions own = options_;
+    const bool first = truth_.by_numbers && std::none_of(ladders.begin(), ladders.end(), any_gets_through);
+    own.most_of_rung_s = std::max(first ? kFirstRight : std::min(kLeastRung, kLeastShare * budget_), std::min(left(), kLongest * share));
+    if (share == 0.0) own.most_of_rung_s = std::max(kLeastShare * budget_, left());
+    engines::extend_ladder(scene_, ladders[k].way, truth_, share, own, words_, ladders[k].rungs, [&](const CostRung& rung) {
+      const std::string found = rung.stopped_by.empty() ? fmt::format("error {:.1e}{}, {}", rung.error_m, truth_.by_numbers ? " of allowed" : " m", report::price_of(rung.cpu_s)) : "stopped";
+      fmt::print(stderr, "{:>2}/{} {:<28} {:<16} {:<28} at most {:.0f} s left\n", k + 1, ladders.size(), ladders[k].way.name, fineness_of(rung), found, left());
+    });
+  }
+
+  /// Of the ladders that can go on in what is left, the one that has come closest.
+  std::optional<std::size_t> closest() const {
+    std::optional<std::size_t> best;
+    std::pair<double, double> least;
+    for (std::size_t k = 0; k < ladders.size(); ++k) {
+      const Ladder& ladder = ladders[k];
+      if (ladder.rungs.empty() || engines::next_price(ladder.rungs) > left() || engines::ladder_is_done(scene_, ladder.way, truth_, ladder.rungs, words_)) continue;
+      const std::pair<double, double> here{hope(ladder.rungs.back()), engines::next_price(ladder.rungs)};
+      if (best && here >= least) continue;
+      best = k;
+      least = here;
+    }
+    return best;
+  }
+
+  /// Small is good: an error; then what blew up, for half the step may hold; last what gives answers that are none.
+  double hope(const CostRung& rung) const {
+    if (!rung.stopped_by.empty() || !std::isfinite(rung.error_m)) return truth_.by_numbers ? std::numeric_limits<double>::max() : truth_.scale_m;
+    return truth_.by_numbers || rung.error_m < kAnAnswer * truth_.scale_m ? rung.error_m : 2.0 * truth_.scale_m;
+  }
+
+  const scene::Scene& scene_;
+  const CostTruth& truth_;
+  engines::LadderWords words_;
+  double budget_;
+  engines::CostOptions options_;
+  double until_;
+};
 
 /// A file of tests/truths about the same problem tells the truth's error better than two runs of one engine do.
 void check_with_files(const Context& context, const CostSubject& subject, CostTruth& truth) {
@@ -126,12 +202,37 @@ report::CostPage page_of(const Context& context, const std::vector<Ladder>& ladd
   page.record = context.command_line;
   const double price = middle_price(ladders, truth);
   for (const Ladder& ladder : ladders) page.curves.push_back(curve_of(ladder, truth, price, is_smooth(subject.scene)));
+  page.work = work_of(ladders);
+  if (page.work) page.counted = "integrations";
   page.readings = verdicts(page);
   if (truth.by_numbers) page.readings.push_back("Judged by the scene's own numbers, for there is no truth to compare places with: " + truth.why_by_numbers + ".");
   else if (truth.duration_s < (1.0 - 1e-9) * truth.asked_s)
     page.readings.push_back(fmt::format("Looked at are the first {:.3g} s of {:.3g} s: {}.", truth.duration_s, truth.asked_s, truth.shortened_by));
   if (!subject.note.empty()) page.readings.push_back(subject.note);
   return page;
+}
+
+struct SizedWords {
+  CostWords words;
+  std::optional<int> usual_n;   // where the scene's usual size was too large
+};
+
+/// A scene whose size is a parameter gets a size of which a run fits into the budget many times, unless one was asked for.
+SizedWords with_size_that_fits(const Context& context, CostWords words, engines::CostOptions options) {
+  const scene::SizedScene* sized = scene::sized_scene_named(words.scene);
+  if (sized == nullptr || words.n || std::filesystem::is_regular_file(words.scene)) return {words, std::nullopt};
+  options.runs = 1;
+  options.most_of_rung_s = std::max(kLeastProbe, kProbe * words.budget());
+  options.duration_s = words.duration_s;
+  for (int n = sized->default_n;; n = std::max(1, n / kSmaller)) {
+    words.n = n;
+    const CostSubject subject = find_subject(context, words);
+    const CostTruth whole = engines::by_numbers(subject.scene, options, "");
+    fmt::print(stderr, "tumble: {} with n = {}: whether a run of it fits into {:.3g} s\n", words.scene, n, options.most_of_rung_s);
+    const CostWay way = engines::goes_in_closed_form(subject.scene) ? way_by_engine("ca", subject.truth_laws, true) : way_by_method(method_named("rk4"), subject.truth_laws);
+    if (n > 1 && !engines::run_rung(subject.scene, way, whole, 1, kUnset, options).stopped_by.empty()) continue;
+    return {words, n == sized->default_n ? std::nullopt : std::optional<int>(sized->default_n)};
+  }
 }
 
 }  // namespace
@@ -155,21 +256,34 @@ std::vector<std::string> verdicts(const report::CostPage& page) {
   return words;
 }
 
-MeasuredCost measure_cost(const Context& context, const CostWords& words) {
+MeasuredCost measure_cost(const Context& context, const CostWords& asked) {
+  asked.steps_s();   // refused before anything is run
   engines::CostOptions options;
   options.timewarp = engines::fast_timewarp();
-  const CostSubject subject = find_subject(context, words);
-  options.duration_s = words.duration_s ? words.duration_s : subject.duration_s;
   options.told = [](const std::string& what) { fmt::print(stderr, "tumble: {}\n", what); };
+  options.most_of_search_s = std::clamp(kSearch * asked.budget(), kLeastSearch, options.most_of_search_s);
+  const auto [words, usual_n] = with_size_that_fits(context, asked, options);
+  CostSubject subject = find_subject(context, words);
+  options.duration_s = words.duration_s ? words.duration_s : subject.duration_s;
+  if (!options.duration_s && !subject.scene.checks.empty()) options.least_share = kWorthATruth;
   std::string why;
   const std::optional<CostTruth> found = engines::try_truth(subject.scene, subject.truth_laws, options, why);
   if (!found && subject.scene.checks.empty()) throw UserError(subject.scene.name, "there is no truth to compare with (" + why + "), and the scene has no numbers to be judged by", "Give it \"checks\", or a shorter --duration-s.");
   CostTruth truth = found ? *found : engines::by_numbers(subject.scene, options, why);
   if (!found) fmt::print(stderr, "tumble: no truth ({}): runs are judged by the scene's numbers\n", why);
   if (found) check_with_files(context, subject, truth);
-  const std::vector<Ladder> ladders = run_all(subject.scene, subject.ways, truth, words, options);
+  if (truth.by_numbers)   // there the method of integration hardly matters: the usual one comes first
+    std::stable_partition(subject.ways.begin(), subject.ways.end(), [](const CostWay& way) { return way.word == "rk4"; });
+  Ladders all(subject, truth, words, options);
+  all.run();
+  const std::vector<Ladder>& ladders = all.ladders;
   MeasuredCost measured;
   measured.page = page_of(context, ladders, truth, subject);
+  if (usual_n) {
+    measured.size = fmt::format("n = {}", *words.n);
+    measured.page.title += ", " + measured.size;
+    measured.page.readings.push_back(fmt::format("Looked at with n = {}: at its usual size, {}, one run takes longer than {:.3g} s here. Ask for it with --n {} and a larger --budget-s.", *words.n, *usual_n, std::max(kLeastProbe, kProbe * words.budget()), *usual_n));
+  }
   if (truth.by_numbers) measured.against = fmt::format("judged by its numbers, over {:.3g} s: the worst of them over what it is allowed [-]", truth.duration_s);
   else measured.against = fmt::format("error: against {}: {:.1e} m, over {:.3g} s", truth.what, truth.floor_m, truth.duration_s);
   measured.duration_s = truth.duration_s;

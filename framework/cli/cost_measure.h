@@ -13,6 +13,7 @@ struct MeasuredCost {
   report::CostPage page;
   std::string against;            // what errors are measured against, in a line
   double duration_s, asked_s;     // looked at, and asked for
+  std::string size;               // of a scene whose usual size is too large; else empty
   bool not_attempted = false;     // something that is needed is a stub
 };
 

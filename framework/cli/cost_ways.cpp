@@ -33,20 +33,23 @@ CostWay way_by_method(const Method& method, const Laws& laws) {
   return way;
 }
 
-CostWay way_by_engine(const std::string& word, const Laws& laws) {
+CostWay way_by_engine(const std::string& word, const Laws& laws, bool in_closed_form) {
   CostWay way;
-  way.word = word;
   way.laws = laws;
+  if (!in_closed_form) way = way_by_method(method_named("rk4"), laws);
+  way.word = word;
   if (word == "auto") {
-    way.name = "rd, closed form";
+    way.name = in_closed_form ? "rd, closed form" : "rd, closed form in flight";
     way.propagator = "auto";
     return way;
   }
   way.engine = word;
-  way.has_ladder = false;
+  way.has_ladder = !in_closed_form;
+  way.name.clear();
   for (const auto& [known, meaning] : engines::engine_words())
     if (known == word) way.name = word + ", " + meaning;
   if (way.name.empty() || word == "rd") throw UserError("--engines " + word, "expected auto, ca, tw, ordered or none", "rd runs with every method of --methods.");
+  if (!in_closed_form) way.name = word + ", RK4";   // by which bodies move that do not fly freely
   return way;
 }
 
@@ -100,10 +103,17 @@ CostWay by_solver(const std::string& word, const scene::Scene& scene, const Laws
   } else if (word == "sweeps" && scene.contact) {
     way.name = "contacts by sweeps";
     way.tuned = solve_contacts_by_sweeps;
-  } else if (word == "gradients" || word == "sweeps") {
-    throw UserError("--solvers " + word, scene.name + (word == "sweeps" ? " has no lasting contacts" : " has no rods and no joints"), word == "sweeps" ? "Take a scene such as beam_on_two_supports." : "Take a scene such as chain_8.");
+    way.counted = "contact_sweeps";
+  } else if (word == "newton" && scene.contact) {
+    way.name = "contacts by Newton's method";
+    way.tuned = solve_contacts_by_newton;
+    way.counted = "contact_sweeps";
+  } else if (word == "gradients") {
+    throw UserError("--solvers " + word, scene.name + " has no rods and no joints", "Take a scene such as chain_8.");
+  } else if (word == "sweeps" || word == "newton") {
+    throw UserError("--solvers " + word, scene.name + " has no lasting contacts", "Take a scene such as stack_of_10.");
   } else {
-    throw UserError("--solvers " + word, "expected gradients (of rods and joints) or sweeps (of contacts without friction)", "For example --solvers gradients.");
+    throw UserError("--solvers " + word, "expected gradients (of rods and joints), sweeps or newton (of lasting contacts)", "For example --solvers sweeps,newton.");
   }
   return way;
 }
@@ -117,8 +127,16 @@ std::vector<std::string> methods_for(const scene::Scene& scene, const CostWords&
 
 std::vector<std::string> engines_for(const scene::Scene& scene, const CostWords& words) {
   if (!words.engines.empty()) return is_none(words.engines) ? std::vector<std::string>{} : words.engines;
-  if (!engines::goes_in_closed_form(scene)) return {};
-  return engines::fast_timewarp() ? std::vector<std::string>{"auto", "ca", "tw"} : std::vector<std::string>{"auto", "ca"};
+  std::vector<std::string> chosen;
+  if (!(scene.contact && scene.contact->sleep)) chosen.push_back("ca");   // what sleeps is followed by rd alone
+  if (!(scene.contact && scene.contact->sleep) && engines::fast_timewarp()) chosen.push_back("tw");
+  if (engines::goes_in_closed_form(scene)) chosen.push_back("auto");
+  return chosen;
+}
+
+void add_engines(const CostWords& words, const Laws& laws, CostSubject& subject) {
+  const bool in_closed_form = engines::goes_in_closed_form(subject.scene);
+  for (const std::string& word : engines_for(subject.scene, words)) subject.ways.push_back(way_by_engine(word, laws, in_closed_form));
 }
 
 CostSubject of_scene(const Context& context, const CostWords& words) {
@@ -130,8 +148,10 @@ CostSubject of_scene(const Context& context, const CostWords& words) {
   subject.truth_laws = chosen.laws;
   subject.connections = chosen.connections;
   // Closed forms first: they cost little, and stand where a budget ends early.
-  for (const std::string& word : engines_for(subject.scene, words)) subject.ways.push_back(way_by_engine(word, chosen.laws));
+  const bool in_closed_form = engines::goes_in_closed_form(subject.scene);
+  if (in_closed_form) add_engines(words, chosen.laws, subject);
   for (const std::string& word : methods_for(subject.scene, words)) subject.ways.push_back(way_by_method(method_named(word), chosen.laws));
+  if (!in_closed_form) add_engines(words, chosen.laws, subject);
   for (const std::string& word : words.stabilisations) subject.ways.push_back(by_stabilisation(word, subject.scene, chosen.laws));
   for (const std::string& word : words.impacts) subject.ways.push_back(by_impacts(word, subject.scene, chosen.laws));
   for (const std::string& word : words.solvers) subject.ways.push_back(by_solver(word, subject.scene, chosen.laws));
@@ -139,8 +159,23 @@ CostSubject of_scene(const Context& context, const CostWords& words) {
   return subject;
 }
 
+/// A module that decides the order of things: the engine that asks it, over how far its processes go ahead.
+void add_scheduler(const Context& context, const modules::ModuleKind& kind, const std::string& word, const std::string& whose, const scene::Scene& scene, CostSubject& subject) {
+  const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(kind.id + "=" + word, context.registry));
+  CostWay way;
+  way.name = fmt::format("{} {}", whose, kind.id);
+  way.word = kind.id;
+  way.engine = "tw";
+  way.schedules = true;
+  way.counted = "integrations";
+  way.laws = chosen.laws;
+  subject.ways.push_back(std::move(way));
+  subject.connections.insert(subject.connections.end(), chosen.connections.begin(), chosen.connections.end());
+}
+
 /// A module's own methods of integration, where it has some; else the scene run by all its laws.
 void add_module(const Context& context, const modules::ModuleKind& kind, const std::string& word, const std::string& whose, const Laws& laws, const scene::Scene& scene, CostSubject& subject) {
+  if (kind.is_scheduler) return add_scheduler(context, kind, word, whose, scene, subject);
   if (kind.methods.empty()) {
     const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(kind.id + "=" + word, context.registry));
     CostWay way = way_by_method(method_named("rk4"), chosen.laws);
@@ -199,6 +234,13 @@ CostSubject of_assignment(const Context& context, const modules::ModuleKind& kin
   add_module(context, kind, word, "your", right.laws, subject.scene, subject);
   if (has_reference && word != "reference") add_module(context, kind, "reference", "reference", right.laws, subject.scene, subject);
   if (!kind.methods.empty()) subject.ways.push_back(way_by_method(method_named("dopri5"), right.laws));
+  if (kind.is_scheduler) {   // what others pay for the same trace
+    Laws unasked = right.laws;
+    unasked.scheduling = {};
+    for (const std::string& other : engines::fast_timewarp() ? std::vector<std::string>{"ordered", "ca", "tw"} : std::vector<std::string>{"ordered", "ca"})
+      subject.ways.push_back(way_by_engine(other, unasked, engines::goes_in_closed_form(subject.scene)));
+    for (CostWay& way : subject.ways) way.counted = "integrations";
+  }
   return subject;
 }
 

@@ -18,7 +18,10 @@ struct CostWords {
   std::vector<double> tolerances;
   std::optional<double> duration_s;
   std::optional<int> n;
-  double budget_s = 40.0;
+  std::optional<double> budget_s;        // CPU time of all ladders together [s]; empty: usual_budget_s
+
+  static constexpr double kUsualBudget = 36.0;    // with the search for the truth a scene takes less than a minute
+  double budget() const { return budget_s.value_or(kUsualBudget); }
 
   /// @throws UserError for what is neither a number nor 1/N
   std::vector<double> steps_s() const;
@@ -39,8 +42,9 @@ struct CostSubject {
 
 /// A method of the library in place of the laws' own.
 engines::CostWay way_by_method(const Method& method, const Laws& laws);
-/// @param word  auto (rd with closed forms), ca, tw, ordered
-engines::CostWay way_by_engine(const std::string& word, const Laws& laws);
+/// @param word            auto (rd with closed forms), ca, tw, ordered
+/// @param in_closed_form  the whole scene: else there are processes, which go by RK4, and a ladder of their steps
+engines::CostWay way_by_engine(const std::string& word, const Laws& laws, bool in_closed_form);
 
 /// @throws UserError naming what is not known, or does not suit the scene
 CostSubject find_subject(const Context& context, const CostWords& words);

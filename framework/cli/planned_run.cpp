@@ -56,7 +56,7 @@ std::vector<CostWay> ways_for(const Context& context, const scene::Scene& scene,
   }
   if (engines::goes_in_closed_form(scene))
     for (const char* word : {"ca", "tw", "auto"})
-      if (std::string(word) != "tw" || engines::fast_timewarp()) ways.push_back(way_by_engine(word, chosen.laws));
+      if (std::string(word) != "tw" || engines::fast_timewarp()) ways.push_back(way_by_engine(word, chosen.laws, true));
   if (words.budget_s) {   // the most accurate first
     for (const char* word : {"fehlberg78", "bulirsch-stoer", "dopri5", "rk4"}) ways.push_back(way_by_method(method_named(word), chosen.laws));
   } else {

@@ -9,6 +9,7 @@ namespace tumble {
 namespace {
 
 constexpr int kMostSweeps = 100000;
+constexpr int kMostSweepsWithFriction = 10000;   // each is a hundred times as dear
 constexpr int kIterationsARow = 20;   // in exact arithmetic one a row is enough; round-off makes it more
 
 using Constraints = std::vector<Constraint>;
@@ -91,7 +92,23 @@ void solve_contacts_by_sweeps(double tolerance, Laws& laws) {
     }
     return f;
   };
+  laws.friction_impulses = [tolerance](const ContactProblem& problem, const ContactOptions& engine) {
+    ContactOptions options = engine;
+    options.tolerance = options.enough = tolerance;
+    options.largest_direct = 0;
+    options.most_sweeps_alone = kMostSweepsWithFriction;
+    return solve_contacts(problem, options);
+  };
   laws.constraint_source = "Gauss-Seidel sweeps";
+}
+
+void solve_contacts_by_newton(double tolerance, Laws& laws) {
+  require(tolerance > 0.0, "dynamics: an iterative solver needs a tolerance > 0");
+  laws.friction_impulses = [tolerance](const ContactProblem& problem, const ContactOptions& engine) {
+    ContactOptions options = engine;
+    options.tolerance = options.enough = tolerance;
+    return solve_contacts(problem, options);
+  };
 }
 
 }  // namespace tumble

@@ -11,6 +11,7 @@
 
 #include "framework/dynamics/body.h"
 #include "framework/dynamics/constraint.h"
+#include "framework/dynamics/contact_problem.h"
 #include "framework/dynamics/ode.h"
 #include "framework/dynamics/scheduling.h"
 
@@ -49,6 +50,8 @@ struct Laws {
   std::function<VectorXd(const std::vector<Constraint>&, const std::vector<ConstrainedBody>&, const VectorXd& error)> constraint_correction;
   /// f (m) >= 0 with a = A f + b >= 0 and f . a = 0.
   std::function<VectorXd(const MatrixXd& A, const VectorXd& b)> contact_forces;
+  /// Impulses of contacts with friction. Empty: the framework's own solve_contacts.
+  std::function<ContactSolution(const ContactProblem&, const ContactOptions&)> friction_impulses;
   /// Whether a collision that came in this slowly is the beginning of a lasting contact.
   std::function<bool(double approach_speed, double restitution, double rest_speed)> ends_in_contact;
 

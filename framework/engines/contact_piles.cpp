@@ -87,7 +87,7 @@ std::optional<double> LastingContacts::take_pile_step(const Group& group, double
   options.most_sweeps_alone = kSweeps;
   ++counters_.contact_solves;
   counters_.contact_points += problem.contacts.size();
-  const ContactSolution solution = solve_contacts(problem, options);
+  const ContactSolution solution = laws_.friction_impulses ? laws_.friction_impulses(problem, options) : solve_contacts(problem, options);
   counters_.contact_sweeps += static_cast<std::uint64_t>(solution.sweeps);
   if (!solution.converged) ++counters_.contact_unsolved;
   require_numbers(group, solution);

@@ -166,8 +166,8 @@ ContactSolution LastingContacts::solve(const Group& group, const ContactProblem&
       options.largest_direct = 0;
       options.most_sweeps_alone = kSweepsOfAPile;
     }
-    ContactSolution solution = solve_contacts(problem, options);
-    if (!solution.converged && solution.residual > kFarOff) {   // a guess can lead astray: once more from nothing, with every means
+    ContactSolution solution = laws_.friction_impulses ? laws_.friction_impulses(problem, options) : solve_contacts(problem, options);
+    if (!laws_.friction_impulses && !solution.converged && solution.residual > kFarOff) {   // a guess can lead astray: once more from nothing, with every means
       ContactProblem afresh = problem;
       for (PushingContact& contact : afresh.contacts) contact.guess_world.setZero();
       ContactOptions every;

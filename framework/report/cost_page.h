@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct CostPoint {
 struct CostCurve {
   std::string name;
   std::string reading;               // the sentence that reads its curve
+  bool is_subject = false;           // what the page is about: its sentence stands at the head
   double order = std::numeric_limits<double>::quiet_NaN();   // measured; NaN: none to be seen
   std::vector<CostPoint> points;     // coarse to fine
   std::size_t example = 0;           // the point whose energy and stages are shown
@@ -42,6 +44,7 @@ struct CostPage {
   double floor;                      // of the truth [m]
   double scale;                      // errors above it are no answer, and not drawn [m]
   std::vector<CostCurve> curves;
+  std::optional<Plot> work;          // in place of error against the step: where the step sets what is paid and not what comes out
   std::string record;
 };
 

@@ -18,6 +18,7 @@ constexpr std::size_t kMostPoints = 2000, kParts = 1000;
 constexpr double kTextHeight = 17;
 constexpr double kLetter = 0.64;        // width of a bold letter over its size, on average
 constexpr double kMostDecades = 40.0;   // on a logarithmic axis: what lies deeper is rounding, and drawn at the edge
+constexpr double kFlat = 1.001;           // largest over least of values that are one
 
 // From dark to light for print, told apart by the colour-blind (after M. Okabe, K. Ito, "Color universal design", 2008). Eight colours are as
 // many as people tell apart: the second eight curves take them again, with other dashes, thinner lines and hollow marks.
@@ -44,6 +45,7 @@ Range widened(Range range, Scale scale) {
   if (!(range.low <= range.high)) return scale == Scale::kLog ? Range{0.1, 1.0} : Range{0.0, 1.0};
   if (scale == Scale::kLog) {
     range.low = std::max(range.low, range.high * std::pow(10.0, -kMostDecades));
+    if (range.high < kFlat * range.low) return {range.low / 10.0, range.high * 10.0};   // one value: a decade about it, not its last digits
     const double decades = std::max(std::log10(range.high / range.low), 0.5), room = std::pow(10.0, 0.06 * decades);
     return {range.low / room, range.high * room};
   }
@@ -78,7 +80,9 @@ std::string grid(const Axis& axis, const Scaled& at, bool across) {
   for (double tick : ticks) {
     if (axis.scale == Scale::kLinear && std::abs(tick) < 1e-9 * spacing) tick = 0.0;
     const double p = at(tick);
-    const std::string number = axis.scale == Scale::kLog && (tick < 1e-3 || tick > 9999) ? fmt::format("1e{:.0f}", std::log10(tick)) : fmt::format("{:.6g}", tick);
+    const double exponent = axis.scale == Scale::kLog ? std::round(std::log10(tick)) : 0.0;
+    const bool is_power = axis.scale == Scale::kLog && std::abs(tick - std::pow(10.0, exponent)) < 1e-6 * tick;
+    const std::string number = is_power && (tick < 1e-3 || tick > 9999) ? fmt::format("1e{:.0f}", exponent) : fmt::format("{:.6g}", tick);
     svg += across ? line(kLeft, p, kRight, p, "class=\"grid\"") + text(kLeft - 7, p + 4, number, "end")
                   : line(p, kTop, p, kBottom, "class=\"grid\"") + text(p, kBottom + 17, number, "middle");
   }

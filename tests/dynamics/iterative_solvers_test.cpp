@@ -93,6 +93,58 @@ TEST(Sweeps, ForcesPushOnlyAndOnlyWhereBodiesTouch) {
   EXPECT_EQ(f[2], 0.0);
 }
 
+/// Eight bodies of 1 kg one on the other, the lowest on the ground, each touching the next in one point below its centre, after a step's fall.
+ContactProblem tower() {
+  constexpr int kBodies = 8;
+  ContactProblem problem;
+  for (int i = 0; i <= kBodies; ++i) {
+    PushedBody body;
+    body.com_world = Vector3d(0.0, 0.0, i);
+    body.velocity_world = body.omega_world = Vector3d::Zero();
+    if (i > 0) {
+      body.inverse_mass = 1.0;
+      body.inverse_inertia_world = Matrix3d::Identity();
+      body.velocity_world.z() = -9.81 / 60.0;
+    }
+    problem.bodies.push_back(body);
+    if (i == 0) continue;
+    PushingContact contact;
+    contact.body_a = i;
+    contact.body_b = i - 1;
+    contact.point_world = Vector3d(0.0, 0.0, i - 0.5);
+    contact.normal_b_to_a_world = Vector3d::UnitZ();
+    contact.friction = 0.5;
+    problem.contacts.push_back(contact);
+  }
+  return problem;
+}
+
+/// Farthest that an impulse is from what lies above it. [N s]
+double farthest_from_weights(const ContactSolution& solution) {
+  double most = 0.0;
+  const double weight = 9.81 / 60.0;
+  for (std::size_t i = 0; i < solution.impulses_world.size(); ++i)
+    most = std::max(most, (solution.impulses_world[i] - Vector3d(0.0, 0.0, weight * static_cast<double>(solution.impulses_world.size() - i))).norm());
+  return most;
+}
+
+TEST(Sweeps, WithFrictionEndAtTheirToleranceAndTightOnesTakeMore) {
+  Laws loose, tight, newton;
+  solve_contacts_by_sweeps(1e-2, loose);
+  solve_contacts_by_sweeps(1e-10, tight);
+  solve_contacts_by_newton(1e-10, newton);
+  const ContactSolution coarse = loose.friction_impulses(tower(), {}), fine = tight.friction_impulses(tower(), {}), direct = newton.friction_impulses(tower(), {});
+  EXPECT_TRUE(coarse.converged && fine.converged && direct.converged);
+  EXPECT_LE(fine.residual, 1e-10);
+  EXPECT_GT(fine.sweeps, 2 * coarse.sweeps);
+  // Velocities are right to the tolerance times 0.16 m/s; impulses are the sums of eight of them, over the least eigenvalue of the tower
+  // (4 sin^2(pi / 34) = 0.034): 1e-10 * 0.16 * 8 / 0.034. The loose ones are off by far more than that.
+  EXPECT_LT(farthest_from_weights(fine), 4e-9);
+  EXPECT_LT(farthest_from_weights(direct), 4e-9);
+  EXPECT_GT(farthest_from_weights(coarse), 1e-3);
+  EXPECT_LT(direct.sweeps, fine.sweeps);
+}
+
 TEST(RootMethods, ReachTheirToleranceOnAFallingBody) {
   // 2 - t - 4.905 t^2, which closes at (-1 + sqrt(1 + 8 4.905)) / (2 4.905); a bracket of half a second.
   const ScalarFunction gap = [](double t) { return 2.0 - t - 4.905 * t * t; }, rate = [](double t) { return -1.0 - 9.81 * t; };

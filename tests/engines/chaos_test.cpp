@@ -29,6 +29,9 @@ TEST(Truth, OfChaosHoldsForAWhileAndIsRefusedForLonger) {
   EXPECT_GT(truth->duration_s, 1.0);    // errors of 1e-16 grow by e a collision: some forty of them, seconds
   EXPECT_LT(truth->duration_s, 59.0);
   EXPECT_LE(truth->floor_m, 1e-4 * truth->scale_m);
+  options.least_share = 0.3;   // a window of half the scene is tried, and holds for less
+  EXPECT_FALSE(engines::try_truth(billiard(), test_laws(), options, why)) << "it holds for a part";
+  options.least_share = 0.0;
   options.shorten = false;
   EXPECT_THROW(engines::find_truth(billiard(), test_laws(), options), UserError);
 }

@@ -81,6 +81,52 @@ TEST(Cost, SmallerTolerancesCostMoreEvaluationsAndLessError) {
   EXPECT_LT(rungs.back().error_m, 1e-2 * rungs.front().error_m);   // the tolerances span a factor of 1e6
 }
 
+TEST(Cost, ALadderGoesOnWhereItEnded) {
+  const scene::Scene scene = turning();
+  const CostTruth truth = engines::find_truth(scene, library_laws(), {});
+  const CostWay way = way_of("rk4");
+  const engines::LadderWords halvings;
+  std::vector<CostRung> rungs;
+  int told = 0;
+  const auto count = [&told](const CostRung&) { ++told; };
+  for (int k = 0; k < 3; ++k) engines::extend_ladder(scene, way, truth, 0.0, {}, halvings, rungs, count);   // no time: one rung each
+  ASSERT_EQ(rungs.size(), 3u);
+  EXPECT_EQ(told, 3);
+  for (std::size_t k = 1; k < rungs.size(); ++k) EXPECT_DOUBLE_EQ(rungs[k].step_s, 0.5 * rungs[k - 1].step_s);
+  EXPECT_GT(engines::next_price(rungs), 0.0);
+  EXPECT_FALSE(engines::ladder_is_done(scene, way, truth, rungs, halvings));
+  engines::extend_ladder(scene, way, truth, 30.0, {}, halvings, rungs, count);
+  EXPECT_TRUE(engines::ladder_is_done(scene, way, truth, rungs, halvings));
+  const std::size_t all = rungs.size();
+  engines::extend_ladder(scene, way, truth, 30.0, {}, halvings, rungs, count);   // nothing more comes of it
+  EXPECT_EQ(rungs.size(), all);
+}
+
+TEST(Cost, ARunThatTakesTooLongIsStoppedAndSaysSo) {
+  const scene::Scene scene = turning();
+  const CostTruth truth = engines::find_truth(scene, library_laws(), {});
+  engines::CostOptions hurried;
+  hurried.most_of_rung_s = 0.0;
+  const CostRung rung = engines::run_rung(scene, way_of("rk4"), truth, 64, kUnset, hurried);
+  EXPECT_NE(rung.stopped_by.find("it would take more than"), std::string::npos) << rung.stopped_by;
+}
+
+TEST(Cost, ASchedulerIsReadByWhatItTakesBack) {
+  CostWay way;
+  way.name = "your a4";
+  way.schedules = true;
+  CostRung far, near;
+  far.step_s = 0.5, far.error_m = 0.0, far.evaluations = 900, far.undone = 400, far.rollbacks = 31;
+  near.step_s = 0.05, near.error_m = 0.0, near.evaluations = 600, near.undone = 20, near.rollbacks = 1;
+  CostTruth truth;
+  truth.floor_m = 1e-14;
+  const std::string right = engines::read_ladder(way, {far, near}, truth, false);
+  EXPECT_NE(right.find("least with 1/20 s: 600 integrations, of which it takes back 20 in 1 rollback."), std::string::npos) << right;
+  far.stopped_by = "an event is missing";
+  const std::string wrong = engines::read_ladder(way, {far, near}, truth, false);
+  EXPECT_NE(wrong.find("wrong with 0.5 s: an event is missing"), std::string::npos) << wrong;
+}
+
 TEST(Cost, EnergyThatTheMethodLosesIsSeen) {
   const scene::Scene scene = turning();
   const CostTruth truth = engines::find_truth(scene, library_laws(), {});

@@ -49,6 +49,13 @@ TEST(Plots, BreakALineWhereThereIsNothingToDraw) {
   EXPECT_EQ(svg.find("inf"), std::string::npos);
 }
 
+TEST(Plots, OfOneValueShowTheDecadeAboutIt) {
+  Plot plot{"flat", {"time", "s"}, {"error", "m", Scale::kLog}, {{"a", {1, 2, 3}, {7e-15, 7e-15, 7e-15}}}, {}};
+  const std::string svg = svg_of(plot);
+  EXPECT_EQ(count(svg, ">1e-15<"), 1u) << svg;
+  EXPECT_EQ(count(svg, ">1e-14<"), 1u) << svg;
+}
+
 TEST(Plots, OfNothingSaySo) {
   EXPECT_NE(svg_of({"t", {"x"}, {"y"}, {}, {}}).find("nothing to draw"), std::string::npos);
   EXPECT_NE(svg_of({"t", {"x"}, {"y"}, {{"c", {1.0}, {std::nan("")}}}, {}}).find("nothing to draw"), std::string::npos);

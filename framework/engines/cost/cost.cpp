@@ -10,39 +10,57 @@
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
 #include "framework/core/not_implemented.h"
+#include "framework/engines/guarded_laws.h"
 #include "framework/engines/judge.h"
 #include "framework/engines/truths/memory_scene.h"
 
 namespace tumble::engines {
 namespace {
 
-constexpr double kShort = 0.1;            // s: longer runs are not repeated
+constexpr double kShort = 0.1;            // s: after so long runs are not repeated
+constexpr double kNoise = 0.02;           // of what comes before the first step: by so much its time differs from run to run
 constexpr double kCoarsest = 16.0;        // of the scene's own step: where a ladder begins
 constexpr int kMostRungs = 14;
 constexpr double kNearFloor = 3.0;        // of the truth's floor: finer runs show nothing
 constexpr double kGood = 1e-3;            // of the scale: below it, errors that do not fall are round-off
 constexpr int kMostWorse = 2;             // rungs in a row that are no better than the best
+constexpr int kMostWorseInSteps = 4;      // the same where contacts push once a step: when something lands within a step is as good as drawn by lot
+constexpr int kRungsOfAScheduler = 8;
 constexpr double kGrowth = 2.2;           // price of a rung over the one before, as expected
 
-/// The run and its clock.
+std::string too_long(double most_s) { return fmt::format("it would take more than {:.0f} s", most_s); }
+
+/// The run and its clock; ends a run that takes too long, whether or not it integrates.
 class Measurement final : public TrajectorySink {
  public:
+  explicit Measurement(double most_s) : most_s_(most_s) {}
   void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override {
     recorder_.begin(info, bodies);
-    start_ = cpu_seconds();
+    start_ = first_frame_ = cpu_seconds();
   }
-  void frame(const Frame& frame) override { recorder_.frame(frame); }
-  void event(const Event& event) override { recorder_.event(event); }
+  void frame(const Frame& frame) override {
+    const double now = cpu_seconds();
+    if (frames_++ == 0) first_frame_ = now;
+    recorder_.frame(frame);
+    if (now - start_ > most_s_) throw StoppedRun(too_long(most_s_));
+  }
+  void event(const Event& event) override {
+    recorder_.event(event);
+    if (++events_ % kLookEach == 0 && cpu_seconds() - start_ > most_s_) throw StoppedRun(too_long(most_s_));
+  }
   void end(const Counters& counters, const std::string& stopped_by) override {
     cpu_s = cpu_seconds() - start_;
+    building_s = first_frame_ - start_;
     recorder_.end(counters, stopped_by);
   }
   const Trajectory& run() const { return recorder_.trajectory(); }
-  double cpu_s = 0.0;
+  double cpu_s = 0.0, building_s = 0.0;   // all of it; up to the first frame
 
  private:
+  static constexpr int kLookEach = 256;
   TrajectoryRecorder recorder_;
-  double start_ = 0.0;
+  double most_s_, start_ = 0.0, first_frame_ = 0.0;
+  long frames_ = 0, events_ = 0;
 };
 
 bool links_meet(const scene::Scene& scene) {
@@ -108,9 +126,23 @@ RunOptions options_of(const CostWay& way, const CostOptions& options, double fra
 StepFunction until_too_long(const StepFunction& step, double most_s) {
   constexpr int kEach = 64;
   return [step, until = cpu_seconds() + most_s, most_s, calls = 0](const OdeFunction& f, double t, const VectorXd& y, double h) mutable {
-    if (++calls % kEach == 0 && cpu_seconds() > until) throw std::runtime_error(fmt::format("it would take more than {:.0f} s", most_s));
+    if (++calls % kEach == 0 && cpu_seconds() > until) throw StoppedRun(too_long(most_s));
     return step(f, t, y, h);
   };
+}
+
+std::uint64_t count_of(const Counters& counters, const std::string& name) {
+  const auto found = counters.counts.find(name);
+  return found == counters.counts.end() ? 0 : found->second;
+}
+
+/// What models and shapes cost. Engines that step show their first frame just before the first step; the others show it when they can.
+double before_first_step(const scene::Scene& stepped, const Laws& laws, RunOptions how, const Measurement& run) {
+  if (how.engine == "rd") return run.building_s;
+  how.duration_s = 1e-9 * stepped.step_s;
+  Measurement built(std::numeric_limits<double>::infinity());
+  run_scene(stepped, laws, how, built);
+  return built.cpu_s;
 }
 
 }  // namespace
@@ -130,21 +162,20 @@ CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth
   CostRung rung;
   rung.step_s = way.has_ladder ? stepped.step_s : kUnset;
   if (way.controlled) rung.tolerance = tolerance;
-  RunOptions nothing = how;
-  nothing.duration_s = 1e-9 * stepped.step_s;   // what comes before the first step
   double building = std::numeric_limits<double>::infinity(), whole = building;
   try {
-    for (int k = 0; k < options.runs && (k == 0 || whole < kShort); ++k) {
-      Measurement built, run;
-      run_scene(stepped, laws, nothing, built);
+    const double begun = cpu_seconds();
+    for (int k = 0; k < options.runs && (k == 0 || cpu_seconds() - begun < kShort); ++k) {
+      Measurement run(options.most_of_rung_s);
       run_scene(stepped, laws, how, run);
-      building = std::min(building, built.cpu_s);
+      building = std::min(building, before_first_step(stepped, laws, how, run));
       whole = std::min(whole, run.cpu_s);
       if (k > 0) continue;
       rung.stopped_by = run.run().stopped_by;
       rung.stage_seconds = run.run().counters.stage_seconds;
-      const auto evaluations = run.run().counters.counts.find(way.counted);
-      rung.evaluations = evaluations == run.run().counters.counts.end() ? 0 : evaluations->second;
+      rung.evaluations = count_of(run.run().counters, way.counted);
+      rung.rollbacks = count_of(run.run().counters, "rollbacks");
+      rung.undone = count_of(run.run().counters, "undone_integrations");
       if (truth.by_numbers) judge(judged_part(scene, truth), run.run(), rung);
       else compare(run.run().frames, truth, rung);
       if (!rung.stopped_by.empty()) break;
@@ -152,12 +183,20 @@ CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth
   } catch (const UserError& error) {
     rung.stopped_by = error.what();
     return rung;
+  } catch (const StoppedRun& stop) {   // before the engine looks for it
+    rung.stopped_by = stop.what();
+    return rung;
   } catch (const NotImplemented& missing) {
     rung.stopped_by = missing.function() + " is not written yet";
     rung.not_attempted = true;
     return rung;
   }
   rung.cpu_s = std::max(1e-6, whole - building);
+  if (rung.cpu_s < kNoise * building) {   // the difference of two long times is noise: the stages' own clocks know better
+    double stages = 0.0;
+    for (const auto& [stage, seconds] : rung.stage_seconds) stages += seconds;
+    rung.cpu_s = std::max(rung.cpu_s, std::min(stages, whole));
+  }
   rung.building_s = building;
   return rung;
 }
@@ -177,31 +216,64 @@ long outer_steps(const scene::Scene& scene, const CostTruth& truth) {
   return alone ? 1 : std::max(1L, std::lround(interval / (2.0 * scene.step_s)));
 }
 
-std::vector<CostRung> run_ladder(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, double budget_s, const CostOptions& options, const std::vector<double>& steps_s,
-                                 const std::vector<double>& tolerances, const std::function<void(const CostRung&)>& told) {
-  const double interval = truth.duration_s / static_cast<double>(truth.intervals), until = cpu_seconds() + budget_s;
-  const std::vector<double>& asked = way.controlled ? tolerances : steps_s;
-  const std::size_t most = !way.has_ladder ? 1 : asked.empty() ? kMostRungs : asked.size();
-  std::vector<CostRung> rungs;
+namespace {
+
+std::size_t most_rungs(const CostWay& way, const std::vector<double>& asked) {
+  if (!way.has_ladder) return 1;
+  return !asked.empty() ? asked.size() : way.schedules ? kRungsOfAScheduler : kMostRungs;
+}
+
+/// Steps per sample of the next rung.
+long steps_of(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, const LadderWords& words, std::size_t k) {
+  const double interval = truth.duration_s / static_cast<double>(truth.intervals);
+  // Motors look and contacts push once a step, and bodies that hang on others and meet something go along a curve through their steps'
+  // ends: there steps shrink with the tolerance, but where something else than the integration is looked at.
+  if ((way.controlled && (way.tuned || steps_are_free(scene))) || !way.has_ladder) return outer_steps(scene, truth);
+  if (!words.steps_s.empty() && !way.controlled) return std::max(1L, std::lround(interval / words.steps_s[k]));
+  return first_steps(scene, truth) << std::min<std::size_t>(k, 20);
+}
+
+}  // namespace
+
+bool ladder_is_done(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, const std::vector<CostRung>& rungs, const LadderWords& words) {
+  if (rungs.empty()) return false;
+  const std::vector<double>& asked = way.controlled ? words.tolerances : words.steps_s;
+  if (rungs.size() >= most_rungs(way, asked) || rungs.back().not_attempted) return true;
+  if (!asked.empty() || way.schedules) return false;
   double least = std::numeric_limits<double>::infinity();
   int worse = 0;
-  for (std::size_t k = 0; k < most; ++k) {
-    const double begun = cpu_seconds();
-    long steps = first_steps(scene, truth) << std::min<std::size_t>(k, 20);
-    // Bodies that hang on others and meet something go along a curve through their steps' ends: steps shrink with the tolerance there.
-    if ((way.controlled && !links_meet(scene)) || !way.has_ladder) steps = outer_steps(scene, truth);
-    else if (!asked.empty() && !way.controlled) steps = std::max(1L, std::lround(interval / asked[k]));
-    const double tolerance = !way.controlled ? kUnset : asked.empty() ? std::pow(10.0, -1.0 - static_cast<double>(k)) : asked[k];
-    rungs.push_back(run_rung(scene, way, truth, steps, tolerance, options));
-    told(rungs.back());
-    if (rungs.back().not_attempted) break;
-    const double spent = cpu_seconds() - begun;
+  for (std::size_t k = 0; k < rungs.size(); ++k) {
     const bool is_new = k == 0 || !way.controlled || rungs[k].evaluations > rungs[k - 1].evaluations;   // a tolerance that changes nothing tells nothing
-    worse = rungs.back().error_m < least ? 0 : worse + (is_new ? 1 : 0);
-    least = std::min(least, std::isfinite(rungs.back().error_m) ? rungs.back().error_m : least);
-    const bool reached = rungs.back().error_m <= kNearFloor * truth.floor_m || (worse >= kMostWorse && least < kGood * truth.scale_m);
-    if (asked.empty() && (reached || cpu_seconds() + kGrowth * spent > until)) break;
+    worse = rungs[k].error_m < least ? 0 : worse + (is_new ? 1 : 0);
+    least = std::min(least, std::isfinite(rungs[k].error_m) ? rungs[k].error_m : least);
   }
+  const int most_worse = scene.contact ? kMostWorseInSteps : kMostWorse;
+  return rungs.back().error_m <= kNearFloor * truth.floor_m || (worse >= most_worse && least < kGood * truth.scale_m);
+}
+
+double next_price(const std::vector<CostRung>& rungs) {
+  if (rungs.empty()) return 0.0;
+  const double last = rungs.back().cpu_s + rungs.back().building_s;
+  return kGrowth * (last > kShort ? last : kShort);   // short runs are repeated
+}
+
+void extend_ladder(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, double budget_s, const CostOptions& options, const LadderWords& words, std::vector<CostRung>& rungs,
+                   const std::function<void(const CostRung&)>& told) {
+  const double until = cpu_seconds() + budget_s;
+  const bool is_asked = !(way.controlled ? words.tolerances : words.steps_s).empty();
+  while (!ladder_is_done(scene, way, truth, rungs, words)) {
+    const std::size_t k = rungs.size();
+    const double tolerance = !way.controlled ? kUnset : words.tolerances.empty() ? std::pow(10.0, -1.0 - static_cast<double>(k)) : words.tolerances[k];
+    rungs.push_back(run_rung(scene, way, truth, steps_of(scene, way, truth, words, k), tolerance, options));
+    told(rungs.back());
+    if (!is_asked && cpu_seconds() + next_price(rungs) > until) return;
+  }
+}
+
+std::vector<CostRung> run_ladder(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, double budget_s, const CostOptions& options, const std::vector<double>& steps_s,
+                                 const std::vector<double>& tolerances, const std::function<void(const CostRung&)>& told) {
+  std::vector<CostRung> rungs;
+  extend_ladder(scene, way, truth, budget_s, options, {steps_s, tolerances}, rungs, told);
   return rungs;
 }
 

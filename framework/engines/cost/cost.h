@@ -33,6 +33,7 @@ struct CostWay {
   double order = kUnset;                                 // that the method promises; NaN: none
   bool controlled = false;                               // its ladder is of tolerances, not of steps
   bool has_ladder = true;                                // false: there is nothing to refine
+  bool schedules = false;                                // its step says how far ahead a scheduler goes: what it pays, not how right it is
   std::optional<scene::StabilisationSpec> stabilisation; // in place of the scene's
   Laws laws;
 };
@@ -44,6 +45,7 @@ struct CostRung {
   std::string worst;                                     // by numbers: which is the worst
   double building_s = kUnset;                            // models and shapes, before the first step: not in cpu_s
   std::uint64_t evaluations = 0;                         // derivatives of a body's, or of a group of linked bodies', state; or what the way counts
+  std::uint64_t rollbacks = 0, undone = 0;               // undone: integrations that were taken back
   std::vector<double> times, energy_errors;              // by sample [s]; |E - E of the truth| over all the energy there was [-]
   std::map<std::string, double> stage_seconds;
   std::string stopped_by;                                // empty: ran to the end
@@ -73,6 +75,7 @@ struct CostOptions {
   double budget_s = 45.0;            // CPU of all ladders together
   double most_of_truth_s = 12.0;     // CPU of one run of the truth
   double most_of_search_s = 18.0;    // CPU of all its runs
+  double least_share = 0.0;          // of the time that is asked for: a truth that holds for less is none
   std::optional<double> frame_rate_hz;   // samples of the truth: the frames of a run (or a little denser, so that they divide the duration); empty: a few
   bool shorten = true;               // look at less time where the truth does not hold for all of it; else that is refused
   double most_of_rung_s = std::numeric_limits<double>::infinity();   // CPU of one run: longer ones are stopped, where they integrate
@@ -112,6 +115,18 @@ struct CostRun {
   RunOptions options;
 };
 CostRun run_of(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, long steps, double tolerance, const CostOptions& options);
+
+/// What a ladder was asked for; empty: halvings of the first step, tolerances 0.1, 0.01, ...
+struct LadderWords {
+  std::vector<double> steps_s, tolerances;
+};
+/// Whether nothing more can come of a ladder: the truth's floor is reached, errors do not fall any more, or all that was asked for has been run.
+bool ladder_is_done(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, const std::vector<CostRung>& rungs, const LadderWords& words);
+/// CPU time that the next rung is expected to take. [s]
+double next_price(const std::vector<CostRung>& rungs);
+/// Goes on with a ladder, by one rung at least where it is not done, for so long.
+void extend_ladder(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, double budget_s, const CostOptions& options, const LadderWords& words, std::vector<CostRung>& rungs,
+                   const std::function<void(const CostRung&)>& told);
 
 /// The whole ladder, coarse to fine: until the truth's floor is reached, or the next rung would take more than the budget.
 /// @param told     called after each rung

@@ -10,6 +10,7 @@
 #include "framework/core/error.h"
 #include "framework/dynamics/world.h"
 #include "framework/engines/cost/cost.h"
+#include "framework/engines/guarded_laws.h"
 #include "framework/engines/truths/memory_scene.h"
 
 namespace tumble::engines {
@@ -27,6 +28,7 @@ constexpr double kNextPrice = 2.2;        // of a run with half the step, over t
 constexpr double kHelps = 0.7;            // of the floor: less gain from half the step is none
 constexpr double kShareLeft = 0.4;        // of the time: kept for looking at less of the scene
 constexpr double kTellEvery = 1.0;        // s of CPU
+constexpr double kHopeless = 2.0;         // of the time there is: a run that is expected to take so much longer is given up
 
 bool is_smooth(const scene::Scene& scene) {
   return std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const scene::BodySpec& body) { return body.collides; }) < 2;
@@ -41,30 +43,39 @@ long samples_of(const scene::Scene& scene, double duration, std::optional<double
 struct Window {
   double duration_s;
   long samples;
-  double most_s;
+  double most_s, until;   // of one run; process CPU time at which the search ends
   const std::function<void(const std::string&)>& told;
 };
 
-/// Records, and says how far it is now and then.
+const std::string kTooLong = "it took too long";
+
+/// Records, says how far it is now and then, and ends a run that will not get through in its time.
 class WatchedRecorder final : public TrajectorySink {
  public:
-  WatchedRecorder(const Window& window, const std::function<void(const std::string&)>& told) : window_(window), told_(told), begun_(cpu_seconds()), next_(begun_ + kTellEvery) {}
+  explicit WatchedRecorder(const Window& window) : window_(window), begun_(cpu_seconds()), until_(std::min(begun_ + window.most_s, window.until)), next_(begun_ + kTellEvery) {}
   void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override { recorder.begin(info, bodies); }
   void frame(const Frame& frame) override {
     recorder.frame(frame);
-    const double now = cpu_seconds();
-    if (!told_ || now < next_) return;
+    const double now = cpu_seconds(), spent = now - begun_;
+    const double expected = frame.time > 0.0 ? spent * window_.duration_s / frame.time : 0.0;   // what falls gets dearer when it has come down
+    if (now > until_ || (spent > kTellEvery && expected > kHopeless * (until_ - begun_))) throw StoppedRun(kTooLong);
+    if (!window_.told || now < next_) return;
     next_ = now + kTellEvery;
-    told_(fmt::format("  {:.3g} of {:.3g} s simulated, at most {:.0f} s left for this run", frame.time, window_.duration_s, std::max(0.0, begun_ + window_.most_s - now)));
+    window_.told(fmt::format("  {:.3g} of {:.3g} s simulated, at most {:.0f} s left for this run", frame.time, window_.duration_s, std::max(0.0, until_ - now)));
   }
-  void event(const Event& event) override { recorder.event(event); }
+  void event(const Event& event) override {
+    recorder.event(event);
+    if (++events_ % kLookEach == 0 && cpu_seconds() > until_) throw StoppedRun(kTooLong);
+  }
   void end(const Counters& counters, const std::string& stopped_by) override { recorder.end(counters, stopped_by); }
+  double until() const { return until_; }
   TrajectoryRecorder recorder;
 
  private:
+  static constexpr int kLookEach = 256;
   const Window& window_;
-  const std::function<void(const std::string&)>& told_;
-  double begun_, next_;
+  double begun_, until_, next_;
+  long events_ = 0;
 };
 
 struct FinerRun {
@@ -78,16 +89,21 @@ FinerRun run_finely(const scene::Scene& scene, const Laws& laws, const Window& w
   const truths::SteppedScene stepped = truths::in_equal_steps(scene, window.duration_s, window.samples * steps, window.samples);
   RunOptions options = how;
   options.frame_rate_hz = stepped.frame_rate_hz;
+  const double begun = cpu_seconds();
+  WatchedRecorder watched(window);
   Laws timed = laws;
-  timed.integrate_step = [step = laws.integrate_step, until = cpu_seconds() + window.most_s](const OdeFunction& f, double t, const VectorXd& y, double h) {
-    if (cpu_seconds() > until) throw std::runtime_error("it took too long");
+  timed.integrate_step = [step = laws.integrate_step, until = watched.until()](const OdeFunction& f, double t, const VectorXd& y, double h) {
+    if (cpu_seconds() > until) throw StoppedRun(kTooLong);
     return step(f, t, y, h);
   };
-  const double begun = cpu_seconds();
-  WatchedRecorder watched(window, window.told);
-  run_scene(stepped.scene, timed, options, watched);
+  std::string stopped_by;
+  try {
+    run_scene(stepped.scene, timed, options, watched);
+  } catch (const StoppedRun& stop) {   // before the engine looks for it
+    stopped_by = stop.what();
+  }
   const Trajectory& run = watched.recorder.trajectory();
-  return {run.frames, run.stopped_by, cpu_seconds() - begun};
+  return {run.frames, stopped_by + run.stopped_by, cpu_seconds() - begun};
 }
 
 double farthest(const std::vector<Frame>& found, const std::vector<Frame>& expected, const std::vector<double>& radii) {
@@ -237,15 +253,15 @@ std::optional<CostTruth> try_truth(const scene::Scene& scene, const Laws& laws, 
   const bool closed = goes_in_closed_form(scene);
   const double until = cpu_seconds() + options.most_of_search_s;
   double duration = truth.asked_s;
-  for (int halving = 0; halving <= kMostHalvings && cpu_seconds() < until; ++halving, duration *= 0.5) {
-    const Window window{duration, samples_of(scene, duration, options.frame_rate_hz), std::min(options.most_of_truth_s, until - cpu_seconds()), options.told};
+  for (int halving = 0; halving <= kMostHalvings && cpu_seconds() < until && duration >= options.least_share * truth.asked_s; ++halving, duration *= 0.5) {
+    const Window window{duration, samples_of(scene, duration, options.frame_rate_hz), options.most_of_truth_s, until, options.told};
     if (options.told) options.told(fmt::format("the truth of {} over {:.3g} s{}", scene.name, duration, closed ? ", in closed form" : fmt::format(": two fine runs, at most {:.0f} s of CPU time", until - cpu_seconds())));
     Pair pair = closed ? run_closed(scene, laws, window) : run_converged(scene, laws, window);
     const std::string here = why_not(pair, truth);
     bool found = take_either(pair, window, truth);
     if (!closed && !is_smooth(scene)) refine(scene, laws, window, until - kShareLeft * (until - cpu_seconds()), std::move(pair), found, truth);
     if (why.empty()) why = here;
-    if (!found) continue;
+    if (!found || truth.duration_s < options.least_share * truth.asked_s) continue;
     if (truth.duration_s < (1.0 - 1e-9) * truth.asked_s) truth.shortened_by = why;
     return truth;
   }
