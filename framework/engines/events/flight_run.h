@@ -29,11 +29,13 @@ class FlightRun {
 
   /// What the impact of two flights does. Stops the run (StoppedRun, with time and names) where the laws fail.
   /// @post where processes took part (`begun` is not empty) all their members' flights end here
-  Meeting meet(const EventKey& key, const Flight& f, const Flight& g);
+  /// @param counters  of the thread that asks
+  Meeting meet(const EventKey& key, const Flight& f, const Flight& g, RunCounters& counters) const;
+  Meeting meet(const EventKey& key, const Flight& f, const Flight& g) { return meet(key, f, g, counters); }
   /// When a body's flight ends by itself, if that is at `to` or before; nothing otherwise, and for all but a process's first member.
   std::optional<EventKey> own_end(int body, const Flight& flight, double to) const;
   /// What that does.
-  Meeting end_of_passage(const EventKey& key, const Flight& flight);
+  Meeting end_of_passage(const EventKey& key, const Flight& flight) const;
 
   /// Callbacks of the run, by their keys, in order.
   const std::vector<EventKey>& callbacks() const { return callback_keys_; }
@@ -58,7 +60,7 @@ class FlightRun {
   RunCounters counters;
 
  private:
-  Meeting meet_as_processes(const EventKey& key, const Flight& f, const Flight& g);
+  Meeting meet_as_processes(const EventKey& key, const Flight& f, const Flight& g, RunCounters& counters) const;
   void commit_switches(double until);
   double frame_time(long k) const { return static_cast<double>(k) / rate_; }
   std::string name(int body) const { return body < 0 ? "itself" : "'" + world_.world().bodies[body].name + "'"; }

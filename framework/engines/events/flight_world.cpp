@@ -36,7 +36,7 @@ std::string unfollowed_entry(const scene::Scene& scene) {
   return "";
 }
 
-FlightWorld::FlightWorld(const scene::Scene& scene, const std::string& engine, const Laws& laws, ProcessRules rules, RunCounters& counters) {
+FlightWorld::FlightWorld(const scene::Scene& scene, const std::string& engine, const Laws& laws, ProcessRules rules) {
   const std::string where = scene.file.empty() ? scene.name : scene.file.string();
   if (const std::string entry = unfollowed_entry(scene); !entry.empty())
     throw UserError(where, fmt::format("{} is not followed by --engine {}: groups of bodies keep their own time there", entry, engine), "leave it out, or use --engine rd");
@@ -65,7 +65,7 @@ FlightWorld::FlightWorld(const scene::Scene& scene, const std::string& engine, c
   }
   turning_.resize(first_.size());
   refuse_overlap(scene);
-  processes_ = std::make_unique<Processes>(world_, [this](int body) { return &shape(body); }, laws, rules, counters);
+  processes_ = std::make_unique<Processes>(world_, [this](int body) { return &shape(body); }, laws, rules);
   if (processes_->holds_any()) start_processes();
 }
 

@@ -24,7 +24,7 @@ class FlightWorld {
   /// @param engine  named where the scene is refused
   /// @param laws, rules  for processes
   /// @throws UserError naming the scene's entry that is not followed, or two bodies that overlap at the start
-  FlightWorld(const scene::Scene& scene, const std::string& engine, const Laws& laws, ProcessRules rules, RunCounters& counters);
+  FlightWorld(const scene::Scene& scene, const std::string& engine, const Laws& laws, ProcessRules rules);
   FlightWorld(const FlightWorld&) = delete;
   FlightWorld& operator=(const FlightWorld&) = delete;
 
