@@ -17,7 +17,7 @@ void RunCounters::add(const RunCounters& other) {
     this->*count += other.*count;
   for (const auto seconds :
        {&RunCounters::integration_seconds, &RunCounters::collision_seconds, &RunCounters::impact_seconds, &RunCounters::constraint_seconds, &RunCounters::contact_seconds,
-        &RunCounters::control_seconds, &RunCounters::force_seconds, &RunCounters::sleep_seconds, &RunCounters::record_seconds})
+        &RunCounters::control_seconds, &RunCounters::force_seconds, &RunCounters::sleep_seconds, &RunCounters::together_seconds, &RunCounters::alone_seconds, &RunCounters::record_seconds})
     this->*seconds += other.*seconds;
   collision.gap_evaluations += other.collision.gap_evaluations;
   collision.root_findings += other.collision.root_findings;
@@ -78,6 +78,8 @@ Counters RunCounters::named() const {
                          {"forces", force_seconds},
                          {"sleep", sleep_seconds},
                          {"recording", record_seconds}};
+  if (together_seconds > 0.0) named.stage_seconds["threads_together"] = together_seconds;
+  if (alone_seconds > 0.0) named.stage_seconds["thread_alone"] = alone_seconds;
   named.notices = notices;
   return named;
 }

@@ -25,6 +25,7 @@ struct RunCounters {
   std::vector<std::string> notices;   // once each
   double integration_seconds = 0.0, collision_seconds = 0.0, impact_seconds = 0.0, record_seconds = 0.0;
   double constraint_seconds = 0.0, contact_seconds = 0.0, control_seconds = 0.0, force_seconds = 0.0, sleep_seconds = 0.0;
+  double together_seconds = 0.0, alone_seconds = 0.0;   // of threads, CPU: the busiest of each round, and what one does while the others wait
 
   /// Adds what another has counted: a thread, or a part of the world.
   void add(const RunCounters& other);

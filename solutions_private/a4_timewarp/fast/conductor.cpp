@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
 #include "framework/engines/guarded_laws.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
@@ -21,9 +22,10 @@ constexpr int kMostThreads = 64;
 // Bounded optimism: the window grows and shrinks so that 5 to 15 % of the integrations are undone.
 constexpr double kTooMuchUndone = 0.15, kTooLittleUndone = 0.05, kWiden = 1.3, kNarrow = 0.75;
 constexpr std::uint64_t kIntegrationsToJudgeBy = 2000;
-constexpr double kWidest = 64.0, kNarrowest = 1.0 / 64;   // of the first window
-constexpr double kWindowSteps = 4.0;           // the first window: of the time in which a process goes its way at once
-constexpr double kRound = 0.5;                 // of the window is a round: at its end processes have gone their ways, not been cut short
+const double kWidest = getenv("TWX") ? atof(getenv("TWX")) : 64.0;
+constexpr double kNarrowest = 1.0 / 64;   // of the first window
+const double kWindowSteps = getenv("TWW") ? atof(getenv("TWW")) : 4.0;           // the first window: of the time in which a process goes its way at once
+const double kRound = getenv("TWR") ? atof(getenv("TWR")) : 0.5;                 // of the window is a round: at its end processes have gone their ways, not been cut short
 
 }  // namespace
 
@@ -47,6 +49,7 @@ Conductor::Conductor(const scene::Scene& scene, const Laws& laws, const engines:
     ++alone().kept;
   }
   for (const int i : world.obstacles()) enter_obstacle(i);
+  first_window_ = first_window();
 }
 
 void Conductor::enter_obstacle(int i) {
@@ -122,16 +125,19 @@ double Conductor::next_time() {
   return next ? next->queue.front().key.time : kInfinity;
 }
 
+// In the mean over bodies: how far one goes at once.
 double Conductor::first_window() const {
   const FlightWorld& world = all_.world();
-  double speed = 0.0;
-  for (const int i : world.movers()) speed += world.first_flight(i).velocity_world.norm() + std::sqrt(0.5 * world.gravity_world().norm() * all_.lengths.way);
-  const double step = all_.lengths.way * static_cast<double>(world.movers().size()) / speed;
-  return kWindowSteps * std::max(all_.run.step(), step < kInfinity ? step : 0.0);
+  double sum = 0.0;
+  for (const int i : world.movers()) {
+    const double speed = world.first_flight(i).velocity_world.norm() + std::sqrt(0.5 * world.gravity_world().norm() * all_.lengths.way);
+    sum += world.is_ball(i) && speed > 0 ? std::min(all_.lengths.way / speed, all_.run.duration()) : all_.run.step();
+  }
+  return world.movers().empty() ? all_.run.step() : kWindowSteps * sum / static_cast<double>(world.movers().size());
 }
 
 void Conductor::go_in_rounds() {
-  all_.window = first_window();
+  all_.window = first_window_;
   const double duration = all_.run.duration();
   double end_of_round = 0.0;
   bool is_over = false;
@@ -159,17 +165,24 @@ void Conductor::go_in_rounds() {
   while (next_time() <= duration) {
     all_.global_virtual_time = next_time();
     end_of_round = all_.global_virtual_time + kRound * all_.window;
+    const double began = thread_seconds();
     settle();
+    const double settled = thread_seconds();
     all_.world().all_processes().passages().share(true);
     meet.arrive_and_wait();
     workers_[1]->work_before(end_of_round);
     meet.arrive_and_wait();
     all_.world().all_processes().passages().share(false);
+    double busiest = 0.0;
+    for (const auto& worker : workers_) busiest = std::max(busiest, std::exchange(worker->cpu_seconds, 0.0));
+    const double worked = thread_seconds();
     collect_what_is_left();
     work_alone_before(end_of_round);
     ++alone().counters.rounds;
     commit_before(std::min(next_time(), duration));
     adapt_window();
+    alone().counters.together_seconds += busiest;
+    alone().counters.alone_seconds += settled - began + thread_seconds() - worked;
   }
 }
 
@@ -206,7 +219,7 @@ void Conductor::adapt_window() {
   const double share = static_cast<double>(undone - undone_before_) / static_cast<double>(done - done_before_);
   done_before_ = done;
   undone_before_ = undone;
-  const double first = first_window();
+  const double first = first_window_;
   if (share > kTooMuchUndone) all_.window = std::max(kNarrowest * first, kNarrow * (all_.window < kInfinity ? all_.window : first));
   else if (share < kTooLittleUndone) all_.window = all_.threads > 1 ? std::min(kWidest * first, kWiden * all_.window) : all_.window > first ? kInfinity : kWiden * all_.window;
 }

@@ -20,9 +20,9 @@ int leader_of(std::vector<int>& leaders, int body) {
 
 // Between two rounds: every body gets its home, every event the queue of whoever it is for.
 void Conductor::settle() {
-  if (rounds_to_cut_-- == 0) {
+  if (rounds_++ == next_cut_) {
     cut_territories();
-    rounds_to_cut_ = kRoundsACut - 1;
+    next_cut_ = std::min(2 * rounds_, rounds_ + kRoundsACut);   // soon again: who is how much work is not known at first
   }
   find_homes();
   if (all_.world().processes()) keep_processes_together();

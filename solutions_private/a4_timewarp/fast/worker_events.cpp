@@ -6,6 +6,8 @@
 #include <cmath>
 #include <thread>
 
+#include "framework/core/cpu_time.h"
+
 namespace tumble::a4 {
 
 // ---- An impact ---------------------------------------------------------------------------------------------------------
@@ -173,6 +175,7 @@ void Worker::work_at(const Due& due) {
 
 // What goes wrong here may be a consequence of what will be taken back: it is left, and goes wrong again if it stands.
 void Worker::work_before(double end) {
+  const double began = thread_seconds();
   const double last = all_.run.duration();
   engines::EventQueue<Due>& queue = all_.domains[home_].queue;
   while (!queue.empty() && queue.front().key.time < end && queue.front().key.time <= last) {
@@ -191,6 +194,7 @@ void Worker::work_before(double end) {
     }
   }
   now = kInfinity;
+  cpu_seconds += thread_seconds() - began;
 }
 
 // What the next event will look at is on its way from memory while this one is worked at: in scenes of many bodies that is half the time.
