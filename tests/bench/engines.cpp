@@ -52,7 +52,7 @@ class Tally final : public TrajectorySink {
 bool by_the_clock = false;
 
 struct Row {
-  double seconds;
+  double seconds, cpu;
   Tally tally;
 };
 
@@ -77,9 +77,10 @@ Row measure(const scene::Scene& scene, const std::string& engine, double duratio
   Row row;
   // Time by the clock where threads are to be compared; of one, CPU time, which neighbours on the machine do not lengthen.
   const clockid_t clock = by_the_clock ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID;
-  const double begin = cpu_seconds(clock);
+  const double begin = cpu_seconds(clock), cpu_begin = cpu_seconds();
   engines::run_scene(scene, laws_for(scene), options, row.tally);
   row.seconds = cpu_seconds(clock) - begin;
+  row.cpu = cpu_seconds() - cpu_begin;
   if (!row.tally.stopped_by.empty()) std::printf("    stopped: %s\n", row.tally.stopped_by.c_str());
   return row;
 }
@@ -87,25 +88,34 @@ Row measure(const scene::Scene& scene, const std::string& engine, double duratio
 void table(const std::string& name, int n, const std::vector<std::string>& engines, double duration) {
   const scene::Scene scene = scene::make_sized_scene(name, n);
   std::map<std::string, double> seconds;
+  double cpu_of_one = kUnset;
   // The best of several: what a neighbour's work on the machine adds is no engine's.
   const auto best_of = [&](int runs, const std::string& engine, double simulated) {
     Row best = measure(scene, engine, simulated);
-    for (int k = 1; k < runs && best.seconds < kShort; ++k) best.seconds = std::min(best.seconds, measure(scene, engine, simulated).seconds);
+    for (int k = 1; k < runs && best.seconds < kShort; ++k) {
+      Row next = measure(scene, engine, simulated);
+      next.seconds = std::min(next.seconds, best.seconds);
+      next.cpu = std::min(next.cpu, best.cpu);
+      best = std::move(next);
+    }
     return best;
   };
-  const double building = best_of(5, engines.back(), 1e-9).seconds;   // reading models, building shapes: the same for all
+  const Row building = best_of(5, engines.back(), 1e-9);   // reading models, building shapes: the same for all
   for (const std::string& engine : engines) {
     const Row row = best_of(5, engine, duration);
     const auto count = [&](const char* what) { return static_cast<double>(row.tally.counts.at(what)); };
-    seconds[engine] = std::max(1e-6, row.seconds - building);
+    seconds[engine] = std::max(1e-6, row.seconds - building.seconds);
     const double bodies = static_cast<double>(n), w = 2 * static_cast<double>(row.tally.collisions) / (bodies * duration);
     std::printf("%-8s %8d %-8s %10.2f %10.2f %10.2f %7.1f%% %9.0f %12.0f %10.3f %12.2f %9.3f\n", name.c_str(), n, engine.c_str(), count("integrations") / bodies / duration,
                 count("pair_checks") / bodies / duration, static_cast<double>(row.tally.collisions) / bodies / duration, 100 * count("undone_integrations") / std::max(1.0, count("integrations")),
                 count("states_kept"), static_cast<double>(row.tally.collisions) / seconds[engine], seconds[engine], 1e6 * seconds[engine] / bodies / duration, w * scene.step_s);
-    // What does not depend on how busy the machine is: CPU of the busiest thread of each round and of what one does alone, one after the other.
-    if (const auto together = row.tally.stages.find("threads_together"); together != row.tally.stages.end())
-      std::printf("%-8s %8d %-8s %.0f rounds; critical path %.3f s of CPU: %.3f together + %.3f alone\n", name.c_str(), n, engine.c_str(), count("rounds_of_threads"),
-                  together->second + row.tally.stages.at("thread_alone"), together->second, row.tally.stages.at("thread_alone"));
+    if (engine == "tw") cpu_of_one = row.cpu - building.cpu;
+    // What hardly depends on how busy the machine is: CPU of the busiest thread of each round and of what one does alone, one after the other.
+    if (const auto& stages = row.tally.stages; stages.contains("threads_together")) {
+      const double together = stages.at("threads_together"), alone = stages.at("thread_alone");
+      std::printf("%-8s %8d %-8s %.0f rounds; critical path %.3f s of CPU: %.3f together + %.3f alone; one thread's CPU %.3f s is %.2f of it\n", name.c_str(), n, engine.c_str(), count("rounds_of_threads"),
+                  together + alone, together, alone, cpu_of_one, cpu_of_one / (together + alone));
+    }
     std::fflush(stdout);
   }
   if (seconds.contains("tw"))

@@ -23,6 +23,8 @@ class FlightRun {
 
   const FlightWorld& world() const { return world_; }
   const ImpactsOfFlights& impacts() const { return impacts_; }
+  /// From now on several threads ask about flights, and what impacts do to them, or one alone again.
+  void share(bool shared) { world_.share(shared); }
   double duration() const { return duration_; }
   /// The engine's largest step: how far a scheduler looks ahead at most where it has no reason of its own. [s]
   double step() const { return step_; }

@@ -41,10 +41,8 @@ Conductor::Conductor(const scene::Scene& scene, const Laws& laws, const engines:
     if (domains > 1) workers_.back()->burdens.assign(static_cast<std::size_t>(world.size()), 0.0);
   }
   all_.is_recorded = record_ != nullptr;
-  all_.has_solids = world.processes() != nullptr;
   for (const int i : world.movers()) {
     if (record_) record_->processes.push_back(world.world().bodies[i].name);
-    all_.has_solids = all_.has_solids || !world.is_ball(i);
     all_.histories.push(i, world.first_flight(i));
     ++alone().kept;
   }
@@ -168,11 +166,11 @@ void Conductor::go_in_rounds() {
     const double began = thread_seconds();
     settle();
     const double settled = thread_seconds();
-    all_.world().all_processes().passages().share(true);
+    all_.run.share(true);
     meet.arrive_and_wait();
     workers_[1]->work_before(end_of_round);
     meet.arrive_and_wait();
-    all_.world().all_processes().passages().share(false);
+    all_.run.share(false);
     double busiest = 0.0;
     for (const auto& worker : workers_) busiest = std::max(busiest, std::exchange(worker->cpu_seconds, 0.0));
     const double worked = thread_seconds();

@@ -86,7 +86,6 @@ struct Shared {
   double committed = 0.0;              // everything before is committed [s]
   double global_virtual_time = 0.0;    // where several threads work: as it was when they began [s]
   double window = kInfinity;           // no local virtual time goes farther beyond the global one [s]
-  bool has_solids = false;             // or processes: not only balls in free flight
   bool is_recorded = false;            // moves of local virtual times are wanted
 
   const FlightWorld& world() const { return run.world(); }

@@ -62,7 +62,7 @@ class alignas(64) Worker {
   void advance_member(int body, const Flight& flight, double from, double to, const Box& box);
   void push(const Due& due, std::size_t home);
   bool may_enter(const Box& box) const;
-  bool is_ball_in_flight(int body) const;
+  bool has_only_flown(int body) const;
   void enter_box(int body, const Box& box);
   template <class Found>
   void for_each_partner(int body, const Box& box, const Found& found);

@@ -121,18 +121,17 @@ void Worker::advance_member(int body, const Flight& flight, double from, double 
 
 // ---- Whose the way is --------------------------------------------------------------------------------------------------------
 
-// While others work: only within the territory, and where what is seen of the border stands still. Passages are worked out by asking, and
-// of a solid's turning what was asked last is remembered: of these only balls in free flight can be looked at by several at once.
+// While others work: only within the territory, and where what is seen of the border stands still. Passages do not: to ask for one works it
+// out.
 bool Worker::may_enter(const Box& box) const {
   if (!holds(all_.domains[home_].territory, box)) return false;
-  if (!all_.has_solids) return true;
+  if (!world().processes()) return true;
   bool stands_still = true;
-  all_.domains[kBorder].pairs.for_each_in(box, [&](int other) { stands_still = stands_still && (!world().can_move(other) || is_ball_in_flight(other)); });
+  all_.domains[kBorder].pairs.for_each_in(box, [&](int other) { stands_still = stands_still && (!world().can_move(other) || has_only_flown(other)); });
   return stands_still;
 }
 
-bool Worker::is_ball_in_flight(int body) const {
-  if (!world().is_ball(body)) return false;
+bool Worker::has_only_flown(int body) const {
   const FlightHistory& flights = history(body);
   for (std::size_t k = 0; k < flights.size(); ++k)
     if (flights[k].passage >= 0) return false;
