@@ -112,7 +112,8 @@ void table(const std::string& name, int n, const std::vector<std::string>& engin
     if (engine == "tw") cpu_of_one = row.cpu - building.cpu;
     // What hardly depends on how busy the machine is: CPU of the busiest thread of each round and of what one does alone, one after the other.
     if (const auto& stages = row.tally.stages; stages.contains("threads_together")) {
-      const double together = stages.at("threads_together"), alone = stages.at("thread_alone");
+      const auto spent = [&](const char* stage) { return stages.at(stage) - building.tally.stages.at(stage); };
+      const double together = spent("threads_together"), alone = spent("thread_alone");
       std::printf("%-8s %8d %-8s %.0f rounds; critical path %.3f s of CPU: %.3f together + %.3f alone; one thread's CPU %.3f s is %.2f of it\n", name.c_str(), n, engine.c_str(), count("rounds_of_threads"),
                   together + alone, together, alone, cpu_of_one, cpu_of_one / (together + alone));
     }

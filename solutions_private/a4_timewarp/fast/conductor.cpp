@@ -88,6 +88,9 @@ void Conductor::begin() {
   for (const int body : order)
     if (all_.first_member(body) == body) alone().begin(body);
   alone().now = kInfinity;
+  // What going on for the first time has cost is what the time that it covers costs.
+  if (all_.threads > 1)
+    for (const int body : order) alone().burdens[static_cast<std::size_t>(body)] *= first_window_ / std::max(all_.processes[static_cast<std::size_t>(body)].horizon, 1e-3 * first_window_);
 }
 
 // ---- One thread --------------------------------------------------------------------------------------------------------------

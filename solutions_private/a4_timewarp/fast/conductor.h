@@ -56,7 +56,7 @@ class Conductor {
   std::optional<EventKey> working_at_;             // alone
   std::vector<std::uint8_t> wanted_;               // by body: home
   std::vector<int> leaders_;                       // by body: of processes that must have one home
-  std::uint64_t rounds_ = 0, next_cut_ = 0;        // begun; the one before which territories are cut anew
+  std::uint64_t rounds_ = 0, last_cut_ = 0;        // begun; the one before which territories were cut last
   double first_window_ = 0.0;                      // [s]
   std::uint64_t done_before_ = 0, undone_before_ = 0;   // integrations, when the window was looked at last
   std::int64_t most_kept_ = 0;

@@ -8,7 +8,9 @@
 namespace tumble::a4 {
 namespace {
 
-constexpr std::uint64_t kRoundsACut = 64;   // bodies wander; a cut costs as much as a round
+constexpr std::uint64_t kRoundsACut = 256;  // at most: bodies wander
+constexpr std::uint64_t kRoundsToJudgeBy = 2;
+constexpr double kUneven = 1.15;            // the busiest thread against the mean: territories are cut anew
 constexpr double kFading = 0.5;             // what burdens of before the last cut still count
 
 int leader_of(std::vector<int>& leaders, int body) {
@@ -20,10 +22,18 @@ int leader_of(std::vector<int>& leaders, int body) {
 
 // Between two rounds: every body gets its home, every event the queue of whoever it is for.
 void Conductor::settle() {
-  if (rounds_++ == next_cut_) {
-    cut_territories();
-    next_cut_ = std::min(2 * rounds_, rounds_ + kRoundsACut);   // soon again: who is how much work is not known at first
+  double sum = 0.0, most = 0.0;
+  for (std::size_t k = 1; k < workers_.size(); ++k) {
+    sum += workers_[k]->burden;
+    most = std::max(most, workers_[k]->burden);
   }
+  const bool is_uneven = most * all_.threads > kUneven * sum && rounds_ - last_cut_ >= kRoundsToJudgeBy;
+  if (rounds_ == 0 || is_uneven || rounds_ - last_cut_ >= kRoundsACut) {
+    cut_territories();
+    last_cut_ = rounds_;
+    for (const auto& worker : workers_) worker->burden = 0.0;
+  }
+  ++rounds_;
   find_homes();
   if (all_.world().processes()) keep_processes_together();
   for (const int body : all_.world().movers()) {

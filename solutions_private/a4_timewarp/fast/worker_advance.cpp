@@ -115,8 +115,10 @@ void Worker::advance_member(int body, const Flight& flight, double from, double 
   enter_box(body, box);
   find_obstacles(body, flight, from, to);
   for_each_partner(body, box, [&](int other) { check(body, flight, from, to, other); });
-  if (!burdens.empty())
-    burdens[static_cast<std::size_t>(body)] += static_cast<double>(cost.pair_checks + kGapChecks * cost.narrow.gap_evaluations - before) + (flight.passage < 0 ? kStepChecks : kPassageChecks);
+  if (burdens.empty()) return;
+  const double checks = static_cast<double>(cost.pair_checks + kGapChecks * cost.narrow.gap_evaluations - before) + (flight.passage < 0 ? kStepChecks : kPassageChecks);
+  burdens[static_cast<std::size_t>(body)] += checks;
+  burden += checks;
 }
 
 // ---- Whose the way is --------------------------------------------------------------------------------------------------------
