@@ -40,7 +40,7 @@ struct RunOptions {
   std::string engine;                      // a word of engine_words(); empty: the scene's, or rd
   TimewarpTrial trial;
   int threads = 1;                         // of the fast timewarp; what is committed is the same with any number
-  int most_states = 0;                     // of a body that the fast timewarp keeps, at least 2; 0: as many as it takes
+  int most_states = 0;                     // of a body that the fast timewarp keeps, at least 8; 0: as many as it takes
   Engine timewarp;                         // what "tw" is where the laws hold no scheduling; empty: nobody has written a scheduler
   std::string propagator;                  // "laws": bodies go by the laws' integration; "auto": in closed form where nothing but gravity acts.
                                            // Empty: laws for rd, which shows a student's work; the others know closed forms only

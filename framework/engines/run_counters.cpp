@@ -19,6 +19,7 @@ void RunCounters::add(const RunCounters& other) {
        {&RunCounters::integration_seconds, &RunCounters::collision_seconds, &RunCounters::impact_seconds, &RunCounters::constraint_seconds, &RunCounters::contact_seconds,
         &RunCounters::control_seconds, &RunCounters::force_seconds, &RunCounters::sleep_seconds, &RunCounters::together_seconds, &RunCounters::alone_seconds, &RunCounters::record_seconds})
     this->*seconds += other.*seconds;
+  most_states = std::max(most_states, other.most_states);
   collision.gap_evaluations += other.collision.gap_evaluations;
   collision.root_findings += other.collision.root_findings;
   for (const std::string& notice : other.notices)
@@ -68,7 +69,8 @@ Counters RunCounters::named() const {
                   {"bodies_put_to_sleep", bodies_put_to_sleep},
                   {"body_steps_asleep", body_steps_asleep},
                   {"rounds_of_threads", rounds},
-                  {"held_back", held_back}};
+                  {"held_back", held_back},
+                  {"most_states_of_a_body", most_states}};
   named.stage_seconds = {{"integration", integration_seconds},
                          {"collision", collision_seconds},
                          {"impacts", impact_seconds},

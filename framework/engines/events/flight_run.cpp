@@ -144,10 +144,12 @@ void FlightRun::commit(const EventKey& key, const Event& first, const std::vecto
 void FlightRun::commit_frame(const FlightOf& flight_of) {
   const StageTimer timer(counters.record_seconds);
   commit_switches(next_frame());
-  Frame frame = frame_of(world_, next_frame(), flight_of);
+  Frame frame = frame_of(world_, next_frame(), flight_of, states_);
   if (links_) links_->measure(frame, flight_of);
   sink_.frame(frame);
   ++next_;
+  if (!callbacks_.empty()) return;   // they bring energy in
+  if (const auto runaway = energy_watch_.look(world_.world(), states_)) throw StoppedRun(told_runaway(frame.time, *runaway, laws_));
 }
 
 void FlightRun::end(const std::string& stopped_by) {

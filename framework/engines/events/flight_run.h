@@ -8,6 +8,7 @@
 #include "framework/engines/events/meeting_of_flights.h"
 #include "framework/engines/run.h"
 #include "framework/engines/run_counters.h"
+#include "framework/engines/stability.h"
 
 namespace tumble::engines {
 
@@ -53,6 +54,7 @@ class FlightRun {
   /// The next frame that is not committed yet; infinite when there is none. [s]
   double next_frame() const { return frame_time(next_) <= duration_ ? frame_time(next_) : std::numeric_limits<double>::infinity(); }
   /// Commits the frame at next_frame(). @pre every event before it is committed, none after it
+  /// @throws StoppedRun where energy has run away by then; the frame is recorded
   void commit_frame(const FlightOf& flight_of);
 
   /// Ends the run: frames that are left are pushed by the caller before. `stopped_by` is empty where all is well.
@@ -78,6 +80,8 @@ class FlightRun {
   std::vector<Event> switches_;    // of point forces, in order of time; known from the start
   std::size_t switched_ = 0;
   std::unique_ptr<LinkMeasures> links_;
+  EnergyWatch energy_watch_;
+  std::vector<RigidBodyState> states_;   // of the frame that was committed last
   std::vector<Callback> callbacks_;
   std::vector<EventKey> callback_keys_;
 };

@@ -18,14 +18,15 @@ namespace {
 
 constexpr std::size_t kCommitAfter = 512;      // events worked at before global virtual time is looked at again
 constexpr int kMostThreads = 64;
+constexpr int kFewestStates = 8;               // a passage keeps two steps behind what is certain, and one that is looked at
 
 // Bounded optimism: the window grows and shrinks so that 5 to 15 % of the integrations are undone.
 constexpr double kTooMuchUndone = 0.15, kTooLittleUndone = 0.05, kWiden = 1.3, kNarrow = 0.75;
 constexpr std::uint64_t kIntegrationsToJudgeBy = 2000;
-const double kWidest = getenv("TWX") ? atof(getenv("TWX")) : 64.0;
-constexpr double kNarrowest = 1.0 / 64;   // of the first window
-const double kWindowSteps = getenv("TWW") ? atof(getenv("TWW")) : 4.0;           // the first window: of the time in which a process goes its way at once
-const double kRound = getenv("TWR") ? atof(getenv("TWR")) : 0.5;                 // of the window is a round: at its end processes have gone their ways, not been cut short
+constexpr double kWidest = 2.0, kNarrowest = 1.0 / 64;   // of the first window
+constexpr double kWindowSteps = 2.0;           // of several threads, the first window: of the time in which a process goes its way at once
+constexpr double kWindowAlone = 2.0;           // of one thread, which is unbounded until too much is undone: of that window
+constexpr double kRound = 0.25;                // of the window is a round: at its end processes have gone their ways, not been cut short
 
 }  // namespace
 
@@ -73,6 +74,11 @@ void Conductor::run() {
   } catch (const engines::StoppedRun& stop) {
     stopped_by = stop.what();
   }
+  try {   // what came before is certain, and kept
+    if (working_at_) commit_before(*working_at_);
+  } catch (const engines::StoppedRun& stop) {
+    stopped_by = stop.what();
+  }
   end(stopped_by);
 }
 
@@ -102,7 +108,7 @@ void Conductor::go_alone() {
     if (all_.trial.rollback_every > 0) alone().disturb();
     const Due due = all_.trial.disorder_s > 0 ? alone().next_legal(duration) : queue.pop();
     if (!queue.empty()) alone().fetch(queue.front());
-    alone().work_at(due);
+    work_alone_at(due);
     const double gvt = queue.empty() ? kInfinity : queue.front().key.time;
     if (alone().executed.size() >= commit_at_ || all_.run.next_frame() < gvt) {
       commit_before(std::min(gvt, duration));
@@ -205,7 +211,25 @@ void Conductor::collect_what_is_left() {
 }
 
 void Conductor::work_alone_before(double end) {
-  for (Domain* next = next_domain(); next && next->queue.front().key.time < end && next->queue.front().key.time <= all_.run.duration(); next = next_domain()) alone().work_at(next->queue.pop());
+  for (Domain* next = next_domain(); next && next->queue.front().key.time < end && next->queue.front().key.time <= all_.run.duration(); next = next_domain()) work_alone_at(next->queue.pop());
+}
+
+// Who has as many states as are allowed waits until global virtual time has passed some of them. What is first of all need not wait.
+void Conductor::work_alone_at(Due due) {
+  if (all_.most_states > 0 && !alone().has_room(due)) {
+    ++alone().counters.held_back;
+    if (Domain* next = next_domain(); next && next->queue.front().key < due.key) {
+      const Due first = next->queue.pop();
+      all_.domains[all_.threads > 1 ? all_.home_of(due.key) : kBorder].queue.push(due);
+      due = first;
+    }
+    commit_before(due.key);
+    alone().purge(due);
+  }
+  const Domain* next = next_domain();
+  working_at_ = next && next->queue.front().key < due.key ? next->queue.front().key : due.key;
+  alone().work_at(due);
+  working_at_.reset();
 }
 
 // ---- How far ahead -------------------------------------------------------------------------------------------------------------
@@ -220,7 +244,7 @@ void Conductor::adapt_window() {
   const double share = static_cast<double>(undone - undone_before_) / static_cast<double>(done - done_before_);
   done_before_ = done;
   undone_before_ = undone;
-  const double first = first_window_;
+  const double first = all_.threads > 1 ? first_window_ : kWindowAlone * first_window_;
   if (share > kTooMuchUndone) all_.window = std::max(kNarrowest * first, kNarrow * (all_.window < kInfinity ? all_.window : first));
   else if (share < kTooLittleUndone) all_.window = all_.threads > 1 ? std::min(kWidest * first, kWiden * all_.window) : all_.window > first ? kInfinity : kWiden * all_.window;
 }
@@ -253,6 +277,8 @@ void Conductor::end(const std::string& stopped_by) {
 }
 
 void run_fast_timewarp(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record) {
+  if (options.most_states != 0 && options.most_states < kFewestStates)
+    throw UserError("--most-states " + std::to_string(options.most_states), fmt::format("a process in contact needs {}", kFewestStates), fmt::format("Give {} or more, or 0: as many as it takes.", kFewestStates));
   if (options.threads < 1 || options.threads > kMostThreads)
     throw UserError("--threads " + std::to_string(options.threads), fmt::format("expected a number from 1 to {}", kMostThreads), "As many as the machine has cores is most that helps.");
   Conductor(scene, laws, options, sink, record).run();

@@ -26,6 +26,7 @@ class Conductor {
   void go_alone();
   void go_in_rounds();
   void work_alone_before(double end);
+  void work_alone_at(Due due);
   void collect_what_is_left();
   Domain* next_domain();
   double next_time();

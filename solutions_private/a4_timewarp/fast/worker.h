@@ -22,6 +22,10 @@ class alignas(64) Worker {
   void work_before(double end);
   /// One event, taken from a queue. @throws StoppedRun
   void work_at(const Due& due);
+  /// Whether nobody whom the event concerns would then have more states than are allowed.
+  bool has_room(const Due& due);
+  /// Lets go of what they did before what is committed.
+  void purge(const Due& due);
   /// A process that goes on for the first time.
   void begin(int body) { advance(body); }
   void expect_callback(const EventKey& key);
@@ -83,6 +87,7 @@ class alignas(64) Worker {
   void call(const Due& due);
   void begin_flights(const Due& due, engines::Meeting meeting);
   void begin_flight(int body, Flight flight, std::uint32_t serial);
+  void purge(int body);
   void forget(const Flight& flight);
   void roll_back(int body, std::size_t keep);
   void unsend(int body, std::uint32_t serial);
@@ -93,6 +98,9 @@ class alignas(64) Worker {
   const std::size_t home_;
   Random random_;
   std::vector<std::pair<int, std::size_t>> to_drop_;   // of roll_back, kept for its memory
+  template <class Work>
+  void for_each_member(const Due& due, const Work& work);
+
   std::vector<Due> found_;                             // of advance
   std::vector<Box> boxes_;                             // of advance: by member
   std::uint64_t worked_at_ = 0;

@@ -98,13 +98,42 @@ void Worker::begin_flights(const Due& due, engines::Meeting meeting) {
 
 void Worker::begin_flight(int body, Flight flight, std::uint32_t serial) {
   flight.serial = serial;
+  purge(body);
+  all_.histories.push(body, flight);
+  most_kept = std::max(most_kept, ++kept);
+  counters.most_states = std::max<std::uint64_t>(counters.most_states, history(body).size());
+  move(body, flight.begin);
+}
+
+void Worker::purge(int body) {
   all_.histories.purge(body, all_.committed, [&](const Flight& purged) {
     forget(purged);
     --kept;
   });
-  all_.histories.push(body, flight);
-  most_kept = std::max(most_kept, ++kept);
-  move(body, flight.begin);
+}
+
+// ---- Not too many states ---------------------------------------------------------------------------------------------------
+
+template <class Work>
+void Worker::for_each_member(const Due& due, const Work& work) {
+  for (const int body : {due.key.body_a, due.key.body_b}) {
+    if (body < 0 || !world().can_move(body)) continue;
+    for (const int member : world().members(body, history(body).back())) work(member);
+  }
+}
+
+bool Worker::has_room(const Due& due) {
+  bool has_room = true;
+  for_each_member(due, [&](int body) {
+    const Flight& last = history(body).back();
+    const std::size_t steps = last.passage < 0 ? 0 : world().all_processes().passages().kept(last.passage);
+    has_room = has_room && std::max(history(body).size(), steps) < static_cast<std::size_t>(all_.most_states);
+  });
+  return has_room;
+}
+
+void Worker::purge(const Due& due) {
+  for_each_member(due, [this](int body) { purge(body); });
 }
 
 void Worker::forget(const Flight& flight) {
@@ -183,7 +212,9 @@ void Worker::work_before(double end) {
     if (all_.trial.rollback_every > 0) disturb();
     const Due due = all_.trial.disorder_s > 0 ? next_legal(std::min(last, std::nextafter(end, 0.0))) : queue.pop();
     if (!queue.empty()) fetch(queue.front());
-    if (all_.home_of(due.key) != home_) {
+    const bool is_held_back = all_.most_states > 0 && !has_room(due);
+    if (is_held_back) ++counters.held_back;
+    if (is_held_back || all_.home_of(due.key) != home_) {
       left.due.push_back(due);
       continue;
     }
