@@ -93,6 +93,7 @@ class alignas(64) Worker {
   void unsend(int body, std::uint32_t serial);
   void recall(const EventKey& key);
   void delay();
+  void leave(const Due& due);
 
   Shared& all_;
   const std::size_t home_;

@@ -212,20 +212,29 @@ void Worker::work_before(double end) {
     if (all_.trial.rollback_every > 0) disturb();
     const Due due = all_.trial.disorder_s > 0 ? next_legal(std::min(last, std::nextafter(end, 0.0))) : queue.pop();
     if (!queue.empty()) fetch(queue.front());
-    const bool is_held_back = all_.most_states > 0 && !has_room(due);
-    if (is_held_back) ++counters.held_back;
-    if (is_held_back || all_.home_of(due.key) != home_) {
+    if (all_.home_of(due.key) != home_) {
       left.due.push_back(due);
-      continue;
-    }
-    try {
-      work_at(due);
-    } catch (...) {
-      left.due.push_back(due);
+    } else if (all_.most_states > 0 && !has_room(due)) {
+      ++counters.held_back;
+      leave(due);
+    } else {
+      try {
+        work_at(due);
+      } catch (...) {
+        leave(due);
+      }
     }
   }
   now = kInfinity;
   cpu_seconds += thread_seconds() - began;
+}
+
+// Who waits for an impact does not go on before it: it would find the same impact again and again.
+void Worker::leave(const Due& due) {
+  left.due.push_back(due);
+  if (due.key.kind == EventClass::kAdvance) return;
+  for (const int body : {due.key.body_a, due.key.body_b})
+    if (body >= 0 && world().can_move(body)) schedule(all_.first_member(body), kBorder);
 }
 
 // What the next event will look at is on its way from memory while this one is worked at: in scenes of many bodies that is half the time.
