@@ -21,6 +21,7 @@ struct TimewarpTrial {
   double disorder_s = 0.0;       // events up to so far ahead of global virtual time are taken in an order drawn by lot
   int rollback_every = 0;        // before every so many events a process drawn by lot is rolled back; 0: never
   double rollback_s = 0.0;       // by up to this
+  bool late_callbacks = false;   // with one thread: callbacks are taken after all that others could do without them
   double delay_s = 0.0;          // threads are held up, now and then, by up to this
 };
 

@@ -106,7 +106,8 @@ void Conductor::go_alone() {
   const double duration = all_.run.duration();
   while (!queue.empty() && queue.front().key.time <= duration) {
     if (all_.trial.rollback_every > 0) alone().disturb();
-    const Due due = all_.trial.disorder_s > 0 ? alone().next_legal(duration) : queue.pop();
+    Due due = all_.trial.disorder_s > 0 ? alone().next_legal(duration) : queue.pop();
+    if (all_.trial.late_callbacks && due.key.kind == EventClass::kCallback && !queue.empty() && queue.front().key.time <= duration) due = in_place_of(due);
     if (!queue.empty()) alone().fetch(queue.front());
     work_alone_at(due);
     const double gvt = queue.empty() ? kInfinity : queue.front().key.time;
@@ -116,6 +117,16 @@ void Conductor::go_alone() {
       adapt_window();
     }
   }
+}
+
+// A test's: what comes after a callback is worked at before it.
+Due Conductor::in_place_of(const Due& callback) {
+  engines::EventQueue<Due>& queue = all_.domains[kBorder].queue;
+  std::vector<Due> late{callback};
+  while (queue.front().key.kind == EventClass::kCallback && queue.size() > 1) late.push_back(queue.pop());
+  const Due next = queue.pop();
+  for (const Due& due : late) queue.push(due);
+  return next;
 }
 
 // ---- Several -----------------------------------------------------------------------------------------------------------------

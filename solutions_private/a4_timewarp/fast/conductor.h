@@ -24,6 +24,7 @@ class Conductor {
   void enter_obstacle(int body);
   void begin();
   void go_alone();
+  Due in_place_of(const Due& callback);
   void go_in_rounds();
   void work_alone_before(double end);
   void work_alone_at(Due due);
