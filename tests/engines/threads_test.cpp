@@ -1,4 +1,7 @@
 // Timewarp on several threads commits what the reference commits, to the last bit, whatever the threads' timing; and it keeps its bounds.
+#include <cmath>
+#include <map>
+
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
@@ -157,6 +160,40 @@ TEST(Memory, OfAGasStaysFlat) {
     const std::uint64_t short_run = kept(20.0), long_run = kept(100.0);
     EXPECT_LE(20 * long_run, 21 * short_run) << threads << " threads";   // 5 %
   }
+}
+
+// ---- A late event at the first of a row ----------------------------------------------------------------------------------
+
+// A ball hits the next one, that one the next, and so on; when the last has been hit, the first turns out to have been turned back before
+// it began. Nothing of it has happened.
+Trajectory taken_back_row(int n) {
+  std::vector<scene::BodySpec> bodies;
+  for (int i = 0; i < n; ++i) bodies.push_back(ball("ball" + std::to_string(i), 0.1, 1.0, {0.25 * i, 0, 0}, Vector3d::Zero()));
+  bodies[0].velocity_m_s.x() = 1.0;
+  TrajectoryRecorder recorder;
+  engines::RunOptions options;
+  options.engine = "tw";
+  options.timewarp = engines::fast_timewarp();
+  options.trial.late_callbacks = true;
+  options.frame_rate_hz = 1e-6;
+  options.callbacks = {{0.01, {0}, [](int, RigidBodyState& state) { state.momentum_world.x() = -1.0; }}};
+  engines::run_scene(scene_of(std::move(bodies), 0.05 * n + 0.1), test_laws(), options, recorder);
+  return recorder.trajectory();
+}
+
+TEST(LateEvent, AtTheFirstOfARowRollsEachBackOnceInTimeLinearInTheirNumber) {
+  std::map<int, double> work;
+  for (const int n : {10, 100, 1000}) {
+    const Trajectory run = taken_back_row(n);
+    ASSERT_EQ(run.stopped_by, "") << n;
+    ASSERT_EQ(run.events.size(), 1U) << n;
+    EXPECT_EQ(run.events[0].kind, EventKind::kControl) << n;
+    EXPECT_EQ(run.counters.counts.at("rollbacks"), static_cast<std::uint64_t>(n)) << n;
+    EXPECT_GE(run.counters.counts.at("anti_messages"), static_cast<std::uint64_t>(n - 1)) << n;
+    for (const char* what : {"integrations", "undone_integrations", "pair_checks"}) work[n] += static_cast<double>(run.counters.counts.at(what));
+  }
+  EXPECT_NEAR(std::log10(work[1000] / work[100]), 1.0, 0.1);
+  EXPECT_NEAR(std::log10(work[100] / work[10]), 1.0, 0.1);
 }
 
 // ---- Energy ----------------------------------------------------------------------------------------------------------------

@@ -246,6 +246,7 @@ void Conductor::work_alone_at(Due due) {
 // ---- How far ahead -------------------------------------------------------------------------------------------------------------
 
 void Conductor::adapt_window() {
+  if (all_.trial.late_callbacks) return;   // what waits for the late one would wait for the window too
   std::uint64_t done = 0, undone = 0;
   for (const auto& worker : workers_) {
     done += worker->counters.integrations;
