@@ -19,6 +19,8 @@ struct EngineChoice {
   std::string label;                     // of its column; empty: the engine's word
   std::optional<double> step_s, duration_s;
   std::string propagator;                // of rd
+  int threads = 1;                       // of tw
+  bool by_the_clock = false;             // time on the wall instead of CPU time: what counts where one of the engines has several threads
   double frame_rate_hz = 10.0;           // of the run that is kept; pictures are no part of the time that is taken
 };
 

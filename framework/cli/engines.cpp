@@ -23,6 +23,8 @@ std::vector<EngineRow> run_all(const Context& context, const scene::Scene& scene
     choice.propagator = words.propagator;
     choice.step_s = words.step_s;
     choice.duration_s = words.duration_s;
+    choice.threads = words.threads;
+    choice.by_the_clock = words.threads > 1;
     runs.push_back(measure_engine(context, scene, chosen, choice));
   }
   tell_agreement(runs);
@@ -34,6 +36,7 @@ void run_engines(Context& context, const EnginesWords& words) {
   if (words.full || words.small || words.no_videos) throw UserError(words.full ? "--full" : words.small ? "--small" : "--no-videos", "is of the page of all scenes", "Leave it out, or leave the scene out.");
   const scene::Scene scene = find_scene(context, words.scene, words.n);
   const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(words.modules, context.registry));
+  refuse_threads_of_sandboxes(chosen, words.threads);
   for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
   std::vector<std::vector<EngineRow>> ladder;
   if (!words.sizes.empty() && scene::sized_scene_named(words.scene) == nullptr)
@@ -69,8 +72,9 @@ void add_engines(CLI::App& app, Context& context) {
   verb->add_option("--modules", words->modules, "Whose laws, as for tumble run")->type_name("WORDS");
   verb->add_option("--duration-s", words->duration_s, "Simulated time [s] instead of the scene's")->check(CLI::PositiveNumber);
   verb->add_option("--step-s", words->step_s, "Largest step [s] instead of the scene's")->check(CLI::PositiveNumber);
+  verb->add_option("--threads", words->threads, "Of tw: how many; then times are by the clock")->capture_default_str();
   verb->add_option("--out", words->out, "Folder in which pages are made: index.html of all scenes, SCENE/index.html of one")->capture_default_str();
-  verb->footer("Example: tumble engines\n         tumble engines atoms --sizes 30,100,300 --modules reference\nTimes are CPU times in this run and are meant to be compared with each other only.");
+  verb->footer("Example: tumble engines\n         tumble engines atoms --sizes 30,100,300 --modules reference\nTimes are CPU times in this run (by the clock with --threads) and are meant to be compared with each other only.");
   verb->callback([&context, words] { run_engines(context, *words); });
 }
 

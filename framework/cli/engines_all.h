@@ -17,6 +17,7 @@ struct EnginesWords {
   std::vector<int> sizes;
   std::optional<int> n;
   std::optional<double> duration_s, step_s;
+  int threads = 1;          // of tw, in one scene
   bool full = false;        // sizes as in the paper
   bool no_videos = false;
   bool small = false;       // a few scenes, smaller still

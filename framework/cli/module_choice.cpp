@@ -259,4 +259,9 @@ ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const 
   return result;
 }
 
+void refuse_threads_of_sandboxes(const ChosenLaws& chosen, int threads) {
+  if (threads > 1 && !chosen.connections.empty())
+    throw UserError("--threads " + std::to_string(threads), "a submission in the sandbox answers one call at a time", "Run it with --threads 1, or take the modules student or reference.");
+}
+
 }  // namespace tumble::cli

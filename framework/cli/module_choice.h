@@ -42,6 +42,9 @@ struct ChosenLaws {
 /// @throws UserError when a word names nothing that can be loaded, with what to do
 ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words);
 
+/// @throws UserError where several threads would call laws of a sandbox, which answers one call at a time
+void refuse_threads_of_sandboxes(const ChosenLaws& chosen, int threads);
+
 /// One module by its word, loaded into this process: for code of one's own.
 /// @param word  student, reference, PATH.so, or PATH.cpp, which is compiled first
 /// @throws UserError when the word names nothing that can be loaded, with what to do

@@ -162,6 +162,9 @@ PlannedRun plan_run(const Context& context, const scene::Scene& scene, const Cho
   plan.options.engine = words.engine;
   plan.options.propagator = words.propagator;
   plan.options.timewarp = engines::fast_timewarp();
+  plan.options.threads = words.threads;
+  plan.options.most_states = words.most_states;
+  refuse_threads_of_sandboxes(chosen, words.threads);
   plan.options.step_s = words.step_s;
   plan.options.duration_s = words.duration_s;
   plan.options.command = context.command_line;

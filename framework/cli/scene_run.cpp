@@ -162,6 +162,8 @@ void add_run_words(CLI::App& verb, RunWords& words) {
   verb.add_option("--modules", words.modules, "Whose laws: student, reference, library, or a submission (PATH.cpp, PATH.so, a folder: in the sandbox); for all or each: a1=student,a2=library")->type_name("WORDS");
   verb.add_option("--engine", words.engine, "rd: retroactive detection with fixed step; ca: conservative advancement; tw: timewarp; ordered: event by event, the reference; default: the scene's own, or rd")->type_name("WORD");
   verb.add_option("--propagator", words.propagator, "laws: bodies go by the laws' integration (rd's default); auto: in closed form where nothing but gravity acts")->type_name("WORD");
+  verb.add_option("--threads", words.threads, "Of --engine tw: how many; the run is the same with any number. Laws must keep nothing from one call to the next")->capture_default_str();
+  verb.add_option("--most-states", words.most_states, "Of --engine tw: how many states of a body it keeps at most, 8 or more; 0: as many as it takes")->capture_default_str();
   verb.add_option("--n", words.n, "Size of a scene whose size is a parameter: such as atoms, pong, cars, avalanche")->check(CLI::PositiveNumber);
   verb.add_option("--step-s", words.step_s, "Step of the integrator [s] instead of the scene's")->check(CLI::PositiveNumber);
   verb.add_option("--png", words.png, "Write one picture")->type_name("FILE");

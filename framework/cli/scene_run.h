@@ -17,6 +17,7 @@ struct RunWords {
   std::string modules;
   std::string engine, propagator;   // engine empty: the scene's, or rd
   std::optional<int> n;                // of a scene whose size is a parameter
+  int threads = 1, most_states = 0;    // of timewarp
   std::optional<double> step_s, duration_s;
   std::optional<double> accuracy_m, budget_s;        // what is asked for in place of engine, method and step; see planned_run.h
   std::string method;                  // of integration, in place of the laws' own; empty: theirs

@@ -304,10 +304,7 @@ void RetroactiveRun::run_to_the_end() {
     if (!stopped_by_.empty()) break;
     if (target >= static_cast<double>(grid_index_ + 1) * step_) ++grid_index_;
     switch_forces();
-    if (const auto runaway = energy_watch_.look(moving_.world(), moving_.states())) {
-      stopped_by_ = fmt::format("at t = {:.6f} s, {} (integrator: {}; impulses: {}; springs, rods, contacts: {}); a shorter step or another method is needed, or one of "
-                                "these is wrong", moving_.time(), *runaway, laws_.integrator_source, laws_.impulse_source, laws_.constraint_source);
-    }
+    if (const auto runaway = energy_watch_.look(moving_.world(), moving_.states())) stopped_by_ = told_runaway(moving_.time(), *runaway, laws_);
     record([&] { recorder_.record_committed(moving_); });
     if (has_sleepers()) sleepers_->look(touching_);
   }

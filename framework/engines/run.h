@@ -21,6 +21,8 @@ struct TimewarpTrial {
   double disorder_s = 0.0;       // events up to so far ahead of global virtual time are taken in an order drawn by lot
   int rollback_every = 0;        // before every so many events a process drawn by lot is rolled back; 0: never
   double rollback_s = 0.0;       // by up to this
+  bool late_callbacks = false;   // with one thread: callbacks are taken after all that others could do without them
+  double delay_s = 0.0;          // threads are held up, now and then, by up to this
 };
 
 /// What a program does to bodies while they move: at `time` it is handed the state of each of `bodies`, and may change velocities (not
@@ -38,6 +40,8 @@ using Engine = std::function<void(const scene::Scene& scene, const Laws& laws, c
 struct RunOptions {
   std::string engine;                      // a word of engine_words(); empty: the scene's, or rd
   TimewarpTrial trial;
+  int threads = 1;                         // of the fast timewarp; what is committed is the same with any number
+  int most_states = 0;                     // of a body that the fast timewarp keeps, at least 8; 0: as many as it takes
   Engine timewarp;                         // what "tw" is where the laws hold no scheduling; empty: nobody has written a scheduler
   std::string propagator;                  // "laws": bodies go by the laws' integration; "auto": in closed form where nothing but gravity acts.
                                            // Empty: laws for rd, which shows a student's work; the others know closed forms only

@@ -1,6 +1,30 @@
 #include "framework/engines/run_counters.h"
 
+#include <algorithm>
+
 namespace tumble::engines {
+
+void RunCounters::add(const RunCounters& other) {
+  for (const auto count :
+       {&RunCounters::steps, &RunCounters::shortened_steps, &RunCounters::integrations, &RunCounters::undone_integrations, &RunCounters::derivative_evaluations,
+        &RunCounters::candidate_pairs, &RunCounters::pair_checks, &RunCounters::rollbacks, &RunCounters::anti_messages, &RunCounters::states_kept,
+        &RunCounters::discontinuities, &RunCounters::impacts, &RunCounters::impulses, &RunCounters::micro_impacts, &RunCounters::nudges, &RunCounters::bodies_put_to_rest,
+        &RunCounters::bodies_woken, &RunCounters::gravity_calls, &RunCounters::point_force_calls, &RunCounters::spring_calls, &RunCounters::rod_calls,
+        &RunCounters::joint_calls, &RunCounters::drag_calls, &RunCounters::motor_calls, &RunCounters::callback_calls, &RunCounters::constraint_solves,
+        &RunCounters::constraint_corrections, &RunCounters::contact_solves, &RunCounters::contact_points, &RunCounters::contact_sweeps,
+        &RunCounters::contact_factorisations, &RunCounters::contact_unsolved, &RunCounters::contacts_begun, &RunCounters::contacts_ended, &RunCounters::contact_landings,
+        &RunCounters::friction_points, &RunCounters::bodies_put_to_sleep, &RunCounters::body_steps_asleep, &RunCounters::rounds, &RunCounters::held_back})
+    this->*count += other.*count;
+  for (const auto seconds :
+       {&RunCounters::integration_seconds, &RunCounters::collision_seconds, &RunCounters::impact_seconds, &RunCounters::constraint_seconds, &RunCounters::contact_seconds,
+        &RunCounters::control_seconds, &RunCounters::force_seconds, &RunCounters::sleep_seconds, &RunCounters::together_seconds, &RunCounters::alone_seconds, &RunCounters::record_seconds})
+    this->*seconds += other.*seconds;
+  most_states = std::max(most_states, other.most_states);
+  collision.gap_evaluations += other.collision.gap_evaluations;
+  collision.root_findings += other.collision.root_findings;
+  for (const std::string& notice : other.notices)
+    if (std::find(notices.begin(), notices.end(), notice) == notices.end()) notices.push_back(notice);
+}
 
 Counters RunCounters::named() const {
   Counters named;
@@ -43,7 +67,10 @@ Counters RunCounters::named() const {
                   {"contact_landings", contact_landings},
                   {"friction_points", friction_points},
                   {"bodies_put_to_sleep", bodies_put_to_sleep},
-                  {"body_steps_asleep", body_steps_asleep}};
+                  {"body_steps_asleep", body_steps_asleep},
+                  {"rounds_of_threads", rounds},
+                  {"held_back", held_back},
+                  {"most_states_of_a_body", most_states}};
   named.stage_seconds = {{"integration", integration_seconds},
                          {"collision", collision_seconds},
                          {"impacts", impact_seconds},
@@ -53,6 +80,8 @@ Counters RunCounters::named() const {
                          {"forces", force_seconds},
                          {"sleep", sleep_seconds},
                          {"recording", record_seconds}};
+  if (together_seconds > 0.0) named.stage_seconds["threads_together"] = together_seconds;
+  if (alone_seconds > 0.0) named.stage_seconds["thread_alone"] = alone_seconds;
   named.notices = notices;
   return named;
 }

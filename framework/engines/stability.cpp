@@ -146,4 +146,9 @@ std::optional<std::string> EnergyWatch::look(const World& world, const std::vect
   return fmt::format("body '{}': runaway energy: the world has {:.4g} J, it began with {:.4g} J and nothing brings energy in", world.bodies[fastest].name, energy, first_energy_);
 }
 
+std::string told_runaway(double time, const std::string& runaway, const Laws& laws) {
+  return fmt::format("at t = {:.6f} s, {} (integrator: {}; impulses: {}; springs, rods, contacts: {}); a shorter step or another method is needed, or one of these is wrong", time, runaway,
+                     laws.integrator_source, laws.impulse_source, laws.constraint_source);
+}
+
 }  // namespace tumble::engines

@@ -44,4 +44,7 @@ class EnergyWatch {
   double first_energy_ = kUnset, scale_ = 0.0, first_potential_ = 0.0, lowest_potential_ = 0.0;   // [J]
 };
 
+/// What a run says that ends because of it. @param runaway  as the watch put it
+std::string told_runaway(double time, const std::string& runaway, const Laws& laws);
+
 }  // namespace tumble::engines

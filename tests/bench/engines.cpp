@@ -1,6 +1,7 @@
 // What each engine pays for the same scenes: one table, one row a size and engine; ratios are of times in this very run.
 // rd_auto is rd in closed form, as the other two go.
 //   bench_engines [--scene NAME] [--n N,N,...] [--engines rd,ca,tw] [--duration-s T]
+// tw2 is timewarp on two threads: then all times of the table are by the clock, on a machine that has nothing else to do.
 // Without words: the table of TIMEWARP's figures (gas of balls from 10^2 to 10^5 bodies, atoms of 300, balls alone).
 // "processes" as the scene: cars, robots and avalanche, growing.
 // "paper" as the scene: the paper's four scenes at its sizes against their goals, one table and one picture, out/bench/engines.svg.
@@ -24,9 +25,9 @@
 namespace tumble::testing {
 namespace {
 
-double cpu_seconds() {
+double cpu_seconds(clockid_t clock = CLOCK_PROCESS_CPUTIME_ID) {
   timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  clock_gettime(clock, &now);
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
@@ -41,16 +42,20 @@ class Tally final : public TrajectorySink {
   void event(const Event& event) override { collisions += event.kind == EventKind::kCollision ? 1 : 0; }
   void end(const Counters& counters, const std::string& stopped) override {
     counts = counters.counts;
+    stages = counters.stage_seconds;
     stopped_by = stopped;
   }
   std::map<std::string, std::uint64_t> counts;
+  std::map<std::string, double> stages;
   std::string stopped_by;
   std::uint64_t collisions = 0;
   double energy_at_0 = 0.0, energy_error = 0.0;   // [J]; of the first
 };
 
+bool by_the_clock = false;
+
 struct Row {
-  double seconds;
+  double seconds, cpu;
   Tally tally;
 };
 
@@ -66,15 +71,19 @@ constexpr double kShort = 1.0;   // [s] of CPU: what takes longer is run once
 
 Row measure(const scene::Scene& scene, const std::string& engine, double duration) {
   engines::RunOptions options;
-  options.engine = engine == "rd_auto" ? "rd" : engine;
+  options.engine = engine == "rd_auto" ? "rd" : engine.starts_with("tw") ? "tw" : engine;
+  options.threads = engine.size() > 2 && engine.starts_with("tw") ? std::atoi(engine.c_str() + 2) : 1;
   options.propagator = engine == "rd_auto" ? "auto" : "";
   options.timewarp = engines::fast_timewarp();
   options.duration_s = duration;
   options.frame_rate_hz = 1e-3;   // one frame: pictures are no part of this
   Row row;
-  const double begin = cpu_seconds();
+  // Time by the clock where threads are to be compared; of one, CPU time, which neighbours on the machine do not lengthen.
+  const clockid_t clock = by_the_clock ? CLOCK_MONOTONIC : CLOCK_PROCESS_CPUTIME_ID;
+  const double begin = cpu_seconds(clock), cpu_begin = cpu_seconds();
   engines::run_scene(scene, laws_for(scene), options, row.tally);
-  row.seconds = cpu_seconds() - begin;
+  row.seconds = cpu_seconds(clock) - begin;
+  row.cpu = cpu_seconds() - cpu_begin;
   if (!row.tally.stopped_by.empty()) std::printf("    stopped: %s\n", row.tally.stopped_by.c_str());
   return row;
 }
@@ -82,21 +91,35 @@ Row measure(const scene::Scene& scene, const std::string& engine, double duratio
 void table(const std::string& name, int n, const std::vector<std::string>& engines, double duration) {
   const scene::Scene scene = scene::make_sized_scene(name, n);
   std::map<std::string, double> seconds;
+  double cpu_of_one = kUnset;
   // The best of several: what a neighbour's work on the machine adds is no engine's.
   const auto best_of = [&](int runs, const std::string& engine, double simulated) {
     Row best = measure(scene, engine, simulated);
-    for (int k = 1; k < runs && best.seconds < kShort; ++k) best.seconds = std::min(best.seconds, measure(scene, engine, simulated).seconds);
+    for (int k = 1; k < runs && best.seconds < kShort; ++k) {
+      Row next = measure(scene, engine, simulated);
+      next.seconds = std::min(next.seconds, best.seconds);
+      next.cpu = std::min(next.cpu, best.cpu);
+      best = std::move(next);
+    }
     return best;
   };
-  const double building = best_of(5, engines.back(), 1e-9).seconds;   // reading models, building shapes: the same for all
+  const Row building = best_of(5, engines.back(), 1e-9);   // reading models, building shapes: the same for all
   for (const std::string& engine : engines) {
     const Row row = best_of(5, engine, duration);
     const auto count = [&](const char* what) { return static_cast<double>(row.tally.counts.at(what)); };
-    seconds[engine] = std::max(1e-6, row.seconds - building);
+    seconds[engine] = std::max(1e-6, row.seconds - building.seconds);
     const double bodies = static_cast<double>(n), w = 2 * static_cast<double>(row.tally.collisions) / (bodies * duration);
     std::printf("%-8s %8d %-8s %10.2f %10.2f %10.2f %7.1f%% %9.0f %12.0f %10.3f %12.2f %9.3f\n", name.c_str(), n, engine.c_str(), count("integrations") / bodies / duration,
                 count("pair_checks") / bodies / duration, static_cast<double>(row.tally.collisions) / bodies / duration, 100 * count("undone_integrations") / std::max(1.0, count("integrations")),
                 count("states_kept"), static_cast<double>(row.tally.collisions) / seconds[engine], seconds[engine], 1e6 * seconds[engine] / bodies / duration, w * scene.step_s);
+    if (engine == "tw") cpu_of_one = row.cpu - building.cpu;
+    // What hardly depends on how busy the machine is: CPU of the busiest thread of each round and of what one does alone, one after the other.
+    if (const auto& stages = row.tally.stages; stages.contains("threads_together")) {
+      const auto spent = [&](const char* stage) { return stages.at(stage) - building.tally.stages.at(stage); };
+      const double together = spent("threads_together"), alone = spent("thread_alone");
+      std::printf("%-8s %8d %-8s %.0f rounds; critical path %.3f s of CPU: %.3f together + %.3f alone; one thread's CPU %.3f s is %.2f of it\n", name.c_str(), n, engine.c_str(), count("rounds_of_threads"),
+                  together + alone, together, alone, cpu_of_one, cpu_of_one / (together + alone));
+    }
     std::fflush(stdout);
   }
   if (seconds.contains("tw"))
@@ -188,6 +211,7 @@ int main(int argc, char** argv) {
     else if (flag == "--duration-s") duration = std::atof(argv[i + 1]);
     else return std::fprintf(stderr, "bench_engines: %s is no flag of mine\n", argv[i]), 2;
   }
+  tumble::testing::by_the_clock = engines.find("tw2") != std::string::npos || engines.find("tw4") != std::string::npos;
   std::printf("%-8s %8s %-8s %10s %10s %10s %8s %9s %12s %10s %12s %9s\n", "scene", "n", "engine", "int/n/s", "checks/n/s", "coll/n/s", "undone", "kept", "coll/s CPU", "CPU s", "us/n/sim s", "w h");
   if (scene == "paper") return tumble::testing::paper_table("out/bench/engines.svg"), 0;
   if (scene == "processes") {

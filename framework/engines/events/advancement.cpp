@@ -46,10 +46,10 @@ class AdvancementRun {
     std::string stopped_by;
     try {
       while (time_ < run_.duration()) step();
+      draw_before(kInfinity);
     } catch (const StoppedRun& stop) {
       stopped_by = stop.what();
     }
-    if (stopped_by.empty()) draw_before(kInfinity);
     run_.end(stopped_by);
   }
 

@@ -48,10 +48,10 @@ double smallest_gap(const FlightWorld& world, const std::vector<RigidBodyState>&
 
 }  // namespace
 
-Frame frame_of(const FlightWorld& world, double t, const FlightOf& flight_of) {
+Frame frame_of(const FlightWorld& world, double t, const FlightOf& flight_of, std::vector<RigidBodyState>& states) {
   Frame frame;
   frame.time = t;
-  std::vector<RigidBodyState> states;
+  states.clear();
   for (int i = 0; i < world.size(); ++i) {
     const Flight& flight = flight_of(i);
     const collision::MotionState now = world.motion_at(i, flight, t);

@@ -11,6 +11,7 @@ namespace tumble::engines {
 /// The flight that a body is on at the frame's time.
 using FlightOf = std::function<const Flight&(int body)>;
 
-Frame frame_of(const FlightWorld& world, double t, const FlightOf& flight_of);
+/// @param states  by body, at that time
+Frame frame_of(const FlightWorld& world, double t, const FlightOf& flight_of, std::vector<RigidBodyState>& states);
 
 }  // namespace tumble::engines

@@ -17,7 +17,7 @@ constexpr double kMicroInterval = 0.01;   // of the step: a pair that meets agai
 
 FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink)
     : laws_(guarded(laws)), step_(options.step_s.value_or(scene.step_s)), duration_(options.duration_s.value_or(scene.duration_s)), rate_(options.frame_rate_hz),
-      world_(scene, options.engine, laws_, {step_, scene.rest_speed_m_s}, counters), impacts_(world_, laws_.find_impact_time, step_),
+      world_(scene, options.engine, laws_, {step_, scene.rest_speed_m_s}), impacts_(world_, laws_.find_impact_time, step_),
       meetings_(world_, laws_, {scene.rest_speed_m_s, kMicroInterval * step_}), sink_(sink), callbacks_(options.callbacks) {
   for (std::size_t k = 0; k < callbacks_.size(); ++k) {
     require(!callbacks_[k].bodies.empty() && std::is_sorted(callbacks_[k].bodies.begin(), callbacks_[k].bodies.end()) && (k == 0 || callbacks_[k - 1].time <= callbacks_[k].time),
@@ -31,8 +31,8 @@ FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptio
   for (const Event& event : world_.start_events()) sink_.event(event);
 }
 
-Meeting FlightRun::meet(const EventKey& key, const Flight& f, const Flight& g) {
-  if (f.passage >= 0 || g.passage >= 0 || (world_.processes() && world_.processes()->holds_contacts())) return meet_as_processes(key, f, g);
+Meeting FlightRun::meet(const EventKey& key, const Flight& f, const Flight& g, RunCounters& counters) const {
+  if (f.passage >= 0 || g.passage >= 0 || (world_.processes() && world_.processes()->holds_contacts())) return meet_as_processes(key, f, g, counters);
   const auto subject = [&] { return fmt::format("bodies {} and {}", name(key.body_a), name(key.body_b)); };
   if (key.generation > kMostGenerations)
     throw StoppedRun(fmt::format("at t = {:.6f} s, {}: time stands still, impacts cause each other without end; a lasting contact is needed there, or a larger \"rest_speed_m_s\"", key.time, subject()));
@@ -69,7 +69,7 @@ Meeting finished(const EventKey& key, std::vector<BegunFlight> begun, const std:
 
 }  // namespace
 
-Meeting FlightRun::meet_as_processes(const EventKey& key, const Flight& f, const Flight& g) {
+Meeting FlightRun::meet_as_processes(const EventKey& key, const Flight& f, const Flight& g, RunCounters& counters) const {
   const int a = key.body_a, b = key.body_b;
   if (key.generation > kMostGenerations)
     throw StoppedRun(fmt::format("at t = {:.6f} s, bodies {} and {}: time stands still, impacts cause each other without end; a larger \"rest_speed_m_s\" is needed", key.time, name(a), name(b)));
@@ -90,7 +90,7 @@ std::optional<EventKey> FlightRun::own_end(int body, const Flight& flight, doubl
   return EventKey{end->time, end->time == flight.begin ? flight.generation + 1 : 0, EventClass::kProcess, body, -1};
 }
 
-Meeting FlightRun::end_of_passage(const EventKey& key, const Flight& flight) {
+Meeting FlightRun::end_of_passage(const EventKey& key, const Flight& flight) const {
   if (key.generation > kMostGenerations) throw StoppedRun(fmt::format("at t = {:.6f} s, body {}: time stands still among the bodies that touch it", key.time, name(key.body_a)));
   const PassageEnd* end = world_.processes()->passages().end_by(flight.passage, key.time);
   require(end != nullptr, "a passage ends where own_end said");
@@ -144,14 +144,17 @@ void FlightRun::commit(const EventKey& key, const Event& first, const std::vecto
 void FlightRun::commit_frame(const FlightOf& flight_of) {
   const StageTimer timer(counters.record_seconds);
   commit_switches(next_frame());
-  Frame frame = frame_of(world_, next_frame(), flight_of);
+  Frame frame = frame_of(world_, next_frame(), flight_of, states_);
   if (links_) links_->measure(frame, flight_of);
   sink_.frame(frame);
   ++next_;
+  if (!callbacks_.empty()) return;   // they bring energy in
+  if (const auto runaway = energy_watch_.look(world_.world(), states_)) throw StoppedRun(told_runaway(frame.time, *runaway, laws_));
 }
 
 void FlightRun::end(const std::string& stopped_by) {
   if (stopped_by.empty()) commit_switches(std::nextafter(duration_, 2 * duration_ + 1));
+  world_.all_processes().passages().add_counts_to(counters);
   counters.pair_checks += cost.pair_checks;
   counters.collision.gap_evaluations += cost.narrow.gap_evaluations;
   counters.collision.root_findings += cost.narrow.root_findings;

@@ -8,6 +8,7 @@
 #include "framework/engines/events/meeting_of_flights.h"
 #include "framework/engines/run.h"
 #include "framework/engines/run_counters.h"
+#include "framework/engines/stability.h"
 
 namespace tumble::engines {
 
@@ -23,17 +24,21 @@ class FlightRun {
 
   const FlightWorld& world() const { return world_; }
   const ImpactsOfFlights& impacts() const { return impacts_; }
+  /// From now on several threads ask about flights, and what impacts do to them, or one alone again.
+  void share(bool shared) { world_.share(shared); }
   double duration() const { return duration_; }
   /// The engine's largest step: how far a scheduler looks ahead at most where it has no reason of its own. [s]
   double step() const { return step_; }
 
   /// What the impact of two flights does. Stops the run (StoppedRun, with time and names) where the laws fail.
   /// @post where processes took part (`begun` is not empty) all their members' flights end here
-  Meeting meet(const EventKey& key, const Flight& f, const Flight& g);
+  /// @param counters  of the thread that asks
+  Meeting meet(const EventKey& key, const Flight& f, const Flight& g, RunCounters& counters) const;
+  Meeting meet(const EventKey& key, const Flight& f, const Flight& g) { return meet(key, f, g, counters); }
   /// When a body's flight ends by itself, if that is at `to` or before; nothing otherwise, and for all but a process's first member.
   std::optional<EventKey> own_end(int body, const Flight& flight, double to) const;
   /// What that does.
-  Meeting end_of_passage(const EventKey& key, const Flight& flight);
+  Meeting end_of_passage(const EventKey& key, const Flight& flight) const;
 
   /// Callbacks of the run, by their keys, in order.
   const std::vector<EventKey>& callbacks() const { return callback_keys_; }
@@ -49,6 +54,7 @@ class FlightRun {
   /// The next frame that is not committed yet; infinite when there is none. [s]
   double next_frame() const { return frame_time(next_) <= duration_ ? frame_time(next_) : std::numeric_limits<double>::infinity(); }
   /// Commits the frame at next_frame(). @pre every event before it is committed, none after it
+  /// @throws StoppedRun where energy has run away by then; the frame is recorded
   void commit_frame(const FlightOf& flight_of);
 
   /// Ends the run: frames that are left are pushed by the caller before. `stopped_by` is empty where all is well.
@@ -58,7 +64,7 @@ class FlightRun {
   RunCounters counters;
 
  private:
-  Meeting meet_as_processes(const EventKey& key, const Flight& f, const Flight& g);
+  Meeting meet_as_processes(const EventKey& key, const Flight& f, const Flight& g, RunCounters& counters) const;
   void commit_switches(double until);
   double frame_time(long k) const { return static_cast<double>(k) / rate_; }
   std::string name(int body) const { return body < 0 ? "itself" : "'" + world_.world().bodies[body].name + "'"; }
@@ -74,6 +80,8 @@ class FlightRun {
   std::vector<Event> switches_;    // of point forces, in order of time; known from the start
   std::size_t switched_ = 0;
   std::unique_ptr<LinkMeasures> links_;
+  EnergyWatch energy_watch_;
+  std::vector<RigidBodyState> states_;   // of the frame that was committed last
   std::vector<Callback> callbacks_;
   std::vector<EventKey> callback_keys_;
 };

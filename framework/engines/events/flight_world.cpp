@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <thread>
 
 #include <fmt/format.h>
 
@@ -36,7 +37,7 @@ std::string unfollowed_entry(const scene::Scene& scene) {
   return "";
 }
 
-FlightWorld::FlightWorld(const scene::Scene& scene, const std::string& engine, const Laws& laws, ProcessRules rules, RunCounters& counters) {
+FlightWorld::FlightWorld(const scene::Scene& scene, const std::string& engine, const Laws& laws, ProcessRules rules) {
   const std::string where = scene.file.empty() ? scene.name : scene.file.string();
   if (const std::string entry = unfollowed_entry(scene); !entry.empty())
     throw UserError(where, fmt::format("{} is not followed by --engine {}: groups of bodies keep their own time there", entry, engine), "leave it out, or use --engine rd");
@@ -65,7 +66,7 @@ FlightWorld::FlightWorld(const scene::Scene& scene, const std::string& engine, c
   }
   turning_.resize(first_.size());
   refuse_overlap(scene);
-  processes_ = std::make_unique<Processes>(world_, [this](int body) { return &shape(body); }, laws, rules, counters);
+  processes_ = std::make_unique<Processes>(world_, [this](int body) { return &shape(body); }, laws, rules);
   if (processes_->holds_any()) start_processes();
 }
 
@@ -128,6 +129,24 @@ void FlightWorld::refuse_overlap(const scene::Scene& scene) {
   }
 }
 
+class FlightWorld::HeldTurning {
+ public:
+  HeldTurning(const FlightWorld& world, int body, const Flight& flight) : turning(*world.turning_[body]), is_held_(world.is_shared_) {
+    while (is_held_ && turning.is_held.test_and_set(std::memory_order_acquire)) std::this_thread::yield();
+    world.turn_to(body, flight, turning);
+  }
+  ~HeldTurning() {
+    if (is_held_) turning.is_held.clear(std::memory_order_release);
+  }
+  HeldTurning(const HeldTurning&) = delete;
+  HeldTurning& operator=(const HeldTurning&) = delete;
+
+  Turning& turning;
+
+ private:
+  const bool is_held_;
+};
+
 Spin FlightWorld::spin(int body, const Flight& flight, double t) const {
   // Most balls do not turn at all, and what rests turns evenly (it is a ball, or it does not turn).
   if (flight.passage >= 0) {
@@ -137,7 +156,8 @@ Spin FlightWorld::spin(int body, const Flight& flight, double t) const {
   if (!facts_[body].can_move || t == flight.begin || flight.omega_body.isZero(0.0)) return {flight.world_from_body, flight.omega_body};
   const Spin start{flight.world_from_body, flight.omega_body};
   if (!rotations_[body].is_asymmetric()) return rotations_[body].after(start, t - flight.begin);
-  Turning& now = turning(body, flight);
+  const HeldTurning held = turning(body, flight);
+  Turning& now = held.turning;
   const std::int64_t k = static_cast<std::int64_t>((t - flight.begin) / now.reach);
   const auto begin_of = [&](std::int64_t part) { return static_cast<double>(part) * now.reach; };
   if (k <= now.newest - static_cast<std::int64_t>(now.series.size())) now.newest = -1;   // gone: from the start
@@ -149,10 +169,21 @@ Spin FlightWorld::spin(int body, const Flight& flight, double t) const {
   return now.series[static_cast<std::size_t>(k) % now.series.size()].at(t - flight.begin - begin_of(k));
 }
 
-FlightWorld::Turning& FlightWorld::turning(int body, const Flight& flight) const {
+void FlightWorld::share(bool shared) {
+  is_shared_ = shared;
+  processes_->passages().share(shared);
+  if (!shared) return;
+  for (const int body : movers_)   // none is made while several might make it
+    if (!is_ball(body) && !turning_[body]) turning_[body] = std::make_unique<Turning>();
+}
+
+FlightWorld::HeldTurning FlightWorld::turning(int body, const Flight& flight) const {
   if (!turning_[body]) turning_[body] = std::make_unique<Turning>();
-  Turning& now = *turning_[body];
-  if (now.begin == flight.begin && now.omega_body == flight.omega_body && now.world_from_body.coeffs() == flight.world_from_body.coeffs()) return now;
+  return {*this, body, flight};
+}
+
+void FlightWorld::turn_to(int body, const Flight& flight, Turning& now) const {
+  if (now.begin == flight.begin && now.omega_body == flight.omega_body && now.world_from_body.coeffs() == flight.world_from_body.coeffs()) return;
   now.begin = flight.begin;
   now.omega_body = flight.omega_body;
   now.world_from_body = flight.world_from_body;
@@ -161,7 +192,6 @@ FlightWorld::Turning& FlightWorld::turning(int body, const Flight& flight) const
   state.angular_momentum_world = flight.world_from_body * (world_.bodies[body].inertia.inertia_body * flight.omega_body);
   now.bounds = bound_rotation(state, world_.bodies[body].inertia, {0.0});   // undisturbed: for all time
   now.reach = SpinSeries::reach(rotations_[body].moments(), now.bounds.angular_speed);
-  return now;
 }
 
 collision::MotionState FlightWorld::motion_at(int body, const Flight& flight, double t) const {
@@ -180,7 +210,7 @@ collision::MotionBounds FlightWorld::bounds(int body, const Flight& flight, doub
     return bounds;
   }
   if (is_ball(body) || flight.omega_body.isZero(0.0)) return bounds;   // however it turns, it looks the same
-  const RotationBounds& turns = turning(body, flight).bounds;
+  const RotationBounds turns = turning(body, flight).turning.bounds;
   bounds.angular_speed = turns.angular_speed;
   bounds.angular_acceleration = turns.angular_acceleration;
   return bounds;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
@@ -24,7 +25,7 @@ class FlightWorld {
   /// @param engine  named where the scene is refused
   /// @param laws, rules  for processes
   /// @throws UserError naming the scene's entry that is not followed, or two bodies that overlap at the start
-  FlightWorld(const scene::Scene& scene, const std::string& engine, const Laws& laws, ProcessRules rules, RunCounters& counters);
+  FlightWorld(const scene::Scene& scene, const std::string& engine, const Laws& laws, ProcessRules rules);
   FlightWorld(const FlightWorld&) = delete;
   FlightWorld& operator=(const FlightWorld&) = delete;
 
@@ -34,6 +35,8 @@ class FlightWorld {
   /// Movable bodies, ascending; immovable ones that may be hit, ascending.
   const std::vector<int>& movers() const { return movers_; }
   const std::vector<int>& obstacles() const { return obstacles_; }
+  /// From now on several threads ask about flights at once, or one alone again. By the one thread that works at that moment.
+  void share(bool shared);
   bool can_move(int body) const { return facts_[body].can_move; }
   bool is_ball(int body) const { return facts_[body].is_ball; }
   const Inertia& inertia(int body) const { return matter_[body].inertia; }
@@ -111,9 +114,10 @@ class FlightWorld {
     double restitution;
   };
 
-  // How a body turns on the flight that was asked about last: what questions about one flight share. No answer depends on it. Not to be
-  // shared between threads.
+  // How a body turns on the flight that was asked about last: what questions about one flight share. No answer depends on it. Held by
+  // whoever asks, where several threads do.
   struct Turning {
+    std::atomic_flag is_held = ATOMIC_FLAG_INIT;
     double begin = kUnset;               // of the flight; unset: of none yet
     Quaterniond world_from_body = Quaterniond::Identity();
     Vector3d omega_body = Vector3d::Zero();
@@ -122,7 +126,9 @@ class FlightWorld {
     std::int64_t newest = -1;            // series of [begin + k reach, begin + (k + 1) reach] are kept up to this k
     std::array<SpinSeries, 4> series;    // of the last ones, by k modulo 4
   };
-  Turning& turning(int body, const Flight& flight) const;
+  class HeldTurning;
+  HeldTurning turning(int body, const Flight& flight) const;
+  void turn_to(int body, const Flight& flight, Turning& turning) const;
 
   void refuse_overlap(const scene::Scene& scene);
   void start_processes();
@@ -132,6 +138,7 @@ class FlightWorld {
   std::vector<collision::CollisionShape> shapes_;   // equal ones once
   std::vector<FreeRotation> rotations_;             // by body; of immovable ones none is asked
   mutable std::vector<std::unique_ptr<Turning>> turning_;   // by body; made where a solid turns
+  bool is_shared_ = false;
   std::vector<Facts, LargePages<Facts>> facts_;
   std::vector<Matter, LargePages<Matter>> matter_;  // by body
   std::vector<int> movers_, obstacles_;

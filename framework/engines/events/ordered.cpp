@@ -23,10 +23,10 @@ class OrderedRun {
     std::string stopped_by;
     try {
       for (double begin = 0.0; begin < run_.duration(); begin = end_) look_through_window(begin);
+      draw_before(kInfinity);
     } catch (const StoppedRun& stop) {
       stopped_by = stop.what();
     }
-    if (stopped_by.empty()) draw_before(kInfinity);
     run_.end(stopped_by);
   }
 

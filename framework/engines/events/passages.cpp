@@ -16,8 +16,8 @@ constexpr double kNoStep = 1e-9;         // of the step: a shorter rest of it is
 
 }  // namespace
 
-Passages::Passages(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules, RunCounters& counters)
-    : whole_(whole), shape_of_(std::move(shape_of)), laws_(laws), rules_(rules), counters_(counters) {
+Passages::Passages(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules)
+    : whole_(whole), shape_of_(std::move(shape_of)), laws_(laws), rules_(rules) {
   if (!whole_.contact) return;
   for (int i = 0; i < static_cast<int>(whole_.bodies.size()); ++i)
     if (whole_.bodies[i].immovable() && whole_.bodies[i].collides) obstacles_.push_back(i);
@@ -25,15 +25,30 @@ Passages::Passages(const World& whole, ShapeOf shape_of, const Laws& laws, Proce
 
 // ---- Small worlds ----------------------------------------------------------------------------------------------------------
 
+// Only a set of members that is asked about by one thread alone has a machine that stands still: none is thrown away while threads share them.
 Passages::Machine& Passages::machine_of(const std::vector<int>& members, int still) {
-  const auto known = machines_.find({members, still});
-  if (known != machines_.end()) return known->second;
-  if (machines_.size() > kMachines) std::erase_if(machines_, [](const auto& machine) { return machine.second.users == 0; });
+  Machine* machine = nullptr;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto known = machines_.find({members, still});
+    if (known != machines_.end() && known->second.world) return known->second;
+    if (machines_.size() > kMachines && !is_shared_)
+      std::erase_if(machines_, [this](const auto& old) {
+        if (old.second.users > 0) return false;
+        past_.add(old.second.counters);
+        return true;
+      });
+    machine = &machines_[{members, still}];
+  }
   std::vector<int> immovable = obstacles_;
   if (still >= 0) immovable.push_back(still);
-  Machine& machine = machines_[{members, still}];
-  machine.world = std::make_unique<ProcessWorld>(whole_, shape_of_, laws_, rules_, counters_, members, immovable);
-  return machine;
+  machine->world = std::make_unique<ProcessWorld>(whole_, shape_of_, laws_, rules_, machine->counters, members, immovable);
+  return *machine;
+}
+
+void Passages::add_counts_to(RunCounters& counters) const {
+  counters.add(past_);
+  for (const auto& [members, machine] : machines_) counters.add(machine.counters);
 }
 
 ProcessWorld& Passages::world_of(const std::vector<int>& members, int still) { return *machine_of(members, still).world; }
@@ -41,30 +56,28 @@ ProcessWorld& Passages::world_of(const std::vector<int>& members, int still) { r
 // ---- Passages --------------------------------------------------------------------------------------------------------------
 
 int Passages::begin(const ProcessState& state) {
-  if (free_.empty()) {
-    free_.push_back(static_cast<int>(passages_.size()));
-    passages_.emplace_back();
-  }
-  const int number = free_.back();
-  free_.pop_back();
   auto passage = std::make_unique<Passage>();
   passage->machine = &machine_of(state.members, -1);
-  ++passage->machine->users;
   passage->start.emplace(state.without_memory());
   passage->front.emplace(state);
   passage->holders = static_cast<int>(state.members.size());
-  passages_[static_cast<std::size_t>(number)] = std::move(passage);
+  const std::lock_guard lock(mutex_);
+  ++passage->machine->users;
+  const int number = passages_.take();
+  passages_[number] = std::move(passage);
   return number;
 }
 
 void Passages::release(int number) {
+  const std::lock_guard lock(mutex_);
   Passage& passage = at(number);
   if (--passage.holders > 0) return;
   kept_ -= passage.steps.size();
   --passage.machine->users;
-  passages_[static_cast<std::size_t>(number)].reset();
-  free_.push_back(number);
+  passages_.give_back(number);
 }
+
+void Passages::forget_before(double t) { forgotten_ = t; }
 
 std::size_t Passages::place(int passage, int body) const {
   const std::vector<int>& members = at(passage).start->members;
@@ -86,7 +99,7 @@ void Passages::take_step(Passage& passage) {
     --kept_;
   }
   passage.steps.push_back(std::move(outcome.step));
-  most_kept_ = std::max(most_kept_, ++kept_);
+  ++kept_;
   const bool is_one = passage.start->near.empty() || !falls_apart_(outcome.after);
   if (outcome.events.empty() && is_one) passage.front.emplace(std::move(outcome.after));
   else passage.end.emplace(PassageEnd{passage.steps.back().end, std::move(outcome.after), std::move(outcome.events)});

@@ -5,14 +5,19 @@
 /// somebody asks; where it leads depends on its beginning alone, whoever asks, and when. Some
 /// end by themselves: an impact within the process, a contact that begins or opens. Membership of a passage never changes: what joins or
 /// leaves begins others.
+///
+/// Threads may share them, as long as each passage, and each set of members, is one thread's affair at a time; what they do share is locked.
 #pragma once
 
+#include <atomic>
 #include <deque>
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <vector>
 
+#include "framework/core/stable_table.h"
 #include "framework/engines/events/process_world.h"
 
 namespace tumble::engines {
@@ -26,7 +31,7 @@ struct PassageEnd {
 
 class Passages {
  public:
-  Passages(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules, RunCounters& counters);
+  Passages(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules);
   /// @param falls_apart  whether the members of a state are one process no more
   void ask(std::function<bool(const ProcessState&)> falls_apart) { falls_apart_ = std::move(falls_apart); }
   Passages(const Passages&) = delete;
@@ -36,7 +41,9 @@ class Passages {
   int begin(const ProcessState& state);
   void release(int passage);
   /// Nobody asks for what lies before this any more. [s]
-  void forget_before(double t) { forgotten_ = t; }
+  void forget_before(double t);
+  /// From now on several threads work with passages, or one alone again. By the one thread that works at that moment.
+  void share(bool shared) { is_shared_ = shared; }
 
   const std::vector<int>& members(int passage) const { return at(passage).start->members; }
   double began(int passage) const { return at(passage).start->time; }
@@ -67,11 +74,17 @@ class Passages {
   ProcessWorld& world_of(const std::vector<int>& members, int still = -1);
 
   /// Passages that somebody holds.
-  std::size_t alive() const { return passages_.size() - free_.size(); }
-  std::size_t most_kept() const { return most_kept_; }
+  std::size_t alive() const { return passages_.taken(); }
+  /// Steps that are kept, now and at most wherever that was asked.
+  std::size_t kept() const { return kept_; }
+  /// Of one passage: steps that are kept.
+  std::size_t kept(int passage) const { return at(passage).steps.size(); }
+  /// What their small worlds counted.
+  void add_counts_to(RunCounters& counters) const;
 
  private:
   struct Machine {
+    RunCounters counters;      // of its own: another thread may be counting for another one
     std::unique_ptr<ProcessWorld> world;
     int users = 0;
   };
@@ -84,8 +97,8 @@ class Passages {
     int holders = 0, idle = 0;
   };
 
-  Passage& at(int passage) { return *passages_[static_cast<std::size_t>(passage)]; }
-  const Passage& at(int passage) const { return *passages_[static_cast<std::size_t>(passage)]; }
+  Passage& at(int passage) { return *passages_[passage]; }
+  const Passage& at(int passage) const { return *passages_[passage]; }
   Machine& machine_of(const std::vector<int>& members, int still);
   std::size_t place(int passage, int body) const;
   void reach(int passage, double t);
@@ -97,13 +110,14 @@ class Passages {
   std::function<bool(const ProcessState&)> falls_apart_;
   const Laws& laws_;
   ProcessRules rules_;
-  RunCounters& counters_;
   std::vector<int> obstacles_;              // immovable ones that lasting contacts may touch
   std::map<std::pair<std::vector<int>, int>, Machine> machines_;
-  std::vector<std::unique_ptr<Passage>> passages_;
-  std::vector<int> free_;
+  StableTable<std::unique_ptr<Passage>> passages_;
+  RunCounters past_;                        // of small worlds that are gone
+  std::mutex mutex_;                        // of machines_, of numbers of passages, and of who holds them
+  bool is_shared_ = false;
   double forgotten_ = 0.0;
-  std::size_t kept_ = 0, most_kept_ = 0;
+  std::atomic<std::size_t> kept_ = 0;
 };
 
 }  // namespace tumble::engines

@@ -34,8 +34,8 @@ class Components {
 
 }  // namespace
 
-Processes::Processes(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules, RunCounters& counters)
-    : whole_(whole), passages_(whole, std::move(shape_of), laws, rules, counters),
+Processes::Processes(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules)
+    : whole_(whole), passages_(whole, std::move(shape_of), laws, rules),
       holds_any_(!whole.springs.empty() || !whole.rods.empty() || !whole.joints.empty() || !whole.drags.empty() || !whole.point_forces.empty() || whole.contact.has_value()), linked_(whole.bodies.size(), -1) {
   for (const std::vector<int>& group : groups_of_linked_bodies(whole))
     for (const int body : group) linked_[static_cast<std::size_t>(body)] = group.front();

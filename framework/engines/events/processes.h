@@ -14,7 +14,7 @@ namespace tumble::engines {
 
 class Processes {
  public:
-  Processes(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules, RunCounters& counters);
+  Processes(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules);
 
   Passages& passages() { return passages_; }
   /// Whether some body of the world may not fly freely at some time.

@@ -91,24 +91,30 @@ void ActivePairs::take_out(int body) {
   entry.is_in_grid = entry.is_wide = false;
 }
 
-void ActivePairs::set_box(int body, const Box& box) {
-  Entry& entry = entries_[static_cast<std::size_t>(body)];
-  Entry next;
-  next.box = box;
+// A box of very many cells, or of cells that 32 bits do not count, is wide.
+ActivePairs::Entry ActivePairs::entry_of(const Box& box) const {
+  Entry entry;
+  entry.box = box;
   double cells = 1;
-  constexpr double kFarthest = 1e9;   // cells beyond are not counted out in 32 bits
+  constexpr double kFarthest = 1e9;
   for (int axis = 0; axis < 3; ++axis) {
     const double low = std::floor(box.low[axis] / cell_), high = std::floor(box.high[axis] / cell_);
     cells *= high - low + 1;
     if (!(std::abs(low) < kFarthest && std::abs(high) < kFarthest)) cells = std::numeric_limits<double>::infinity();
     if (!(cells <= kMostCells)) break;
-    next.low[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(low);
-    next.high[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(high);
+    entry.low[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(low);
+    entry.high[static_cast<std::size_t>(axis)] = static_cast<std::int32_t>(high);
   }
-  if (!(cells <= kMostCells)) {
+  entry.is_wide = !(cells <= kMostCells);
+  return entry;
+}
+
+void ActivePairs::set_box(int body, const Box& box) {
+  Entry& entry = entries_[static_cast<std::size_t>(body)];
+  const Entry next = entry_of(box);
+  if (next.is_wide) {
     take_out(body);
     entry = next;
-    entry.is_wide = true;
     wide_.insert(std::lower_bound(wide_.begin(), wide_.end(), body), body);
     return;
   }

@@ -42,6 +42,8 @@ class ActivePairs {
 
   /// Enters a body's box, in place of the one it had.
   void set_box(int body, const Box& box);
+  /// Takes a body out, if it is in.
+  void remove(int body) { take_out(body); }
   const Box& box(int body) const { return entries_[static_cast<std::size_t>(body)].box; }
 
   /// Begins to bring what is known of a body from memory.
@@ -53,29 +55,13 @@ class ActivePairs {
   /// Calls `found(other)` once for each body whose box overlaps this body's.
   template <class Found>
   void for_each_partner(int body, const Found& found) const {
-    const Entry& own = entries_[static_cast<std::size_t>(body)];
-    for (const int other : wide_)
-      if (other != body && own.box.overlaps(entries_[static_cast<std::size_t>(other)].box)) found(other);
-    if (own.is_wide) {
-      for (int other = 0; other < static_cast<int>(entries_.size()); ++other)
-        if (other != body && entries_[static_cast<std::size_t>(other)].is_in_grid && own.box.overlaps(entries_[static_cast<std::size_t>(other)].box)) found(other);
-      return;
-    }
-    const SmallBox small = small_of(own.box);
-    for (std::int32_t i = own.low[0]; i <= own.high[0]; ++i)
-      for (std::int32_t j = own.low[1]; j <= own.high[1]; ++j)
-        for (std::int32_t k = own.low[2]; k <= own.high[2]; ++k)
-          for (std::int32_t at = static_cast<std::int32_t>(bucket_of(i, j, k)); at >= 0; at = buckets_[static_cast<std::size_t>(at)].next) {
-            const Bucket& bucket = buckets_[static_cast<std::size_t>(at)];
-            for (std::int32_t place = 0; place < bucket.count; ++place) {
-              const Slot& slot = bucket.slots[static_cast<std::size_t>(place)];
-              if (!small.overlaps(slot.box) || slot.body == body) continue;
-              const Entry& entry = entries_[static_cast<std::size_t>(slot.body)];
-              // The lowest cell that both touch: also tells apart cells that share a bucket.
-              const bool here = (i == std::max(own.low[0], entry.low[0])) & (j == std::max(own.low[1], entry.low[1])) & (k == std::max(own.low[2], entry.low[2]));
-              if (here && own.box.overlaps(entry.box)) found(slot.body);
-            }
-          }
+    for_each_overlapping(entries_[static_cast<std::size_t>(body)], body, found);
+  }
+
+  /// Calls `found(other)` once for each body whose box overlaps this one, which need not be anybody's here.
+  template <class Found>
+  void for_each_in(const Box& box, const Found& found) const {
+    for_each_overlapping(entry_of(box), -1, found);
   }
 
  private:
@@ -109,6 +95,32 @@ class ActivePairs {
     // Primes of M. Teschner et al., "Optimized spatial hashing for collision detection of deformable objects", VMV 2003.
     return (u(i) * 73856093u ^ u(j) * 19349663u ^ u(k) * 83492791u) & mask_;
   }
+  template <class Found>
+  void for_each_overlapping(const Entry& own, int body, const Found& found) const {
+    for (const int other : wide_)
+      if (other != body && own.box.overlaps(entries_[static_cast<std::size_t>(other)].box)) found(other);
+    if (own.is_wide) {
+      for (int other = 0; other < static_cast<int>(entries_.size()); ++other)
+        if (other != body && entries_[static_cast<std::size_t>(other)].is_in_grid && own.box.overlaps(entries_[static_cast<std::size_t>(other)].box)) found(other);
+      return;
+    }
+    const SmallBox small = small_of(own.box);
+    for (std::int32_t i = own.low[0]; i <= own.high[0]; ++i)
+      for (std::int32_t j = own.low[1]; j <= own.high[1]; ++j)
+        for (std::int32_t k = own.low[2]; k <= own.high[2]; ++k)
+          for (std::int32_t at = static_cast<std::int32_t>(bucket_of(i, j, k)); at >= 0; at = buckets_[static_cast<std::size_t>(at)].next) {
+            const Bucket& bucket = buckets_[static_cast<std::size_t>(at)];
+            for (std::int32_t place = 0; place < bucket.count; ++place) {
+              const Slot& slot = bucket.slots[static_cast<std::size_t>(place)];
+              if (!small.overlaps(slot.box) || slot.body == body) continue;
+              const Entry& entry = entries_[static_cast<std::size_t>(slot.body)];
+              // The lowest cell that both touch: also tells apart cells that share a bucket.
+              const bool here = (i == std::max(own.low[0], entry.low[0])) & (j == std::max(own.low[1], entry.low[1])) & (k == std::max(own.low[2], entry.low[2]));
+              if (here && own.box.overlaps(entry.box)) found(slot.body);
+            }
+          }
+  }
+  Entry entry_of(const Box& box) const;
   void enter(int body, const SmallBox& box, std::size_t bucket);
   void leave(int body, std::size_t bucket);
   template <class Work>

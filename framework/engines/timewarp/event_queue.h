@@ -34,6 +34,21 @@ class EventQueue {
     if (heap_.empty()) go_on();
   }
 
+  /// Takes all that waits, in no order. @param work  is called with each
+  template <class Work>
+  void drain(const Work& work) {
+    std::vector<Item> all;
+    all.swap(heap_);
+    all.insert(all.end(), far_.begin(), far_.end());
+    far_.clear();
+    for (std::vector<Item>& bin : bins_) {
+      all.insert(all.end(), bin.begin(), bin.end());
+      bin.clear();
+    }
+    size_ = 0;
+    for (const Item& item : all) work(item);
+  }
+
   Item pop() {
     const Item front = heap_.front(), last = heap_.back();
     heap_.pop_back();

@@ -36,6 +36,7 @@ class FlightHistory {
   std::size_t first_ = 0, count_ = 0, mask_ = 0;
 };
 
+/// Two bodies' flights may be pushed and dropped by two threads.
 class FlightHistories {
  public:
   explicit FlightHistories(std::size_t bodies) : histories_(bodies), grown_(bodies), slab_(bodies * kFirstSlots) {
@@ -58,13 +59,9 @@ class FlightHistories {
     FlightHistory& history = histories_[static_cast<std::size_t>(body)];
     if (history.count_ == history.mask_ + 1) grow(static_cast<std::size_t>(body));
     history.slots_[(history.first_ + history.count_++) & history.mask_] = flight;
-    most_kept_ = std::max(most_kept_, ++kept_);
   }
   /// Drops the last flight: a rollback.
-  void pop(int body) {
-    --histories_[static_cast<std::size_t>(body)].count_;
-    --kept_;
-  }
+  void pop(int body) { --histories_[static_cast<std::size_t>(body)].count_; }
   /// Drops flights that ended before t: nothing before global virtual time is asked for again.
   void purge(int body, double t) {
     purge(body, t, [](const Flight&) {});
@@ -77,11 +74,8 @@ class FlightHistories {
       purged(history[0]);
       history.first_ = (history.first_ + 1) & history.mask_;
       --history.count_;
-      --kept_;
     }
   }
-  std::size_t kept() const { return kept_; }
-  std::size_t most_kept() const { return most_kept_; }
 
  private:
   static constexpr std::size_t kFirstSlots = 2;   // a power of two
@@ -100,7 +94,6 @@ class FlightHistories {
   std::vector<FlightHistory, LargePages<FlightHistory>> histories_;
   std::vector<std::unique_ptr<Flight[]>> grown_;
   std::vector<Flight, LargePages<Flight>> slab_;
-  std::size_t kept_ = 0, most_kept_ = 0;
 };
 
 }  // namespace tumble::engines

@@ -1,0 +1,67 @@
+/// Who works when: one thread alone, or several in rounds. Its parts: conductor.cpp goes round, homes.cpp says who looks after whom,
+/// commits.cpp commits.
+///
+/// A round begins at global virtual time. Each worker takes the processes at home in its territory on, each as far as the window lets it,
+/// optimistically: the bodies of the border stay behind. Then one thread alone takes what was left, and the border's own events, in order,
+/// and whoever it meets in the past is rolled back. What is then before the end of the round is certain. So nothing depends on which thread
+/// is faster: each looks at what the others did in rounds before, and at nothing that they do now.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "solutions_private/a4_timewarp/fast/worker.h"
+
+namespace tumble::a4 {
+
+class Conductor {
+ public:
+  Conductor(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record);
+  void run();
+
+ private:
+  // conductor.cpp
+  void enter_obstacle(int body);
+  void begin();
+  void go_alone();
+  Due in_place_of(const Due& callback);
+  void go_in_rounds();
+  void work_alone_before(double end);
+  void work_alone_at(Due due);
+  void collect_what_is_left();
+  Domain* next_domain();
+  double next_time();
+  void adapt_window();
+  double first_window() const;
+  void check_nothing_leaked();
+  void end(const std::string& stopped_by);
+  Worker& alone() { return *workers_[kBorder]; }
+
+  // homes.cpp
+  void settle();
+  void cut_territories();
+  void find_homes();
+  void keep_processes_together();
+  void move_home(int body, std::uint8_t home);
+  void hand_out();
+
+  // commits.cpp
+  void commit_before(const EventKey& key);
+  void commit_before(double t) { commit_before(EventKey{t, 0, EventClass::kCollision, -1, -1}); }
+  void note_kept();
+  bool still_stands(int body, std::uint32_t serial) const;
+
+  Shared all_;
+  std::vector<std::unique_ptr<Worker>> workers_;   // by domain
+  VirtualTimes* record_;                           // null: nobody wants to know
+  std::size_t commit_at_;                          // events worked at before global virtual time is looked at again
+  std::optional<EventKey> working_at_;             // alone
+  std::vector<std::uint8_t> wanted_;               // by body: home
+  std::vector<int> leaders_;                       // by body: of processes that must have one home
+  std::uint64_t rounds_ = 0, last_cut_ = 0;        // begun; the one before which territories were cut last
+  double first_window_ = 0.0;                      // [s]
+  std::uint64_t done_before_ = 0, undone_before_ = 0;   // integrations, when the window was looked at last
+  std::int64_t most_kept_ = 0;
+};
+
+}  // namespace tumble::a4
