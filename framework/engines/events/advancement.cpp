@@ -45,7 +45,8 @@ class AdvancementRun {
   void run() {
     std::string stopped_by;
     try {
-      while (time_ < run_.duration()) step();
+      do step();
+      while (!(end_ > run_.duration()));   // the last instant belongs to the run
       draw_before(kInfinity);
     } catch (const StoppedRun& stop) {
       stopped_by = stop.what();

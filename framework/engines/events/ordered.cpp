@@ -22,7 +22,7 @@ class OrderedRun {
   void run() {
     std::string stopped_by;
     try {
-      for (double begin = 0.0; begin < run_.duration(); begin = end_) look_through_window(begin);
+      for (double begin = 0.0; begin <= run_.duration(); begin = end_) look_through_window(begin);   // the last instant belongs to the run
       draw_before(kInfinity);
     } catch (const StoppedRun& stop) {
       stopped_by = stop.what();
