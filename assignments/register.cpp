@@ -17,7 +17,7 @@ void register_assignments(modules::Registry& registry) {
   registry.mark_scheduler("a4");
   registry.add_method("euler_step", 1, &a2::Module::euler_step);
   registry.add_method("rk4_step", 4, &a2::Module::rk4_step);
-  registry.show_cost("a1", {"collide_off_centre_e05", 2.0});
+  registry.show_cost("a1", {"collide_off_centre_e05", 2.0, true});
   registry.show_cost("a2", {"t_handle", 1.0, true});
   registry.show_cost("a3", {"double_pendulum", 1.0, true});
   registry.show_cost("a4", {"billiards", 6.0});

@@ -32,7 +32,7 @@ struct NamedMethod {
 struct CostShowcase {
   std::string scene;                       // a bare name; empty: nobody said
   double duration_s = 0.0;
-  bool is_graded = false;                  // a part of each graded report: where the module sets how errors shrink with the step
+  bool is_graded = false;                  // a part of each graded report: where the module decides how errors shrink with the step, or whether they do
 };
 
 /// All that the framework can do with a module without knowing its header.

@@ -153,7 +153,7 @@ TEST(CapOfStates, OfEightIsKeptAndChangesNothing) {
   EXPECT_LE(threaded.counters.counts.at("most_states_of_a_body"), 8U);
 }
 
-// After 20 seconds and after 100: what is kept at most does not grow. (An hour of avalanche: the battery's row 33.)
+// After 20 seconds and after 100: what is kept at most does not grow.
 TEST(Memory, OfAGasStaysFlat) {
   for (const int threads : {1, 2}) {
     const auto kept = [&](double duration) { return run_on({threads}, sized("gas", 400, duration), 1.0).counters.counts.at("states_kept"); };

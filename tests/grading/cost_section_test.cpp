@@ -66,7 +66,17 @@ TEST_F(CostInAReport, AModuleThatHangsCostsItsOwnCurveAndLittleTime) {
   EXPECT_LT(seconds, 60.0);   // two curves of 3 s, compiler and reference beside; without a limit it would be for ever
 }
 
-TEST_F(CostInAReport, AModuleThatIsNotAboutStepsHasNoSuchPart) { EXPECT_TRUE(measure_cost(course_, "a1", folder_ / "none.so").scene.empty()); }
+TEST_F(CostInAReport, AModuleThatIsNotAboutStepsHasNoSuchPart) { EXPECT_TRUE(measure_cost(course_, "a4", folder_ / "none.so").scene.empty()); }
+
+TEST_F(CostInAReport, LawsOfImpactAreMeasuredAsAWhole) {
+  const fs::path modules = fs::path(TUMBLE_BINARY_DIR) / "modules", reference = modules / "a1_reference.so";
+  if (!fs::exists(reference)) GTEST_SKIP() << "measured beside the reference, which this tree does not have";
+  const CostSection right = measure_cost(course_, "a1", reference), stub = measure_cost(course_, "a1", modules / "a1_student.so");
+  ASSERT_EQ(right.lines.size(), 1u);
+  ASSERT_EQ(stub.lines.size(), 1u);
+  EXPECT_TRUE(right.lines[0].is_right) << right.lines[0].reading;
+  EXPECT_FALSE(stub.lines[0].is_right) << stub.lines[0].reading;   // whether it is attempted is the student's
+}
 
 TEST_F(CostInAReport, AStepOfHalfTheLengthIsNoEulerAndReadsTheSameTwice) {
   const std::string half = "return y + 0.5 * h * f(t, y);";

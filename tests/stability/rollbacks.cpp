@@ -11,6 +11,8 @@
 namespace tumble::battery {
 namespace {
 
+constexpr double kTenMillionEvents = 540.0;   // s of a gas of 10,000
+
 /// Elastic balls that fly to and fro in a box, each meeting another every few tenths of a second: whoever has gone ahead alone is met by
 /// one that comes late.
 scene::Scene gas(int n) {
@@ -27,6 +29,59 @@ Trajectory run_by(const std::string& engine, const scene::Scene& scene, const La
   options.trial = trial;
   engines::run_scene(scene, laws, options, recorder);
   return recorder.trajectory();
+}
+
+/// Looks at what is committed as it comes and keeps none of it.
+class Watch final : public TrajectorySink {
+ public:
+  void begin(const TrajectoryInfo&, const std::vector<TrajectoryBody>&) override {}
+  void frame(const Frame& frame) override {
+    if (frame.time < latest) ++out_of_order;
+    latest = std::max(latest, frame.time);
+  }
+  void event(const Event& event) override {
+    if (event.time < latest) ++out_of_order;
+    latest = std::max(latest, event.time);
+    ++events;
+  }
+  void end(const Counters& counters, const std::string& why) override {
+    counts = counters.counts;
+    stopped_by = why;
+  }
+  double latest = 0.0;
+  std::uint64_t events = 0, out_of_order = 0;
+  std::map<std::string, std::uint64_t> counts;
+  std::string stopped_by;
+};
+
+Watch watch(const scene::Scene& scene, const Laws& laws) {
+  Watch watch;
+  engines::RunOptions options;
+  options.engine = "tw";
+  options.timewarp = engines::fast_timewarp();
+  options.frame_rate_hz = 1.0;
+  engines::run_scene(scene, laws, options, watch);
+  return watch;
+}
+
+/// Minutes of computing: ten million events, and an hour of rocks.
+void long_runs(const Laws& laws, Findings& findings) {
+  findings.part("ten million events", [&] {
+    scene::Scene scene = scene::make_sized_scene("gas", 10000);
+    scene.duration_s = kTenMillionEvents;
+    const Watch seen = watch(scene, laws);
+    findings.at_least("gas of 10,000: events committed", static_cast<double>(seen.events), 1e7, "", "else it was too short");
+    findings.at_most("gas of 10,000: frames and events shown after later ones", static_cast<double>(seen.out_of_order), 0.0, "", "global virtual time only grows, and nothing is shown before it");
+  });
+  findings.part("an hour of rocks", [&] {
+    scene::Scene scene = scene::make_sized_scene("avalanche", 4);
+    scene.duration_s = 600.0;
+    const Watch start = watch(scene, laws);
+    scene.duration_s = 3600.0;
+    const Watch whole = watch(scene, laws);
+    findings.at_least("an hour of four rocks: simulated", whole.stopped_by.empty() ? whole.latest : 0.0, 3600.0, "s", "to its end");
+    findings.at_most("an hour of four rocks: states kept at most, over those of ten minutes", static_cast<double>(whole.counts.at("states_kept")) / static_cast<double>(start.counts.at("states_kept")), 1.05, "", "flat after warm-up");
+  });
 }
 
 /// How many bodies of frames are not, bit for bit, where the other run has them; 1e9 where events differ.
@@ -64,6 +119,7 @@ void rollback(const Given& given, Findings& findings) {
   for (std::size_t k = 0; k < std::min(reference.frames.size(), steps.frames.size()); ++k)
     for (std::size_t i = 0; i < reference.bodies.size(); ++i) parted += reference.frames[k].poses[i].com_world != steps.frames[k].poses[i].com_world ? 1.0 : 0.0;
   findings.must_fail("retroactive detection in steps: bodies of frames that differ in any bit", parted, 0.0, "", "it cuts every flight where any body meets anything");
+  if (given.is_long) long_runs(laws, findings);
 }
 
 }  // namespace
