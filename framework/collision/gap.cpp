@@ -9,6 +9,7 @@ namespace tumble::collision {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kRounding = 1e-14;   // of the query's size: what a search may miss a limit by
 
 Gap flipped(Gap gap) {
   std::swap(gap.point_a_world, gap.point_b_world);
@@ -69,9 +70,15 @@ Gap compute_gap(const CollisionShape& a, const Pose& pose_a, const CollisionShap
   return gap_of_pieces(a, b, Query(a, pose_a, b, pose_b), pose_b.com_world, cache);
 }
 
-double gap_distance(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, PairCache* cache) {
+double gap_distance(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, PairCache* cache, double limit) {
   if (a.is_half_space() || b.is_half_space() || (a.is_ball() && b.is_ball())) return compute_gap(a, pose_a, b, pose_b).distance;
-  return nearest_pieces(Query(a, pose_a, b, pose_b), kInfinity, cache, Points::kUnwanted).gap.distance - (a.radius() + b.radius());
+  if (cache && cache->measured_at(pose_a, pose_b) && (cache->measured <= cache->measured_up_to || limit <= cache->measured_up_to)) return cache->measured;
+  const Query query(a, pose_a, b, pose_b);
+  const double radii = a.radius() + b.radius(), looked = std::max(limit, 0.0) + radii + kRounding * query.size;
+  double distance = nearest_pieces(query, looked, cache, Points::kUnwanted).gap.distance - radii;
+  if (!(distance <= limit)) distance = std::nextafter(limit, kInfinity);
+  if (cache) cache->note(pose_a, pose_b, distance, limit);
+  return distance;
 }
 
 bool overlapping(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double allowance) {

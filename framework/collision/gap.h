@@ -1,6 +1,7 @@
 /// How far two solids are apart, where they are nearest, and which way they would be pushed.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -33,7 +34,10 @@ inline double least_gap(const CollisionShape& a, const Pose& pose_a, const Colli
   return between.norm() - a.bounding_radius() - b.bounding_radius();
 }
 /// The same distance to the last bit, sooner: without the nearest points. [m]
-double gap_distance(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, PairCache* cache = nullptr);
+/// @param limit  of gaps larger than this no more is asked than that they are [m]
+/// @return the distance, or where it is above the limit any bound from below that is above the limit as well
+double gap_distance(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, PairCache* cache = nullptr,
+                    double limit = std::numeric_limits<double>::infinity());
 
 /// Whether two solids share a point of their insides, also when one lies wholly inside the other. For initial states.
 /// @param allowance  an overlap this deep still counts as touching [m]

@@ -52,12 +52,21 @@ double squared(double x) { return x * x; }
 
 }  // namespace
 
+PrincipalMoments principal_moments(const Inertia& inertia) {
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(inertia.inertia_body);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
 RotationBounds bound_rotation(const RigidBodyState& state, const Inertia& inertia, const Disturbance& disturbance) {
+  if (omega_of(state, inertia).isZero(0.0) && disturbance.torque == 0.0) return {0.0, 0.0};
+  return bound_rotation(state, inertia, principal_moments(inertia), disturbance);
+}
+
+RotationBounds bound_rotation(const RigidBodyState& state, const Inertia& inertia, const PrincipalMoments& principal, const Disturbance& disturbance) {
   const Vector3d omega_world = omega_of(state, inertia);
   if (omega_world.isZero(0.0) && disturbance.torque == 0.0) return {0.0, 0.0};
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(inertia.inertia_body);
-  const Vector3d moments = solver.eigenvalues();
-  const Vector3d omega_principal = solver.eigenvectors().transpose() * (state.world_from_body.conjugate() * omega_world);
+  const Vector3d& moments = principal.moments;
+  const Vector3d omega_principal = principal.axes_body.transpose() * (state.world_from_body.conjugate() * omega_world);
   const Vector3d now = omega_principal.cwiseAbs2();
   const double error = disturbance.angular_velocity_error, h = disturbance.duration;
 

@@ -17,6 +17,14 @@ struct Disturbance {
   double angular_velocity_error = 0.0;   // largest |rate at which the body is turned - omega of its state| (numerical paths) [rad/s]
 };
 
+/// A body's moments about its principal axes, ascending, and these axes as columns, body frame.
+struct PrincipalMoments {
+  Vector3d moments;    // [kg m^2]
+  Matrix3d axes_body;
+};
+/// @pre inertia is finite
+PrincipalMoments principal_moments(const Inertia& inertia);
+
 /// Bounds on omega = I^-1 L, the angular velocity of the body's state, for the whole duration.
 /// Energy 2T = sum I_i x_i and momentum L^2 = sum I_i^2 x_i, x_i = w_i^2 >= 0, leave a segment of x; |w|^2 = sum x_i is linear on
 /// it, so its ends bound it (the needle whose L / I_min is a million times its speed costs nothing). A torque and a path that is
@@ -26,5 +34,7 @@ struct Disturbance {
 /// @pre inertia is finite; nothing is assumed of the size of the disturbances. Always angular_speed <= largest |L| / I_min.
 /// Source: H. Goldstein, Classical Mechanics, sec. 5.6 (polhode).
 RotationBounds bound_rotation(const RigidBodyState& state, const Inertia& inertia, const Disturbance& disturbance);
+/// The same for one who asks often. @param principal  principal_moments(inertia)
+RotationBounds bound_rotation(const RigidBodyState& state, const Inertia& inertia, const PrincipalMoments& principal, const Disturbance& disturbance);
 
 }  // namespace tumble

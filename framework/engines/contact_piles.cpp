@@ -27,6 +27,7 @@ constexpr int kMostShifts = 24;         // rounds
 constexpr double kShiftReach = 1.5;     // shifts: points this far apart may come together by them
 constexpr double kDeeper = 1.1, kAsDeep = 0.9;   // of an overlap: a point this deep is no part of it; none that deep has missed it
 constexpr double kGoOn = 2.0;           // likewise, in what two bodies have moved by the last shift: levers make it long
+constexpr double kMeasured = 10.0;      // shells: of gaps larger than this, and than the rest speed goes in a step, a bound will do
 constexpr double kSamePlace = 0.05;     // of the shell: bodies that have moved less since are faced as they were
 
 }  // namespace
@@ -122,7 +123,7 @@ bool LastingContacts::keep_pile_apart(const Group& group, const std::vector<Pair
       gaps[k] -= moved;
       if (gaps[k] >= least) continue;
       gaps[k] = least_gap_of(pairs[k], states);
-      if (gaps[k] < least) gaps[k] = distance_of(pairs[k], states);
+      if (gaps[k] < least) gaps[k] = distance_of(pairs[k], states, std::max(kMeasured * room_of(pairs[k]), rest_speed_ * step_));
       if (gaps[k] < least) wrong = std::max(wrong, room_of(pairs[k]) - gaps[k]);
     }
     if (wrong == 0.0) return true;

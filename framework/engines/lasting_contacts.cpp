@@ -50,7 +50,7 @@ void LastingContacts::begin_where_touching(const std::vector<Pair>& pairs) {
 // A scene's places are rounded: of bodies wedged between others no single shift takes that back.
 void LastingContacts::draw_apart() {
   std::vector<RigidBodyState> states = moving_.states();
-  const auto closed = [&](const Pair& pair) { return distance_of(pair, states) < 0; };
+  const auto closed = [&](const Pair& pair) { return distance_of(pair, states, 0.0) < 0; };
   for (const Group& group : groups({lasting_.begin(), lasting_.end()})) {
     if (std::none_of(group.pairs.begin(), group.pairs.end(), closed)) continue;
     keep_apart(group, group.pairs, states, moving_.time());
@@ -128,9 +128,10 @@ collision::Gap LastingContacts::gap_of(Pair pair, const std::vector<RigidBodySta
                                 moving_.pair_cache(pair.first, pair.second));
 }
 
-double LastingContacts::distance_of(Pair pair, const std::vector<RigidBodyState>& states) const {
+// Above `limit` a bound from below.
+double LastingContacts::distance_of(Pair pair, const std::vector<RigidBodyState>& states, double limit) const {
   return collision::gap_distance(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states),
-                                 moving_.pair_cache(pair.first, pair.second));
+                                 moving_.pair_cache(pair.first, pair.second), limit);
 }
 
 double LastingContacts::least_gap_of(Pair pair, const std::vector<RigidBodyState>& states) const {
@@ -180,7 +181,7 @@ std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidat
     if (!lasting_.contains(pair) && !plastic(pair)) continue;
     if (in_step) {
       const double within = reach(pair);
-      if (least_gap_of(pair, moving_.states()) <= within && distance_of(pair, moving_.states()) <= within) touching.push_back(pair);
+      if (least_gap_of(pair, moving_.states()) <= within && distance_of(pair, moving_.states(), within) <= within) touching.push_back(pair);
       continue;
     }
     Points points = points_at(pair, moving_.states(), reach(pair));
@@ -314,8 +315,9 @@ bool LastingContacts::commit() {
     for (std::size_t k = 0; k < group.near.size(); ++k) {
       const Pair& pair = group.near[k];
       if (!keeps(pair)) continue;
-      const bool lasted = lasts(pair), touches = (group.pile ? gaps[k] : distance_of(pair, states)) <=
-                                                 std::max(group.pile ? 2 * room_of(pair) : kApart * shell(pair), lasted ? rest_speed_ * step_ : 0.0);
+      const bool lasted = lasts(pair);
+      const double near = std::max(group.pile ? 2 * room_of(pair) : kApart * shell(pair), lasted ? rest_speed_ * step_ : 0.0);
+      const bool touches = (group.pile ? gaps[k] : distance_of(pair, states, near)) <= near;
       if (touches == lasted) continue;
       const collision::Gap gap = gap_of(pair, states);
       if (touches) {

@@ -13,6 +13,7 @@
 /// Sources: J. J. Moreau, CISM 302, 1988; D. Stewart, J. Trinkle 1996; D. Baraff, SIGGRAPH 1994.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -49,6 +50,9 @@ class LastingContacts {
   bool empty() const { return points_.empty(); }
   /// Whether the last advance() has kept the two apart, so that no impact is looked for.
   bool keeps(Pair pair) const { return points_.contains(pair); }
+
+  /// Whether a blow between the two is dealt with in the step it falls into, not at its instant.
+  bool deals_in_step(Pair pair) const { return plastic(pair); }
 
   /// After the step was committed: takes back overlaps, ends contacts that have come apart.
   /// @return whether all pairs with a body in contact are known to be apart
@@ -117,7 +121,7 @@ class LastingContacts {
   collision::Pose pose(int body, const std::vector<RigidBodyState>& states) const;
   Points points_at(Pair pair, const std::vector<RigidBodyState>& states, double reach) const;
   collision::Gap gap_of(Pair pair, const std::vector<RigidBodyState>& states) const;
-  double distance_of(Pair pair, const std::vector<RigidBodyState>& states) const;
+  double distance_of(Pair pair, const std::vector<RigidBodyState>& states, double limit = std::numeric_limits<double>::infinity()) const;
   double least_gap_of(Pair pair, const std::vector<RigidBodyState>& states) const;
   std::vector<Group> groups(const std::vector<Pair>& touching);
   void note_near_pairs(const std::vector<Pair>& candidates);

@@ -93,14 +93,15 @@ std::optional<Earliest> Meetings::find_earliest(const std::vector<Pair>& pairs) 
   return earliest;
 }
 
-// Of those far apart a bound from below.
+// Of those that are farther apart than what counts as touching a bound from below.
 double Meetings::gap_on_path(Pair pair, double t) {
   const auto [a, b] = pair;
   const collision::Pose pose_a = moving_.motion_at(a, t).pose, pose_b = moving_.motion_at(b, t).pose;
   const double least = collision::least_gap(moving_.shape(a), pose_a, moving_.shape(b), pose_b);
-  if (least > touching_distance(pair)) return least;
+  const double touching = touching_distance(pair);
+  if (least > touching) return least;
   ++counters_.collision.gap_evaluations;
-  return collision::gap_distance(moving_.shape(a), pose_a, moving_.shape(b), pose_b, moving_.pair_cache(a, b));
+  return collision::gap_distance(moving_.shape(a), pose_a, moving_.shape(b), pose_b, moving_.pair_cache(a, b), touching);
 }
 
 collision::Gap Meetings::gap(Pair pair) const {
@@ -154,7 +155,7 @@ void Meetings::separate(const std::vector<Pair>& pairs) {
     for (const auto& pair : pairs) {
       const auto [a, b] = pair;
       if (collision::least_gap(moving_.shape(a), pose_of(a), moving_.shape(b), pose_of(b)) > 0) continue;
-      if (collision::gap_distance(moving_.shape(a), pose_of(a), moving_.shape(b), pose_of(b), moving_.pair_cache(a, b)) >= 0) continue;
+      if (collision::gap_distance(moving_.shape(a), pose_of(a), moving_.shape(b), pose_of(b), moving_.pair_cache(a, b), 0.0) >= 0) continue;
       const collision::Gap gap = this->gap(pair);
       clean = false;
       const double mass_a = moving_.can_move(pair.first) ? moving_.world().bodies[pair.first].inertia.inverse_mass : 0.0;

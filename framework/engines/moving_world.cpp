@@ -37,7 +37,7 @@ MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters) :
 MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters, std::vector<const collision::CollisionShape*> shapes)
     : world_(std::move(world)), laws_(laws), counters_(counters), shapes_(std::move(shapes)), rests_(world_.bodies.size()), asleep_(world_.bodies.size(), 0), force_points_body_(world_.point_forces.size()),
       paths_(world_.bodies.size()), told_of_shortening_(world_.bodies.size(), false),
-      told_of_aliasing_(world_.bodies.size(), false) {
+      told_of_aliasing_(world_.bodies.size(), false), principal_(world_.bodies.size()) {
   for (const WorldBody& body : world_.bodies) states_.push_back(body.state);
   if (shapes_.empty()) {
     for (const WorldBody& body : world_.bodies) own_shapes_.emplace_back(body.shape);
@@ -206,7 +206,7 @@ RigidBodyState MovingWorld::fly(int body, double duration, const VectorXd& start
   const Spin spin{state.world_from_body, inertia.inverse_inertia_body * (state.world_from_body.conjugate() * state.angular_momentum_world)};
   std::optional<SpinSeries>& turning = paths_[body].turning;
   if (rotations_[body].is_asymmetric() && !turning && duration == target_ - time_) {
-    const double fastest = bound_rotation(state, inertia, {0.0}).angular_speed;
+    const double fastest = bound_rotation(state, inertia, principal_of(body), {0.0}).angular_speed;
     if (duration <= SpinSeries::reach(rotations_[body].moments(), fastest)) turning.emplace(rotations_[body].moments(), rotations_[body].body_from_principal(), spin);
   }
   state.world_from_body = turning ? turning->at(duration).world_from_body : rotations_[body].after(spin, duration).world_from_body;

@@ -5,12 +5,15 @@
 /// Collision finding, rollback and pictures all look at this one path.
 #pragma once
 
+#include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "framework/collision/first_impact.h"
 #include "framework/collision/sweep.h"
 #include "framework/dynamics/laws.h"
+#include "framework/dynamics/rotation_bounds.h"
 #include "framework/dynamics/spin_series.h"
 #include "framework/dynamics/world.h"
 #include "framework/engines/effects_built.h"
@@ -94,9 +97,10 @@ class MovingWorld {
   double target() const { return target_; }
   /// Begins the step again with an earlier target, if one of the bodies of these pairs turns too far in it for a bound on its turning to
   /// hold: collisions of these pairs would be missed. Balls for collision never ask for that.
+  /// @param in_step  pairs that contacts keep apart however their paths run: of these only the turning is asked, not what is wrong with it
   /// @return whether the target was moved
   /// @throws StoppedRun where a step would have to be cut into more than 1e5 parts
-  bool shorten_step(const std::vector<std::pair<int, int>>& pairs);
+  bool shorten_step(const std::vector<std::pair<int, int>>& pairs, const std::function<bool(std::pair<int, int>)>& in_step = {});
   /// Where a body's path is at time t in [time(), target()]; any t for immovable, resting and sleeping ones.
   RigidBodyState path(int body, double t);
   collision::MotionState motion_at(int body, double t);
@@ -131,9 +135,10 @@ class MovingWorld {
   Wrench wrench_on(int body, const RigidBodyState& state);
   void add_point_forces(int body, const RigidBodyState& state, Wrench& sum);
   double torque_bound(int body) const;
+  const PrincipalMoments& principal_of(int body);
   double turning_error(int body, double duration);
   bool bound_turning(int body, double duration, collision::MotionBounds& bounds);
-  double resolved_duration(int body, double duration);
+  double resolved_duration(int body, double duration, bool measures_path);
   void tell_of_aliasing(int body, double duration);
   collision::MotionBounds work_out_bounds(int body);
   RigidBodyState still_state(int body, double t) const;
@@ -156,6 +161,7 @@ class MovingWorld {
   double time_ = 0.0, target_ = 0.0;
   double path_bend_ = 1.0;   // how much of a constant acceleration the laws' integration puts into a path: 1 for order >= 2, 0 for Euler
   std::uint64_t integrations_in_step_ = 0;
+  std::vector<std::optional<PrincipalMoments>> principal_;      // by body, once asked for
   std::vector<FreeRotation> rotations_;          // by body; empty: the laws integrate
 };
 

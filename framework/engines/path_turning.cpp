@@ -4,7 +4,6 @@
 // quite the angular velocity of the states it gives; by how much is measured on the path itself.
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include <fmt/format.h>
 
@@ -52,6 +51,11 @@ double MovingWorld::torque_bound(int body) const {
   return bound;
 }
 
+const PrincipalMoments& MovingWorld::principal_of(int body) {
+  if (!principal_[body]) principal_[body] = principal_moments(world_.bodies[body].inertia);
+  return *principal_[body];
+}
+
 // Bounds |rate of the path - omega of its states| on a path of this duration. [rad/s]
 double MovingWorld::turning_error(int body, double duration) {
   if (flies_freely(body)) return 0.0;
@@ -78,9 +82,9 @@ double MovingWorld::turning_error(int body, double duration) {
 bool MovingWorld::bound_turning(int body, double duration, collision::MotionBounds& bounds) {
   const Inertia& inertia = world_.bodies[body].inertia;
   Disturbance disturbance{.duration = duration, .torque = torque_bound(body)};
-  if (bound_rotation(states_[body], inertia, disturbance).angular_speed == 0.0) return true;
+  if (bound_rotation(states_[body], inertia, principal_of(body), disturbance).angular_speed == 0.0) return true;
   disturbance.angular_velocity_error = turning_error(body, duration);
-  const RotationBounds rotation = bound_rotation(states_[body], inertia, disturbance);
+  const RotationBounds rotation = bound_rotation(states_[body], inertia, principal_of(body), disturbance);
   bounds.angular_speed = rotation.angular_speed;
   bounds.angular_acceleration = rotation.angular_acceleration;
   bounds.angular_velocity_error = disturbance.angular_velocity_error;
@@ -88,11 +92,12 @@ bool MovingWorld::bound_turning(int body, double duration, collision::MotionBoun
 }
 
 // The longest part of `duration`, within a factor of about two, in which bounds on the body's turning hold.
-double MovingWorld::resolved_duration(int body, double duration) {
+double MovingWorld::resolved_duration(int body, double duration, bool measures_path) {
   collision::MotionBounds bounds;
-  if (bound_turning(body, duration, bounds)) return duration;
+  if (measures_path && bound_turning(body, duration, bounds)) return duration;
   const Disturbance disturbance{.duration = duration, .torque = torque_bound(body)};
-  const double speed = bound_rotation(states_[body], world_.bodies[body].inertia, disturbance).angular_speed;
+  const double speed = bound_rotation(states_[body], world_.bodies[body].inertia, principal_of(body), disturbance).angular_speed;
+  if (!measures_path && speed * duration <= kMostTurning) return duration;
   const double turning_little = std::min(duration, (1.0 - kUnder) * kMostTurning / speed);
   double resolved = turning_little;
   for (int halvings = 0; !bound_turning(body, resolved, bounds); ++halvings, resolved *= 0.5)
@@ -111,15 +116,19 @@ void MovingWorld::tell_of_aliasing(int body, double duration) {
                                           world_.bodies[body].name, turning, duration, duration / turning));
 }
 
-bool MovingWorld::shorten_step(const std::vector<std::pair<int, int>>& pairs) {
-  std::set<int> bodies;
-  for (const auto& [a, b] : pairs) bodies.insert({a, b});
+bool MovingWorld::shorten_step(const std::vector<std::pair<int, int>>& pairs, const std::function<bool(std::pair<int, int>)>& in_step) {
+  enum class Need : char { kNothing, kTurning, kPath };
+  std::vector<Need> needs(size(), Need::kNothing);
+  for (const auto& pair : pairs) {
+    const Need need = in_step && in_step(pair) ? Need::kTurning : Need::kPath;
+    for (const int body : {pair.first, pair.second}) needs[body] = std::max(needs[body], need);
+  }
   const double asked = target_ - time_;
   double duration = asked;
   int fastest = -1;
-  for (const int body : bodies) {
-    if (!can_move(body) || shapes_[body]->is_ball() || paths_[body].smooth) continue;   // however a ball turns, it looks the same; a smooth path's bounds are exact
-    const double resolved = resolved_duration(body, duration);
+  for (int body = 0; body < size(); ++body) {
+    if (needs[body] == Need::kNothing || !can_move(body) || shapes_[body]->is_ball() || paths_[body].smooth) continue;   // however a ball turns, it looks the same; a smooth path's bounds are exact
+    const double resolved = resolved_duration(body, duration, needs[body] == Need::kPath);
     if (resolved < duration) fastest = body;
     duration = resolved;
   }

@@ -18,7 +18,7 @@ double smaller_gap(const MovingWorld& moving, const std::vector<RigidBodyState>&
     if ((states[i].com_world - states[j].com_world).squaredNorm() > reach * reach) return smallest;
   }
   const auto pose = [&](int k) { return collision::Pose{states[k].com_world, states[k].world_from_body}; };
-  return std::min(smallest, collision::gap_distance(a, pose(i), b, pose(j), moving.pair_cache(i, j)));
+  return std::min(smallest, collision::gap_distance(a, pose(i), b, pose(j), moving.pair_cache(i, j), smallest));
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ class RetroactiveRun {
   void advance_to(double target);
   void resolve_at(const std::vector<std::pair<int, int>>& pairs, std::pair<int, int> trigger);
   bool stays_on(const TouchingPair& pair, int body, const Vector3d& up) const;
-  std::vector<std::pair<int, int>> keep_contacts(std::vector<std::pair<int, int>> pairs);
+  std::vector<std::pair<int, int>> keep_contacts(std::vector<std::pair<int, int>>& pairs);
   void begin_contacts(const std::vector<TouchingPair>& touching, const std::vector<Event>& events);
   void note_touching(const std::vector<std::pair<int, int>>& near);
   void begin_again();
@@ -208,16 +208,18 @@ void RetroactiveRun::watch_for_trouble() {
   }
 }
 
-// Bodies in lasting contact get their paths. @return the pairs among which impacts are to be looked for
-std::vector<std::pair<int, int>> RetroactiveRun::keep_contacts(std::vector<std::pair<int, int>> pairs) {
+// Bodies in lasting contact get their paths. @param pairs  becomes those among which impacts are to be looked for
+// @return all pairs that may meet on the new paths, where there are any
+std::vector<std::pair<int, int>> RetroactiveRun::keep_contacts(std::vector<std::pair<int, int>>& pairs) {
   while (const auto earlier = contacts_->advance(pairs)) {
     moving_.begin_step(*earlier);
     pairs = meetings_.candidates();
   }
-  if (contacts_->empty()) return pairs;
-  pairs = meetings_.candidates();   // the paths are others now
+  if (contacts_->empty()) return {};
+  std::vector<std::pair<int, int>> near = meetings_.candidates();
+  pairs = near;
   std::erase_if(pairs, [&](const auto& pair) { return contacts_->keeps(pair); });
-  return pairs;
+  return near;
 }
 
 void RetroactiveRun::note_touching(const std::vector<std::pair<int, int>>& near) {
@@ -237,13 +239,13 @@ void RetroactiveRun::advance_to(double target) {
     moving_.begin_step(target);
     ++counters_.steps;
     std::vector<std::pair<int, int>> pairs = meetings_.candidates();
-    if (moving_.shorten_step(pairs)) pairs = meetings_.candidates();
+    if (moving_.shorten_step(pairs, [&](const auto& pair) { return has_contacts() && contacts_->deals_in_step(pair); })) pairs = meetings_.candidates();
     if (has_sleepers() && sleepers_->wake_met(pairs)) {
       begin_again();
       continue;
     }
-    if (has_contacts()) pairs = keep_contacts(std::move(pairs));
-    const std::vector<std::pair<int, int>> near = has_contacts() && !contacts_->empty() ? meetings_.candidates() : std::vector<std::pair<int, int>>{};
+    std::vector<std::pair<int, int>> near;
+    if (has_contacts()) near = keep_contacts(pairs);
     const std::optional<Earliest> earliest = meetings_.earliest(pairs);
     if (has_sleepers() && earliest && sleepers_->wake(pairs[earliest->pair])) {
       begin_again();

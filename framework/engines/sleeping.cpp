@@ -158,8 +158,8 @@ bool Sleepers::would_touch(Pair pair) {
   const double room = kRoom * std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius());
   const auto pose = [&](int body) { return moving_.motion_at(body, moving_.time()).pose; };
   ++counters_.collision.gap_evaluations;
-  const double gap = collision::gap_distance(moving_.shape(pair.first), pose(pair.first), moving_.shape(pair.second), pose(pair.second), moving_.pair_cache(pair.first, pair.second));
-  return gap <= way(pair.first) + way(pair.second) + room;
+  const double near = way(pair.first) + way(pair.second) + room;
+  return collision::gap_distance(moving_.shape(pair.first), pose(pair.first), moving_.shape(pair.second), pose(pair.second), moving_.pair_cache(pair.first, pair.second), near) <= near;
 }
 
 bool Sleepers::wake_met(const std::vector<Pair>& candidates) {

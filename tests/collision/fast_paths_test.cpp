@@ -1,5 +1,6 @@
 // What is found fast against what is found slowly: gaps of convex solids with 33 digits, pairs of boxes by trying all, answers that
 // are given from what a caller kept against answers without.
+#include <cmath>
 #include <cstring>
 #include <random>
 
@@ -212,6 +213,21 @@ void expect_same_bits(const Gap& a, const Gap& b) {
   EXPECT_EQ(a.point_b_world, b.point_b_world);
 }
 
+// Asked up to limits, wide and narrow in turn, before and after the two stood elsewhere: within a limit the distance, to the bit; beyond
+// it a bound from below that is beyond it too.
+void expect_limits_keep_what_is_within(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double distance, double some, PairCache& cache) {
+  const Pose aside{pose_a.com_world + Vector3d(0, 0, some), pose_a.world_from_body};
+  for (const double limit : {0.5 * distance, some, 2 * distance, 0.0, distance, std::nextafter(distance, -1e300)}) {
+    collision::gap_distance(a, aside, b, pose_b, &cache, limit);
+    for (PairCache* const kept : {&cache, &cache, static_cast<PairCache*>(nullptr)}) {
+      const double found = collision::gap_distance(a, pose_a, b, pose_b, kept, limit);
+      if (distance <= limit) EXPECT_EQ(found, distance) << found - distance << " limit " << limit << (kept ? " kept" : " plain");
+      else EXPECT_TRUE(found > limit && found <= distance) << found << " for " << distance << " up to " << limit;
+    }
+    collision::gap_distance(a, pose_a, b, pose_b, &cache, some);   // the narrower answer must not stand for the wider question
+  }
+}
+
 TEST(PairCache, ChangesNoBitOfAnyAnswer) {
   Chance chance(24);
   for (const auto& [name_a, name_b] : {std::pair("t_handle", "l_shape"), std::pair("l_shape", "l_shape"), std::pair("t_handle", "t_handle"), std::pair("torus", "t_handle")}) {
@@ -230,6 +246,7 @@ TEST(PairCache, ChangesNoBitOfAnyAnswer) {
         expect_same_bits(gap, collision::compute_gap(*first, pose_a, b, pose_b, &cache));
         EXPECT_EQ(gap.distance, collision::gap_distance(*first, pose_a, b, pose_b));
         EXPECT_EQ(gap.distance, collision::gap_distance(*first, pose_a, b, pose_b, &cache));
+        expect_limits_keep_what_is_within(*first, pose_a, b, pose_b, gap.distance, chance.in(-1, 1) * size, cache);
         const double reach = size * std::pow(10.0, chance.in(-9, -1));
         const auto points = collision::near_points(*first, pose_a, b, pose_b, reach), kept = collision::near_points(*first, pose_a, b, pose_b, reach, &cache);
         ASSERT_EQ(points.size(), kept.size());
@@ -255,6 +272,17 @@ TEST(PairCache, ChangesNoBitOfAnyAnswer) {
         expect_same_bits(plain->gap, faster->gap);
       }
     }
+  }
+}
+
+TEST(PairCache, OfConvexSolidsAsWell) {
+  Chance chance(26);
+  const CollisionShape a(random_hull(14, 3)), b(random_hull(9, 4));
+  PairCache cache;
+  const double size = std::min(a.bounding_radius(), b.bounding_radius());
+  for (int k = 0; k < 300; ++k) {
+    const Pose pose_a{chance.in(0.3, 1.6) * size * chance.vector(), chance.turn()}, pose_b{Vector3d::Zero(), chance.turn()};
+    expect_limits_keep_what_is_within(a, pose_a, b, pose_b, collision::gap_distance(a, pose_a, b, pose_b), chance.in(-1, 1) * size, cache);
   }
 }
 
