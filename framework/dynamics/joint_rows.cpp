@@ -11,29 +11,36 @@ Vector6d six(const Vector3d& linear, const Vector3d& angular) {
   return both;
 }
 
-double rate_of(const ConstraintRow& row, const Body& a, const Body& b) {
-  return row.jacobian_a.dot(six(a.velocity_world, a.omega_world)) + row.jacobian_b.dot(six(b.velocity_world, b.omega_world));
+// What the three rows of a point share: how B's point moves against A's, and what it accelerates by turning.
+struct PointMotion {
+  Vector3d apart, velocity, centripetal;
+};
+
+PointMotion point_motion(const Body& a, const Vector3d& r_a, const Body& b, const Vector3d& r_b) {
+  const Vector3d turning_a = a.omega_world.cross(r_a), turning_b = b.omega_world.cross(r_b);
+  // The difference of the centres first: far from the origin the small arms keep their digits.
+  return {(a.com_world - b.com_world) + r_a - r_b, (a.velocity_world - b.velocity_world) + turning_a - turning_b, a.omega_world.cross(turning_a) - b.omega_world.cross(turning_b)};
 }
 
-ConstraintRow point_row(const Vector3d& e, const Body& a, const Vector3d& r_a, const Body& b, const Vector3d& r_b) {
+ConstraintRow point_row(int axis, const PointMotion& motion, const Vector3d& r_a, const Vector3d& r_b) {
+  const Vector3d e = Vector3d::Unit(axis);
   ConstraintRow row;
   row.jacobian_a = six(e, r_a.cross(e));
   row.jacobian_b = -six(e, r_b.cross(e));
-  // The difference of the centres first: far from the origin the small arms keep their digits.
-  row.value = e.dot((a.com_world - b.com_world) + r_a - r_b);
-  row.rate = rate_of(row, a, b);
-  row.velocity_product = e.dot(a.omega_world.cross(a.omega_world.cross(r_a)) - b.omega_world.cross(b.omega_world.cross(r_b)));
+  row.value = motion.apart[axis];
+  row.rate = motion.velocity[axis];
+  row.velocity_product = motion.centripetal[axis];
   return row;
 }
 
 ConstraintRow axes_row(const Vector3d& x_a, const Body& a, const Vector3d& z_b, const Body& b) {
   ConstraintRow row;
-  const Vector3d across = x_a.cross(z_b);
+  const Vector3d across = x_a.cross(z_b), turning = a.omega_world - b.omega_world;
   row.jacobian_a = six(Vector3d::Zero(), across);
   row.jacobian_b = -row.jacobian_a;
   row.value = x_a.dot(z_b);
-  row.rate = rate_of(row, a, b);
-  row.velocity_product = (a.omega_world.cross(x_a).cross(z_b) + x_a.cross(b.omega_world.cross(z_b))).dot(a.omega_world - b.omega_world);
+  row.rate = across.dot(turning);
+  row.velocity_product = (a.omega_world.cross(x_a).cross(z_b) + x_a.cross(b.omega_world.cross(z_b))).dot(turning);
   return row;
 }
 
@@ -50,7 +57,8 @@ int row_count(scene::JointKind kind) {
 
 void append_joint_rows(const JointLink& joint, const Body& a, int index_a, const Body& b, int index_b, std::vector<Constraint>& rows) {
   const Vector3d r_a = a.world_from_body * joint.a.point_body, r_b = b.world_from_body * joint.b.point_body;
-  for (int axis = 0; axis < 3; ++axis) rows.push_back({index_a, index_b, point_row(Vector3d::Unit(axis), a, r_a, b, r_b)});
+  const PointMotion motion = point_motion(a, r_a, b, r_b);
+  for (int axis = 0; axis < 3; ++axis) rows.push_back({index_a, index_b, point_row(axis, motion, r_a, r_b)});
   if (joint.kind == scene::JointKind::kBall) return;
   const Matrix3d axes_a = (a.world_from_body * joint.a_from_joint).toRotationMatrix(), axes_b = (b.world_from_body * joint.b_from_joint).toRotationMatrix();
   rows.push_back({index_a, index_b, axes_row(axes_a.col(0), a, axes_b.col(2), b)});

@@ -92,8 +92,8 @@ class Envelope {
       double* const of_i = row(i);
       double pivot = of_i[i];
       for (Eigen::Index j = first(i); j < i; ++j) {  // first L_ij D_j, which the columns to come need
-        const double* const of_j = row(j);
-        for (Eigen::Index k = std::max(first(i), first(j)); k < j; ++k) of_i[j] -= of_i[k] * of_j[k];
+        const Eigen::Index from = std::max(first(i), first(j));
+        of_i[j] -= product(of_i + from, row(j) + from, j - from);
       }
       for (Eigen::Index j = first(i); j < i; ++j) {
         const double times_pivot = of_i[j];
@@ -104,16 +104,30 @@ class Envelope {
     }
   }
 
-  VectorXd solve(VectorXd x) const {
-    for (Eigen::Index i = 0; i < size(); ++i)
-      for (Eigen::Index k = first(i); k < i; ++k) x[i] -= row(i)[k] * x[k];
+  VectorXd solve(VectorXd unknown) const {
+    double* const x = unknown.data();
+    for (Eigen::Index i = 0; i < size(); ++i) x[i] -= product(row(i) + first(i), x + first(i), i - first(i));
     for (Eigen::Index i = 0; i < size(); ++i) x[i] *= inverse_pivots_[static_cast<std::size_t>(i)];
-    for (Eigen::Index i = size(); i-- > 0;)
-      for (Eigen::Index k = first(i); k < i; ++k) x[k] -= row(i)[k] * x[i];
-    return x;
+    for (Eigen::Index i = size(); i-- > 0;) {
+      const double* const of_i = row(i);
+      const double x_i = x[i];
+      for (Eigen::Index k = first(i); k < i; ++k) x[k] -= of_i[k] * x_i;
+    }
+    return unknown;
   }
 
  private:
+  /// Two sums side by side: neither waits for the other.
+  static double product(const double* a, const double* b, Eigen::Index count) {
+    double even = 0.0, odd = 0.0;
+    Eigen::Index k = 0;
+    for (; k + 1 < count; k += 2) {
+      even += a[k] * b[k];
+      odd += a[k + 1] * b[k + 1];
+    }
+    if (k < count) even += a[k] * b[k];
+    return even + odd;
+  }
   Eigen::Index size() const { return static_cast<Eigen::Index>(first_.size()); }
   Eigen::Index first(Eigen::Index i) const { return first_[static_cast<std::size_t>(i)]; }
   /// Row i, to be counted by column from the matrix' first.
@@ -193,8 +207,6 @@ class RowSystem {
       stored += i - least + 1;
     }
     scale_ = VectorXd::Zero(static_cast<Eigen::Index>(rows_.size()));
-    for_each_product(touching, [&](std::size_t i, std::size_t j, double value) { if (i == j) scale_[static_cast<Eigen::Index>(i)] += value; });
-    scale_ = (scale_.array() > 0).select(scale_.array().rsqrt(), 0.0);
     if (stored <= kWide * rows_.size()) factorise_envelope(first, touching);
     else factorise_sparse(touching);
   }
@@ -224,14 +236,18 @@ class RowSystem {
     }
   }
 
-  double scaled(double value, std::size_t i, std::size_t j) const { return value * scale_[static_cast<Eigen::Index>(i)] * scale_[static_cast<Eigen::Index>(j)]; }
+  /// The diagonal makes the scale.
+  void scale_by_diagonal() { scale_ = (scale_.array() > 0).select(scale_.array().rsqrt(), 0.0); }
 
   void factorise_envelope(const std::vector<Eigen::Index>& first, const std::vector<std::vector<std::size_t>>& touching) {
     envelope_.emplace(first);
-    for_each_product(touching, [&](std::size_t i, std::size_t j, double value) {
-      if (i != j) envelope_->at(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) += scaled(value, i, j);
-    });
-    for (std::size_t i = 0; i < rows_.size(); ++i) envelope_->at(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(i)) = 1.0;  // a row that moves nothing stands alone, with 0 to do
+    for_each_product(touching, [&](std::size_t i, std::size_t j, double value) { envelope_->at(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) += value; });
+    for (Eigen::Index i = 0; i < scale_.size(); ++i) scale_[i] = envelope_->at(i, i);
+    scale_by_diagonal();
+    for (Eigen::Index i = 0; i < scale_.size(); ++i) {
+      for (Eigen::Index j = first[static_cast<std::size_t>(i)]; j < i; ++j) envelope_->at(i, j) *= scale_[i] * scale_[j];
+      envelope_->at(i, i) = 1.0;  // a row that moves nothing stands alone, with 0 to do
+    }
     envelope_->factorise(kDependent);
   }
 
@@ -239,8 +255,11 @@ class RowSystem {
     const int m = static_cast<int>(rows_.size());
     std::vector<Eigen::Triplet<double>> entries;
     for_each_product(touching, [&](std::size_t i, std::size_t j, double value) {
-      if (i != j) entries.emplace_back(static_cast<int>(i), static_cast<int>(j), scaled(value, i, j));
+      if (i != j) entries.emplace_back(static_cast<int>(i), static_cast<int>(j), value);
+      else scale_[static_cast<Eigen::Index>(i)] += value;
     });
+    scale_by_diagonal();
+    for (auto& entry : entries) entry = {entry.row(), entry.col(), entry.value() * scale_[entry.row()] * scale_[entry.col()]};
     for (int i = 0; i < m; ++i) entries.emplace_back(i, i, 1.0);
     Eigen::SparseMatrix<double> matrix(m, m);
     matrix.setFromTriplets(entries.begin(), entries.end());
