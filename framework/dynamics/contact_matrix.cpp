@@ -1,8 +1,8 @@
 #include "framework/dynamics/contact_matrix.h"
 
 #include <algorithm>
-
-#include <Eigen/LU>
+#include <array>
+#include <cmath>
 
 namespace tumble::contacts {
 namespace {
@@ -24,6 +24,31 @@ int least_degree(const std::vector<std::vector<int>>& neighbours, const std::vec
   for (std::size_t i = 0; i < neighbours.size(); ++i)
     if (open[i] && (best < 0 || neighbours[i].size() < neighbours[best].size())) best = static_cast<int>(i);
   return best;
+}
+
+/// Gauss and Jordan in place, column by column, rows pivoted. What is singular comes out as no numbers.
+/// Source: G. Golub, C. Van Loan, "Matrix Computations", 3.4.
+void invert(Block6& m) {
+  std::array<int, 6> swapped;
+  for (int k = 0; k < 6; ++k) {
+    int pivot = k;
+    for (int i = k + 1; i < 6; ++i)
+      if (std::abs(m(i, k)) > std::abs(m(pivot, k))) pivot = i;
+    swapped[k] = pivot;
+    if (pivot != k) m.row(pivot).swap(m.row(k));
+    const Vector6d factors = m.col(k);
+    const double inverse = 1.0 / factors[k];
+    for (int j = 0; j < 6; ++j) {
+      if (j == k) continue;
+      const double of_pivot = m(k, j) * inverse;
+      m.col(j) -= of_pivot * factors;
+      m(k, j) = of_pivot;
+    }
+    m.col(k) = -inverse * factors;
+    m(k, k) = inverse;
+  }
+  for (int k = 6; k-- > 0;)
+    if (swapped[k] != k) m.col(swapped[k]).swap(m.col(k));
 }
 
 }  // namespace
@@ -138,8 +163,7 @@ void BodyMatrix::eliminate(std::size_t step) {
 bool BodyMatrix::factorise() {
   for (std::size_t step = 0; step < columns_.size(); ++step) {
     Block6& diagonal = columns_[step].diagonal;
-    const Eigen::PartialPivLU<Block6> lu(diagonal);
-    diagonal = lu.inverse();
+    invert(diagonal);
     if (!diagonal.allFinite()) return false;
     eliminate(step);
   }
