@@ -5,6 +5,7 @@
 #include <exception>
 
 #include "framework/cli/verb.h"
+#include "framework/core/keep_memory.h"
 #include "framework/core/nearest_word.h"
 #include "framework/core/not_implemented.h"
 
@@ -75,6 +76,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  tumble::keep_freed_memory();
   try {
     return run(argc, argv);
   } catch (const tumble::UserError& error) {

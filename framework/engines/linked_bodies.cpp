@@ -86,6 +86,8 @@ LinkedBodies::LinkedBodies(const World& world, const Laws& laws, RunCounters& co
     if (std::binary_search(bodies_.begin(), bodies_.end(), world.drags[k].body)) drags_.push_back(k);
   for (int k = 0; k < static_cast<int>(world.motors.size()); ++k)
     if (std::any_of(joints_.begin(), joints_.end(), [&](const Link& joint) { return joint.index == world.motors[k].joint; })) motors_.push_back(k);
+  most_rows_ = rods_.size();
+  for (const Link& link : joints_) most_rows_ += static_cast<std::size_t>(row_count(world.joints[link.index].kind));
   torques_.assign(motors_.size(), 0.0);
   next_looks_.assign(motors_.size(), 0.0);
 }
@@ -190,6 +192,7 @@ double LinkedBodies::look(double time, const std::vector<RigidBodyState>& states
 
 std::vector<Constraint> LinkedBodies::rows(const std::vector<Body>& bodies) {
   std::vector<Constraint> rows;
+  rows.reserve(most_rows_);
   if (built::kRod) append_rods(bodies, rows);
   if (built::kJoint) append_joints(bodies, rows);
   return rows;

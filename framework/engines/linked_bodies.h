@@ -98,6 +98,7 @@ class LinkedBodies {
   std::vector<int> fixed_;            // immovable ends: bodies of the world, -1 for the world itself
   std::vector<Link> springs_, rods_, joints_;
   std::vector<int> drags_, motors_;   // in the world's lists
+  std::size_t most_rows_ = 0;   // of rods and joints
   std::vector<double> torques_, next_looks_;   // by motors_
   double time_of_stage_ = 0.0;
 };

@@ -23,13 +23,26 @@ double smaller_gap(const MovingWorld& moving, const std::vector<RigidBodyState>&
 
 }  // namespace
 
+void SmallestGap::sort_bodies(const MovingWorld& moving) {
+  for (int i = 0; i < moving.size(); ++i) {
+    const WorldBody& body = moving.world().bodies[i];
+    if (!body.collides) continue;
+    (body.passes_movable && !body.immovable() ? meets_others_ : meets_all_).push_back(i);
+  }
+}
+
 double SmallestGap::measure(const MovingWorld& moving, const std::vector<RigidBodyState>& states) {
+  if (meets_all_.empty() && meets_others_.empty()) sort_bodies(moving);
   std::vector<char> still(moving.size());
   for (int i = 0; i < moving.size(); ++i) still[i] = moving.asleep(i) || (moving.world().bodies[i].immovable() && !moving.is_driven(i));
   const auto over_pairs = [&](double smallest, bool of_still) {
-    for (int i = 0; i < moving.size(); ++i)
-      for (int j = i + 1; j < moving.size(); ++j)
-        if ((still[i] && still[j]) == of_still) smallest = smaller_gap(moving, states, i, j, smallest);
+    const auto look = [&](int i, int j) {
+      if ((still[i] && still[j]) == of_still) smallest = smaller_gap(moving, states, std::min(i, j), std::max(i, j), smallest);
+    };
+    for (std::size_t k = 0; k < meets_all_.size(); ++k) {
+      for (std::size_t l = k + 1; l < meets_all_.size(); ++l) look(meets_all_[k], meets_all_[l]);
+      for (const int other : meets_others_) look(meets_all_[k], other);
+    }
     return smallest;
   };
   if (still != still_) {

@@ -15,6 +15,9 @@ class SmallestGap {
   double measure(const MovingWorld& moving, const std::vector<RigidBodyState>& states);
 
  private:
+  void sort_bodies(const MovingWorld& moving);
+
+  std::vector<int> meets_all_, meets_others_;   // bodies for collision; those that pass each other, like the links of a chain, apart
   std::vector<char> still_;    // by body, when still_gap_ was measured
   double still_gap_ = 0.0;     // between two of these [m]
 };

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "framework/core/keep_memory.h"
 #include "framework/grading/sandbox_wire.h"
 #include "framework/modules/load.h"
 #include "framework/modules/serve.h"
@@ -14,6 +15,7 @@ namespace tumble::grading {
 /// Words of a worker: worker_a1 FILE.so, with the channel as descriptor 3.
 template <class Module>
 int run_worker(int argc, char** argv) {
+  keep_freed_memory();
   if (argc != 2) return 2;
   try {
     modules::ModuleKind kind;

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "framework/core/files.h"
+#include "framework/core/keep_memory.h"
 #include "framework/engines/run.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/report/plot.h"
@@ -199,6 +200,7 @@ std::vector<std::string> parts(const std::string& text) {
 }  // namespace tumble::testing
 
 int main(int argc, char** argv) {
+  tumble::keep_freed_memory();
   using tumble::testing::parts;
   using tumble::testing::table;
   std::string scene, sizes = "300", engines = "rd,rd_auto,ca,tw";

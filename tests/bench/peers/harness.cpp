@@ -16,6 +16,7 @@
 #include <time.h>
 #include <unistd.h>
 
+#include "framework/core/keep_memory.h"
 #include "tests/bench/peers/judge.h"
 
 namespace tumble::peers {
@@ -229,6 +230,7 @@ std::vector<std::vector<Setting>> step_ladders(const BenchCase& bench, const std
 }
 
 int peer_main(int argc, char** argv, const Engine& engine) try {
+  keep_freed_memory();   // for all engines alike
   const Options options = read_words(argc, argv);
   std::ofstream file(options.out);
   if (!file) throw std::runtime_error(options.out + ": cannot be written");

@@ -96,7 +96,8 @@ Judgement judge_bounces(const Observed& run) {
 
 Judgement judge_stack(const Observed& run) {
   double drift = 0.0;
-  for (const auto& poses : run.samples) drift = std::max(drift, (poses[9].com_world - run.samples.front()[9].com_world).norm());
+  const auto top = [](const auto& poses) -> const Vector3d& { return poses[poses.size() - 2].com_world; };   // the floor is the last body
+  for (const auto& poses : run.samples) drift = std::max(drift, (top(poses) - top(run.samples.front())).norm());
   return {drift, {{"drift [m]", drift}}};
 }
 
