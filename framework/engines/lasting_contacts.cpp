@@ -22,6 +22,7 @@ constexpr double kMostTurn = 0.05;        // rad: a group with contacts that tur
 constexpr double kMoves = 10.0;             // rest speeds: what holds a group that is slower is an equilibrium, however it trembles
 constexpr double kSlips = 1e-4;           // of the rest speed: slower than this nothing slides, though friction may be all there can be
 constexpr double kTurns = 1e-5;           // rad: where nothing turns more in a step, forces of its start do for the whole; errors of energy go with this
+constexpr int kFrameRounds = 6;           // of drawing apart what a frame within a step shows
 
 }  // namespace
 
@@ -309,10 +310,17 @@ void LastingContacts::open_gaps(std::vector<RigidBodyState>& states, double t) {
         states[body].momentum_world = left * start.momentum_world + (1 - left) * end.momentum_world;
         states[body].angular_momentum_world = left * start.angular_momentum_world + (1 - left) * end.angular_momentum_world;
       }
-    const auto closed = [&](const Pair& pair) { return least_gap_of(pair, states) < 0 && distance_of(pair, states) < 0; };
-    if (std::none_of(group.near.begin(), group.near.end(), closed)) continue;
-    std::vector<double> gaps(group.near.size(), 0.0);
-    if (!keep_apart(group, group.near, states, t)) keep_pile_apart(group, group.near, states, t, gaps);
+  }
+  const auto closed = [&](const Pair& pair) { return least_gap_of(pair, states) < 0 && distance_of(pair, states) < 0; };
+  bool any = true;
+  for (int round = 0; round < kFrameRounds && any; ++round) {   // one group's shifts may close another's gaps
+    any = false;
+    for (const Group& group : groups_) {
+      if (std::none_of(group.near.begin(), group.near.end(), closed)) continue;
+      any = true;
+      std::vector<double> gaps(group.near.size(), 0.0);
+      if (group.pile || !keep_apart(group, group.near, states, t)) keep_pile_apart(group, group.near, states, t, gaps);
+    }
   }
   counters_ = before;
 }
