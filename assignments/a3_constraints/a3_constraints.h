@@ -120,8 +120,9 @@ VectorXd constraint_correction(const std::vector<Constraint>& rows, const std::v
 ///   f >= 0,   a = A f + b >= 0,   f . a = 0                                                                  (A3.9)
 /// @param A  (m,m), symmetric, positive SEMI-definite: how contact j's force accelerates contact i apart [1/kg]. Singular as soon
 ///           as contacts are redundant (a table on four legs)
-/// @param b  (m): acceleration apart without contact forces [m/s^2]; < 0: the bodies would enter each other
-/// @pre   some f solves (A3.9); it does for every A = J M^-1 J^T with b = J u', u' any acceleration
+/// @param b  (m): acceleration apart without contact forces [m/s^2]; < 0: the bodies would enter each other. Where a gap is left that may
+///           still close, b is larger by what it allows: contacts that are redundant in A may differ in b
+/// @pre   some f solves (A3.9); it does for every A = J M^-1 J^T with b = J u' (u' any acceleration) or anything larger
 /// @return f, (m) [N]. It need not be unique; a = A f + b is, to 1e-10 of the largest |b|. A contact with A_ii = 0 (nothing
 ///         there can be moved) has f_i = 0, whatever its b
 /// Source: Baraff94, sections 2-4; Cottle, chapters 3 and 4.   Tests: ContactForces.*

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/collision/edge_on_edge.h"
 #include "framework/collision/patch.h"
 #include "framework/collision/piece_pairs.h"
 
@@ -21,6 +22,8 @@ constexpr double kSteep = 0.05;
 constexpr double kBack = 0.5;
 // Of a solid's size: vertices that differ by less are as foremost as each other.
 constexpr double kSameHeight = 1e-9;
+// Of a query's size: farther apart than this, the nearest points of two edges say which way they push each other.
+constexpr double kInTouch = 1e-6;
 
 // Height along n of the foremost surface of a convex piece over a point, `side` +1: the lowest of A, -1: the highest of B. The
 // vertices bound it where no face looks that way (an edge, a corner).
@@ -146,10 +149,28 @@ void append_corners(const Region& region, double size, std::vector<NearPoint>& p
   for (const int corner : lower_corners(all, gaps, region.normal, kSameHeight * size)) points.push_back(region.points[corner]);
 }
 
+// The ends of what two edges share, and what else is within reach. The gap there is that of the edges: the faces beside them fall off.
+std::vector<NearPoint> along_edges(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& n, double reach, double size, const Vector3d& com_b_world) {
+  const double gap = separation_along(a, b, n), near = kInTouch * size;
+  Region region{n, {}};
+  const Corners ends = facing_region(a, b, n, near);
+  for (const Vector3d& end : ends) region.points.push_back({com_b_world + end, com_b_world + end - gap * n, n, gap});
+  const Vector3d along = (ends[ends.size() - 1] - ends[0]).normalized(), start = com_b_world + ends[0];
+  Region others{n, {}};
+  if (reach > near) add_points(a, b, n, reach, com_b_world, others);
+  for (const NearPoint& p : others.points)
+    if ((p.point_a_world - start).cross(along).norm() > 2 * near) region.points.push_back(p);
+  std::vector<NearPoint> points;
+  append_corners(region, size, points);
+  return points;
+}
+
 std::vector<NearPoint> between_convex(const Query& query, const Vector3d& com_b_world, double reach, PairCache* cache) {
   const PlacedPolytope placed_a = query.piece_of_a(0), placed_b = query.piece_of_b(0);
   const PolytopeGap found = convex_gap(query, reach, cache, Points::kWanted);
   if (found.beyond || found.distance > reach) return {};
+  if (found.distance <= kInTouch * query.size)
+    if (const auto n = normal_of_edge_on_edge(placed_a, placed_b, found.normal_b_to_a, query.size)) return along_edges(placed_a, placed_b, *n, reach, query.size, com_b_world);
   Region region{found.normal_b_to_a, {}};
   add_points(placed_a, placed_b, region.normal, reach, com_b_world, region);
   region.points.push_back({com_b_world + found.point_a, com_b_world + found.point_b, region.normal, found.distance});   // where edges cross

@@ -69,7 +69,7 @@ std::vector<LastingContacts::Touch> LastingContacts::touches_of_pile(const Group
         const Vector3d v = a.velocity_world + a.omega_world.cross(point - a.com_world) - b.velocity_world - b.omega_world.cross(point - b.com_world);
         target += 0.5 * p.normal_b_to_a_world.dot(v);
       }
-      if (target > 0) target = kRestored * std::max(0.0, room - p.gap) / h;
+      if (target > 0) target = kRestored * std::max(0.0, room - p.gap) / step_;   // not / h: in a step cut short that would be a blow
       touches.push_back({pair, p, target, false});
     }
   }

@@ -22,5 +22,6 @@ constexpr bool kMotor = kWithout != "motor";
 constexpr bool kContact = kWithout != "contact";
 constexpr bool kFriction = kWithout != "friction";
 constexpr bool kSleep = kWithout != "sleep";
+constexpr bool kCallback = kWithout != "callback";
 
 }  // namespace tumble::engines::built

@@ -22,6 +22,7 @@ constexpr double kMostTurn = 0.05;        // rad: a group with contacts that tur
 constexpr double kMoves = 10.0;             // rest speeds: what holds a group that is slower is an equilibrium, however it trembles
 constexpr double kSlips = 1e-4;           // of the rest speed: slower than this nothing slides, though friction may be all there can be
 constexpr double kTurns = 1e-5;           // rad: where nothing turns more in a step, forces of its start do for the whole; errors of energy go with this
+constexpr int kFrameRounds = 6;           // of drawing apart what a frame within a step shows
 
 }  // namespace
 
@@ -296,6 +297,33 @@ void LastingContacts::keep_warm(const std::vector<Touch>& touches, const Contact
     if (slides) next_stuck_.erase(touches[i].pair);
     if (!force.isZero(0.0)) forces_.push_back({touches[i].pair.first, touches[i].pair.second, point, touches[i].point.normal_b_to_a_world, force});
   }
+}
+
+void LastingContacts::open_gaps(std::vector<RigidBodyState>& states, double t) {
+  const RunCounters before = counters_;   // what is looked at must not show in what a run counts
+  const double left = (moving_.target() - t) / (moving_.target() - moving_.time());
+  for (const Group& group : groups_) {
+    // A path that leads straight to the step's end has the velocity of that end all along. Momenta that change evenly show no energy that
+    // neither end has.
+    if (group.linked.empty())
+      for (const int body : group.bodies) {
+        const RigidBodyState &start = moving_.state(body), &end = moving_.path_end(body);
+        states[body].momentum_world = left * start.momentum_world + (1 - left) * end.momentum_world;
+        states[body].angular_momentum_world = left * start.angular_momentum_world + (1 - left) * end.angular_momentum_world;
+      }
+  }
+  const auto closed = [&](const Pair& pair) { return least_gap_of(pair, states) < 0 && distance_of(pair, states) < 0; };
+  bool any = true;
+  for (int round = 0; round < kFrameRounds && any; ++round) {   // one group's shifts may close another's gaps
+    any = false;
+    for (const Group& group : groups_) {
+      if (std::none_of(group.near.begin(), group.near.end(), closed)) continue;
+      any = true;
+      std::vector<double> gaps(group.near.size(), 0.0);
+      if (group.pile || !keep_apart(group, group.near, states, t)) keep_pile_apart(group, group.near, states, t, gaps);
+    }
+  }
+  counters_ = before;
 }
 
 bool LastingContacts::commit() {

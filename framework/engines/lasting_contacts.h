@@ -57,6 +57,9 @@ class LastingContacts {
   /// After the step was committed: takes back overlaps, ends contacts that have come apart.
   /// @return whether all pairs with a body in contact are known to be apart
   bool commit();
+  /// Takes back overlaps among bodies in contact at a time within the step under way: contacts keep bodies apart at its ends, and on the
+  /// path between them a body that turns dips in by what is of second order in the step. Changes nothing but these states.
+  void open_gaps(std::vector<RigidBodyState>& states, double t);
   const std::vector<ContactPoint>& forces() const { return forces_; }
   /// Friction of a pair: the smaller of the two.
   double friction(Pair pair) const;

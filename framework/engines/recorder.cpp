@@ -8,6 +8,10 @@
 namespace tumble::engines {
 namespace {
 
+// Of the time between frames: a step's end this near before a frame is that frame. Where they differ by a rounding the frame would come from
+// the next step's path, whose velocity may be that of its end already.
+constexpr double kSameTime = 1e-9;
+
 // No pair whose gap is at least `smallest` changes it, and that of most is told by the balls around the two.
 double smaller_gap(const MovingWorld& moving, const std::vector<RigidBodyState>& states, int i, int j, double smallest) {
   if (!moving.may_collide(i, j)) return smallest;
@@ -55,6 +59,7 @@ double SmallestGap::measure(const MovingWorld& moving, const std::vector<RigidBo
 void FrameRecorder::push(MovingWorld& moving, double t) {
   std::vector<RigidBodyState> states;
   for (int i = 0; i < moving.size(); ++i) states.push_back(t == moving.time() && moving.can_move(i) ? moving.state(i) : moving.path(i, t));
+  if (built::kContact && contacts_ && t > moving.time()) contacts_->open_gaps(states, t);
   Frame frame;
   frame.time = t;
   for (int i = 0; i < moving.size(); ++i) {
@@ -84,7 +89,7 @@ void FrameRecorder::record_before(MovingWorld& moving, double t) {
 }
 
 void FrameRecorder::record_committed(MovingWorld& moving) {
-  if (frame_time(next_) <= duration_ && frame_time(next_) <= moving.time()) {
+  if (frame_time(next_) <= duration_ && frame_time(next_) <= moving.time() + kSameTime / rate_) {
     push(moving, moving.time());
     ++next_;
   }

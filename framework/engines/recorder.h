@@ -26,8 +26,8 @@ class FrameRecorder {
  public:
   FrameRecorder(double rate_hz, double duration, TrajectorySink& sink) : rate_(rate_hz), duration_(duration), sink_(sink) {}
 
-  /// Frames hold the forces of these contacts.
-  void record_contacts_of(const LastingContacts& contacts) { contacts_ = &contacts; }
+  /// Frames hold the forces of these contacts, and what they hold apart is apart in frames within a step, too.
+  void record_contacts_of(LastingContacts& contacts) { contacts_ = &contacts; }
   void record_contacts_of(const Sleepers& sleepers) { sleepers_ = &sleepers; }
 
   /// Pushes the frames that lie before `t`, from the paths of the step under way.
@@ -41,7 +41,7 @@ class FrameRecorder {
 
   double rate_, duration_;
   TrajectorySink& sink_;
-  const LastingContacts* contacts_ = nullptr;
+  LastingContacts* contacts_ = nullptr;
   const Sleepers* sleepers_ = nullptr;
   SmallestGap smallest_gap_;
   long next_ = 0;

@@ -57,13 +57,27 @@ scene::Scene scene_without(const std::string& effect) {
   if (effect == "drag") return tied(4.0, "spring");
   if (effect == "rod" || effect == "motor") return tied(2.0, "joint");
   if (effect == "joint") return tied(2.0, "rod");
-  if (effect == "contact") return stack(5.0, 0.0, false);
+  if (effect == "contact" || effect == "callback") return stack(5.0, 0.0, false);
   if (effect == "friction") return stack(1.0, 0.0, true);
   if (effect == "sleep") return stack(1.0, 0.5, true);
   throw std::invalid_argument("no effect '" + effect + "'");
 }
 
+/// Callbacks come from a program, to the engines that go from event to event; other effects from the scene, in steps.
+engines::RunOptions options_about(const std::string& effect) {
+  engines::RunOptions options;
+  if (effect == "callback") options.engine = "ca";
+  return options;
+}
+
+std::uint64_t calls_of_callback() {
+  engines::RunOptions options = options_about("callback");
+  options.callbacks.push_back({0.1, {0}, [](int, RigidBodyState& state) { state.momentum_world.x() += 0.1; }});
+  return run_with(bare(), reference_laws(), options).counters.counts.at("callback_calls");
+}
+
 std::uint64_t calls_of(std::string effect) {
+  if (effect == "callback") return calls_of_callback();
   std::replace(effect.begin(), effect.end(), '_', ' ');
   scene::Scene scene = bare();
   kEffects.at(effect)(scene);
@@ -81,6 +95,6 @@ int main(int count, char** words) {
   if (count != 3) return 2;
   const std::string what = words[1], effect = words[2];
   if (what == "calls") std::printf("%llu\n", static_cast<unsigned long long>(calls_of(effect)));
-  else std::printf("%zu frames\n", run(scene_without(effect), reference_laws()).frames.size());
+  else std::printf("%zu frames\n", run_with(scene_without(effect), reference_laws(), options_about(effect)).frames.size());
   return 0;
 }

@@ -21,8 +21,15 @@ inline const std::map<std::string, std::vector<std::string>> kCountersOf = {
     {"friction", {"friction_points"}},
     {"point force", {"point_force_calls"}},
     {"collision", {"impacts", "impulses"}},
+    {"callback", {"callback_calls"}},
     {"sleep", {"bodies_put_to_sleep", "body_steps_asleep"}},
 };
+
+inline Trajectory run_with(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options) {
+  TrajectoryRecorder recorder;
+  engines::run_scene(scene, laws, options, recorder);
+  return recorder.trajectory();
+}
 
 using AddsEffect = void (*)(scene::Scene&);
 

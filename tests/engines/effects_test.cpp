@@ -46,6 +46,18 @@ TEST(Effects, OnlyWhatASceneAsksForRuns) {
   }
 }
 
+// A callback comes from a program, not from a scene: it is called by the engines that go from event to event, as often as it was asked for.
+TEST(Effects, ACallbackIsCalledWhereAProgramGivesOne) {
+  const Laws laws = reference_laws();
+  for (const char* engine : {"ordered", "ca"})
+    for (const int asked : {0, 3}) {
+      engines::RunOptions options;
+      options.engine = engine;
+      for (int k = 0; k < asked; ++k) options.callbacks.push_back({0.1 * (k + 1), {0, 1}, [](int, RigidBodyState& state) { state.momentum_world.x() += 0.1; }});
+      EXPECT_EQ(run_with(bare(), laws, options).counters.counts.at("callback_calls"), static_cast<std::uint64_t>(asked)) << engine;
+    }
+}
+
 TEST(Effects, AStageIsTimedWhereItIsThere) {
   const Laws laws = reference_laws();
   // What every run does, and what an effect adds to it.

@@ -227,6 +227,15 @@ TEST(Turning, OnACornerKeepsTheEnergyToSecondOrder) {
   EXPECT_GT(coarse / fine, 3.0);    // 4 in the limit
 }
 
+// Frames between the ends of steps: on its path from one to the next a body that turns on an edge dips in.
+TEST(Turning, FramesWithinAStepAreApartAndChangeNothing) {
+  const scene::Scene scene = tipping_board(1.0 / 60);
+  const Trajectory few = run(scene, reference_laws(), 60.0), many = run(scene, reference_laws(), 420.0);
+  for (const Frame& frame : many.frames) EXPECT_GE(frame.smallest_gap, 0.0) << "t = " << frame.time;
+  EXPECT_EQ(few.frames.back().poses[0].com_world, many.frames.back().poses[0].com_world);
+  EXPECT_EQ(few.counters.counts.at("nudges"), many.counters.counts.at("nudges"));
+}
+
 // A rod slides on the two corners of its end until friction jams it. One corner could do it alone, and the rod would be flung about its axis.
 TEST(Jamming, WhatIsSymmetricStaysSo) {
   auto rod = rough(box("rod", {1.0, 0.1, 1e-3}, 1.0, Vector3d::Zero(), {-3, 0, 0}), 1.4);

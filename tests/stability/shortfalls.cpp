@@ -11,12 +11,8 @@ struct Shortfall {
   const char* why;
 };
 
-constexpr const char* kEdges = "the normal of two parallel edges that touch is decided by roundings: cut to meet face to face, or against a wall, the same cards stand";
-
 constexpr Shortfall kShortfalls[] = {
-    {11, "two loose cards, edge on edge", false, kEdges},
     {30, "6 x 6 x 6 balls: rise of the energy", true, "impacts taken with the step they fall into ('in_step') let bodies go on for the rest of it: of order h"},
-    {30, "6 x 6 x 6 balls, e = 0", true, "216 balls that fall on each other without friction exhaust the memory"},
 };
 
 }  // namespace

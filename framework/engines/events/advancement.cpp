@@ -64,7 +64,7 @@ class AdvancementRun {
     for (int i = 0; i < run_.world().size(); ++i) boxes_.push_back(box_of(i));
     for (const auto& [a, b] : collision::overlapping_pairs(boxes_)) look_ahead(a, b);
     for (const int body : run_.world().movers()) look_for_own_end(body);
-    for (std::size_t k = called_; k < run_.callbacks().size() && run_.callbacks()[k].time < end_; ++k) queue_.push({run_.callbacks()[k], true, kAnyFlight, kAnyFlight});
+    for (std::size_t k = called_; built::kCallback && k < run_.callbacks().size() && run_.callbacks()[k].time < end_; ++k) queue_.push({run_.callbacks()[k], true, kAnyFlight, kAnyFlight});
     while (!queue_.empty() && queue_.top().key.time < end_ && queue_.top().key.time <= run_.duration()) {
       const Bound bound = queue_.top();
       queue_.pop();

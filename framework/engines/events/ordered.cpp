@@ -39,7 +39,7 @@ class OrderedRun {
       EventKey next = kNever;
       for (const int a : run_.world().movers())
         if (first_of_[a] < next) next = first_of_[a];
-      if (called_ < run_.callbacks().size()) next = std::min(next, run_.callbacks()[called_]);
+      if (built::kCallback && called_ < run_.callbacks().size()) next = std::min(next, run_.callbacks()[called_]);
       if (!(next.time < end_) || next.time > run_.duration()) return;
       draw_before(next.time);
       process(next);

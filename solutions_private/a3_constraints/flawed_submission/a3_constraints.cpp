@@ -1,6 +1,6 @@
-// A submission as they come in the evening before the deadline: springs right but for the damping, which brakes in every direction;
-// a rod without its centripetal term; multipliers by a dense matrix that bears no rod twice; contact forces by a hundred sweeps; and
-// the correction not begun.
+// A submission as they come in the evening before the deadline: springs that forget their length at rest, and brake in every direction;
+// a rod whose velocity product holds what turning adds, and not that a point that swings past must be bent off its straight path;
+// multipliers by a dense matrix that bears no rod twice; contact forces by a hundred sweeps; a correction without masses.
 #include "assignments/a3_constraints/a3_constraints.h"
 
 #include <Eigen/LU>
@@ -18,7 +18,7 @@ Vector3d spring_force(const Spring& spring, const AnchorState& a, const AnchorSt
   Vector3d d = b.point_world - a.point_world;
   double length = d.norm();
   if (length < 1e-12) return Vector3d::Zero();
-  Vector3d elastic = spring.stiffness * (length - spring.rest_length) * d / length;
+  Vector3d elastic = spring.stiffness * d;  // F = k x
   return elastic + spring.damping * (b.velocity_world - a.velocity_world);  // relative velocity times c
 }
 
@@ -33,7 +33,9 @@ ConstraintRow rod_row(const Body& a, const Vector3d& point_a_body, const Body& b
   row.rate = n.dot(u);
   row.jacobian_a << n, r_a.cross(n);
   row.jacobian_b << -n, -r_b.cross(n);
-  row.velocity_product = (u.dot(u) - row.rate * row.rate) / d.norm();  // |u|^2 / r, as for a stone on a string
+  Vector3d centripetal_a = a.omega_world.cross(a.omega_world.cross(r_a));
+  Vector3d centripetal_b = b.omega_world.cross(b.omega_world.cross(r_b));
+  row.velocity_product = n.dot(centripetal_a - centripetal_b);
   return row;
 }
 

@@ -1,0 +1,102 @@
+#include "framework/collision/edge_on_edge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "framework/collision/inline_vector.h"
+
+namespace tumble::collision {
+namespace {
+
+// Of the size: edges this near lie on each other. What models keep of a place (single precision) is 1e-7 of it.
+constexpr double kNear = 1e-6;
+// Of the size: a vertex this near to a face's plane is one of its corners.
+constexpr double kOnFace = 1e-9;
+// rad: a narrower range of normals is one normal.
+constexpr double kOne = 1e-9;
+
+using Indices = InlineVector<int, 8>;
+
+Indices foremost(const PlacedPolytope& piece, const Vector3d& towards_inside, double depth) {
+  const Vector3d d = piece.in_body(towards_inside);
+  double lowest;
+  const int first = piece.polytope->lowest(d, lowest);
+  Indices found;
+  const auto& vertices = piece.polytope->vertices;
+  for (int i = 0; i < piece.size(); ++i)
+    if (i == first || d.dot(vertices[i]) <= lowest + depth) found.push_back(i);
+  return found;
+}
+
+struct Edge {
+  int from, to;
+  Vector3d start, along;   // frame of the query; `along` is not a unit
+};
+using Edges = InlineVector<Edge, 8>;
+
+Edges edges_between(const PlacedPolytope& piece, const Indices& corners) {
+  Edges edges;
+  const Polytope& p = *piece.polytope;
+  for (const int i : corners)
+    for (int k = p.first_neighbour[i]; k < p.first_neighbour[i + 1]; ++k)
+      if (const int j = p.neighbours[k]; j > i && std::find(corners.begin(), corners.end(), j) != corners.end())
+        edges.push_back({i, j, piece.vertex(i), piece.query_from_body * (p.vertices[j] - p.vertices[i])});
+  return edges;
+}
+
+// Side by side, nearer than `near` all along, over a stretch that both cover.
+bool lie_along(const Edge& a, const Edge& b, double near) {
+  const double length = a.along.squaredNorm();
+  const auto place = [&](const Vector3d& point) { return a.along.dot(point - a.start) / length; };
+  const double first = place(b.start), second = place(b.start + b.along);
+  const double low = std::max(0.0, std::min(first, second)), high = std::min(1.0, std::max(first, second));
+  if (!((high - low) * std::sqrt(length) > near)) return false;
+  const auto apart = [&](double t) {   // where `a` is at t
+    const double s = (t - first) / (second - first);
+    return (a.start + t * a.along - b.start - s * b.along).norm();
+  };
+  return apart(low) <= near && apart(high) <= near;
+}
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity(), high = -low;   // rad about the edge, from `n`
+};
+
+// Of the normals of the faces that meet in an edge. `side` +1: outward ones, -1: inward.
+Range cone_of(const PlacedPolytope& piece, const Edge& edge, double side, const Vector3d& n, const Vector3d& across, double size) {
+  const Polytope& p = *piece.polytope;
+  Range range;
+  for (std::size_t f = 0; f < p.face_normals.size(); ++f) {
+    const Vector3d& m = p.face_normals[f];
+    const double lowest = p.face_offsets[f] - kOnFace * size;
+    if (m.dot(p.vertices[edge.from]) < lowest || m.dot(p.vertices[edge.to]) < lowest) continue;
+    const Vector3d normal = side * (piece.query_from_body * m);
+    const double angle = std::atan2(normal.dot(across), normal.dot(n));
+    range.low = std::min(range.low, angle);
+    range.high = std::max(range.high, angle);
+  }
+  return range;
+}
+
+}  // namespace
+
+std::optional<Vector3d> normal_of_edge_on_edge(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& n, double size) {
+  const double near = kNear * size;
+  const Indices of_a = foremost(a, n, near), of_b = foremost(b, -n, near);
+  if (of_a.size() < 2 || of_b.size() < 2 || (of_a.size() > 2 && of_b.size() > 2)) return std::nullopt;   // a corner, or face on face
+  const Edges edges_a = edges_between(a, of_a), edges_b = edges_between(b, of_b);
+  for (const Edge& edge_a : edges_a)
+    for (const Edge& edge_b : edges_b) {
+      if (!lie_along(edge_a, edge_b, near)) continue;
+      const Vector3d along = edge_a.along.normalized(), level = (n - n.dot(along) * along).normalized(), across = along.cross(level);
+      const Range in_a = cone_of(a, edge_a, -1.0, level, across, size), in_b = cone_of(b, edge_b, 1.0, level, across, size);
+      const double low = std::max(in_a.low, in_b.low), high = std::min(in_a.high, in_b.high);
+      if (!(high - low > kOne)) continue;
+      const double middle = 0.5 * (low + high);
+      return std::cos(middle) * level + std::sin(middle) * across;
+    }
+  return std::nullopt;
+}
+
+}  // namespace tumble::collision

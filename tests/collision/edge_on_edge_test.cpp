@@ -1,0 +1,97 @@
+// Two edges that lie along each other have a range of normals: the one that is taken must not hang on the last digit of where they are.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "framework/collision/near_points.h"
+
+namespace tumble::testing {
+namespace {
+
+using collision::CollisionShape;
+using collision::NearPoint;
+using collision::Pose;
+
+constexpr double kEps = 2.220446049250313e-16;
+constexpr double kLean = 0.4;        // rad, of each card from upright
+constexpr double kReach = 1e-4;      // m
+const Vector3d kHalf(0.005, 0.5, 0.5);
+// Angles are of sums and products of a few numbers of size 1.
+constexpr double kRoundOff = 64 * kEps;
+
+/// A card whose upper inner edge lies along y through `top`, leaning to the side of `side` x.
+Pose card(double side, const Vector3d& top, double lean = kLean) {
+  const Quaterniond turn(Eigen::AngleAxisd(-side * lean, Vector3d::UnitY()));
+  return {top - turn * Vector3d(-side * kHalf.x(), 0, kHalf.z()), turn};
+}
+
+std::vector<NearPoint> points_of_tent(const Vector3d& right_from_left, double lean_right = kLean) {
+  const CollisionShape shape{Box{kHalf}};
+  return collision::near_points(shape, card(1, right_from_left, lean_right), shape, card(-1, Vector3d::Zero()), kReach);
+}
+
+TEST(EdgeOnEdge, TheNormalIsTheMiddleOneWhereverTheEdgesLieWithinTheirShell) {
+  for (const double apart : {1e-12, 1e-10, 1e-8})
+    for (const double direction : {-1.5, -0.8, 0.0, 0.3, 1.2}) {   // rad above the horizontal
+      const std::vector<NearPoint> points = points_of_tent(apart * Vector3d(std::cos(direction), 0, std::sin(direction)));
+      ASSERT_EQ(points.size(), 2u) << "the two ends of the edge; " << apart << " m apart, at " << direction << " rad";
+      for (const NearPoint& p : points) {
+        // From the left card to the right one; both cones reach kLean to either side of it.
+        EXPECT_LE((p.normal_b_to_a_world - Vector3d::UnitX()).norm(), kRoundOff);
+        EXPECT_NEAR(p.gap, apart * std::cos(direction), kRoundOff);
+        EXPECT_NEAR(std::abs(p.point_a_world.y()), 0.5, kRoundOff);
+      }
+    }
+}
+
+TEST(EdgeOnEdge, CardsThatLeanDifferentlyPushAlongTheMiddleOfWhatBothAllow) {
+  // The left card's edge allows normals from -0.4 to pi/2 - 0.4 about y, the right one's from 0.1 - pi/2 to 0.1: both from -0.4 to 0.1.
+  const std::vector<NearPoint> points = points_of_tent({1e-10, 0, 0}, 0.1);
+  ASSERT_EQ(points.size(), 2u);
+  EXPECT_LE((points[0].normal_b_to_a_world - Vector3d(std::cos(-0.15), 0, std::sin(-0.15))).norm(), kRoundOff);
+}
+
+TEST(EdgeOnEdge, FartherThanAMillionthApartTheNearestPointsSayIt) {
+  const double direction = 0.3;
+  const std::vector<NearPoint> points = points_of_tent(1e-5 * Vector3d(std::cos(direction), 0, std::sin(direction)));
+  ASSERT_FALSE(points.empty());
+  // A difference of 1e-5 m of coordinates of size 1.
+  EXPECT_LE((points[0].normal_b_to_a_world - Vector3d(std::cos(direction), 0, std::sin(direction))).norm(), kRoundOff / 1e-5);
+}
+
+TEST(EdgeOnEdge, BoxesThatLieFlushOnEachOtherPushAlongTheirFaces) {
+  const CollisionShape box{Box{Vector3d(0.5, 0.4, 0.1)}};
+  for (const double aside : {0.0, 1e-9, 1.0}) {   // m: flush, nearly so, and only edge above edge
+    const std::vector<NearPoint> points = collision::near_points(box, {Vector3d(aside, 0, 0.2 + 1e-10)}, box, {}, kReach);
+    ASSERT_FALSE(points.empty());
+    for (const NearPoint& p : points)
+      if (aside < 1) EXPECT_LE((p.normal_b_to_a_world - Vector3d::UnitZ()).norm(), kRoundOff);
+  }
+}
+
+TEST(EdgeOnEdge, ABoxThatTipsOnAFlushEdgeShowsTheEdgeThatComesDown) {
+  const CollisionShape box{Box{Vector3d(0.5, 0.4, 0.1)}};
+  const double tilt = 1e-5;   // rad, about its lower edge at x = -0.5
+  const Quaterniond turn(Eigen::AngleAxisd(-tilt, Vector3d::UnitY()));
+  const Vector3d edge(-0.5, 0, 0.1 + 1e-10);
+  const std::vector<NearPoint> points = collision::near_points(box, {edge - turn * Vector3d(-0.5, 0, -0.1), turn}, box, {}, kReach);
+  int down = 0, coming = 0;
+  for (const NearPoint& p : points) (p.point_a_world.x() < 0 ? down : coming) += 1;
+  EXPECT_EQ(down, 2);
+  EXPECT_EQ(coming, 2);
+  for (const NearPoint& p : points) EXPECT_NEAR(p.gap, p.point_a_world.x() < 0 ? 1e-10 : tilt, 0.6 * tilt) << "the normal leans by half the tilt";
+}
+
+TEST(EdgeOnEdge, EdgesThatCrossPushAcrossBoth) {
+  const CollisionShape box{Box{Vector3d(0.5, 0.5, 0.5)}};
+  const Quaterniond on_edge(Eigen::AngleAxisd(0.25 * 3.14159265358979323846, Vector3d::UnitY()));
+  for (const double angle : {1e-3, 0.5}) {
+    const Quaterniond above = Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitZ())) * on_edge;
+    const std::vector<NearPoint> points = collision::near_points(box, {Vector3d(0, 0, 2 * std::sqrt(0.5) + 1e-10), above}, box, {Vector3d::Zero(), on_edge}, 1e-7);
+    ASSERT_FALSE(points.empty());
+    for (const NearPoint& p : points) EXPECT_LE((p.normal_b_to_a_world - Vector3d::UnitZ()).norm(), kRoundOff / angle);
+  }
+}
+
+}  // namespace
+}  // namespace tumble::testing
