@@ -65,7 +65,9 @@ TEST(EdgeOnEdge, BoxesThatLieFlushOnEachOtherPushAlongTheirFaces) {
     const std::vector<NearPoint> points = collision::near_points(box, {Vector3d(aside, 0, 0.2 + 1e-10)}, box, {}, kReach);
     ASSERT_FALSE(points.empty());
     for (const NearPoint& p : points)
-      if (aside < 1) EXPECT_LE((p.normal_b_to_a_world - Vector3d::UnitZ()).norm(), kRoundOff);
+      if (aside < 1) {
+        EXPECT_LE((p.normal_b_to_a_world - Vector3d::UnitZ()).norm(), kRoundOff);
+      }
   }
 }
 
