@@ -3,7 +3,6 @@
 /// from there, its committed trace must be what it is without.
 #pragma once
 
-#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -19,9 +18,9 @@ struct Standing {
 };
 
 struct RollbackWatch {
-  std::uint64_t seed = 0;
-  int every = 0;        // events (with several threads: rounds) between two trials; 0: never
-  int most_steps = 50;  // that processes take in between, one with the other: from 1 on, by lot (with several threads: an eighth of it, in rounds)
+  int every = 0;        // events (with several threads: rounds) between two trials, at least; 0: never
+  int most_steps = 50;  // that processes take in between, one with the other: 1 to this, each number in its turn (with several threads: rounds)
+  int first = 0;        // where in that row the first trial is
   /// @param t      to which all went back [s]
   /// @param steps  that were taken in between
   std::function<void(double t, int steps, const Standing& before, const Standing& after)> tell;

@@ -25,13 +25,12 @@ constexpr std::uint64_t kIntegrationsToJudgeBy = 2000;
 constexpr double kWidest = 2.0, kNarrowest = 1.0 / 64;   // of the first window
 constexpr double kWindowSteps = 2.0;           // of several threads, the first window: of the time in which a process goes its way at once
 constexpr double kWindowAlone = 2.0;           // of one thread, which is unbounded until too much is undone: of that window
-constexpr int kRoundsToSteps = 8;              // of a trial: so few rounds of several threads for so many steps of one
 constexpr double kRound = 0.25;                // of the window is a round: at its end processes have gone their ways, not been cut short
 
 }  // namespace
 
 Conductor::Conductor(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record, const engines::RollbackWatch* watch)
-    : all_(scene, laws, options, sink), record_(record), watch_(watch), trials_(watch ? watch->seed : 0), commit_at_(kCommitAfter), wanted_(all_.home), leaders_(all_.home.size()) {
+    : all_(scene, laws, options, sink), record_(record), watch_(watch), commit_at_(kCommitAfter), wanted_(all_.home), leaders_(all_.home.size()) {
   const FlightWorld& world = all_.world();
   const double bin = bin_for(world, all_.lengths.way, all_.run.duration());
   const std::size_t domains = all_.threads > 1 ? static_cast<std::size_t>(all_.threads) + 1 : 1;
@@ -105,12 +104,10 @@ void Conductor::go_alone() {
   engines::EventQueue<Due>& queue = all_.domains[kBorder].queue;
   const double duration = all_.run.duration();
   while (!queue.empty() && queue.front().key.time <= duration) {
-    if (is_time_for_a_trial()) {
-      const int steps = 1 + static_cast<int>(trials_.below(static_cast<std::uint64_t>(watch_->most_steps)));
-      try_rollback(steps, [&] {
+    if (is_time_for_a_trial())
+      try_rollback([&] {
         for (std::size_t k = 0; k < all_.world().movers().size() && !queue.empty() && queue.front().key.time <= duration; ++k) work_alone_at(queue.pop());
       });
-    }
     if (all_.trial.rollback_every > 0) alone().disturb();
     Due due = all_.trial.disorder_s > 0 ? alone().next_legal(duration) : queue.pop();
     if (all_.trial.late_callbacks && due.key.kind == EventClass::kCallback && !queue.empty() && queue.front().key.time <= duration) due = in_place_of(due);
@@ -186,7 +183,7 @@ void Conductor::go_in_rounds() {
     });
   const Release release{meet, is_over};
   while (next_time() <= all_.run.duration()) {
-    if (is_time_for_a_trial()) try_rollback(1 + static_cast<int>(trials_.below(static_cast<std::uint64_t>(watch_->most_steps / kRoundsToSteps + 1))), [&] { go_round(end_of_round, meet); });
+    if (is_time_for_a_trial()) try_rollback([&] { go_round(end_of_round, meet); });
     go_round(end_of_round, meet);
     commit_before(std::min(next_time(), all_.run.duration()));
     adapt_window();

@@ -25,7 +25,7 @@ class Conductor {
  private:
   // trials.cpp
   bool is_time_for_a_trial();
-  void try_rollback(int steps, const std::function<void()>& take_a_step);
+  void try_rollback(const std::function<void()>& take_a_step);
 
   // conductor.cpp
   void enter_obstacle(int body);
@@ -63,7 +63,7 @@ class Conductor {
   std::vector<std::unique_ptr<Worker>> workers_;   // by domain
   VirtualTimes* record_;                           // null: nobody wants to know
   const engines::RollbackWatch* watch_;            // null: nobody tries
-  Random trials_;
+  int trials_ = 0;                                 // so far
   int since_trial_ = 0;                            // events, or rounds
   double last_trial_ = 0.0;                        // [s]
   std::size_t commit_at_;                          // events worked at before global virtual time is looked at again
