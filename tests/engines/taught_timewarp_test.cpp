@@ -108,6 +108,39 @@ TEST(TaughtTimewarp, StopsWhereGroupsAreWrong) {
   EXPECT_NE(run_taught(tower_and_projectile(5.0), laws).stopped_by, "");
 }
 
+// Whatever is answered about groups and callbacks, the run ends with words.
+TEST(TaughtTimewarp, BearsAnyAnswerAboutGroups) {
+  scene::Scene scene = tower_and_projectile(5.0);
+  scene.duration_s = 0.3;
+  const std::vector<engines::Callback> kick{{0.15, {1}, [](int, RigidBodyState& state) { state.momentum_world.z() += 0.5; }}};
+  for (const double time : {-1.0, 0.0, 0.12, 1e9, kInfinity, -kInfinity, kUnset}) {
+    Laws laws = all_laws();
+    laws.scheduling.on_group_check = [right = laws.scheduling.on_group_check, time](const ScheduledEvent& event, const std::vector<GroupContact>& contacts, double step) {
+      GroupDecision decision = right(event, contacts, step);
+      decision.next.stamp.time = decision.next.safe_time = time;
+      return decision;
+    };
+    EXPECT_NE(run_taught(scene, laws, kick).stopped_by, "") << time;
+    laws = all_laws();
+    laws.scheduling.on_group_check = [right = laws.scheduling.on_group_check, time](const ScheduledEvent& event, const std::vector<GroupContact>& contacts, double step) {
+      GroupDecision decision = right(event, contacts, step);
+      for (Rollback& rollback : decision.rollbacks) rollback.stamp.time = time;
+      return decision;
+    };
+    EXPECT_NE(run_taught(scene, laws, kick).stopped_by, "") << time;
+    laws = all_laws();
+    laws.scheduling.on_callback = [time](const ScheduledEvent& event, const std::vector<LocalTime>&) {
+      return std::vector<Rollback>{{event.receivers.front(), {time, 0, WorkKind::kCallback, 0, -1}}, {1000, event.stamp}};
+    };
+    EXPECT_NE(run_taught(scene, laws, kick).stopped_by, "") << time;
+  }
+  for (const std::vector<std::vector<std::int32_t>>& groups : {std::vector<std::vector<std::int32_t>>{}, {{}}, {{-7}}, {{1000, 1}}, {{1}, {1}}}) {
+    Laws laws = all_laws();
+    laws.scheduling.contact_groups = [groups](const std::vector<std::int32_t>&, const std::vector<GroupContact>&) { return groups; };
+    EXPECT_NE(run_taught(scene, laws).stopped_by, "");
+  }
+}
+
 TEST(TaughtTimewarp, StopsWhereACallbackSendsNobodyBack) {
   Laws laws = all_laws();
   laws.scheduling.on_callback = [](const ScheduledEvent&, const std::vector<LocalTime>&) { return std::vector<Rollback>{}; };
