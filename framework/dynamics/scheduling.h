@@ -31,7 +31,7 @@ struct Stamp {
 
 /// An event in the queue.
 struct ScheduledEvent {
-  Stamp stamp;                            // of a check: when the next look is due; its generation is 0
+  Stamp stamp;                            // of a check: when the next look is due; its generation is 0 (of a group's: that of what was found)
   double safe_time = kUnset;              // nothing that this event may still change lies before it [s]: of a check the time up to which its
                                           // bodies were verified disjoint, of a callback its own time, of a redraw infinity
   std::vector<std::int32_t> receivers;    // processes that must have come to stamp.time, ascending; walls are none. Of a redraw empty: all
@@ -43,7 +43,7 @@ struct Rollback {
   Stamp stamp;
 };
 
-/// Something that was worked at and is not committed: an impact, a callback. It changed one process or two.
+/// Something that was worked at and is not committed: an impact, a callback, a group's change. It changed one process, two, or whole groups.
 struct Effect {
   Stamp stamp;
   std::vector<std::int32_t> processes;    // those it changed, ascending; walls are none
@@ -63,7 +63,7 @@ struct CheckDecision {
   ScheduledEvent next;                    // the same check as it goes back into the queue
 };
 
-/// Two bodies of a group that touch, or one of them and a wall.
+/// Two bodies of a group that touch, or one of them and a wall (no body of the group: its number, or -1).
 struct GroupContact {
   std::int32_t body_a = -1, body_b = -1;
   double opens = kUnset;                  // when they part; infinite: not within what was looked at [s]

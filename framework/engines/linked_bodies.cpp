@@ -6,6 +6,8 @@
 #include <numbers>
 #include <numeric>
 
+#include <fmt/format.h>
+
 #include "framework/dynamics/joint_rows.h"
 #include "framework/engines/guarded_laws.h"
 
@@ -168,6 +170,20 @@ void LinkedBodies::add_motors(const std::vector<Body>& bodies, std::vector<Wrenc
   }
 }
 
+namespace {
+
+// A motor measures its hinge's angle within a turn: from half a turn between two looks on it is lost. Nothing comes so far that does not
+// overshoot more each time, because the torque that brakes it is held for too long.
+void refuse_lost(const std::string& hinge, const scene::MotorSpec& law, const HingeMotion& motion) {
+  const double turn = std::abs(motion.rate) * law.period_s;
+  if (law.stiffness_n_m_rad == 0.0 || !(turn > std::numbers::pi)) return;
+  throw StoppedRun(fmt::format("the motor of '{}' finds its hinge turning at {:.3g} rad/s, {:.3g} rad between two looks {:.3g} s apart: beyond half a turn it does not know its angle. "
+                               "Likely it overshoots more each time, for it holds its torque too long: a shorter \"period_s\", or less \"damping_n_m_s_rad\" or \"stiffness_n_m_rad\"",
+                               hinge, motion.rate, turn, law.period_s));
+}
+
+}  // namespace
+
 double LinkedBodies::look(double time, const std::vector<RigidBodyState>& states) {
   double next = std::numeric_limits<double>::infinity();
   if (!built::kMotor || motors_.empty()) return next;
@@ -180,6 +196,7 @@ double LinkedBodies::look(double time, const std::vector<RigidBodyState>& states
       const int joint = world_.motors[motors_[k]].joint;
       const auto link = std::find_if(joints_.begin(), joints_.end(), [&](const Link& l) { return l.index == joint; });
       const HingeMotion hinge = hinge_motion(world_.joints[joint], bodies[link->a.place], bodies[link->b.place]);
+      refuse_lost(world_.joints[joint].name, law, hinge);
       const double target = law.offset_rad + law.amplitude_rad * std::sin(2 * std::numbers::pi * law.frequency_hz * time + law.phase_rad);
       const double torque = law.stiffness_n_m_rad * (target - hinge.angle) - law.damping_n_m_s_rad * hinge.rate;
       torques_[k] = std::clamp(torque, -law.largest_torque_n_m, law.largest_torque_n_m);

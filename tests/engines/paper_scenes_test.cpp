@@ -102,5 +102,34 @@ TEST(Avalanche, RocksComeDownTheMountainAndTouchIt) {
   }
 }
 
+// ---- Blows that do not bounce, each at its instant, in a scoop that motors drive -------------------------------------------
+
+scene::Scene robot_with_located_impacts() {
+  scene::Scene scene = sized("robots", 1, 0.35);
+  scene.contact->plastic_impacts = scene::PlasticImpacts::kLocated;
+  return scene;
+}
+
+// Some hundred a second, as the motors jog the scoop; the run comes to its end.
+TEST(Robots, WithLocatedImpactsComeToTheirEnd) {
+  for (const char* engine : {"rd", "tw"}) {
+    const Trajectory run = run_by(engine, robot_with_located_impacts(), {}, 60.0, reference_laws());
+    EXPECT_EQ(run.stopped_by, "") << engine;
+    EXPECT_GT(run.events.size(), 50U) << engine;
+    EXPECT_LT(run.counters.counts.at("discontinuities"), 1000U) << engine;
+  }
+}
+
+// A torque held for 1/960 s that brakes an eighth of the arm's inertia by 60 N m s/rad turns it round, faster each time.
+TEST(Robots, WhoseMotorsOvershootAreStoppedAtOnceAndNamed) {
+  scene::Scene scene = robot_with_located_impacts();
+  for (scene::MotorSpec& motor : scene.motors) motor.damping_n_m_s_rad = 60.0 * motor.stiffness_n_m_rad / 6000.0;
+  for (const char* engine : {"rd", "tw"}) {
+    const Trajectory run = run_by(engine, scene, {}, 60.0, reference_laws());
+    for (const char* word : {"at t = ", "_1_", "period_s"}) EXPECT_NE(run.stopped_by.find(word), std::string::npos) << engine << ": " << run.stopped_by;
+    EXPECT_LT(run.events.size(), 2000U) << engine;
+  }
+}
+
 }  // namespace
 }  // namespace tumble::testing

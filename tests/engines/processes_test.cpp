@@ -7,16 +7,13 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
-#include "framework/scene/load_scene.h"
-#include "tests/engines/event_scenes.h"
+#include "tests/engines/event_process_scenes.h"
 #include "tests/engines/reference_laws.h"
 
 namespace tumble::testing {
 namespace {
 
 using engines::TimewarpTrial;
-
-const Vector3d kGravity(0, 0, -9.81);
 
 const Laws& laws() {
   static const Laws reference = reference_laws();
@@ -36,43 +33,6 @@ void expect_one_trace(const scene::Scene& scene, std::size_t least) {
   ASSERT_EQ(reference.stopped_by, "");
   ASSERT_GE(reference.events.size(), least);
   for (const char* engine : {"tw", "ca"}) EXPECT_EQ(difference(reference, run_with(engine, scene)), "") << engine;
-}
-
-/// Bobs on rods from the ceiling, each a process, and balls in free flight among them; bob 0 is slowed by drag, ball 0 is pushed.
-scene::Scene pendula_and_balls(int pendula, double duration) {
-  std::vector<scene::BodySpec> bodies;
-  scene::Scene scene;
-  for (int i = 0; i < pendula; ++i) {
-    const std::string bob = "bob" + std::to_string(i);
-    bodies.push_back(ball(bob, 0.1, 1.0, {0.45 * i, 0, 0}, {0.8 - 0.2 * i, 0, 0}));
-    scene.rods.push_back({"rod" + std::to_string(i), {"", {0.45 * i, 0, 1}}, {bob, Vector3d::Zero()}, 1.0});
-    bodies.push_back(ball("ball" + std::to_string(i), 0.08, 0.5, {0.45 * i + 0.05, 0.35, 0.02 * i + 0.3}, {0.0, -1.0, 0.6}));
-  }
-  bodies.push_back(plane("wall", {0, -0.8, 0}, {0, 1, 0}));
-  bodies.push_back(plane("floor", {0, 0, -0.4}, {0, 0, 1}));
-  bodies.push_back(plane("back", {0, 0.9, 0}, {0, -1, 0}));
-  scene.name = "pendula";
-  scene.bodies = std::move(bodies);
-  scene.duration_s = duration;
-  scene.gravity_m_s2 = kGravity;
-  scene.stabilisation = scene::StabilisationSpec{};
-  scene.drags.push_back({"bob0", 0.2, 0.0});
-  scene.point_forces.push_back({"ball0", {0.5, 0, 1.0}, {0.05, 0.35, 0.38}, 0.1, 0.3});
-  return scene;
-}
-
-/// A tower of three boxes and a ball shot at it; restitution 0 within the tower.
-scene::Scene tower_and_projectile(double shot_m_s) {
-  std::vector<scene::BodySpec> bodies{plane("floor", {0, 0, 0}, {0, 0, 1})};
-  for (int i = 0; i < 3; ++i) bodies.push_back(box("block" + std::to_string(i), {0.1, 0.1, 0.1}, 1.0, {0, 0, 0.1 + 0.23 * i + 0.02}, Vector3d::Zero()));
-  bodies.push_back(ball("shot", 0.05, 0.4, {-2, 0, 0.33}, {shot_m_s, 0, 0.9}));
-  for (scene::BodySpec& body : bodies) {
-    body.restitution = 0.0;
-    body.friction = 0.4;
-  }
-  scene::Scene scene = scene_of(bodies, 0.9, kGravity);
-  scene.contact = scene::ContactSpec{};
-  return scene;
 }
 
 // ---- One trace ---------------------------------------------------------------------------------------------------------

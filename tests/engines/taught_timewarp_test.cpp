@@ -5,7 +5,8 @@
 #include "framework/engines/run.h"
 #include "framework/modules/load.h"
 #include "framework/scene/load_scene.h"
-#include "tests/engines/event_scenes.h"
+#include "tests/engines/event_process_scenes.h"
+#include "tests/engines/reference_laws.h"
 
 namespace tumble::testing {
 namespace {
@@ -22,10 +23,18 @@ Laws taught_laws() {
   return laws;
 }
 
-Trajectory run_taught(const scene::Scene& scene, const Laws& laws) {
+/// All laws the reference's: for scenes with links and lasting contacts.
+Laws all_laws() {
+  Laws laws = reference_laws();
+  laws.scheduling = taught_laws().scheduling;
+  return laws;
+}
+
+Trajectory run_taught(const scene::Scene& scene, const Laws& laws, const std::vector<engines::Callback>& callbacks = {}, const std::string& engine = "tw") {
   TrajectoryRecorder recorder;
   engines::RunOptions options;
-  options.engine = "tw";
+  options.engine = engine;
+  options.callbacks = callbacks;
   engines::run_scene(scene, laws, options, recorder);
   return recorder.trajectory();
 }
@@ -39,6 +48,106 @@ TEST(TaughtTimewarp, CommitsTheReferencesTrace) {
     ASSERT_GT(reference.events.size(), static_cast<std::size_t>(least)) << name;
     EXPECT_EQ(difference(reference, run), "") << name;
   }
+}
+
+// ---- Groups and callbacks ------------------------------------------------------------------------------------------------
+
+void expect_the_references_trace_of(const scene::Scene& scene, std::size_t least, const std::vector<engines::Callback>& callbacks = {}) {
+  const Trajectory reference = run_taught(scene, all_laws(), callbacks, "ordered"), run = run_taught(scene, all_laws(), callbacks);
+  ASSERT_EQ(reference.stopped_by, "") << scene.name;
+  ASSERT_GE(reference.events.size(), least) << scene.name;
+  EXPECT_EQ(difference(reference, run), "") << scene.name;
+}
+
+TEST(TaughtTimewarp, CommitsTheReferencesTraceOfLinkedBodies) {
+  expect_the_references_trace_of(pendula_and_balls(5, 0.9), 10);
+  expect_the_references_trace_of(sized("cars", 4, 0.3), 0);
+}
+
+// Towers fuse, are hit and come apart; dominoes fall; an arm throws its block; rocks roll.
+TEST(TaughtTimewarp, CommitsTheReferencesTraceOfGroupsInContact) {
+  const Trajectory tower = run_taught(tower_and_projectile(5.0), all_laws());
+  EXPECT_GT(tower.counters.counts.at("rollbacks"), 0U);
+  expect_the_references_trace_of(tower_and_projectile(5.0), 15);
+  expect_the_references_trace_of(sized("dominoes_row", 4, 0.5), 5);
+  expect_the_references_trace_of(sized("robots", 1, 0.5), 1);
+  expect_the_references_trace_of(sized("avalanche", 6, 0.4), 5);
+}
+
+TEST(TaughtTimewarp, CommitsTheReferencesTraceWithCallbacks) {
+  const std::vector<engines::Callback> kicks{{0.21, {0, 1, 4}, [](int, RigidBodyState& state) { state.momentum_world.y() += 0.3; }},
+                                             {0.21, {2}, [](int, RigidBodyState& state) { state.momentum_world.x() -= 0.2; }},
+                                             {0.5017, {3}, [](int, RigidBodyState& state) { state.momentum_world.z() += 0.2; }}};
+  expect_the_references_trace_of(pendula_and_balls(4, 0.8), 10, kicks);
+  std::vector<int> all;
+  const scene::Scene gas = sized("gas", 20, 1.0);
+  for (int i = 0; i < static_cast<int>(gas.bodies.size()); ++i)
+    if (!gas.bodies[static_cast<std::size_t>(i)].immovable) all.push_back(i);
+  expect_the_references_trace_of(gas, 60, {{0.31, all, [](int body, RigidBodyState& state) { state.momentum_world += Vector3d(0.1, 0.02 * (body % 5), -0.1); }}});
+  expect_the_references_trace_of(tower_and_projectile(5.0), 15, {{0.3, {2}, [](int, RigidBodyState& state) { state.momentum_world.z() += 1.0; }}});
+}
+
+TEST(TaughtTimewarp, StopsWhereGroupsAreWrong) {
+  Laws laws = all_laws();
+  laws.scheduling.contact_groups = [](const std::vector<std::int32_t>& bodies, const std::vector<GroupContact>&) { return std::vector<std::vector<std::int32_t>>{bodies}; };
+  EXPECT_NE(run_taught(tower_and_projectile(5.0), laws).stopped_by.find("contact_groups makes {"), std::string::npos);
+  laws = all_laws();
+  laws.scheduling.on_group_check = [right = laws.scheduling.on_group_check](const ScheduledEvent& event, const std::vector<GroupContact>& contacts, double step) {
+    GroupDecision decision = right(event, contacts, step);
+    if (decision.groups.size() > 1) decision.groups.pop_back();
+    return decision;
+  };
+  EXPECT_NE(run_taught(tower_and_projectile(5.0), laws).stopped_by.find("on_group_check makes {"), std::string::npos);
+  laws = all_laws();
+  laws.scheduling.on_group_check = [](const ScheduledEvent& event, const std::vector<GroupContact>&, double step) {   // a group for ever
+    ScheduledEvent next = event;
+    next.safe_time = event.stamp.time;
+    next.stamp.time += step;
+    return GroupDecision{false, {}, {}, next};
+  };
+  EXPECT_NE(run_taught(tower_and_projectile(5.0), laws).stopped_by, "");
+}
+
+// Whatever is answered about groups and callbacks, the run ends with words.
+TEST(TaughtTimewarp, BearsAnyAnswerAboutGroups) {
+  scene::Scene scene = tower_and_projectile(5.0);
+  scene.duration_s = 0.3;
+  const std::vector<engines::Callback> kick{{0.15, {1}, [](int, RigidBodyState& state) { state.momentum_world.z() += 0.5; }}};
+  for (const double time : {-1.0, 0.0, 0.12, 1e9, kInfinity, -kInfinity, kUnset}) {
+    Laws laws = all_laws();
+    laws.scheduling.on_group_check = [right = laws.scheduling.on_group_check, time](const ScheduledEvent& event, const std::vector<GroupContact>& contacts, double step) {
+      GroupDecision decision = right(event, contacts, step);
+      decision.next.stamp.time = decision.next.safe_time = time;
+      return decision;
+    };
+    EXPECT_NE(run_taught(scene, laws, kick).stopped_by, "") << time;
+    laws = all_laws();
+    laws.scheduling.on_group_check = [right = laws.scheduling.on_group_check, time](const ScheduledEvent& event, const std::vector<GroupContact>& contacts, double step) {
+      GroupDecision decision = right(event, contacts, step);
+      for (Rollback& rollback : decision.rollbacks) rollback.stamp.time = time;
+      return decision;
+    };
+    EXPECT_NE(run_taught(scene, laws, kick).stopped_by, "") << time;
+    laws = all_laws();
+    laws.scheduling.on_callback = [time](const ScheduledEvent& event, const std::vector<LocalTime>&) {
+      return std::vector<Rollback>{{event.receivers.front(), {time, 0, WorkKind::kCallback, 0, -1}}, {1000, event.stamp}};
+    };
+    EXPECT_NE(run_taught(scene, laws, kick).stopped_by, "") << time;
+  }
+  for (const std::vector<std::vector<std::int32_t>>& groups : {std::vector<std::vector<std::int32_t>>{}, {{}}, {{-7}}, {{1000, 1}}, {{1}, {1}}}) {
+    Laws laws = all_laws();
+    laws.scheduling.contact_groups = [groups](const std::vector<std::int32_t>&, const std::vector<GroupContact>&) { return groups; };
+    EXPECT_NE(run_taught(scene, laws).stopped_by, "");
+  }
+}
+
+TEST(TaughtTimewarp, StopsWhereACallbackSendsNobodyBack) {
+  Laws laws = all_laws();
+  laws.scheduling.on_callback = [](const ScheduledEvent&, const std::vector<LocalTime>&) { return std::vector<Rollback>{}; };
+  const std::vector<engines::Callback> kick{{0.213, {0, 1}, [](int, RigidBodyState& state) { state.momentum_world.y() += 0.3; }}};
+  const std::string stop = run_taught(pendula_and_balls(2, 0.4), laws, kick).stopped_by;
+  EXPECT_NE(stop.find("a callback acts on"), std::string::npos) << stop;
+  EXPECT_NE(stop.find("was not sent back"), std::string::npos) << stop;
 }
 
 TEST(TaughtTimewarp, TellsVirtualTimes) {

@@ -10,9 +10,9 @@ namespace tumble::engines {
 
 /// What happens at one instant, in the order in which it does when the generation is the same.
 enum class EventClass : std::uint8_t {
-  kCollision = 1,
-  kProcess = 2,      // a process's own: an impact within it, a contact that begins or opens; body_a is its first body, body_b -1
-  kCallback = 3,     // a callback changes bodies; body_a is the first of them, body_b -1, the generation its place in the list
+  kCallback = 1,     // a callback changes bodies; body_a is the first of them, body_b -1, the generation its place in the list
+  kCollision = 2,
+  kProcess = 3,      // a process's own: an impact within it, a contact that begins or opens; body_a is its first body, body_b -1
   kAdvance = 255     // a process goes on; never committed
 };
 

@@ -59,6 +59,15 @@ class Passages {
   /// The step that holds t.
   const ProcessStep& step_at(int passage, double t);
 
+  /// What it began with.
+  const ProcessState& start(int passage) const { return *at(passage).start; }
+  /// Calls work(step) for the steps that hold times in [from, to].
+  template <class Work>
+  void for_each_step(int passage, double from, double to, const Work& work) {
+    reach(passage, to);
+    for (const ProcessStep& step : at(passage).steps)
+      if (step.end >= from && step.from.time <= to) work(step);
+  }
   /// One body along one step: what a search for impacts looks at. @pre low < high lie in one step
   collision::Motion motion_in_step(int passage, int body, double low);
   /// Calls work(step, place of the body among the members, from, to) for the steps that cover [from, to]; what lies behind the end is no part.

@@ -110,6 +110,7 @@ class ProcessWorld {
   double load_forces(const ProcessState& from);
   void begin_step(double target);
   void require_numbers() const;
+  void refuse_whirl(int member, double target) const;
   bool has_contacts() const { return contacts_.has_value(); }
   bool keep_contacts(std::vector<BodyPair>& pairs);
   std::vector<ContactPoint> forces() const;

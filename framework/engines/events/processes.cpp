@@ -104,13 +104,20 @@ ProcessState Processes::together(const ProcessState& a, const ProcessState& b) {
   return both;
 }
 
+std::vector<BodyPair> Processes::ties_of(const ProcessState& state) const {
+  std::set<BodyPair> ties;
+  for (const int body : state.members)
+    if (const int first = linked_[static_cast<std::size_t>(body)]; first >= 0 && first != body) ties.emplace(first, body);
+  const auto is_member = [&](int body) { return std::binary_search(state.members.begin(), state.members.end(), body); };
+  for (const std::set<BodyPair>* pairs : {&state.lasting, &state.near})
+    for (const BodyPair& pair : *pairs)
+      if (is_member(pair.first) && is_member(pair.second)) ties.insert(pair);
+  return {ties.begin(), ties.end()};
+}
+
 std::vector<std::vector<int>> Processes::components_of(const ProcessState& state) const {
   Components components(state.members);
-  for (const int body : state.members)
-    if (const int first = linked_[static_cast<std::size_t>(body)]; first >= 0) components.join(first, body);
-  for (const std::set<BodyPair>* pairs : {&state.lasting, &state.near})
-    for (const auto& [a, b] : *pairs)
-      if (components.has(a) && components.has(b)) components.join(a, b);
+  for (const auto& [a, b] : ties_of(state)) components.join(a, b);
   return components.all();
 }
 

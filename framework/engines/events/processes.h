@@ -37,6 +37,10 @@ class Processes {
   /// Two processes as one.
   static ProcessState together(const ProcessState& a, const ProcessState& b);
 
+  /// What holds the members of a state together: pairs of them that links tie (each to the least of its kind), that touch, or that meet again
+  /// within a step or two. Each once, in order.
+  std::vector<BodyPair> ties_of(const ProcessState& state) const;
+
   /// Sorts the bodies of a process anew. @return flights from state.time on; generation and partners are the caller's to give
   std::vector<BegunFlight> sort(const ProcessState& state);
 

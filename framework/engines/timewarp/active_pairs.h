@@ -44,6 +44,24 @@ class ActivePairs {
   void set_box(int body, const Box& box);
   /// Takes a body out, if it is in.
   void remove(int body) { take_out(body); }
+  bool holds(int body) const { return entries_[static_cast<std::size_t>(body)].is_in_grid || entries_[static_cast<std::size_t>(body)].is_wide; }
+  /// The grid as it stands, whatever order it was entered in: by body its box and cells, by bucket who is in it with which box.
+  /// @param row  is called with each (what, place, body, numbers), bodies ascending, then buckets with their bodies in no order
+  template <class Row>
+  void for_each_row(const Row& row) const {
+    for (std::size_t body = 0; body < entries_.size(); ++body) {
+      const Entry& e = entries_[body];
+      if (!e.is_in_grid && !e.is_wide) continue;
+      row(e.is_wide ? 'w' : 'b', 0, static_cast<int>(body), std::array<double, 12>{e.box.low.x(), e.box.low.y(), e.box.low.z(), e.box.high.x(), e.box.high.y(), e.box.high.z(), double(e.low[0]), double(e.low[1]), double(e.low[2]),
+                                                                                  double(e.high[0]), double(e.high[1]), double(e.high[2])});
+    }
+    for (std::size_t head = 0; head <= mask_; ++head)
+      for (std::int32_t at = static_cast<std::int32_t>(head); at >= 0; at = buckets_[static_cast<std::size_t>(at)].next)
+        for (std::int32_t place = 0; place < buckets_[static_cast<std::size_t>(at)].count; ++place) {
+          const Slot& slot = buckets_[static_cast<std::size_t>(at)].slots[static_cast<std::size_t>(place)];
+          row('c', head, slot.body, std::array<double, 12>{slot.box.low[0], slot.box.low[1], slot.box.low[2], slot.box.high[0], slot.box.high[1], slot.box.high[2]});
+        }
+  }
   const Box& box(int body) const { return entries_[static_cast<std::size_t>(body)].box; }
 
   /// Begins to bring what is known of a body from memory.

@@ -49,6 +49,15 @@ class EventQueue {
     for (const Item& item : all) work(item);
   }
 
+  /// Looks at all that waits, in no order. @param work  is called with each
+  template <class Work>
+  void for_each(const Work& work) const {
+    for (const Item& item : heap_) work(item);
+    for (const Item& item : far_) work(item);
+    for (const std::vector<Item>& bin : bins_)
+      for (const Item& item : bin) work(item);
+  }
+
   Item pop() {
     const Item front = heap_.front(), last = heap_.back();
     heap_.pop_back();

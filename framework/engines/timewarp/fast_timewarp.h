@@ -2,6 +2,7 @@
 #pragma once
 
 #include "framework/engines/run.h"
+#include "framework/engines/timewarp/rollback_watch.h"
 #include "framework/trajectory/virtual_times.h"
 
 namespace tumble::engines {
@@ -10,7 +11,8 @@ namespace tumble::engines {
 /// no_fast_timewarp.cpp where there are none.
 /// @param record  where every move of a local virtual time is written, if it is not null; kept by the caller as long as the engine runs.
 ///                A long run is written as far as `kMostMoves` go
-Engine fast_timewarp(VirtualTimes* record = nullptr);
+/// @param watch   a test's: rolls everything back on trial, if it is not null; kept by the caller likewise
+Engine fast_timewarp(VirtualTimes* record = nullptr, const RollbackWatch* watch = nullptr);
 
 constexpr std::size_t kMostMoves = 200'000;
 

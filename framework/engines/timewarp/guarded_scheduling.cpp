@@ -50,6 +50,11 @@ Scheduling guarded(const Scheduling& scheduling, const std::string& source) {
     const std::string problem = of_event(decision.next);
     return problem.empty() ? of_rollbacks(decision.rollbacks) : problem;
   });
+  guard(safe.contact_groups, "contact_groups", source, [](const std::vector<std::vector<std::int32_t>>& answer) { return any(answer); });
+  guard(safe.on_group_check, "on_group_check", source, [](const GroupDecision& decision) {
+    const std::string problem = of_event(decision.next);
+    return problem.empty() ? of_rollbacks(decision.rollbacks) : problem;
+  });
   guard(safe.on_callback, "on_callback", source, of_rollbacks);
   guard(safe.anti_messages, "anti_messages", source, of_rollbacks);
   guard(safe.plan_rollback, "plan_rollback", source, of_rollbacks);

@@ -3,6 +3,6 @@
 
 namespace tumble::engines {
 
-Engine fast_timewarp(VirtualTimes*) { return {}; }
+Engine fast_timewarp(VirtualTimes*, const RollbackWatch*) { return {}; }
 
 }  // namespace tumble::engines

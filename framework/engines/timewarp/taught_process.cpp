@@ -10,6 +10,12 @@ constexpr double kRounding = 1e-14;  // of coordinates
 
 }  // namespace
 
+double until_end(const FlightWorld& world, const Flight& flight, double t) {
+  if (flight.passage < 0) return t;
+  const PassageEnd* end = world.processes()->passages().end_by(flight.passage, t);
+  return end ? std::min(t, end->time) : t;
+}
+
 void SweptBox::add(std::uint64_t id, const Box& box) {
   alive_.insert(id);
   for (std::size_t axis = 0; axis < kAxes; ++axis) {
@@ -32,7 +38,7 @@ Box SweptBox::box() const {
 
 TaughtProcess::TaughtProcess(const FlightWorld& world, int body) : world_(world), body_(body) {
   const Flight& first = world.first_flight(body);
-  push(first.begin, first, box_of(first, first.begin, first.begin));
+  push(first.begin, first, {first.begin, 0, EventClass::kCollision, -1, -1}, box_of(first, first.begin, first.begin));
 }
 
 const KeptState* TaughtProcess::at(double t) const {
@@ -48,29 +54,41 @@ std::vector<double> TaughtProcess::times() const {
 
 void TaughtProcess::integrate_to(double t) {
   const KeptState last = states_.back();
-  push(t, last.flight, box_of(last.flight, last.time, t));
+  push(t, last.flight, last.began, box_of(last.flight, last.time, t));
 }
 
-void TaughtProcess::begin(const Flight& flight) { push(flight.begin, flight, box_of(flight, flight.begin, flight.begin)); }
+void TaughtProcess::begin(const Flight& flight, const EventKey& began) { push(flight.begin, flight, began, box_of(flight, flight.begin, flight.begin)); }
 
+// A passage is let go of with the last state that names it.
 void TaughtProcess::drop_latest() {
-  swept_.remove(states_.back().id);
+  const KeptState dropped = states_.back();
+  swept_.remove(dropped.id);
   states_.pop_back();
+  if (states_.empty() || states_.back().flight.serial != dropped.flight.serial) world_.release(dropped.flight);
 }
 
 void TaughtProcess::drop_oldest(std::size_t count) {
   const auto end = states_.begin() + static_cast<std::ptrdiff_t>(count);
-  for (auto state = states_.begin(); state != end; ++state) swept_.remove(state->id);
+  for (auto state = states_.begin(); state != end; ++state) {
+    swept_.remove(state->id);
+    if (std::next(state) == states_.end() || std::next(state)->flight.serial != state->flight.serial) world_.release(state->flight);
+  }
   states_.erase(states_.begin(), end);
 }
 
-void TaughtProcess::push(double time, const Flight& flight, const Box& box) {
-  states_.push_back({next_id_, time, flight});
+void TaughtProcess::push(double time, const Flight& flight, const EventKey& began, const Box& box) {
+  states_.push_back({next_id_, time, flight, began});
   swept_.add(next_id_++, box);
 }
 
 // A parabola leaves the box of its ends by at most a s^2 / 8; a body that turns stays in the ball around it.
 Box TaughtProcess::box_of(const Flight& flight, double from, double to) const {
+  if (flight.passage >= 0) {
+    Box way;
+    world_.take_in_way(body_, flight, until_end(world_, flight, from), until_end(world_, flight, to), way.low, way.high);
+    const Vector3d margin = Vector3d::Constant(world_.radius(body_) * (1 + kSlack)) + kSlack * (way.high - way.low) + kRounding * (way.low.cwiseAbs() + way.high.cwiseAbs());
+    return {way.low - margin, way.high + margin};
+  }
   const double s = to - from;
   const Vector3d first = world_.position(body_, flight, from), last = world_.position(body_, flight, to);
   const Vector3d margin = world_.acceleration(body_, flight).cwiseAbs() * (s * s / 8) + Vector3d::Constant(world_.radius(body_) * (1 + kSlack)) + kSlack * (last - first).cwiseAbs() +

@@ -1,4 +1,6 @@
 /// A process of the teaching timewarp: the states of one body from global to local virtual time, and the box that it swept meanwhile.
+/// Bodies that move together (linked, pushed, in lasting contact) name one passage in their flights; they come and go back together because
+/// whoever is told of one of them is told of all.
 #pragma once
 
 #include <array>
@@ -36,7 +38,12 @@ struct KeptState {
   std::uint64_t id;      // no two states of a body that ever were have the same
   double time;           // [s]
   Flight flight;
+  EventKey began;        // the event that began the flight; of the run's start it has no bodies
 };
+
+/// The time up to which a flight's motion is known, at most t: what contacts hold together ends where they open, and whoever went on beyond
+/// that as if nothing had happened is taken to stand there until somebody looks. [s]
+double until_end(const FlightWorld& world, const Flight& flight, double t);
 
 class TaughtProcess {
  public:
@@ -46,6 +53,7 @@ class TaughtProcess {
   const std::vector<KeptState>& states() const { return states_; }
   double local_time() const { return states_.back().time; }
   const Flight& flight() const { return states_.back().flight; }
+  const EventKey& began() const { return states_.back().began; }
   Box swept() const { return swept_.box(); }
   /// The state that holds at t: the last one not later. nullptr: it is forgotten
   const KeptState* at(double t) const;
@@ -55,13 +63,13 @@ class TaughtProcess {
   /// One integration step along the flight that it is on.
   void integrate_to(double t);
   /// Goes on another flight from now on. @pre flight.begin == local_time(), or the states reach no farther
-  void begin(const Flight& flight);
+  void begin(const Flight& flight, const EventKey& began);
   /// Forgets the latest state, or the `count` oldest.
   void drop_latest();
   void drop_oldest(std::size_t count);
 
  private:
-  void push(double time, const Flight& flight, const Box& box);
+  void push(double time, const Flight& flight, const EventKey& began, const Box& box);
   Box box_of(const Flight& flight, double from, double to) const;
 
   const FlightWorld& world_;

@@ -12,6 +12,21 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
+Stamp stamp_of(const EventKey& key) {
+  const WorkKind kind = key.kind == EventClass::kCallback ? WorkKind::kCallback : key.kind == EventClass::kProcess ? WorkKind::kGroup : WorkKind::kCollision;
+  return {key.time, key.generation, kind, key.body_a, key.body_b};
+}
+
+std::vector<std::int32_t> bodies_that_move_with(const FlightWorld& world, const std::vector<BegunFlight>& flights) {
+  std::vector<std::int32_t> bodies;
+  for (const BegunFlight& flight : flights)
+    if (world.can_move(flight.body))
+      for (const int member : world.members(flight.body, flight.flight)) bodies.push_back(member);
+  std::sort(bodies.begin(), bodies.end());
+  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+  return bodies;
+}
+
 std::optional<FoundImpact> find_impact(FlightRun& run, const TaughtProcess& of_a, const TaughtProcess& of_b, double from, double to) {
   const FlightWorld& world = run.world();
   const int a = of_a.body(), b = of_b.body();
@@ -29,7 +44,7 @@ std::optional<FoundImpact> find_impact(FlightRun& run, const TaughtProcess& of_a
       if (!parts.empty() && parts.back().flight.serial == state.flight.serial) continue;
       if (!parts.empty()) {
         parts.back().end = state.flight.begin;
-        parts.back().end_key = EventKey{state.flight.begin, state.flight.generation, EventClass::kCollision, std::min(body, state.flight.partner), std::max(body, state.flight.partner)};
+        parts.back().end_key = state.began;
       }
       parts.push_back({state.flight, kInfinity, std::nullopt});
     }
@@ -45,15 +60,16 @@ std::optional<FoundImpact> find_impact(FlightRun& run, const TaughtProcess& of_a
       const EventKey key = key_of_impact(a, f.flight, b, g.flight, time);
       // One of them had been hit before, or this very impact was worked at.
       if ((f.end_key && !(key < *f.end_key)) || (g.end_key && !(key < *g.end_key))) continue;
-      if (!first || key < first->key) first = FoundImpact{key, f.flight.serial, g.flight.serial};
+      if (!first || key < first->key) first = FoundImpact{key, f.flight.serial, g.flight.serial, bodies_that_move_with(world, {{a, f.flight}, {b, g.flight}})};
     }
   return first;
 }
 
 CheckFinding closeness(const FlightWorld& world, int a, const Flight& f, int b, const Flight& g, double t) {
   CheckFinding finding;
-  const collision::MotionState x = world.motion_at(a, f, t), y = world.motion_at(b, g, t);
-  const collision::MotionBounds of_a = world.bounds(a, f, t), of_b = world.bounds(b, g, t);
+  const double at_a = until_end(world, f, t), at_b = until_end(world, g, t);
+  const collision::MotionState x = world.motion_at(a, f, at_a), y = world.motion_at(b, g, at_b);
+  const collision::MotionBounds of_a = world.bounds(a, f, at_a), of_b = world.bounds(b, g, at_b);
   finding.gap = std::max(0.0, collision::compute_gap(world.shape(a), x.pose, world.shape(b), y.pose).distance);
   const auto turning = [&](int body, double rate) { return rate > 0 ? rate * world.radius(body) : 0.0; };   // a half-space has no radius, and does not turn
   finding.closing_speed = (x.velocity_world - y.velocity_world).norm() + turning(a, of_a.angular_speed) + turning(b, of_b.angular_speed);

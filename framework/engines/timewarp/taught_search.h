@@ -12,6 +12,7 @@ namespace tumble::engines {
 struct FoundImpact {
   EventKey key;
   std::uint32_t serial_a, serial_b;   // of the flights that meet
+  std::vector<std::int32_t> processes;   // bodies that move with either then, ascending; walls are none
 };
 
 /// The earliest impact of a pair in [from, to], on the flights that both have now, that nobody has worked at.
@@ -20,6 +21,10 @@ std::optional<FoundImpact> find_impact(FlightRun& run, const TaughtProcess& of_a
 /// How far two bodies are apart at t, and bounds on how fast that changes; `contact` is left empty.
 CheckFinding closeness(const FlightWorld& world, int a, const Flight& f, int b, const Flight& g, double t);
 
-inline Stamp stamp_of(const EventKey& key) { return {key.time, key.generation, WorkKind::kCollision, key.body_a, key.body_b}; }
+/// These bodies and those that move with them on these flights, ascending, each once; walls are none.
+std::vector<std::int32_t> bodies_that_move_with(const FlightWorld& world, const std::vector<BegunFlight>& flights);
+
+/// An event as schedulers know it.
+Stamp stamp_of(const EventKey& key);
 
 }  // namespace tumble::engines

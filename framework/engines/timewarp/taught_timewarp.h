@@ -5,7 +5,8 @@
 /// first, and the run stops, in words, at the first thing committed that is not the reference's.
 ///
 /// It is made to be understood and to give a wrong decision its consequence, not to be fast: every body is asked about every other.
-/// It follows bodies in free flight and their impacts; contact groups and callbacks do not arise in it.
+/// Bodies that links or lasting contacts hold together, and callbacks, are followed too (taught_groups.h): members of a group keep their
+/// own states and are told of everything together.
 #pragma once
 
 #include "framework/engines/run.h"

@@ -1,7 +1,6 @@
 #include "solutions_private/a4_timewarp/fast/conductor.h"
 
 #include <algorithm>
-#include <barrier>
 #include <cmath>
 #include <thread>
 
@@ -30,8 +29,8 @@ constexpr double kRound = 0.25;                // of the window is a round: at i
 
 }  // namespace
 
-Conductor::Conductor(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record)
-    : all_(scene, laws, options, sink), record_(record), commit_at_(kCommitAfter), wanted_(all_.home), leaders_(all_.home.size()) {
+Conductor::Conductor(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record, const engines::RollbackWatch* watch)
+    : all_(scene, laws, options, sink), record_(record), watch_(watch), commit_at_(kCommitAfter), wanted_(all_.home), leaders_(all_.home.size()) {
   const FlightWorld& world = all_.world();
   const double bin = bin_for(world, all_.lengths.way, all_.run.duration());
   const std::size_t domains = all_.threads > 1 ? static_cast<std::size_t>(all_.threads) + 1 : 1;
@@ -105,6 +104,10 @@ void Conductor::go_alone() {
   engines::EventQueue<Due>& queue = all_.domains[kBorder].queue;
   const double duration = all_.run.duration();
   while (!queue.empty() && queue.front().key.time <= duration) {
+    if (is_time_for_a_trial())
+      try_rollback([&] {
+        for (std::size_t k = 0; k < all_.world().movers().size() && !queue.empty() && queue.front().key.time <= duration; ++k) work_alone_at(queue.pop());
+      });
     if (all_.trial.rollback_every > 0) alone().disturb();
     Due due = all_.trial.disorder_s > 0 ? alone().next_legal(duration) : queue.pop();
     if (all_.trial.late_callbacks && due.key.kind == EventClass::kCallback && !queue.empty() && queue.front().key.time <= duration) due = in_place_of(due);
@@ -156,7 +159,6 @@ double Conductor::first_window() const {
 
 void Conductor::go_in_rounds() {
   all_.window = first_window_;
-  const double duration = all_.run.duration();
   double end_of_round = 0.0;
   bool is_over = false;
   std::barrier meet(all_.threads);
@@ -180,28 +182,33 @@ void Conductor::go_in_rounds() {
       }
     });
   const Release release{meet, is_over};
-  while (next_time() <= duration) {
-    all_.global_virtual_time = next_time();
-    end_of_round = all_.global_virtual_time + kRound * all_.window;
-    const double began = thread_seconds();
-    settle();
-    const double settled = thread_seconds();
-    all_.run.share(true);
-    meet.arrive_and_wait();
-    workers_[1]->work_before(end_of_round);
-    meet.arrive_and_wait();
-    all_.run.share(false);
-    double busiest = 0.0;
-    for (const auto& worker : workers_) busiest = std::max(busiest, std::exchange(worker->cpu_seconds, 0.0));
-    const double worked = thread_seconds();
-    collect_what_is_left();
-    work_alone_before(end_of_round);
-    ++alone().counters.rounds;
-    commit_before(std::min(next_time(), duration));
+  while (next_time() <= all_.run.duration()) {
+    if (is_time_for_a_trial()) try_rollback([&] { go_round(end_of_round, meet); });
+    go_round(end_of_round, meet);
+    commit_before(std::min(next_time(), all_.run.duration()));
     adapt_window();
-    alone().counters.together_seconds += busiest;
-    alone().counters.alone_seconds += settled - began + thread_seconds() - worked;
   }
+}
+
+void Conductor::go_round(double& end_of_round, std::barrier<>& meet) {
+  all_.global_virtual_time = next_time();
+  end_of_round = all_.global_virtual_time + kRound * all_.window;
+  const double began = thread_seconds();
+  settle();
+  const double settled = thread_seconds();
+  all_.run.share(true);
+  meet.arrive_and_wait();
+  workers_[1]->work_before(end_of_round);
+  meet.arrive_and_wait();
+  all_.run.share(false);
+  double busiest = 0.0;
+  for (const auto& worker : workers_) busiest = std::max(busiest, std::exchange(worker->cpu_seconds, 0.0));
+  const double worked = thread_seconds();
+  collect_what_is_left();
+  work_alone_before(end_of_round);
+  ++alone().counters.rounds;
+  alone().counters.together_seconds += busiest;
+  alone().counters.alone_seconds += settled - began + thread_seconds() - worked;
 }
 
 void Conductor::collect_what_is_left() {
@@ -288,12 +295,12 @@ void Conductor::end(const std::string& stopped_by) {
   all_.run.end(stopped_by);
 }
 
-void run_fast_timewarp(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record) {
+void run_fast_timewarp(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record, const engines::RollbackWatch* watch) {
   if (options.most_states != 0 && options.most_states < kFewestStates)
     throw UserError("--most-states " + std::to_string(options.most_states), fmt::format("a process in contact needs {}", kFewestStates), fmt::format("Give {} or more, or 0: as many as it takes.", kFewestStates));
   if (options.threads < 1 || options.threads > kMostThreads)
     throw UserError("--threads " + std::to_string(options.threads), fmt::format("expected a number from 1 to {}", kMostThreads), "As many as the machine has cores is most that helps.");
-  Conductor(scene, laws, options, sink, record).run();
+  Conductor(scene, laws, options, sink, record, watch).run();
 }
 
 }  // namespace tumble::a4

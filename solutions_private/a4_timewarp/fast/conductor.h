@@ -1,5 +1,5 @@
 /// Who works when: one thread alone, or several in rounds. Its parts: conductor.cpp goes round, homes.cpp says who looks after whom,
-/// commits.cpp commits.
+/// commits.cpp commits, trials.cpp rolls everything back on trial.
 ///
 /// A round begins at global virtual time. Each worker takes the processes at home in its territory on, each as far as the window lets it,
 /// optimistically: the bodies of the border stay behind. Then one thread alone takes what was left, and the border's own events, in order,
@@ -7,25 +7,33 @@
 /// is faster: each looks at what the others did in rounds before, and at nothing that they do now.
 #pragma once
 
+#include <barrier>
+#include <functional>
 #include <memory>
 #include <optional>
 
+#include "framework/engines/timewarp/rollback_watch.h"
 #include "solutions_private/a4_timewarp/fast/worker.h"
 
 namespace tumble::a4 {
 
 class Conductor {
  public:
-  Conductor(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record);
+  Conductor(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record, const engines::RollbackWatch* watch);
   void run();
 
  private:
+  // trials.cpp
+  bool is_time_for_a_trial();
+  void try_rollback(const std::function<void()>& take_a_step);
+
   // conductor.cpp
   void enter_obstacle(int body);
   void begin();
   void go_alone();
   Due in_place_of(const Due& callback);
   void go_in_rounds();
+  void go_round(double& end_of_round, std::barrier<>& meet);
   void work_alone_before(double end);
   void work_alone_at(Due due);
   void collect_what_is_left();
@@ -54,6 +62,10 @@ class Conductor {
   Shared all_;
   std::vector<std::unique_ptr<Worker>> workers_;   // by domain
   VirtualTimes* record_;                           // null: nobody wants to know
+  const engines::RollbackWatch* watch_;            // null: nobody tries
+  int trials_ = 0;                                 // so far
+  int since_trial_ = 0;                            // events, or rounds
+  double last_trial_ = 0.0;                        // [s]
   std::size_t commit_at_;                          // events worked at before global virtual time is looked at again
   std::optional<EventKey> working_at_;             // alone
   std::vector<std::uint8_t> wanted_;               // by body: home

@@ -14,13 +14,15 @@
 #pragma once
 
 #include "framework/engines/run.h"
+#include "framework/engines/timewarp/rollback_watch.h"
 #include "framework/trajectory/virtual_times.h"
 
 namespace tumble::a4 {
 
 /// @pre `laws` has every law that the scene needs
 /// @param record  where moves of local virtual times are written; null: nowhere
+/// @param watch   rolls everything back on trial; null: never
 /// @throws UserError where the scene has what no flight follows
-void run_fast_timewarp(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record = nullptr);
+void run_fast_timewarp(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record = nullptr, const engines::RollbackWatch* watch = nullptr);
 
 }  // namespace tumble::a4

@@ -4,8 +4,8 @@
 
 namespace tumble::engines {
 
-Engine fast_timewarp(VirtualTimes* record) {
-  return [record](const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink) { a4::run_fast_timewarp(scene, laws, options, sink, record); };
+Engine fast_timewarp(VirtualTimes* record, const RollbackWatch* watch) {
+  return [record, watch](const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink) { a4::run_fast_timewarp(scene, laws, options, sink, record, watch); };
 }
 
 }  // namespace tumble::engines

@@ -33,8 +33,12 @@ class alignas(64) Worker {
   void take_back(int body, std::uint32_t serial);
   /// Begins to bring what an event will look at from memory.
   void fetch(const Due& due) const;
+  /// Whether an event in a queue is to come, and not stale.
+  bool is_to_come(const Due& due);
   /// A test's: rolls a body back by up to the trial's time.
   void disturb();
+  /// A test's: as if the body had never gone beyond t. @pre t is not before what is committed
+  void go_back(int body, double t);
   /// Which event is next: a test's lot decides, among those that may be.
   Due next_legal(double last);
 
@@ -78,6 +82,7 @@ class alignas(64) Worker {
   Box swept_box(int body, double from, double to) const;
   void move(int body, double t);
   void set_horizon(int body, double t);
+  void shrink_box(int body);
   void schedule(int body, std::size_t home);
   void schedule(int body) { schedule(body, all_.home[static_cast<std::size_t>(body)]); }
   double global_virtual_time() const;

@@ -149,6 +149,17 @@ void Worker::enter_box(int body, const Box& box) {
   all_.domains[home].pairs.set_box(body, box);
 }
 
+// What a body swept beyond where it has been sent back to is nobody's concern any more.
+void Worker::shrink_box(int body) {
+  const double to = process(body).horizon;
+  Box box = swept_box(body, std::min(to, global_virtual_time()), to);
+  if (!is_alone()) {   // not out of the territory, whatever rounding does: the box that it had holds all that it sweeps
+    const Box& had = all_.domains[home_].pairs.box(body);
+    box = {box.low.cwiseMax(had.low), box.high.cwiseMin(had.high)};
+  }
+  enter_box(body, box);
+}
+
 // The border's bodies may be met everywhere, a territory's in it and by the border's.
 template <class Found>
 void Worker::for_each_partner(int body, const Box& box, const Found& found) {

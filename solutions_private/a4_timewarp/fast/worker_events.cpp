@@ -25,8 +25,15 @@ bool Worker::look_up(const Due& due, int side, std::size_t& place) {
   return due.key < all_.begin_of(body, flights[place + 1]);   // else hit before, or known twice
 }
 
+bool Worker::is_to_come(const Due& due) {
+  if (due.key.kind == EventClass::kCallback) return !all_.called[due.key.generation];
+  if (due.key.kind == EventClass::kAdvance) return process(due.key.body_a).ticket == due.serial_a && all_.first_member(due.key.body_a) == due.key.body_a;
+  std::size_t place = 0;
+  return look_up(due, 0, place) && look_up(due, 1, place);
+}
+
 void Worker::collide(const Due& due) {
-    const int bodies[] = {due.key.body_a, due.key.body_b};
+  const int bodies[] = {due.key.body_a, due.key.body_b};
   const std::uint32_t serials[] = {due.serial_a, due.serial_b};
   std::size_t places[] = {0, 0};
   for (int side = 0; side < 2; ++side)
@@ -180,6 +187,7 @@ void Worker::roll_back(int body, std::size_t keep) {
         unsend(dropped.partner, dropped.partner_serial);
       }
     }
+    shrink_box(now_at);
     if (all_.first_member(now_at) == now_at) schedule(now_at);
   }
 }
@@ -195,8 +203,8 @@ void Worker::work_at(const Due& due) {
   now = due.key.time;
   if (due.key.kind == EventClass::kCallback) call(due);
   else if (due.key.kind != EventClass::kAdvance) collide(due);
-  else if (Process& going = process(due.key.body_a); going.ticket == due.serial_a && all_.first_member(due.key.body_a) == due.key.body_a) {
-    if (going.horizon >= all_.run.duration()) set_horizon(due.key.body_a, kInfinity);   // nothing is left to find
+  else if (is_to_come(due)) {
+    if (process(due.key.body_a).horizon >= all_.run.duration()) set_horizon(due.key.body_a, kInfinity);   // nothing is left to find
     else advance(due.key.body_a);
   }
   now = kInfinity;
@@ -269,10 +277,17 @@ void Worker::disturb() {
   const double back = random_.between(0.0, all_.trial.rollback_s);
   if (!is_mine(body)) return;
   const double back_to = std::max(global_virtual_time(), std::min(process(body).horizon, all_.run.duration()) - back);
-  if (!(back_to < process(body).horizon)) return;
-  roll_back(body, history(body).at(back_to) + 1);
-  set_horizon(body, back_to);
-  schedule(all_.first_member(body));
+  if (back_to < process(body).horizon) go_back(body, back_to);
+}
+
+void Worker::go_back(int body, double t) {
+  roll_back(body, history(body).at(t) + 1);
+  purge(body);
+  if (t < process(body).horizon) {
+    set_horizon(body, t);
+    schedule(all_.first_member(body));
+  }
+  for (const int member : world().members(body, history(body).back())) shrink_box(member);
 }
 
 void Worker::delay() {

@@ -1,0 +1,75 @@
+#include "framework/engines/timewarp/taught_groups.h"
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+namespace tumble::engines {
+namespace {
+
+constexpr double kNever = std::numeric_limits<double>::infinity();
+constexpr std::int32_t kSomeWall = -1;
+
+
+}  // namespace
+
+GroupFinding look_at_group(const FlightRun& run, int body, const Flight& flight, double safe_time, double to) {
+  Processes& processes = *run.world().processes();
+  GroupFinding finding;
+  const std::vector<BodyPair> ties = processes.ties_of(processes.passages().start(flight.passage));
+  finding.end = run.own_end(body, flight, to);
+  if (finding.end && finding.end->time < safe_time) finding.end.reset();   // somebody did not want to know
+  if (!finding.end) {
+    for (const auto& [a, b] : ties) finding.contacts.push_back({a, b, kNever});
+    return finding;
+  }
+  // What holds from then on, and what held only until then.
+  const PassageEnd& end = *processes.passages().end_by(flight.passage, to);
+  const std::vector<BodyPair> stays = processes.ties_of(end.after);
+  for (const auto& [a, b] : stays) finding.contacts.push_back({a, b, kNever});
+  for (const BodyPair& tie : ties)
+    if (!std::binary_search(stays.begin(), stays.end(), tie)) finding.contacts.push_back({tie.first, tie.second, end.time});
+  finding.contacts.push_back({body, kSomeWall, end.time});
+  return finding;
+}
+
+std::vector<GroupContact> contacts_of(const FlightWorld& world, const std::vector<BegunFlight>& begun) {
+  std::vector<GroupContact> contacts;
+  std::vector<int> seen;
+  for (const BegunFlight& flight : begun) {
+    const int passage = flight.flight.passage;
+    if (passage < 0 || std::find(seen.begin(), seen.end(), passage) != seen.end()) continue;
+    seen.push_back(passage);
+    for (const auto& [a, b] : world.processes()->ties_of(world.processes()->passages().start(passage))) contacts.push_back({a, b, kNever});
+  }
+  return contacts;
+}
+
+Groups groups_of(const std::vector<BegunFlight>& begun) {
+  std::map<int, std::vector<std::int32_t>> members;   // by passage
+  Groups groups;
+  for (const BegunFlight& flight : begun)
+    if (flight.flight.passage >= 0) members[flight.flight.passage].push_back(flight.body);
+    else groups.push_back({flight.body});
+  for (auto& [passage, bodies] : members) {
+    std::sort(bodies.begin(), bodies.end());
+    groups.push_back(std::move(bodies));
+  }
+  std::sort(groups.begin(), groups.end());
+  return groups;
+}
+
+std::string told(const FlightWorld& world, const Groups& groups) {
+  std::string text;
+  for (const std::vector<std::int32_t>& group : groups) {
+    text += text.empty() ? "{" : " {";
+    for (std::size_t k = 0; k < group.size(); ++k) {
+      const bool is_body = group[k] >= 0 && group[k] < world.size();
+      text += (k > 0 ? ", " : "") + (is_body ? "'" + world.world().bodies[static_cast<std::size_t>(group[k])].name + "'" : std::to_string(group[k]));
+    }
+    text += "}";
+  }
+  return text.empty() ? "none" : text;
+}
+
+}  // namespace tumble::engines

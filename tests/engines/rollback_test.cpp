@@ -1,0 +1,152 @@
+// Rolled back is as if it had never been: states, groups, events and the cells of the grid, to the last byte; and what is committed in the
+// end is what the reference commits.
+#include <algorithm>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "framework/core/random.h"
+#include "framework/engines/timewarp/taught_process.h"
+#include "tests/engines/event_process_scenes.h"
+#include "tests/engines/reference_laws.h"
+
+namespace tumble::testing {
+namespace {
+
+using engines::RollbackWatch;
+using engines::Standing;
+
+const Laws& laws() {
+  static const Laws reference = reference_laws();
+  return reference;
+}
+
+/// Where two rows of bytes first differ, in words; empty: nowhere.
+std::string parting(const char* what, const std::string& before, const std::string& after) {
+  if (before == after) return "";
+  const auto at = std::mismatch(before.begin(), before.end(), after.begin(), after.end()).first - before.begin();
+  return std::string(what) + ": " + std::to_string(before.size()) + " and " + std::to_string(after.size()) + " bytes, the first that differs is " + std::to_string(at) + "; ";
+}
+
+/// What the trials of one run showed.
+struct Trials {
+  std::set<int> steps;
+  int count = 0;
+  std::string first_difference;
+  Trajectory run;
+};
+
+Trials roll_back_in(const scene::Scene& scene, int every, int threads, int first, const std::vector<engines::Callback>& callbacks = {}) {
+  Trials trials;
+  RollbackWatch watch;
+  watch.every = every;
+  watch.first = first;
+  if (threads > 1) watch.most_steps = 7;   // rounds, of some steps each
+  watch.tell = [&](double t, int steps, const Standing& before, const Standing& after) {
+    ++trials.count;
+    trials.steps.insert(steps);
+    const std::string difference = parting("states", before.states, after.states) + parting("groups", before.groups, after.groups) + parting("events", before.events, after.events) + parting("cells", before.cells, after.cells);
+    if (trials.first_difference.empty() && !difference.empty()) trials.first_difference = "back to " + std::to_string(t) + " s after " + std::to_string(steps) + " steps: " + difference;
+  };
+  TrajectoryRecorder recorder;
+  engines::RunOptions options;
+  options.engine = "tw";
+  options.timewarp = engines::fast_timewarp(nullptr, &watch);
+  options.threads = threads;
+  options.callbacks = callbacks;
+  engines::run_scene(scene, laws(), options, recorder);
+  trials.run = recorder.trajectory();
+  return trials;
+}
+
+void expect_as_if_it_had_never_been(const scene::Scene& scene, int every, int least_trials, const std::vector<engines::Callback>& callbacks = {}) {
+  TrajectoryRecorder reference;
+  engines::RunOptions options;
+  options.engine = "ordered";
+  options.callbacks = callbacks;
+  engines::run_scene(scene, laws(), options, reference);
+  for (const int threads : {1, 2}) {
+    const Trials trials = roll_back_in(scene, threads == 1 ? every : 1, threads, 20, callbacks);
+    EXPECT_EQ(trials.first_difference, "") << scene.name << ", " << threads << " threads";
+    EXPECT_EQ(difference(reference.trajectory(), trials.run), "") << scene.name << ", " << threads << " threads";
+    EXPECT_GE(trials.count, threads == 1 ? least_trials : 2) << scene.name << ", " << threads << " threads";
+    EXPECT_GT(trials.steps.size(), 1U) << scene.name;   // long and short
+  }
+}
+
+TEST(RollbackRestore, LeavesNoByteOfBallsChangedAfterOneToFiftySteps) {
+  const scene::Scene scene = sized("gas", 60, 2.0);
+  expect_as_if_it_had_never_been(scene, 100, 10);
+  std::set<int> all_steps;
+  for (int first = 0; first < 5; ++first) {
+    const Trials trials = roll_back_in(scene, 100, 1, 9 * first);
+    EXPECT_EQ(trials.first_difference, "") << first;
+    all_steps.insert(trials.steps.begin(), trials.steps.end());
+  }
+  EXPECT_EQ(all_steps.size(), 50U);
+}
+
+TEST(RollbackRestore, LeavesNoByteOfTumblingSolidsChanged) { expect_as_if_it_had_never_been(sized("atoms", 30, 0.6), 60, 5); }
+
+// Towers fuse and split between the two times: groups, and what the events that changed them began, are as they were.
+TEST(RollbackRestore, LeavesNoByteOfGroupsInContactChanged) {
+  expect_as_if_it_had_never_been(tower_and_projectile(5.0), 15, 10);
+  expect_as_if_it_had_never_been(sized("avalanche", 12, 0.5), 100, 5);
+}
+
+TEST(RollbackRestore, LeavesNoByteOfLinkedBodiesChanged) {
+  expect_as_if_it_had_never_been(pendula_and_balls(5, 0.8), 35, 10);
+  expect_as_if_it_had_never_been(sized("robots", 1, 0.3), 30, 2);
+}
+
+// One that was called and taken back waits again.
+TEST(RollbackRestore, LeavesCallbacksAsTheyWere) {
+  const std::vector<engines::Callback> callbacks{{0.25, {0, 1, 4}, [](int, RigidBodyState& state) { state.momentum_world.y() += 0.3; }},
+                                                 {0.5, {2}, [](int, RigidBodyState& state) { state.momentum_world.x() -= 0.2; }}};
+  expect_as_if_it_had_never_been(pendula_and_balls(4, 0.8), 40, 8, callbacks);
+}
+
+// What stands is told in enough detail to tell two times apart.
+TEST(RollbackRestore, WouldTellADifference) {
+  std::vector<Standing> seen;
+  RollbackWatch watch;
+  watch.every = 20;
+  watch.tell = [&](double, int, const Standing& before, const Standing&) { seen.push_back(before); };
+  TrajectoryRecorder recorder;
+  engines::RunOptions options;
+  options.engine = "tw";
+  options.timewarp = engines::fast_timewarp(nullptr, &watch);
+  engines::run_scene(tower_and_projectile(5.0), laws(), options, recorder);
+  ASSERT_GE(seen.size(), 3U);
+  for (std::size_t k = 1; k < seen.size(); ++k) {
+    EXPECT_NE(seen[k - 1].states, seen[k].states);
+    EXPECT_NE(seen[k - 1].events, seen[k].events);
+    EXPECT_NE(seen[k - 1].cells, seen[k].cells);
+  }
+  EXPECT_NE(seen.front().groups, seen.back().groups);
+}
+
+// The teaching path's box: six heaps, from which what is taken back is thrown away when it comes to the top.
+TEST(SweptBox, IsTheSameBytesAfterOneToFiftyStepsAndARollback) {
+  Random random(11);
+  const auto any_box = [&] {
+    const Vector3d low(random.between(-1, 1), random.between(-1, 1), random.between(-1, 1));
+    return engines::Box{low, low + Vector3d::Constant(random.between(0.1, 1.0))};
+  };
+  for (int steps = 1; steps <= 50; ++steps) {
+    engines::SweptBox swept;
+    std::uint64_t id = 0;
+    for (int k = 0; k < 5; ++k) swept.add(id++, any_box());
+    const engines::Box before = swept.box();
+    for (int k = 0; k < steps; ++k) {
+      swept.add(id++, any_box());
+      if (k % 7 == 0) swept.box();
+    }
+    for (int k = 0; k < steps; ++k) swept.remove(--id);
+    const engines::Box after = swept.box();
+    EXPECT_TRUE(before.low == after.low && before.high == after.high) << steps << " steps";
+  }
+}
+
+}  // namespace
+}  // namespace tumble::testing
