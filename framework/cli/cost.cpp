@@ -10,6 +10,7 @@
 #include "framework/cli/cost_all.h"
 #include "framework/cli/cost_impacts.h"
 #include "framework/cli/cost_measure.h"
+#include "framework/cli/cost_scheduler.h"
 
 namespace tumble::cli {
 namespace {
@@ -53,6 +54,8 @@ void tell_impacts(const Context& context, const CostWords& words) {
 void run_cost(Context& context, const CostWords& words) {
   if (words.scene == kImpactWord) return tell_impacts(context, words);
   if (words.scene == kAllWord) return cost_of_all(context, words);
+  for (const modules::ModuleKind* kind : context.registry.all())
+    if (kind->id == words.scene && kind->is_scheduler) return cost_of_scheduler(context, *kind, words);
   const MeasuredCost measured = measure_cost(context, words);
   fmt::print("{}\n  {}\n", measured.page.title, measured.against);
   print_and_write(measured.page, words);

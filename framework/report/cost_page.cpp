@@ -140,9 +140,8 @@ void write_cost_page(const CostPage& cost, const std::filesystem::path& file) {
   page.plot(plot_of_price(cost));
   page.table(table_of_prices(cost));
   const bool by_step = cost.finer.name == "step";
-  page.heading(cost.work ? "Work" : by_step ? "Order" : "Tolerance");
-  if (cost.work) page.plot(*cost.work);
-  else page.plot(drawn(cost, cost.finer, "Error against the " + cost.finer.name, [](const CostPoint& point) { return point.step; },
+  page.heading(by_step ? "Order" : "Tolerance");
+  page.plot(drawn(cost, cost.finer, "Error against the " + cost.finer.name, [](const CostPoint& point) { return point.step; },
                   by_step ? "The slope is the order: halving the step divides the error of a method of order p by 2^p. Methods that choose their own steps are not in this picture."
                           : "What a finder is asked for, and what it gives. What has no tolerance is not in this picture."));
   for (const CostCurve& curve : cost.curves)
