@@ -115,7 +115,7 @@ struct CostRun {
 };
 CostRun run_of(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, long steps, double tolerance, const CostOptions& options);
 
-/// What a ladder was asked for; empty: halvings of the first step, tolerances 0.1, 0.01, ...
+/// What a ladder was asked for; empty: halvings of the first step, tolerances 0.1, 0.01, ... (with rods or joints from 1e-4 on)
 struct LadderWords {
   std::vector<double> steps_s, tolerances;
 };
