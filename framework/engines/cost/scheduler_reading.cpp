@@ -94,7 +94,10 @@ SchedulerReading of_trace(const SchedulerCurve& curve) {
       if (!run.is_right() && (wrong == nullptr || (wrong->not_attempted && !run.not_attempted))) wrong = &run;
     }
   if (runs == 0) return {fmt::format("{} was not run.", curve.name), Kind::kWrong};
-  if (wrong == nullptr) return {fmt::format("{} commits what the ordered reference commits, however far its processes go ahead and however many they are: {} events in {} runs, to the last bit.", curve.name, events, runs), Kind::kRight};
+  if (wrong == nullptr) {
+    const char* however = curve.by_size.empty() ? "however far its processes go ahead" : "however far its processes go ahead and however many they are";
+    return {fmt::format("{} commits what the ordered reference commits, {}: {} events in {} runs, to the last bit.", curve.name, however, events, runs), Kind::kRight};
+  }
   if (wrong->not_attempted) return {fmt::format("{}: {}.", curve.name, wrong->stopped_by), Kind::kNotWritten};
   const std::string rest = right == 0 ? "in no run" : fmt::format("in {} of {} runs", right, runs);
   return {fmt::format("{} commits what the ordered reference commits {}. With {} it gets through {} of {} events: {}", curve.name, rest, in_words(*wrong), wrong->committed, wrong->due, wrong->stopped_by), Kind::kWrong};

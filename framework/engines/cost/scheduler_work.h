@@ -54,8 +54,8 @@ struct SchedulerTrial {
 };
 
 /// @param due  events that the ordered reference commits, from events_due
-SchedulerRun run_scheduler(const scene::Scene& scene, const Laws& laws, const SchedulerTrial& trial, std::size_t due);
 /// @throws UserError where the scene has what no flight follows
+SchedulerRun run_scheduler(const scene::Scene& scene, const Laws& laws, const SchedulerTrial& trial, std::size_t due);
 std::size_t events_due(const scene::Scene& scene, const Laws& laws, const SchedulerTrial& trial);
 
 /// Steps of a ladder for a scene, long to short. [s]
