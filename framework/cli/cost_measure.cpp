@@ -72,7 +72,7 @@ report::CostCurve curve_of(const Ladder& ladder, const CostTruth& truth, double 
   double closest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < ladder.rungs.size(); ++k) {
     const CostRung& rung = ladder.rungs[k];
-    curve.points.push_back({fineness_of(rung), ladder.way.controlled ? kUnset : rung.step_s, rung.error_m, rung.cpu_s, static_cast<double>(rung.evaluations), rung.stopped_by});
+    curve.points.push_back({fineness_of(rung), ladder.way.controlled ? kUnset : rung.step_s, std::max(rung.error_m, truth.floor_m), rung.cpu_s, static_cast<double>(rung.evaluations), rung.stopped_by});   // nobody is known to be better than the truth
     const double off = std::abs(std::log(rung.cpu_s / price));
     if (!rung.stopped_by.empty() || !(off < closest)) continue;
     closest = off;
