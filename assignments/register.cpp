@@ -20,7 +20,7 @@ void register_assignments(modules::Registry& registry) {
   registry.show_cost("a1", {"collide_off_centre_e05", 2.0, true});
   registry.show_cost("a2", {"t_handle", 1.0, true});
   registry.show_cost("a3", {"double_pendulum", 1.0, true});
-  registry.show_cost("a4", {"billiards", 6.0});
+  registry.show_cost("a4", {"billiards", 6.0, true, "gas"});
   a1::register_truths(registry);
   a2::register_truths(registry);
 }

@@ -10,6 +10,7 @@
 #include "framework/cli/cost_all.h"
 #include "framework/cli/cost_impacts.h"
 #include "framework/cli/cost_measure.h"
+#include "framework/cli/cost_scheduler.h"
 
 namespace tumble::cli {
 namespace {
@@ -53,6 +54,8 @@ void tell_impacts(const Context& context, const CostWords& words) {
 void run_cost(Context& context, const CostWords& words) {
   if (words.scene == kImpactWord) return tell_impacts(context, words);
   if (words.scene == kAllWord) return cost_of_all(context, words);
+  for (const modules::ModuleKind* kind : context.registry.all())
+    if (kind->id == words.scene && kind->is_scheduler) return cost_of_scheduler(context, *kind, words);
   const MeasuredCost measured = measure_cost(context, words);
   fmt::print("{}\n  {}\n", measured.page.title, measured.against);
   print_and_write(measured.page, words);
@@ -71,7 +74,7 @@ void add_cost(CLI::App& app, Context& context) {
   verb->add_option("--impacts", words->impacts, "Which root finder looks for impacts, over its tolerance: bisection, newton, toms748")->delimiter(',');
   verb->add_option("--solvers", words->solvers, "Iterative solvers in place of direct ones, over their tolerance: gradients (rods and joints), sweeps, newton (lasting contacts)")->delimiter(',');
   verb->add_option("--steps", words->steps, "Steps of the ladder [s], as 1/30,1/60,0.001, instead of halvings until the budget is used")->delimiter(',')->type_name("STEPS");
-  verb->add_option("--tolerances", words->tolerances, "Tolerances of methods that control their error, instead of 0.1, 0.01, ...")->delimiter(',')->check(CLI::PositiveNumber);
+  verb->add_option("--tolerances", words->tolerances, "Tolerances of methods that control their error, instead of 0.1, 0.01, ... (with rods or joints from 1e-4 on)")->delimiter(',')->check(CLI::PositiveNumber);
   verb->add_option("--modules", words->modules, "Whose laws, as for tumble run; of an assignment: whose module is looked at (default student)")->type_name("WORDS");
   verb->add_option("--on", words->on, "Of an assignment: the scene that it is measured on")->type_name("SCENE");
   verb->add_option("--duration-s", words->duration_s, "Simulated time [s] instead of the scene's")->check(CLI::PositiveNumber);

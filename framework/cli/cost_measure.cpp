@@ -24,6 +24,8 @@ using engines::CostWay;
 constexpr double kLeastRung = 2.0;   // s of CPU that any run may take
 constexpr double kLeastShare = 0.2;  // or so much of a small budget
 constexpr double kAnAnswer = 0.1;    // of how far bodies move: errors above it do not show where they lead
+constexpr double kTrifle = 0.03;     // of what is left of the budget: a run that costs less need not be promising
+constexpr double kUsualOrder = 4.0;  // price and error are exchanged at this rate, so that who has spent more is not taken for who is better
 constexpr double kForTheBest = 0.4;  // of the budget: to go on where the least error was
 constexpr double kLongest = 2.0;     // shares of the budget, likewise
 constexpr double kFirstRight = 25.0; // s of CPU that a run may take where there is no truth and none has got through yet: it is all there is to know
@@ -70,7 +72,7 @@ report::CostCurve curve_of(const Ladder& ladder, const CostTruth& truth, double 
   double closest = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < ladder.rungs.size(); ++k) {
     const CostRung& rung = ladder.rungs[k];
-    curve.points.push_back({fineness_of(rung), ladder.way.controlled ? kUnset : rung.step_s, rung.error_m, rung.cpu_s, static_cast<double>(rung.evaluations), rung.stopped_by});
+    curve.points.push_back({fineness_of(rung), ladder.way.controlled ? kUnset : rung.step_s, std::max(rung.error_m, truth.floor_m), rung.cpu_s, static_cast<double>(rung.evaluations), rung.stopped_by});   // nobody is known to be better than the truth
     const double off = std::abs(std::log(rung.cpu_s / price));
     if (!rung.stopped_by.empty() || !(off < closest)) continue;
     closest = off;
@@ -80,25 +82,6 @@ report::CostCurve curve_of(const Ladder& ladder, const CostTruth& truth, double 
     curve.stage_seconds = rung.stage_seconds;
   }
   return curve;
-}
-
-/// What a scheduler does over how far its processes go ahead: much at once is soon taken back, little at once is many steps.
-std::optional<report::Plot> work_of(const std::vector<Ladder>& ladders) {
-  report::Plot plot{"Work against how far a process goes ahead", {"step", "s", report::Scale::kLog}, {"integrations, rollbacks", "-", report::Scale::kLog}, {}, {},
-                    "A scheduler is right or wrong at any step; what the step sets is how much is worked at in vain."};
-  for (const Ladder& ladder : ladders) {
-    if (!ladder.way.schedules) continue;
-    report::Curve all{ladder.way.name + ": integrations", {}, {}, true}, undone{ladder.way.name + ": taken back", {}, {}, true}, rollbacks{ladder.way.name + ": rollbacks", {}, {}, true};
-    for (const CostRung& rung : ladder.rungs) {
-      if (!rung.stopped_by.empty()) continue;
-      for (const auto& [curve, count] : {std::pair{&all, rung.evaluations}, std::pair{&undone, rung.undone}, std::pair{&rollbacks, rung.rollbacks}}) {
-        curve->x.push_back(rung.step_s);
-        curve->y.push_back(static_cast<double>(count));
-      }
-    }
-    plot.curves.insert(plot.curves.end(), {all, undone, rollbacks});
-  }
-  return plot.curves.empty() ? std::nullopt : std::optional<report::Plot>(plot);
 }
 
 std::string what_error_is(const CostTruth& truth) {
@@ -147,14 +130,15 @@ class Ladders {
     });
   }
 
-  /// Of the ladders that can go on in what is left, the one that has come closest.
+  /// Of the ladders that can go on in what is left: what costs next to nothing first, then the one that promises most.
   std::optional<std::size_t> closest() const {
     std::optional<std::size_t> best;
-    std::pair<double, double> least;
+    std::pair<int, double> least;
     for (std::size_t k = 0; k < ladders.size(); ++k) {
       const Ladder& ladder = ladders[k];
-      if (ladder.rungs.empty() || engines::next_price(ladder.rungs) > left() || engines::ladder_is_done(scene_, ladder.way, truth_, ladder.rungs, words_)) continue;
-      const std::pair<double, double> here{hope(ladder.rungs.back()), engines::next_price(ladder.rungs)};
+      const double next = engines::next_price(ladder.rungs);
+      if (ladder.rungs.empty() || next > left() || engines::ladder_is_done(scene_, ladder.way, truth_, ladder.rungs, words_)) continue;
+      const std::pair<int, double> here = next < kTrifle * left() ? std::pair{0, next} : hope(ladder.rungs.back(), next);
       if (best && here >= least) continue;
       best = k;
       least = here;
@@ -162,10 +146,12 @@ class Ladders {
     return best;
   }
 
-  /// Small is good: an error; then what blew up, for half the step may hold; last what gives answers that are none.
-  double hope(const CostRung& rung) const {
-    if (!rung.stopped_by.empty() || !std::isfinite(rung.error_m)) return truth_.by_numbers ? std::numeric_limits<double>::max() : truth_.scale_m;
-    return truth_.by_numbers || rung.error_m < kAnAnswer * truth_.scale_m ? rung.error_m : 2.0 * truth_.scale_m;
+  /// Small is good: an error, at what it cost; then what blew up, for half the step may hold; last what gives answers that are none.
+  std::pair<int, double> hope(const CostRung& rung, double next) const {
+    if (truth_.by_numbers) return rung.stopped_by.empty() && std::isfinite(rung.error_m) ? std::pair{1, rung.error_m} : std::pair{2, next};
+    if (!rung.stopped_by.empty() || !std::isfinite(rung.error_m)) return {2, next};
+    if (rung.error_m < kAnAnswer * truth_.scale_m) return {1, rung.error_m * std::pow(rung.cpu_s, kUsualOrder)};
+    return {3, next};
   }
 
   const scene::Scene& scene_;
@@ -202,8 +188,6 @@ report::CostPage page_of(const Context& context, const std::vector<Ladder>& ladd
   page.record = context.command_line;
   const double price = middle_price(ladders, truth);
   for (const Ladder& ladder : ladders) page.curves.push_back(curve_of(ladder, truth, price, is_smooth(subject.scene)));
-  page.work = work_of(ladders);
-  if (page.work) page.counted = "integrations";
   page.readings = verdicts(page);
   if (truth.by_numbers) page.readings.push_back("Judged by the scene's own numbers, for there is no truth to compare places with: " + truth.why_by_numbers + ".");
   else if (truth.duration_s < (1.0 - 1e-9) * truth.asked_s)

@@ -1,6 +1,8 @@
 #include "framework/cli/cost_ways.h"
 
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <map>
@@ -159,23 +161,8 @@ CostSubject of_scene(const Context& context, const CostWords& words) {
   return subject;
 }
 
-/// A module that decides the order of things: the engine that asks it, over how far its processes go ahead.
-void add_scheduler(const Context& context, const modules::ModuleKind& kind, const std::string& word, const std::string& whose, const scene::Scene& scene, CostSubject& subject) {
-  const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(kind.id + "=" + word, context.registry));
-  CostWay way;
-  way.name = fmt::format("{} {}", whose, kind.id);
-  way.word = kind.id;
-  way.engine = "tw";
-  way.schedules = true;
-  way.counted = "integrations";
-  way.laws = chosen.laws;
-  subject.ways.push_back(std::move(way));
-  subject.connections.insert(subject.connections.end(), chosen.connections.begin(), chosen.connections.end());
-}
-
 /// A module's own methods of integration, where it has some; else the scene run by all its laws.
 void add_module(const Context& context, const modules::ModuleKind& kind, const std::string& word, const std::string& whose, const Laws& laws, const scene::Scene& scene, CostSubject& subject) {
-  if (kind.is_scheduler) return add_scheduler(context, kind, word, whose, scene, subject);
   if (kind.methods.empty()) {
     const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(kind.id + "=" + word, context.registry));
     CostWay way = way_by_method(method_named("rk4"), chosen.laws);
@@ -234,13 +221,6 @@ CostSubject of_assignment(const Context& context, const modules::ModuleKind& kin
   add_module(context, kind, word, "your", right.laws, subject.scene, subject);
   if (has_reference && word != "reference") add_module(context, kind, "reference", "reference", right.laws, subject.scene, subject);
   if (!kind.methods.empty()) subject.ways.push_back(way_by_method(method_named("dopri5"), right.laws));
-  if (kind.is_scheduler) {   // what others pay for the same trace
-    Laws unasked = right.laws;
-    unasked.scheduling = {};
-    for (const std::string& other : engines::fast_timewarp() ? std::vector<std::string>{"ordered", "ca", "tw"} : std::vector<std::string>{"ordered", "ca"})
-      subject.ways.push_back(way_by_engine(other, unasked, engines::goes_in_closed_form(subject.scene)));
-    for (CostWay& way : subject.ways) way.counted = "integrations";
-  }
   return subject;
 }
 
@@ -255,7 +235,7 @@ std::vector<double> CostWords::steps_s() const {
     const double numerator = std::strtod(above.c_str(), &end);
     const bool is_number = !above.empty() && *end == '\0';
     const double denominator = std::strtod(below.c_str(), &end);
-    if (!is_number || below.empty() || *end != '\0' || !(numerator / denominator > 0)) throw UserError("--steps " + text, "this is no time in seconds", "Give numbers or fractions: 1/30,1/60,0.001");
+    if (!is_number || below.empty() || *end != '\0' || !(numerator / denominator > 0) || !std::isfinite(numerator / denominator)) throw UserError("--steps " + text, "this is no time in seconds", "Give numbers or fractions: 1/30,1/60,0.001");
     all.push_back(numerator / denominator);
   }
   std::sort(all.rbegin(), all.rend());
@@ -267,7 +247,10 @@ std::string CostWords::name() const { return std::filesystem::path(scene).stem()
 CostSubject find_subject(const Context& context, const CostWords& words) {
   for (const modules::ModuleKind* kind : context.registry.all())
     if (kind->id == words.scene) return of_assignment(context, *kind, words);
-  if (!words.on.empty()) throw UserError("--on " + words.on, "goes with an assignment (a1, a2, a3), and '" + words.scene + "' is none", "Give the scene itself: tumble cost " + words.on);
+  std::string known;
+  for (const modules::ModuleKind* kind : context.registry.all()) known += (known.empty() ? "" : ", ") + kind->id;
+  if (words.scene.size() == 2 && words.scene[0] == 'a' && std::isdigit(static_cast<unsigned char>(words.scene[1])) != 0) throw UserError(words.scene, "there is no such assignment", "Known: " + known + ".");
+  if (!words.on.empty()) throw UserError("--on " + words.on, "goes with an assignment (" + known + "), and '" + words.scene + "' is none", "Give the scene itself: tumble cost " + words.on);
   return of_scene(context, words);
 }
 

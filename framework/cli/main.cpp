@@ -51,6 +51,13 @@ void refuse_unknown_flag(const CLI::App& app) {
   }
 }
 
+// The parser tells a range of 309 digits where a number has to be positive.
+std::string without_digits(const std::string& told) {
+  constexpr const char* kRange = " not in range 0.000000 to 1797";   // the largest double
+  const std::size_t begin = told.find(kRange);
+  return begin == std::string::npos ? told : told.substr(0, begin) + " is not a number above 0";
+}
+
 int run(int argc, char** argv) {
   tumble::cli::Context context;
   find_trees(context);
@@ -67,6 +74,8 @@ int run(int argc, char** argv) {
   } catch (const CLI::ExtrasError& error) {
     refuse_unknown_flag(app);
     return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUserError);
+  } catch (const CLI::ValidationError& error) {
+    throw tumble::UserError("tumble " + (argc > 1 ? std::string(argv[1]) : ""), without_digits(error.what()), "Run with --help for what each flag takes.");
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUserError);
   }

@@ -10,6 +10,7 @@
 #include "framework/grading/call_log.h"
 #include "framework/grading/laws_around.h"
 #include "framework/grading/plain_text.h"
+#include "framework/grading/scheduler_section.h"
 #include "framework/grading/worker_connection.h"
 #include "framework/scene/load_scene.h"
 
@@ -113,6 +114,7 @@ fs::path scene_file(const Course& course, const ModuleKind& kind) { return cours
 
 CostSection measure_cost(const Course& course, const std::string& id, const fs::path& submission, const CostSectionOptions& options) {
   const ModuleKind& kind = course.registry->find(id);
+  if (kind.is_scheduler) return measure_scheduler(course, kind, submission, options);
   const AnyModule reference = reference_of(course, kind);
   if (!kind.cost.is_graded || (!reference && kind.methods.empty())) return {};
   const scene::Scene scene = scene::load_scene(scene_file(course, kind));
@@ -135,7 +137,9 @@ CostSection measure_cost(const Course& course, const std::string& id, const fs::
     call_log() = CallLog{};   // each curve by itself
   });
 
-  CostSection section{scene.title, fmt::format("{}: {:.1e} m", truth.what, truth.floor_m), {}, {}};
+  CostSection section;
+  section.scene = scene.title;
+  section.truth = fmt::format("Errors are against {}: {:.1e} m; an error is how far a body's centre of mass is out of place, plus the angle by which it is turned wrongly times its radius of gyration.", truth.what, truth.floor_m);
   for (const Measured& measured : all) section.lines.push_back(line_of(measured, truth));
   if (reference) {
     const Laws whole = laws_around(course, kind, reference, "reference", scene);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "framework/grading/course.h"
-#include "framework/report/plot.h"
+#include "framework/report/html.h"
 
 namespace tumble::grading {
 
@@ -17,18 +17,20 @@ struct CostLine {
   std::string reading;                  // the sentence
   bool is_right = false;                // it does what its method promises
   bool is_attempted = true;
+  bool is_wasteful = false;             // right, and dearer than it need be
 };
 
 struct CostSection {
   std::string scene;                    // its title; empty: nothing is measured of this module
-  std::string truth;                    // what errors are measured against
+  std::string truth;                    // what errors are measured against, and what an error is
   std::vector<CostLine> lines;          // of the submission
   std::vector<report::Plot> plots;
+  std::vector<report::Table> tables;
 };
 
 struct CostSectionOptions {
   double call_wall_s = 3.0;             // a call that takes longer has hung: it ends its own curve
-  double session_wall_s = 60.0;         // of all calls of one curve; right ones take less than a second on an idle machine
+  double session_wall_s = 60.0;         // of all calls of one curve; right ones take seconds at most on an idle machine
 };
 
 /// Measures a module where it says that this is done (ModuleKind::cost). Its calls go to the sandbox; what hangs or crashes there ends its

@@ -140,11 +140,11 @@ void add_media(report::Page& page, const std::vector<SceneMedia>& media, const s
 void add_cost(report::Page& page, const CostSection& cost) {
   if (cost.scene.empty()) return;
   page.heading("What accuracy costs", 2, "cost");
-  for (const CostLine& line : cost.lines) page.paragraph(line.reading, line.is_right ? Look::kGood : line.is_attempted ? Look::kBad : Look::kMuted);
+  for (const CostLine& line : cost.lines) page.paragraph(line.reading, line.is_wasteful ? Look::kWarning : line.is_right ? Look::kGood : line.is_attempted ? Look::kBad : Look::kMuted);
   if (std::none_of(cost.lines.begin(), cost.lines.end(), [](const CostLine& line) { return line.is_attempted; })) return;
   for (const report::Plot& plot : cost.plots) page.plot(plot);
-  page.paragraph(fmt::format("Measured on: {}. Errors are against {}; an error is how far a body's centre of mass is out of place, plus the angle by which it is turned wrongly times its radius of gyration. "
-                             "This part shows; no points hang on it.", cost.scene, cost.truth), Look::kMuted);
+  for (const report::Table& table : cost.tables) page.table(table);
+  page.paragraph(fmt::format("Measured on: {}. {} This part shows; no points hang on it.", cost.scene, cost.truth), Look::kMuted);
 }
 
 report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade, const std::string& record) {

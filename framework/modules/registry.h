@@ -32,7 +32,8 @@ struct NamedMethod {
 struct CostShowcase {
   std::string scene;                       // a bare name; empty: nobody said
   double duration_s = 0.0;
-  bool is_graded = false;                  // a part of each graded report: where the module decides how errors shrink with the step, or whether they do
+  bool is_graded = false;                  // a part of each graded report: where the module decides how errors shrink with the step, whether they do, or what is paid
+  std::string sized_scene = {};            // of a scheduler: the scene that is run at growing size; empty: none
 };
 
 /// All that the framework can do with a module without knowing its header.

@@ -43,6 +43,13 @@ Plot plot_of_energy(const CostPage& page) {
   return plot;
 }
 
+/// Kept in one line: "tolerance 1e-08" is not to be broken behind its hyphen.
+std::string unbroken(const std::string& fineness) {
+  std::string kept;
+  for (const char letter : fineness) kept += letter == '-' ? "\u2011" : std::string(1, letter);
+  return kept;
+}
+
 Table table_of_prices(const CostPage& page) {
   Table table;
   table.caption = "CPU time for an error of at most this much, and what was needed for it. \u2013: it does not get there.";
@@ -57,7 +64,7 @@ Table table_of_prices(const CostPage& page) {
       for (const CostCurve& other : page.curves)
         if (const CostPoint* theirs = cheapest(other, mark)) best = std::min(best, theirs->cpu_s);
       if (point == nullptr) cells.insert(cells.end(), {{"\u2013", "", Look::kMuted}, {""}});
-      else cells.insert(cells.end(), {{price_of(point->cpu_s), "", point->cpu_s <= best ? Look::kGood : Look::kPlain}, {point->fineness, "", Look::kMuted}});
+      else cells.insert(cells.end(), {{price_of(point->cpu_s), "", point->cpu_s <= best ? Look::kGood : Look::kPlain}, {unbroken(point->fineness), "", Look::kMuted}});
     }
     table.rows.push_back(std::move(cells));
   }
@@ -76,7 +83,7 @@ Table table_of_stages(const CostPage& page) {
   for (const CostCurve& curve : page.curves) {
     if (curve.stage_seconds.empty()) continue;
     const double all = std::accumulate(curve.stage_seconds.begin(), curve.stage_seconds.end(), 0.0, [](double sum, const auto& stage) { return sum + stage.second; });
-    std::vector<Cell> cells{{curve.name}, {curve.points[curve.example].fineness, "", Look::kMuted}};
+    std::vector<Cell> cells{{curve.name}, {unbroken(curve.points[curve.example].fineness), "", Look::kMuted}};
     for (const std::string& stage : stages) {
       const auto found = curve.stage_seconds.find(stage);
       cells.push_back({all > 0 && found != curve.stage_seconds.end() && found->second > 0 ? fmt::format("{:.1f}", 100.0 * found->second / all) : "0"});
@@ -140,9 +147,8 @@ void write_cost_page(const CostPage& cost, const std::filesystem::path& file) {
   page.plot(plot_of_price(cost));
   page.table(table_of_prices(cost));
   const bool by_step = cost.finer.name == "step";
-  page.heading(cost.work ? "Work" : by_step ? "Order" : "Tolerance");
-  if (cost.work) page.plot(*cost.work);
-  else page.plot(drawn(cost, cost.finer, "Error against the " + cost.finer.name, [](const CostPoint& point) { return point.step; },
+  page.heading(by_step ? "Order" : "Tolerance");
+  page.plot(drawn(cost, cost.finer, "Error against the " + cost.finer.name, [](const CostPoint& point) { return point.step; },
                   by_step ? "The slope is the order: halving the step divides the error of a method of order p by 2^p. Methods that choose their own steps are not in this picture."
                           : "What a finder is asked for, and what it gives. What has no tolerance is not in this picture."));
   for (const CostCurve& curve : cost.curves)

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <limits>
 #include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,7 +43,6 @@ struct CostPage {
   double floor;                      // of the truth [m]
   double scale;                      // errors above it are no answer, and not drawn [m]
   std::vector<CostCurve> curves;
-  std::optional<Plot> work;          // in place of error against the step: where the step sets what is paid and not what comes out
   std::string record;
 };
 

@@ -18,10 +18,10 @@ constexpr const char* kStyle = R"(
 body { margin: 0 auto; padding: 2.2rem 1.4rem 3rem; max-width: 68rem; color: var(--ink); background: #fff;
   font: 16px/1.5 "DejaVu Sans", "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif; }
 header { border-bottom: 3px solid var(--ink); margin-bottom: 1.4rem; }
-h1 { font-size: 1.75rem; margin: 0 0 .2rem; } header p { margin: 0 0 .8rem; color: var(--soft); }
+h1 { font-size: 1.75rem; margin: 0 0 .2rem; } header p { margin: 0 0 .8rem; color: var(--soft); overflow-wrap: anywhere; }
 h2 { font-size: 1.25rem; margin: 2.2rem 0 .6rem; border-bottom: 1px solid var(--line); } h3 { font-size: 1.02rem; margin: 1.5rem 0 .4rem; }
 p { max-width: 52rem; } a { color: var(--link); } nav { margin: .8rem 0 1.1rem; } nav a { margin-right: 1.2rem; }
-table { border-collapse: collapse; margin: .8rem 0 1.2rem; font-size: .93rem; }
+.wide { overflow-x: auto; margin: .8rem 0 1.2rem; } table { border-collapse: collapse; font-size: .93rem; }
 caption { text-align: left; color: var(--soft); padding-bottom: .3rem; }
 th, td { padding: .32rem .8rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
 thead th { border-bottom: 2px solid var(--ink); white-space: nowrap; } tbody tr:nth-child(even) { background: var(--wash); }
@@ -39,7 +39,8 @@ figure .label { font-weight: 600; margin: 0 0 .3rem; } figcaption { color: var(-
 .plot-figure { max-width: 46rem; margin: .8rem 0 1.4rem; } svg.plot { width: 100%; height: auto; display: block; font: 11.5px "DejaVu Sans", Arial, sans-serif; fill: var(--ink); }
 svg.plot .grid { stroke: #d9e0e6; stroke-width: .8; } svg.plot .halo { paint-order: stroke; stroke: #fff; stroke-width: 3px; }
 footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--soft); font-size: .8rem; overflow-wrap: anywhere; }
-@media print { body { padding: 0; max-width: none; font-size: 11pt; } a { color: inherit; text-decoration: none; }
+@media screen and (max-width: 44rem) { body { padding: 1.1rem .9rem 2rem; } th, td { padding: .3rem .5rem; } .plot-figure { overflow-x: auto; } .plot-figure svg { min-width: 35rem; } }
+@media print { .wide { overflow: visible; } table { font-size: 9pt; } body { padding: 0; max-width: none; font-size: 11pt; } a { color: inherit; text-decoration: none; }
   tr, figure, .tile { break-inside: avoid; } h2, h3 { break-after: avoid; } nav { display: none; } details > * { display: block; } }
 )";
 
@@ -110,7 +111,7 @@ void Page::fold(std::string_view summary, std::string_view text, bool open) {
 }
 
 void Page::table(const Table& table) {
-  body_ += "<table>";
+  body_ += "<div class=\"wide\"><table>";
   if (!table.caption.empty()) body_ += "<caption>" + html_escape(table.caption) + "</caption>";
   body_ += "<thead><tr>";
   for (const Column& column : table.columns)
@@ -123,7 +124,7 @@ void Page::table(const Table& table) {
       body_ += "<td" + class_attribute(row[i].look, table.columns[i].is_number) + '>' + linked(row[i]) + "</td>";
     body_ += "</tr>\n";
   }
-  body_ += "</tbody></table>\n";
+  body_ += "</tbody></table></div>\n";
 }
 
 void Page::figures(const std::vector<Figure>& figures) {

@@ -111,22 +111,6 @@ TEST(Cost, ARunThatTakesTooLongIsStoppedAndSaysSo) {
   EXPECT_NE(rung.stopped_by.find("it would take more than"), std::string::npos) << rung.stopped_by;
 }
 
-TEST(Cost, ASchedulerIsReadByWhatItTakesBack) {
-  CostWay way;
-  way.name = "your a4";
-  way.schedules = true;
-  CostRung far, near;
-  far.step_s = 0.5, far.error_m = 0.0, far.evaluations = 900, far.undone = 400, far.rollbacks = 31;
-  near.step_s = 0.05, near.error_m = 0.0, near.evaluations = 600, near.undone = 20, near.rollbacks = 1;
-  CostTruth truth;
-  truth.floor_m = 1e-14;
-  const std::string right = engines::read_ladder(way, {far, near}, truth, false);
-  EXPECT_NE(right.find("least with 1/20 s: 600 integrations, of which it takes back 20 in 1 rollback."), std::string::npos) << right;
-  far.stopped_by = "an event is missing";
-  const std::string wrong = engines::read_ladder(way, {far, near}, truth, false);
-  EXPECT_NE(wrong.find("wrong with 0.5 s: an event is missing"), std::string::npos) << wrong;
-}
-
 TEST(Cost, EnergyThatTheMethodLosesIsSeen) {
   const scene::Scene scene = turning();
   const CostTruth truth = engines::find_truth(scene, library_laws(), {});

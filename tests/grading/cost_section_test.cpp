@@ -66,7 +66,31 @@ TEST_F(CostInAReport, AModuleThatHangsCostsItsOwnCurveAndLittleTime) {
   EXPECT_LT(seconds, 60.0);   // two curves of 3 s, compiler and reference beside; without a limit it would be for ever
 }
 
-TEST_F(CostInAReport, AModuleThatIsNotAboutStepsHasNoSuchPart) { EXPECT_TRUE(measure_cost(course_, "a4", folder_ / "none.so").scene.empty()); }
+TEST_F(CostInAReport, ASchedulerThatIsNotWrittenIsSaidAndNotJudged) {
+  if (!fs::exists(fs::path(TUMBLE_BINARY_DIR) / "modules" / "a4_reference.so")) GTEST_SKIP() << "measured beside the reference, which this tree does not have";
+  const fs::path stub = folder_ / "a4.so";
+  const BuiltSubmission built = build_submission(course_, "a4", fs::path(TUMBLE_SOURCE_DIR) / "assignments/a4_timewarp/a4_timewarp.cpp", stub);
+  ASSERT_EQ(built.outcome, BuiltSubmission::Outcome::kBuilt) << built.said;
+  const CostSection section = measure_cost(course_, "a4", stub);
+  ASSERT_EQ(section.lines.size(), 1u);
+  EXPECT_NE(section.lines[0].reading.find("not written yet"), std::string::npos) << section.lines[0].reading;
+  EXPECT_FALSE(section.lines[0].is_attempted);
+}
+
+TEST_F(CostInAReport, ASchedulerIsMeasuredByWorkForEachEventItCommits) {
+  const fs::path reference = fs::path(TUMBLE_BINARY_DIR) / "modules" / "a4_reference.so";
+  if (!fs::exists(reference)) GTEST_SKIP() << "measured beside the reference, which this tree does not have";
+  const CostSection section = measure_cost(course_, "a4", reference);
+  ASSERT_EQ(section.lines.size(), 2u);
+  for (const CostLine& line : section.lines) EXPECT_TRUE(line.is_right && !line.is_wasteful) << line.reading;
+  EXPECT_NE(section.lines[1].reading.find("pays what the reference pays"), std::string::npos) << section.lines[1].reading;
+  EXPECT_EQ(section.plots.size(), 3u);   // error against work, work against the step, work against the number of processes
+  ASSERT_EQ(section.tables.size(), 1u);
+  const auto& rows = section.tables[0].rows;   // of the submission, then of the reference: the same decisions, across the sandbox and not
+  ASSERT_EQ(rows.size() % 2, 0u);
+  for (std::size_t k = 0; k < rows.size() / 2; ++k)
+    for (std::size_t cell = 1; cell < rows[k].size(); ++cell) EXPECT_EQ(rows[k][cell].text, rows[k + rows.size() / 2][cell].text) << "row " << k << ", column " << section.tables[0].columns[cell].name;
+}
 
 TEST_F(CostInAReport, LawsOfImpactAreMeasuredAsAWhole) {
   const fs::path modules = fs::path(TUMBLE_BINARY_DIR) / "modules", reference = modules / "a1_reference.so";

@@ -22,10 +22,10 @@ constexpr double kNoise = 0.02;           // of what comes before the first step
 constexpr double kCoarsest = 16.0;        // of the scene's own step: where a ladder begins
 constexpr int kMostRungs = 14;
 constexpr double kNearFloor = 3.0;        // of the truth's floor: finer runs show nothing
+constexpr double kNoAnswer = 0.1;         // of the scale: a run with a larger error is on the way to others
 constexpr double kGood = 1e-3;            // of the scale: below it, errors that do not fall are round-off
 constexpr int kMostWorse = 2;             // rungs in a row that are no better than the best
 constexpr int kMostWorseInSteps = 4;      // the same where contacts push once a step: when something lands within a step is as good as drawn by lot
-constexpr int kRungsOfAScheduler = 8;
 constexpr double kGrowth = 2.2;           // price of a rung over the one before, as expected
 
 std::string too_long(double most_s) { return fmt::format("it would take more than {:.0f} s", most_s); }
@@ -163,8 +163,8 @@ CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth
   rung.step_s = way.has_ladder ? stepped.step_s : kUnset;
   if (way.controlled) rung.tolerance = tolerance;
   double building = std::numeric_limits<double>::infinity(), whole = building;
+  const double begun = cpu_seconds();
   try {
-    const double begun = cpu_seconds();
     for (int k = 0; k < options.runs && (k == 0 || cpu_seconds() - begun < kShort); ++k) {
       Measurement run(options.most_of_rung_s);
       run_scene(stepped, laws, how, run);
@@ -174,23 +174,20 @@ CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth
       rung.stopped_by = run.run().stopped_by;
       rung.stage_seconds = run.run().counters.stage_seconds;
       rung.evaluations = count_of(run.run().counters, way.counted);
-      rung.rollbacks = count_of(run.run().counters, "rollbacks");
-      rung.undone = count_of(run.run().counters, "undone_integrations");
       if (truth.by_numbers) judge(judged_part(scene, truth), run.run(), rung);
       else compare(run.run().frames, truth, rung);
-      if (!rung.stopped_by.empty()) break;
+      if (!rung.stopped_by.empty() || rung.error_m > kNoAnswer * truth.scale_m) break;   // what such a run costs need not be known well
     }
   } catch (const UserError& error) {
     rung.stopped_by = error.what();
-    return rung;
   } catch (const StoppedRun& stop) {   // before the engine looks for it
     rung.stopped_by = stop.what();
-    return rung;
   } catch (const NotImplemented& missing) {
     rung.stopped_by = missing.function() + " is not written yet";
     rung.not_attempted = true;
-    return rung;
   }
+  rung.spent_s = cpu_seconds() - begun;
+  if (!std::isfinite(whole)) return rung;   // it never came to an end
   rung.cpu_s = std::max(1e-6, whole - building);
   if (rung.cpu_s < kNoise * building) {   // the difference of two long times is noise: the stages' own clocks know better
     double stages = 0.0;
@@ -218,9 +215,12 @@ long outer_steps(const scene::Scene& scene, const CostTruth& truth) {
 
 namespace {
 
-std::size_t most_rungs(const CostWay& way, const std::vector<double>& asked) {
+/// 10^-this is the first tolerance. Rods pull at once at whatever is out of place: by looser ones a run blows up, slowly.
+int first_decade(const scene::Scene& scene) { return scene.rods.empty() && scene.joints.empty() ? 1 : 4; }
+
+std::size_t most_rungs(const scene::Scene& scene, const CostWay& way, const std::vector<double>& asked) {
   if (!way.has_ladder) return 1;
-  return !asked.empty() ? asked.size() : way.schedules ? kRungsOfAScheduler : kMostRungs;
+  return !asked.empty() ? asked.size() : static_cast<std::size_t>(kMostRungs - (way.controlled ? first_decade(scene) - 1 : 0));
 }
 
 /// Steps per sample of the next rung.
@@ -238,8 +238,8 @@ long steps_of(const scene::Scene& scene, const CostWay& way, const CostTruth& tr
 bool ladder_is_done(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, const std::vector<CostRung>& rungs, const LadderWords& words) {
   if (rungs.empty()) return false;
   const std::vector<double>& asked = way.controlled ? words.tolerances : words.steps_s;
-  if (rungs.size() >= most_rungs(way, asked) || rungs.back().not_attempted) return true;
-  if (!asked.empty() || way.schedules) return false;
+  if (rungs.size() >= most_rungs(scene, way, asked) || rungs.back().not_attempted) return true;
+  if (!asked.empty()) return false;
   double least = std::numeric_limits<double>::infinity();
   int worse = 0;
   for (std::size_t k = 0; k < rungs.size(); ++k) {
@@ -253,8 +253,7 @@ bool ladder_is_done(const scene::Scene& scene, const CostWay& way, const CostTru
 
 double next_price(const std::vector<CostRung>& rungs) {
   if (rungs.empty()) return 0.0;
-  const double last = rungs.back().cpu_s + rungs.back().building_s;
-  return kGrowth * (last > kShort ? last : kShort);   // short runs are repeated
+  return kGrowth * rungs.back().spent_s;
 }
 
 void extend_ladder(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, double budget_s, const CostOptions& options, const LadderWords& words, std::vector<CostRung>& rungs,
@@ -263,7 +262,7 @@ void extend_ladder(const scene::Scene& scene, const CostWay& way, const CostTrut
   const bool is_asked = !(way.controlled ? words.tolerances : words.steps_s).empty();
   while (!ladder_is_done(scene, way, truth, rungs, words)) {
     const std::size_t k = rungs.size();
-    const double tolerance = !way.controlled ? kUnset : words.tolerances.empty() ? std::pow(10.0, -1.0 - static_cast<double>(k)) : words.tolerances[k];
+    const double tolerance = !way.controlled ? kUnset : words.tolerances.empty() ? std::pow(10.0, -first_decade(scene) - static_cast<double>(k)) : words.tolerances[k];
     rungs.push_back(run_rung(scene, way, truth, steps_of(scene, way, truth, words, k), tolerance, options));
     told(rungs.back());
     if (!is_asked && cpu_seconds() + next_price(rungs) > until) return;

@@ -33,7 +33,6 @@ struct CostWay {
   double order = kUnset;                                 // that the method promises; NaN: none
   bool controlled = false;                               // its ladder is of tolerances, not of steps
   bool has_ladder = true;                                // false: there is nothing to refine
-  bool schedules = false;                                // its step says how far ahead a scheduler goes: what it pays, not how right it is
   std::optional<scene::StabilisationSpec> stabilisation; // in place of the scene's
   Laws laws;
 };
@@ -44,8 +43,8 @@ struct CostRung {
   double error_m = kUnset, cpu_s = kUnset;               // error: by numbers [-], see CostTruth
   std::string worst;                                     // by numbers: which is the worst
   double building_s = kUnset;                            // models and shapes, before the first step: not in cpu_s
+  double spent_s = 0.0;                                  // CPU time of all runs that it took to measure it
   std::uint64_t evaluations = 0;                         // derivatives of a body's, or of a group of linked bodies', state; or what the way counts
-  std::uint64_t rollbacks = 0, undone = 0;               // undone: integrations that were taken back
   std::vector<double> times, energy_errors;              // by sample [s]; |E - E of the truth| over all the energy there was [-]
   std::map<std::string, double> stage_seconds;
   std::string stopped_by;                                // empty: ran to the end
@@ -116,7 +115,7 @@ struct CostRun {
 };
 CostRun run_of(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, long steps, double tolerance, const CostOptions& options);
 
-/// What a ladder was asked for; empty: halvings of the first step, tolerances 0.1, 0.01, ...
+/// What a ladder was asked for; empty: halvings of the first step, tolerances 0.1, 0.01, ... (with rods or joints from 1e-4 on)
 struct LadderWords {
   std::vector<double> steps_s, tolerances;
 };

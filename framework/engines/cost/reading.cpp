@@ -61,20 +61,6 @@ std::string of_numbers(const CostWay& way, const std::vector<CostRung>& rungs) {
   return fmt::format("{} is right by all numbers at {}; at best {}.", way.name, from, worst);
 }
 
-/// A scheduler is right or not at any step; what its step sets is how much work it takes back.
-std::string of_scheduler(const CostWay& way, const std::vector<CostRung>& rungs) {
-  const CostRung *least = nullptr, *wrong = nullptr;
-  for (const CostRung& rung : rungs) {
-    if (!rung.stopped_by.empty()) wrong = &rung;
-    else if (least == nullptr || rung.evaluations < least->evaluations) least = &rung;
-  }
-  if (least == nullptr) return of_stopped(way, rungs);
-  const auto step = [](const CostRung& rung) { return rung.step_s <= 0.1 ? fmt::format("1/{:.0f} s", 1.0 / rung.step_s) : fmt::format("{:.3g} s", rung.step_s); };
-  if (wrong != nullptr) return fmt::format("{} is right with processes that go ahead by {}, and wrong with {}: {}", way.name, step(*least), step(*wrong), wrong->stopped_by);
-  return fmt::format("{} commits what the ordered reference commits, however far its processes go ahead. It pays least with {}: {} integrations, of which it takes back {} in {} rollback{}.", way.name, step(*least),
-                     least->evaluations, least->undone, least->rollbacks, least->rollbacks == 1 ? "" : "s");
-}
-
 std::string of_wrong_limit(const CostWay& way, double least) {
   return fmt::format("{} does not converge: its error stays at {:.1e} m however small the step. What it computes is not this motion (a wrong law, or a term left out).", way.name, least);
 }
@@ -110,7 +96,6 @@ bool keeps_promise(const CostWay& way, const std::vector<CostRung>& rungs, const
 
 std::string read_ladder(const CostWay& way, const std::vector<CostRung>& rungs, const CostTruth& truth, bool smooth) {
   if (truth.by_numbers) return of_numbers(way, rungs);
-  if (way.schedules) return of_scheduler(way, rungs);
   const double least = least_error(rungs);
   if (!std::isfinite(least)) return of_stopped(way, rungs);
   if (!way.has_ladder && least <= truth.floor_m) return fmt::format("{} has no step to choose: it is as good as the truth.", way.name);

@@ -26,6 +26,7 @@ constexpr double kStepsASample = 8.0;     // of the scene's own steps
 constexpr double kFramesASecond = 60.0;    // that numbers are judged by
 constexpr double kNextPrice = 2.2;        // of a run with half the step, over the one before
 constexpr double kHelps = 0.7;            // of the floor: less gain from half the step is none
+constexpr double kOlder = 3.0;            // what a run with four times the step differs by, over one with twice: of first order, C h (4 - 1) over C h (2 - 1)
 constexpr double kShareLeft = 0.4;        // of the time: kept for looking at less of the scene
 constexpr double kTellEvery = 1.0;        // s of CPU
 constexpr double kHopeless = 2.0;         // of the time there is: a run that is expected to take so much longer is given up
@@ -122,6 +123,7 @@ Laws with_method(Laws laws, const std::string& word) {
 struct Pair {
   FinerRun run, other{};
   std::string what;
+  std::vector<Frame> older{};   // of a third, with twice the step of `other`; empty: none
 };
 
 Pair run_closed(const scene::Scene& scene, const Laws& laws, const Window& window) {
@@ -165,6 +167,7 @@ bool take(const Pair& pair, double agreement, const Window& window, CostTruth& t
   for (std::size_t k = 0; k < std::min(pair.run.frames.size(), pair.other.frames.size()); ++k) {
     scale = std::max(scale, distance_between(pair.run.frames[k], pair.run.frames.front(), truth.radii));
     floor = std::max({distance_between(pair.other.frames[k], pair.run.frames[k], truth.radii), floor, kRoundings * std::numeric_limits<double>::epsilon() * scale});   // NaN stays
+    if (k < pair.older.size()) floor = std::max(floor, distance_between(pair.older[k], pair.run.frames[k], truth.radii) / kOlder);
     if (!(floor <= kPoorFloor * scale)) break;
     if (!(floor <= agreement * scale)) continue;   // what moves on may make up for it
     agreed = k + 1;
@@ -219,24 +222,31 @@ bool take_either(const Pair& pair, const Window& window, CostTruth& truth) {
 }
 
 /// Where contacts, rods or motors push once a step, the step itself is what is not fine enough: halves it as long as that helps and there is time.
+/// Where something lands, two runs may agree by chance: then a third must, if there is time for it, and what it contradicts is given up.
 void refine(const scene::Scene& scene, const Laws& laws, const Window& window, double until, Pair pair, bool& found, CostTruth& truth) {
   double price = pair.run.cpu_s;
+  const bool by_chance = scene.contact.has_value();
+  bool confirmed = !by_chance;
   for (long steps = 4 * steps_a_sample(scene, window);; steps *= 2) {
-    const bool is_good = found && is_whole(truth, window) && truth.floor_m <= kGoodFloor * truth.scale_m;
+    const bool is_good = confirmed && found && is_whole(truth, window) && truth.floor_m <= kGoodFloor * truth.scale_m;
     if (is_good || !pair.run.stopped_by.empty() || cpu_seconds() + kNextPrice * price > until) return;
+    pair.older = std::move(pair.other.frames);
     pair.other = std::move(pair.run);
     pair.run = run_finely(scene, with_method(laws, "fehlberg78"), window, steps, {});
     pair.what = two_steps_in_words(steps, window);
     price = pair.run.cpu_s;
+    if (!pair.run.stopped_by.empty()) return;
     CostTruth finer = truth;
-    if (!pair.run.stopped_by.empty() || !take_either(pair, window, finer)) {
-      if (found) return;
+    confirmed = true;
+    if (!take_either(pair, window, finer)) {
+      if (found && !by_chance) return;
+      found = false;
       continue;
     }
     const bool helps = !found || finer.intervals > truth.intervals || (finer.intervals == truth.intervals && finer.floor_m < kHelps * truth.floor_m);
-    if (!helps) return;
-    truth = finer;
+    if (helps || by_chance) truth = finer;
     found = true;
+    if (!helps) return;
   }
 }
 

@@ -1,0 +1,107 @@
+// What a scheduler pays, measured: right decisions, decisions that are right and dear, decisions that are wrong, and one that never ends.
+#include <gtest/gtest.h>
+
+#include "assignments/a4_timewarp/a4_binding.h"
+#include "framework/core/error.h"
+#include "framework/engines/cost/scheduler_work.h"
+#include "framework/modules/load.h"
+#include "tests/engines/event_scenes.h"
+
+namespace tumble::testing {
+namespace {
+
+using engines::SchedulerCurve;
+using engines::SchedulerReading;
+using engines::SchedulerRun;
+using engines::SchedulerTrial;
+
+constexpr int kBalls = 8;
+
+Laws decided_laws() {
+  modules::Registry registry;
+  register_assignments(registry);
+  Laws laws = test_laws();
+  const auto file = std::filesystem::path(TUMBLE_BINARY_DIR) / "modules" / "a4_reference.so";
+  a4::bind(*std::static_pointer_cast<const a4::Module>(modules::load_module(registry.find("a4"), file)), laws);
+  return laws;
+}
+
+/// Whatever happens sends back all, as retroactive detection does.
+void send_everybody_back(const scene::Scene& scene, Laws& laws) {
+  std::vector<std::int32_t> movers;
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i)
+    if (!scene.bodies[i].immovable) movers.push_back(static_cast<std::int32_t>(i));
+  laws.scheduling.plan_rollback = [right = laws.scheduling.plan_rollback, before = laws.scheduling.comes_before, movers](const std::vector<Effect>& effects, const std::vector<Rollback>& first) {
+    std::vector<Rollback> all = first;
+    for (const std::int32_t body : movers) {
+      Rollback back{body, first.front().stamp};
+      for (const Rollback& rollback : first)
+        if (before(rollback.stamp, back.stamp)) back.stamp = rollback.stamp;
+      if (std::none_of(first.begin(), first.end(), [body](const Rollback& rollback) { return rollback.body == body; })) all.push_back(back);
+    }
+    return right(effects, all);
+  };
+}
+
+SchedulerRun run_of(const Laws& laws, double most_s = 60.0) {
+  const scene::Scene scene = sized("gas", kBalls, 1.0);
+  SchedulerTrial trial;
+  trial.n = kBalls;
+  trial.most_s = most_s;
+  return engines::run_scheduler(scene, laws, trial, engines::events_due(scene, laws, trial));
+}
+
+TEST(SchedulerWork, RightDecisionsCommitAllAndAreCounted) {
+  const SchedulerRun run = run_of(decided_laws());
+  EXPECT_TRUE(run.is_right()) << run.stopped_by;
+  EXPECT_EQ(run.error(), 0.0);
+  EXPECT_EQ(run.processes, static_cast<std::size_t>(kBalls));
+  EXPECT_GE(run.impacts, run.committed);
+  EXPECT_GT(run.rollbacks, 0u);
+  EXPECT_GT(run.integrations, run.undone);
+}
+
+TEST(SchedulerWork, SendingEverybodyBackIsRightAndDearAndTheCauseIsNamed) {
+  Laws laws = decided_laws();
+  send_everybody_back(sized("gas", kBalls, 1.0), laws);
+  const SchedulerCurve dear{"your scheduler", false, {}, {run_of(laws)}}, right{"reference", true, {}, {run_of(decided_laws())}};
+  ASSERT_TRUE(dear.by_size[0].is_right()) << dear.by_size[0].stopped_by;
+  const std::vector<SchedulerReading> readings = engines::read_scheduler(dear, &right);
+  ASSERT_GE(readings.size(), 2u);
+  EXPECT_EQ(readings[0].kind, SchedulerReading::Kind::kRight) << readings[0].text;
+  EXPECT_EQ(readings[1].kind, SchedulerReading::Kind::kWasteful) << readings[1].text;
+  EXPECT_NE(readings[1].text.find("bodies that the collision did not touch"), std::string::npos) << readings[1].text;
+}
+
+TEST(SchedulerWork, AnImpactThatIsLostIsAnError) {
+  Laws laws = decided_laws();
+  laws.scheduling.on_collision_check = [right = laws.scheduling.on_collision_check](const ScheduledEvent& event, CheckFinding finding, double step) {
+    if (finding.contact && finding.contact->time > 0.5) finding.contact.reset();
+    return right(event, finding, step);
+  };
+  const SchedulerRun run = run_of(laws);
+  EXPECT_FALSE(run.is_right());
+  EXPECT_GT(run.error(), 0.2);   // of the second half of the time something like half of the events
+  EXPECT_LT(run.error(), 0.8);
+  EXPECT_FALSE(run.stopped_by.empty());
+}
+
+TEST(SchedulerWork, ARunThatTakesTooLongIsStoppedAndSaysSo) {
+  const SchedulerRun run = run_of(decided_laws(), 0.0);
+  EXPECT_NE(run.stopped_by.find("takes more than"), std::string::npos) << run.stopped_by;
+  EXPECT_EQ(run.error(), 1.0);
+}
+
+TEST(SchedulerWork, ASceneThatNoFlightFollowsIsRefusedAndNotCountedAsAnError) {
+  scene::Scene scene = sized("gas", kBalls, 1.0);
+  scene.drags.push_back({scene.bodies.back().name, 0.1, 0.0});
+  try {
+    engines::run_scheduler(scene, decided_laws(), {}, 1);
+    FAIL() << "it ran";
+  } catch (const UserError& error) {
+    EXPECT_NE(std::string(error.what()).find("free flight and impacts only"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace tumble::testing
