@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "framework/collision/inline_vector.h"
 
@@ -59,24 +58,40 @@ bool lie_along(const Edge& a, const Edge& b, double near) {
   return apart(low) <= near && apart(high) <= near;
 }
 
-struct Range {
-  double low = std::numeric_limits<double>::infinity(), high = -low;   // rad about the edge, from `n`
+double angle_about(const Vector3d& edge, const Vector3d& from, const Vector3d& to) { return std::atan2(edge.dot(from.cross(to)), from.dot(to)); }
+
+/// The normals of the faces that meet in an edge: less than half a turn about it. `side` +1: outward ones, -1: inward.
+struct Cone {
+  Vector3d middle = Vector3d::Zero();   // of its normals; zero: no faces
+  double low = 0.0, high = 0.0;         // rad about the edge, from `middle`
 };
 
-// Of the normals of the faces that meet in an edge. `side` +1: outward ones, -1: inward.
-Range cone_of(const PlacedPolytope& piece, const Edge& edge, double side, const Vector3d& n, const Vector3d& across, double size) {
+Cone cone_of(const PlacedPolytope& piece, const Edge& edge, double side, const Vector3d& along, double size) {
   const Polytope& p = *piece.polytope;
-  Range range;
+  InlineVector<Vector3d, 8> normals;
+  Cone cone;
   for (std::size_t f = 0; f < p.face_normals.size(); ++f) {
     const Vector3d& m = p.face_normals[f];
     const double lowest = p.face_offsets[f] - kOnFace * size;
     if (m.dot(p.vertices[edge.from]) < lowest || m.dot(p.vertices[edge.to]) < lowest) continue;
-    const Vector3d normal = side * (piece.query_from_body * m);
-    const double angle = std::atan2(normal.dot(across), normal.dot(n));
-    range.low = std::min(range.low, angle);
-    range.high = std::max(range.high, angle);
+    normals.push_back(side * (piece.query_from_body * m));
+    cone.middle += normals[normals.size() - 1];
   }
-  return range;
+  for (const Vector3d& normal : normals) {
+    const double angle = angle_about(along, cone.middle, normal);
+    cone.low = std::min(cone.low, angle);
+    cone.high = std::max(cone.high, angle);
+  }
+  return cone;
+}
+
+// The middle of what two cones about an edge share. What GJK calls the normal of two edges that touch is rounding: nothing is measured from it.
+std::optional<Vector3d> middle_of_both(const Cone& a, const Cone& b, const Vector3d& along) {
+  if (a.middle.isZero(0.0) || b.middle.isZero(0.0)) return std::nullopt;
+  const double aside = angle_about(along, a.middle, b.middle);
+  const double low = std::max(a.low, aside + b.low), high = std::min(a.high, aside + b.high);
+  if (!(high - low > kOne)) return std::nullopt;
+  return Eigen::AngleAxisd(0.5 * (low + high), along) * (a.middle - a.middle.dot(along) * along).normalized();
 }
 
 }  // namespace
@@ -89,12 +104,9 @@ std::optional<Vector3d> normal_of_edge_on_edge(const PlacedPolytope& a, const Pl
   for (const Edge& edge_a : edges_a)
     for (const Edge& edge_b : edges_b) {
       if (!lie_along(edge_a, edge_b, near)) continue;
-      const Vector3d along = edge_a.along.normalized(), level = (n - n.dot(along) * along).normalized(), across = along.cross(level);
-      const Range in_a = cone_of(a, edge_a, -1.0, level, across, size), in_b = cone_of(b, edge_b, 1.0, level, across, size);
-      const double low = std::max(in_a.low, in_b.low), high = std::min(in_a.high, in_b.high);
-      if (!(high - low > kOne)) continue;
-      const double middle = 0.5 * (low + high);
-      return std::cos(middle) * level + std::sin(middle) * across;
+      const Vector3d along = edge_a.along.normalized();
+      const auto normal = middle_of_both(cone_of(a, edge_a, -1.0, along, size), cone_of(b, edge_b, 1.0, along, size), along);
+      if (normal && separation_along(a, b, *normal) >= -2 * near) return normal;
     }
   return std::nullopt;
 }

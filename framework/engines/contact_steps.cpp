@@ -386,7 +386,7 @@ bool LastingContacts::give_paths(const Group& group, const std::vector<Touch>& t
   const bool apart = keep_apart(group, group.pairs, ends, moving_.target(), held);
   for (const int body : group.bodies) {
     if (landing) set_straight_path(body, ends[body]);
-    else moving_.set_path(body, moving_.state(body), ends[body]);
+    else moving_.set_path(body, moving_.state(body), ends[body], SmoothPath::Momenta::kEven);
   }
   return apart;
 }
@@ -397,7 +397,7 @@ void LastingContacts::set_straight_path(int body, const RigidBodyState& end) {
   RigidBodyState start = moving_.state(body);
   start.momentum_world = end.momentum_world;
   start.angular_momentum_world = angular_momentum_of(omega_of(end, inertia), start.world_from_body, inertia);
-  moving_.set_path(body, start, end);
+  moving_.set_path(body, start, end, SmoothPath::Momenta::kEven);
 }
 
 // A contact of a problem of shifts: bodies of other groups stay where they are.

@@ -97,11 +97,11 @@ LinkForces MovingWorld::measure_links(const std::vector<RigidBodyState>& states,
   return forces;
 }
 
-void MovingWorld::set_path(int body, const RigidBodyState& start, const RigidBodyState& end) {
+void MovingWorld::set_path(int body, const RigidBodyState& start, const RigidBodyState& end, SmoothPath::Momenta momenta) {
   Path& path = paths_[body];
   path.bounds.reset();
   path.end = end;
-  path.smooth.emplace(start, end, world_.bodies[body].inertia, time_, target_);
+  path.smooth.emplace(start, end, world_.bodies[body].inertia, time_, target_, momenta);
 }
 
 void MovingWorld::put_to_rest(int body, int support) {

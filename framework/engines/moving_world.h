@@ -84,7 +84,7 @@ class MovingWorld {
   /// After impacts: velocities of the bodies joined to those that were hit back onto the constraints. @return whether there are any
   bool keep_constraints(const std::vector<Event>& impacts);
   /// From here on to the step's target the body goes from `start` (at time(); its velocities may jump there) to `end`.
-  void set_path(int body, const RigidBodyState& start, const RigidBodyState& end);
+  void set_path(int body, const RigidBodyState& start, const RigidBodyState& end, SmoothPath::Momenta momenta = SmoothPath::Momenta::kOfPath);
   /// Where the step leads without what set_path has added.
   const RigidBodyState& path_end(int body) const { return paths_[body].end; }
   /// The path that set_path has given, or that links have; nothing where the laws are asked at every instant.

@@ -47,8 +47,9 @@ Vector3d slope(const Vector3d* c, double s) { return c[1] + s * (2.0 * c[2] + s 
 
 }  // namespace
 
-SmoothPath::SmoothPath(const RigidBodyState& start, const RigidBodyState& end, const Inertia& inertia, double t0, double t1)
-    : t0_(t0), h_(t1 - t0), inertia_(inertia), start_(start.world_from_body) {
+SmoothPath::SmoothPath(const RigidBodyState& start, const RigidBodyState& end, const Inertia& inertia, double t0, double t1, Momenta momenta)
+    : t0_(t0), h_(t1 - t0), inertia_(inertia), start_(start.world_from_body), momenta_(momenta), momentum_{start.momentum_world, end.momentum_world},
+      angular_momentum_{start.angular_momentum_world, end.angular_momentum_world} {
   hermite(start.com_world, h_ * inertia.inverse_mass * start.momentum_world, end.com_world, h_ * inertia.inverse_mass * end.momentum_world, x_);
 
   const Vector3d turn_start = h_ * (start.world_from_body.conjugate() * omega_of(start, inertia));
@@ -83,6 +84,11 @@ RigidBodyState SmoothPath::at(double t) const {
   RigidBodyState state;
   state.com_world = value(x_, s);
   const Vector3d omega = omega_world(s, state.world_from_body);
+  if (momenta_ == Momenta::kEven) {
+    state.momentum_world = (1 - s) * momentum_[0] + s * momentum_[1];
+    state.angular_momentum_world = (1 - s) * angular_momentum_[0] + s * angular_momentum_[1];
+    return state;
+  }
   state.momentum_world = inertia_.mass * slope(x_, s) / h_;
   state.angular_momentum_world = angular_momentum_of(omega, state.world_from_body, inertia_);
   return state;

@@ -14,11 +14,15 @@ namespace tumble::engines {
 class SmoothPath {
  public:
   SmoothPath() = default;
-  /// @pre t0 < t1. Velocities are those of the states' momenta.
-  SmoothPath(const RigidBodyState& start, const RigidBodyState& end, const Inertia& inertia, double t0, double t1);
+  /// What a state between the ends takes for its momenta. Where a shift has taken back an overlap the path goes a way that no velocity
+  /// stands for, and the shorter the step the faster: momenta that change evenly from end to end know nothing of it.
+  enum class Momenta { kOfPath, kEven };
 
-  /// Momenta are those of the path's velocities.
+  /// @pre t0 < t1. Velocities are those of the states' momenta.
+  SmoothPath(const RigidBodyState& start, const RigidBodyState& end, const Inertia& inertia, double t0, double t1, Momenta momenta = Momenta::kOfPath);
+
   RigidBodyState at(double t) const;
+  /// Velocities of the path.
   collision::MotionState motion_at(double t) const;
   const collision::MotionBounds& bounds() const { return bounds_; }
 
@@ -30,6 +34,8 @@ class SmoothPath {
   Vector3d x_[4];           // coefficients of s^k, s = (t - t0) / h
   Vector3d phi_[4];         // likewise; phi_[0] = 0
   Quaterniond start_;
+  Momenta momenta_ = Momenta::kOfPath;
+  Vector3d momentum_[2], angular_momentum_[2];   // at the ends
   collision::MotionBounds bounds_;
 };
 

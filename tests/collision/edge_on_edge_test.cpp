@@ -1,8 +1,10 @@
 // Two edges that lie along each other have a range of normals: the one that is taken must not hang on the last digit of where they are.
 #include <cmath>
+#include <random>
 
 #include <gtest/gtest.h>
 
+#include "framework/collision/gap.h"
 #include "framework/collision/near_points.h"
 
 namespace tumble::testing {
@@ -57,6 +59,34 @@ TEST(EdgeOnEdge, FartherThanAMillionthApartTheNearestPointsSayIt) {
   ASSERT_FALSE(points.empty());
   // A difference of 1e-5 m of coordinates of size 1.
   EXPECT_LE((points[0].normal_b_to_a_world - Vector3d(std::cos(direction), 0, std::sin(direction))).norm(), kRoundOff / 1e-5);
+}
+
+TEST(EdgeOnEdge, WhicheverWayTheTwoLieAboutTheirEdgeNoGapIsMeasuredThroughThem) {
+  std::mt19937_64 random(27);
+  const auto between = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
+  constexpr double kApart = 1e-10, kRight = M_PI / 2;   // m, rad: what a box takes of the turn about its edge
+  int of_edges = 0;
+  for (int k = 0; k < 400; ++k) {
+    // Edge of each along y through the origin, from where the box takes up a right angle; nowhere the same.
+    const double of_a = between(-M_PI, M_PI), of_b = of_a + between(1.02 * kRight, 2.98 * kRight);
+    const auto placed = [&](const Vector3d& half, double angle, const Vector3d& edge) {
+      const Quaterniond turn(Eigen::AngleAxisd(-angle, Vector3d::UnitY()));   // x over z
+      return Pose{edge + turn * Vector3d(half.x(), 0, half.z()), turn};
+    };
+    const Vector3d half_a(between(0.005, 0.5), 0.5, between(0.005, 0.5)), half_b(between(0.005, 0.5), 0.4, between(0.005, 0.5));
+    const double middle = 0.5 * (of_a + of_b + kRight);   // of the free angle from A to B
+    const CollisionShape a{Box{half_a}}, b{Box{half_b}};
+    for (const double shift : {kApart, -kApart, 1e-8, -1e-8, 3e-7, -3e-7}) {   // apart or overlapping
+      const Pose pose_a = placed(half_a, of_a, shift * Vector3d(std::cos(middle), 0, std::sin(middle))), pose_b = placed(half_b, of_b, Vector3d::Zero());
+      const std::vector<NearPoint> points = collision::near_points(a, pose_a, b, pose_b, 1e-5);
+      ASSERT_FALSE(points.empty());
+      for (const NearPoint& p : points) {
+        EXPECT_GE(p.gap, -std::abs(shift) - kRoundOff) << "angles " << of_a << " and " << of_b;
+        if (p.gap < 2 * kApart) ++of_edges;
+      }
+    }
+  }
+  EXPECT_GT(of_edges, 400);   // the two ends of most
 }
 
 TEST(EdgeOnEdge, BoxesThatLieFlushOnEachOtherPushAlongTheirFaces) {

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include "assignments/a4_timewarp/a4_binding.h"
-#include "framework/core/error.h"
 #include "framework/engines/cost/scheduler_work.h"
 #include "framework/modules/load.h"
 #include "tests/engines/event_scenes.h"
@@ -90,17 +89,6 @@ TEST(SchedulerWork, ARunThatTakesTooLongIsStoppedAndSaysSo) {
   const SchedulerRun run = run_of(decided_laws(), 0.0);
   EXPECT_NE(run.stopped_by.find("takes more than"), std::string::npos) << run.stopped_by;
   EXPECT_EQ(run.error(), 1.0);
-}
-
-TEST(SchedulerWork, ASceneThatNoFlightFollowsIsRefusedAndNotCountedAsAnError) {
-  scene::Scene scene = sized("gas", kBalls, 1.0);
-  scene.drags.push_back({scene.bodies.back().name, 0.1, 0.0});
-  try {
-    engines::run_scheduler(scene, decided_laws(), {}, 1);
-    FAIL() << "it ran";
-  } catch (const UserError& error) {
-    EXPECT_NE(std::string(error.what()).find("free flight and impacts only"), std::string::npos) << error.what();
-  }
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/grading/rubric.h"
+#include "framework/scene/sized_scenes.h"
 
 namespace tumble::testing {
 namespace {
@@ -107,10 +108,10 @@ TEST(Handouts, NameTestsAndScenesThatExist) {
     for (const std::string& test : all(a.handout, "`([A-Z]\\w+\\.[A-Z]\\w+)`"))
       EXPECT_TRUE(exists(test.substr(0, test.find('.')), test.substr(test.find('.') + 1))) << a.handout_file() << " names " << test;
     for (const std::string& suite : all(a.header, "(\\w+)\\.\\*")) EXPECT_TRUE(exists(suite, "\\w+")) << a.folder << ".h names " << suite << ".*";
-    for (const std::string& scene : all(a.handout, "\\./tumble (?:run|poke) ([a-z0-9_]+)")) {
-      bool found = false;
-      for (const Assignment& other : assignments()) found = found || fs::exists(kRoot / "assignments" / other.folder / "scenes" / (scene + ".json"));
-      EXPECT_TRUE(found) << a.handout_file() << " runs the scene " << scene;
+    for (const std::string& scene_name : all(a.handout, "\\./tumble (?:run|poke) ([a-z0-9_]+)")) {
+      bool found = scene::sized_scene_named(scene_name) != nullptr;
+      for (const Assignment& other : assignments()) found = found || fs::exists(kRoot / "assignments" / other.folder / "scenes" / (scene_name + ".json"));
+      EXPECT_TRUE(found) << a.handout_file() << " runs the scene " << scene_name;
     }
   }
 }

@@ -124,8 +124,10 @@ void card_house(const Given& given, Findings& findings, int levels) {
   const Trajectory stands = run_by_steps(card_house(0.4, 1.1 * card.foot / card.high, levels, folder.path()), given.laws, duration, 1.0 / 240, 100);
   findings.at_most(name + fmt::format("mu = 1.1 foot / height, {:g} s: creep", duration), way(stands), 1e-3, "m", "static under any load: 1e-3 of a card's length");
   findings.at_least(name + "smallest gap", smallest_gap(stands), 0.0, "m", "nothing interpenetrates");
-  const Trajectory falls = run_by_steps(card_house(0.4, 0.9 * card.limit(), levels, folder.path()), given.laws, 0.3, 1.0 / 240, 100);
-  findings.must_fail(name + "mu = 0.9 of the limit of a free tent, 0.3 s: stands", way(falls), 1e-3, "m", "friction too small for the lightest load");
+  for (const int rate : {240, 333}) {   // blows of many cards at once come in another order at every step
+    const Trajectory falls = run_by_steps(card_house(0.4, 0.9 * card.limit(), levels, folder.path()), given.laws, 0.3, 1.0 / rate, 100);
+    findings.must_fail(name + fmt::format("mu = 0.9 of the limit of a free tent, 0.3 s at 1/{} s: stands", rate), way(falls), 1e-3, "m", "friction too small for the lightest load");
+  }
 }
 
 /// Two loose cards that touch by their upper edges alone: the direction between the edges is no more than rounding, and whatever normal
