@@ -159,7 +159,7 @@ class LastingContacts {
   bool apply_shift(int body, const Velocity& shift, std::vector<RigidBodyState>& states) const;
   void place_for_shift(const Group& group, Pair pair, const collision::NearPoint& point, const std::vector<RigidBodyState>& states, double t, double room, std::map<int, int>& places,
                        ContactProblem& problem, PushingContact& contact);
-  void set_straight_path(int body, const RigidBodyState& end);
+  void set_straight_path(int body, const RigidBodyState& end, SmoothPath::Momenta momenta);
   void keep_warm(const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h);
   std::optional<double> stop_of_sliding(const ContactProblem& problem, const std::vector<Touch>& touches, const ContactSolution& solution, double h);
   static bool lands(const std::vector<Touch>& touches, const ContactSolution& solution);
