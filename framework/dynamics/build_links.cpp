@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include "framework/core/error.h"
+#include "framework/core/shortest_turn.h"
 
 namespace tumble {
 namespace {
@@ -54,7 +55,7 @@ class LinkBuilder {
   /// The joint's own frame stands at the shared point; its z is the axis; x and y are any two across it, the same in both bodies.
   JointLink joint(const scene::JointSpec& spec) const {
     const std::string who = "joint '" + spec.name + "'";
-    const Quaterniond world_from_joint = spec.kind == scene::JointKind::kHinge ? Quaterniond::FromTwoVectors(Vector3d::UnitZ(), spec.axis) : Quaterniond::Identity();
+    const Quaterniond world_from_joint = spec.kind == scene::JointKind::kHinge ? shortest_turn(Vector3d::UnitZ(), spec.axis) : Quaterniond::Identity();
     const auto seen_from = [&](int body, Anchor& anchor, Quaterniond& body_from_joint) {
       anchor = {body, spec.point_m};
       body_from_joint = world_from_joint;

@@ -36,6 +36,14 @@ double largest_stable_step(const Laws& laws, double frequency, double damping, d
   return stable;
 }
 
+/// Largest size of the two eigenvalues; they are real where `discriminant` is not negative, else a conjugate pair.
+double spectral_radius(const Eigen::Matrix2d& m) {
+  const double middle = 0.5 * (m(0, 0) + m(1, 1));
+  const double half_difference = 0.5 * (m(0, 0) - m(1, 1));
+  const double discriminant = half_difference * half_difference + m(0, 1) * m(1, 0);
+  return discriminant < 0.0 ? std::sqrt(m.determinant()) : std::abs(middle) + std::sqrt(discriminant);
+}
+
 }  // namespace
 
 double amplification(const Laws& laws, double frequency, double damping, double step) {
@@ -52,7 +60,7 @@ double amplification(const Laws& laws, double frequency, double damping, double 
     matrix(0, column) = after[0];
     matrix(1, column) = after[1] / frequency;
   }
-  return Eigen::EigenSolver<Eigen::Matrix2d>(matrix, false).eigenvalues().cwiseAbs().maxCoeff();
+  return spectral_radius(matrix);
 }
 
 std::optional<SpringStability> judge_springs(const World& world, const Laws& laws, double step) {

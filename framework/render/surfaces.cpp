@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "framework/core/error.h"
+#include "framework/core/shortest_turn.h"
 
 namespace tumble::render {
 namespace {
@@ -158,7 +159,7 @@ Instance placed(const Vector3d& origin_world, const Eigen::Matrix3d& world_from_
 Instance laid_between(const Vector3d& from_world, const Vector3d& to_world, double width, const Vector3d& color, double opacity) {
   const Vector3d along = to_world - from_world;
   require(along.norm() > 0.0, "laid_between: the two ends are one point");
-  const Eigen::Matrix3d turned = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), along).toRotationMatrix();
+  const Eigen::Matrix3d turned = shortest_turn(Vector3d::UnitZ(), along).toRotationMatrix();
   return placed(from_world, turned, {width, width, along.norm()}, color, opacity);
 }
 

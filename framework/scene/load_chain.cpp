@@ -4,6 +4,7 @@
 //   joints:         anchor o==link_1==o==link_2==o ... ==link_n== [o end]          ties at the links' ends, links spacing long
 #include <Eigen/Geometry>
 
+#include "framework/core/shortest_turn.h"
 #include "framework/scene/load_body.h"
 #include "framework/scene/load_links.h"
 #include "framework/scene/read_json.h"
@@ -80,7 +81,7 @@ class ChainWriter {
     if (value_.contains("along")) {
       const std::string along = value_.at("along");
       const Vector3d axis = along == "x" ? Vector3d::UnitX() : along == "y" ? Vector3d::UnitY() : Vector3d::UnitZ();
-      link.world_from_body = Quaterniond::FromTwoVectors(link.world_from_body * axis, line_.direction) * link.world_from_body;
+      link.world_from_body = shortest_turn(link.world_from_body * axis, line_.direction) * link.world_from_body;
     }
     return link;
   }

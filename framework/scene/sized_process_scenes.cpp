@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/random.h"
+#include "framework/core/shortest_turn.h"
 
 namespace tumble::scene {
 namespace {
@@ -30,7 +31,7 @@ BodySpec ground(const std::string& name, const Vector3d& point, const Vector3d& 
   body.shape = PlaneSpec{drawn};
   body.immovable = true;
   body.position_m = point;
-  body.world_from_body = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal);
+  body.world_from_body = shortest_turn(Vector3d::UnitZ(), normal);
   body.color = kGrey;
   return body;
 }

@@ -10,6 +10,7 @@
 #include "framework/core/error.h"
 #include "framework/core/nearest_word.h"
 #include "framework/core/random.h"
+#include "framework/core/shortest_turn.h"
 #include "framework/scene/sized_process_scenes.h"
 
 namespace tumble::scene {
@@ -41,7 +42,7 @@ BodySpec wall(const std::string& name, const Vector3d& point, const Vector3d& no
   body.shape = PlaneSpec{drawn};
   body.immovable = true;
   body.position_m = point;
-  body.world_from_body = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal);
+  body.world_from_body = shortest_turn(Vector3d::UnitZ(), normal);
   body.color = Vector3d(0.55, 0.6, 0.65);
   return body;
 }

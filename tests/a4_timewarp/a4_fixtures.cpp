@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "framework/core/random.h"
+#include "framework/core/shortest_turn.h"
 #include "framework/engines/run.h"
 
 namespace tumble::a4_testing {
@@ -105,7 +106,7 @@ scene::BodySpec wall(const std::string& name, const Vector3d& position, const Ve
   scene::BodySpec body;
   body.name = name;
   body.shape = scene::PlaneSpec{};
-  body.world_from_body = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal);
+  body.world_from_body = shortest_turn(Vector3d::UnitZ(), normal);
   body.position_m = position;
   body.immovable = true;
   body.restitution = 1.0;

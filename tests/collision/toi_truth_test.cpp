@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/collision/first_impact.h"
+#include "framework/core/shortest_turn.h"
 #include "framework/dynamics/laws.h"
 #include "tests/collision/truth_reader.h"
 
@@ -57,7 +58,7 @@ TEST_P(TimeOfImpact, SpherePlane) {
     const Vector3d n = vector(input(truth, "n"));
     const CollisionShape ball{Sphere{number(input(truth, "R"))}}, plane{HalfSpace{}};
     const Motion fall = flight(vector(input(truth, "x0")), vector(input(truth, "v0")), {0, 0, -number(input(truth, "g"))}, Vector3d::Zero());
-    const Motion floor = still(n * (number(input(truth, "d")) / n.norm()), Quaterniond::FromTwoVectors(Vector3d::UnitZ(), n));
+    const Motion floor = still(n * (number(input(truth, "d")) / n.norm()), shortest_turn(Vector3d::UnitZ(), n));
     const auto found = impact(ball, fall, plane, floor, 10.0, GetParam());
     ASSERT_TRUE(found) << name;
     EXPECT_NEAR(found->time, number(output(truth, "toi")), pass_mark(truth, "toi")) << name;

@@ -1,6 +1,7 @@
 /// Small scenes for tests of the engines, built without files.
 #pragma once
 
+#include "framework/core/shortest_turn.h"
 #include "framework/engines/run.h"
 #include "tests/support/test_laws.h"
 
@@ -30,7 +31,7 @@ inline scene::BodySpec plane(const std::string& name, const Vector3d& point, con
   body.shape = scene::PlaneSpec{};
   body.immovable = true;
   body.position_m = point;
-  body.world_from_body = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal);
+  body.world_from_body = shortest_turn(Vector3d::UnitZ(), normal);
   return body;
 }
 

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/shortest_turn.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/methods.h"
 #include "tests/stability/support.h"
@@ -17,7 +18,7 @@ namespace {
 scene::BodySpec link(const std::string& name, const Vector3d& from, const Vector3d& to) {
   scene::BodySpec body = truths::point_mass(name, 1.0, 0.5 * (from + to), Vector3d::Zero());
   body.inertia_body_kg_m2 = Vector3d(1e-3, 1.0 / 12, 1.0 / 12).asDiagonal();   // along x of the body
-  body.world_from_body = Quaterniond::FromTwoVectors(Vector3d::UnitX(), to - from);
+  body.world_from_body = shortest_turn(Vector3d::UnitX(), to - from);
   return body;
 }
 

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "framework/collision/first_impact.h"
+#include "framework/core/shortest_turn.h"
 #include "framework/engines/truths/families.h"
 #include "framework/engines/truths/impact_problem.h"
 
@@ -56,7 +57,7 @@ std::optional<Impact> find_impact(const Solid& a, const Solid& b, const Laws& la
 Solid plane(const Vector3d& normal_world, double d) {
   GivenMotion at_rest;
   at_rest.com0_world = d * normal_world;
-  at_rest.world_from_body_0 = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal_world);
+  at_rest.world_from_body_0 = shortest_turn(Vector3d::UnitZ(), normal_world);
   return {CollisionShape(HalfSpace{}), at_rest};
 }
 

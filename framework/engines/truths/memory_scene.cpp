@@ -5,6 +5,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "framework/core/shortest_turn.h"
+
 namespace tumble::truths {
 
 scene::Scene empty_scene(const std::string& name, double duration, double rest_speed) {
@@ -53,7 +55,7 @@ scene::BodySpec wall(const std::string& name, const Vector3d& position, const Ve
   body.shape = scene::PlaneSpec{};
   body.immovable = true;
   body.position_m = position;
-  body.world_from_body = Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal);
+  body.world_from_body = shortest_turn(Vector3d::UnitZ(), normal);
   body.restitution = restitution;
   return body;
 }

@@ -1,0 +1,35 @@
+#include "framework/core/shortest_turn.h"
+
+#include <cmath>
+
+namespace tumble {
+namespace {
+
+// Past this cosine 1 + cosine, of which the half angle is made, has lost two digits and more.
+constexpr double kNearlyOpposite = -0.99;
+// A cross product of unit vectors shorter than this points nowhere in particular.
+constexpr double kNoAxis = 1e-9;
+
+Vector3d axis_across(const Vector3d& unit) {
+  const Vector3d other = std::abs(unit.y()) < 0.9 ? Vector3d::UnitY() : Vector3d::UnitX();
+  return unit.cross(other).normalized();
+}
+
+}  // namespace
+
+Quaterniond shortest_turn(const Vector3d& from, const Vector3d& to) {
+  const Vector3d a = from.normalized();
+  const Vector3d b = to.normalized();
+  const double cosine = b.dot(a);
+  const Vector3d across = a.cross(b);
+  if (cosine < kNearlyOpposite) {
+    // By way of the opposite direction: half a turn, and from there the little that is left.
+    const Vector3d axis = across.norm() < kNoAxis ? axis_across(a) : across.normalized();
+    return shortest_turn(-a, b) * Quaterniond(0.0, axis.x(), axis.y(), axis.z());
+  }
+  const double s = std::sqrt((1.0 + cosine) * 2.0);
+  const double inverse = 1.0 / s;
+  return {s * 0.5, across.x() * inverse, across.y() * inverse, across.z() * inverse};
+}
+
+}  // namespace tumble
