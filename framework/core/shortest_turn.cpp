@@ -5,8 +5,8 @@
 namespace tumble {
 namespace {
 
-// Past this cosine 1 + cosine, of which the half angle is made, has lost two digits and more.
-constexpr double kNearlyOpposite = -0.99;
+// Past this cosine 1 + cosine, of which the half angle is made, loses more than two bits.
+constexpr double kNearlyOpposite = -0.5;
 // A cross product of unit vectors shorter than this points nowhere in particular.
 constexpr double kNoAxis = 1e-9;
 

@@ -8,7 +8,7 @@
 namespace tumble {
 namespace {
 
-constexpr double kRoundings = 1e-15;  // a few operations on numbers of size 1
+constexpr double kRoundings = 2e-15;  // a dozen operations on numbers of size 1
 
 Vector3d direction(double angle) { return {std::cos(angle), std::sin(angle), 0.0}; }
 
