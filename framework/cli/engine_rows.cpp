@@ -12,6 +12,7 @@
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
 #include "framework/engines/events/trace.h"
+#include "framework/engines/guarded_laws.h"
 #include "framework/engines/run.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 
@@ -104,18 +105,56 @@ void keep(EngineRow& row, const Trajectory& run) {
   }
 }
 
+/// Stops a run that has taken its time: laws, frames and events are where it can be stopped.
+class Deadline {
+ public:
+  explicit Deadline(double most_s) : most_s_(most_s), until_(cpu_seconds() + most_s) {}
+  bool is_over() const { return is_over_; }
+  void look() {
+    if (++looks_ % kLooksAClock != 0 || !(cpu_seconds() > until_)) return;
+    is_over_ = true;
+    throw engines::StoppedRun(fmt::format("it takes more than {:.0f} s", most_s_));
+  }
+  Laws watched(const Laws& laws) {
+    Laws watched = laws;
+    if (!std::isfinite(most_s_)) return watched;
+    if (laws.integrate_step)
+      watched.integrate_step = [this, inner = laws.integrate_step](const OdeFunction& f, double t, const VectorXd& y, double h) {
+        look();
+        return inner(f, t, y, h);
+      };
+    if (laws.relative_normal_velocity)
+      watched.relative_normal_velocity = [this, inner = laws.relative_normal_velocity](const Contact& contact, const Body& a, const Body& b) {
+        look();
+        return inner(contact, a, b);
+      };
+    return watched;
+  }
+
+ private:
+  static constexpr std::uint64_t kLooksAClock = 64;
+  double most_s_, until_;   // [s] of CPU
+  std::uint64_t looks_ = 0;
+  bool is_over_ = false;
+};
+
 /// CPU time, or time by the clock, of a run without pictures [s]. What comes before the first step (models, shapes, overlaps) is the same for all engines and is
 /// no part of what they cost. The best of several short runs is the least disturbed one.
 /// @param counts  what it counted
-double seconds_of_run(const scene::Scene& scene, const Laws& laws, engines::RunOptions options, bool by_the_clock, std::map<std::string, std::uint64_t>& counts) {
+/// @return nothing where it takes more than most_s
+std::optional<double> seconds_of_run(const scene::Scene& scene, const Laws& laws, engines::RunOptions options, bool by_the_clock, double most_s, std::map<std::string, std::uint64_t>& counts) {
   options.frame_rate_hz = kNoFrames;
   engines::RunOptions nothing = options;
   nothing.duration_s = kNoTime * scene.step_s;
+  bool is_over = false;
   const auto seconds_of = [&](const engines::RunOptions& how) {
     TrajectoryRecorder recorder;
+    Deadline deadline(most_s);
+    const Laws watched = deadline.watched(laws);
     const auto clock = std::chrono::steady_clock::now();
     const double begin = cpu_seconds();
-    engines::run_scene(scene, laws, how, recorder);
+    engines::run_scene(scene, watched, how, recorder);
+    is_over = is_over || deadline.is_over();
     const double seconds = by_the_clock ? std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count() : cpu_seconds() - begin;
     counts = recorder.trajectory().counters.counts;
     return seconds;
@@ -125,6 +164,7 @@ double seconds_of_run(const scene::Scene& scene, const Laws& laws, engines::RunO
     building = std::min(building, seconds_of(nothing));
     whole = std::min(whole, seconds_of(options));
   }
+  if (is_over) return std::nullopt;
   return std::max(1e-6, whole - building);
 }
 
@@ -157,11 +197,18 @@ EngineRun measure_engine(const Context& context, const scene::Scene& scene, cons
   row.label = choice.label.empty() ? choice.engine : choice.label;
   for (const scene::BodySpec& body : scene.bodies) row.bodies += body.immovable ? 0 : 1;
   try {
-    row.cpu_s = seconds_of_run(scene, chosen.laws, options, choice.by_the_clock, row.counts);
+    const auto seconds = choice.is_timed ? seconds_of_run(scene, chosen.laws, options, choice.by_the_clock, choice.most_s, row.counts) : std::optional(kUnset);
+    if (!seconds) {
+      row.counts.clear();
+      row.stopped_by = fmt::format("left out, for it takes more than {:.0f} s", choice.most_s);
+      return measured;
+    }
+    row.cpu_s = *seconds;
     TrajectoryRecorder recorder;
     options.frame_rate_hz = choice.frame_rate_hz;
     options.timewarp = engines::fast_timewarp(&times);
-    engines::run_scene(scene, chosen.laws, options, recorder);
+    Deadline deadline(choice.is_timed ? std::numeric_limits<double>::infinity() : choice.most_s);
+    engines::run_scene(scene, deadline.watched(chosen.laws), options, recorder);
     measured.run = recorder.trajectory();
   } catch (const UserError& error) {
     row.stopped_by = error.what();

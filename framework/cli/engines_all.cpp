@@ -23,19 +23,21 @@ namespace fs = std::filesystem;
 using report::EngineRow;
 using report::EnginesScene;
 
-/// How a scene is shown. `share` is about how long its runs and pictures take, against the others: for the time that is left only.
+/// How a scene is shown. Shares are about how long its runs and pictures take, against the others: for the time that is left only.
 struct Shown {
   const char* name;
   int small_n, n, paper_n;  // 0: not shown
+  double paper_duration;    // compared so long at the paper's size [s]; 0: as long as the scene lasts
   double speed;             // seconds of the run in a second of video
   double share, paper_share;
 };
-constexpr Shown kShown[] = {{"atoms", 60, 100, 300, 0.5, 5, 20},        {"cars", 9, 40, 400, 0.5, 10, 300},     {"robots", 1, 4, 20, 0.5, 14, 200}, {"avalanche", 5, 16, 300, 1.0, 20, 2000},
-                            {"pong", 0, 200, 2000, 0.5, 5, 200}, {"dominoes_row", 0, 12, 50, 1.0, 14, 100}, {"cradle", 0, 8, 20, 1.0, 5, 10}};
+constexpr Shown kShown[] = {{"atoms", 60, 100, 300, 0, 0.5, 5, 60},         {"cars", 9, 40, 400, 0, 0.5, 10, 100},     {"robots", 1, 4, 20, 0.8, 0.5, 14, 250}, {"avalanche", 5, 16, 300, 0.7, 1.0, 20, 400},
+                            {"pong", 0, 200, 2000, 0, 0.5, 5, 200}, {"dominoes_row", 0, 12, 50, 0, 1.0, 14, 250}, {"cradle", 0, 8, 20, 0, 1.0, 5, 20}};
 
 // The slides' sizes are 100 and 200 atoms.
 const std::vector<int> kSmallLadder = {25, 50, 100}, kLadder = {25, 50, 100, 200}, kPaperLadder = {50, 100, 200, 400};
-constexpr double kLadderShare = 12, kPaperLadderShare = 100;
+constexpr double kLadderShare = 12, kPaperLadderShare = 150;
+constexpr double kMostOfPaper = 60.0;                      // s of CPU: an engine that takes longer for a scene is left out of the paper's sizes
 constexpr double kPlayedRate = 60.0, kEnergyRate = 10.0;   // frames a second: of runs that are shown, and of others
 constexpr int kWidth = 960, kHeight = 540;
 
@@ -69,6 +71,7 @@ std::vector<EngineChoice> choices_of(const EnginesWords& words) {
     choice.propagator = words.propagator.empty() ? "auto" : words.propagator;
     for (const char c : choice.engine) choice.label += static_cast<char>(std::toupper(c));
     choice.frame_rate_hz = choice.engine == "ca" ? kEnergyRate : kPlayedRate;
+    if (words.full) choice.most_s = kMostOfPaper;
   }
   return choices;
 }
@@ -105,6 +108,19 @@ void write_players(const Context& context, const scene::Scene& scene, const std:
   if (!played.empty()) report::write_player(file, scene, played, options);
 }
 
+/// Timewarp's run of the whole scene, where engines were compared over a part of it: for pictures, as far as it comes in a few minutes.
+std::optional<EngineRun> whole_run(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const EnginesWords& words) {
+  constexpr double kMost = 200.0;   // s of CPU
+  for (EngineChoice choice : choices_of(words)) {
+    if (choice.engine != "tw") continue;
+    fmt::print(stderr, "        {} by tw, the whole of it\n", scene.name);
+    choice.is_timed = false;
+    choice.most_s = kMost;
+    return measure_engine(context, scene, chosen, choice);
+  }
+  return std::nullopt;
+}
+
 const EngineRun* run_to_show(const std::vector<EngineRun>& runs) {
   for (const char* engine : {"tw", "ca", "rd", "ordered"})
     for (const EngineRun& run : runs)
@@ -132,16 +148,23 @@ EnginesScene show(const Context& context, const EnginesWords& words, const Shown
     shown.title = scene.title;
     shown.about = scene.about;
     shown.command = fmt::format("./tumble engines {} --n {}", which.name, n);
+    const bool in_part = words.full && which.paper_duration > 0;
+    if (in_part) shown.command += fmt::format(" --duration-s {:g}", which.paper_duration);
     const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(modules_of(context, words), context.registry));
     std::vector<EngineRun> runs;
-    for (const EngineChoice& choice : choices_of(words)) runs.push_back(measure_engine(context, scene, chosen, choice));
+    for (EngineChoice choice : choices_of(words)) {
+      if (in_part) choice.duration_s = which.paper_duration;
+      fmt::print(stderr, "        {} by {}\n", which.name, choice.engine);
+      runs.push_back(measure_engine(context, scene, chosen, choice));
+    }
     tell_agreement(runs);
     shown.rows = rows_of(runs);
     add_judgement(scene, runs, shown);
     const fs::path folder = out / which.name;
     report::write_engines_page(scene.title, scene.about, shown.rows, {}, context.command_line, folder / "index.html");
     shown.page = fs::path(which.name) / "index.html";
-    const EngineRun* best = run_to_show(runs);
+    const auto whole = in_part ? whole_run(context, scene, chosen, words) : std::nullopt;
+    const EngineRun* best = whole && whole->run.frames.size() > 1 ? &*whole : run_to_show(runs);
     if (best == nullptr) return shown;
     write_players(context, scene, runs, folder / "player.html");
     shown.player = fs::path(which.name) / "player.html";

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "framework/core/error.h"
 #include "framework/core/random.h"
 #include "framework/core/shortest_turn.h"
 #include "framework/engines/run.h"
@@ -137,16 +138,35 @@ scene::Scene balls_in_a_box(int n, std::uint64_t seed, double duration_s) {
   return scene_of(std::move(bodies), duration_s, 0.1);
 }
 
+scene::Scene heap_of_balls(const Vector3d& last_at, double duration_s) {
+  std::vector<scene::BodySpec> bodies{wall("floor", Vector3d::Zero(), {0, 0, 1})};
+  bodies.push_back(ball("left", {-0.1, 0, 0.1}, Vector3d::Zero()));
+  bodies.push_back(ball("right", {0.1, 0, 0.1}, Vector3d::Zero()));
+  bodies.push_back(ball("top", {0.03, 0.01, 0.35}, Vector3d::Zero()));
+  bodies.push_back(ball("last", last_at, Vector3d::Zero()));
+  for (scene::BodySpec& body : bodies) {
+    body.restitution = 0.0;
+    body.friction = 0.3;
+  }
+  scene::Scene scene = scene_of(std::move(bodies), duration_s, 1.0 / 60.0);
+  scene.gravity_m_s2 = Vector3d(0, 0, -9.81);
+  scene.contact = scene::ContactSpec{};
+  return scene;
+}
+
 namespace {
 
-// Balls of one mass that swap what they have along the normal, and walls that throw it back: enough for these scenes.
+// Balls of one mass that pass on what they have along the normal, and walls that throw it back: enough for these scenes. What does not bounce
+// stays: restitution is 0 or 1.
 Laws laws_of_equal_balls() {
   Laws laws = library_laws();
   laws.relative_normal_velocity = [](const Contact& contact, const Body& a, const Body& b) { return contact.normal_b_to_a_world.dot(a.velocity_world - b.velocity_world); };
-  laws.collision_impulse = [approach = laws.relative_normal_velocity](const Contact& contact, const Body& a, const Body& b, double) {
+  laws.collision_impulse = [approach = laws.relative_normal_velocity](const Contact& contact, const Body& a, const Body& b, double restitution) {
     const bool is_wall = a.inertia.inverse_mass == 0 || b.inertia.inverse_mass == 0;
-    return std::max(0.0, (is_wall ? -2.0 : -1.0) * approach(contact, a, b));
+    return std::max(0.0, (is_wall ? -1.0 : -0.5) * (restitution > 0 ? 2.0 : 1.0) * approach(contact, a, b));
   };
+  laws.ends_in_contact = [](double, double restitution, double) { return restitution == 0.0; };
+  laws.contact_forces = [](const MatrixXd&, const VectorXd&) -> VectorXd { throw PreconditionError("these scenes have friction wherever bodies stay in contact"); };
   laws.apply_impulse = [](const Body& body, const Vector3d& impulse_world, const Vector3d&) { return Velocity{body.velocity_world + body.inertia.inverse_mass * impulse_world, body.omega_world}; };
   const a4::Module& m = a4_module();
   laws.scheduling = {m.comes_before,  m.next_check_time, m.on_collision_check, m.contact_groups,      m.on_group_check, m.on_callback,

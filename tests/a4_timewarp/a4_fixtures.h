@@ -67,6 +67,9 @@ scene::BodySpec wall(const std::string& name, const Vector3d& position, const Ve
 scene::Scene scene_of(std::vector<scene::BodySpec> bodies, double duration_s, double step_s);
 /// n balls at lot's places in a box of walls, at speeds of about 1 m/s.
 scene::Scene balls_in_a_box(int n, std::uint64_t seed, double duration_s);
+/// Balls that do not bounce and have friction: one drops between two that touch on a floor, a heap that slides apart, and a last one falls on it
+/// from `last_at`. Contact groups form and split.
+scene::Scene heap_of_balls(const Vector3d& last_at, double duration_s);
 
 /// The scene by the framework's teaching timewarp on the decisions under test.
 Trajectory run_by_the_scheduler(const scene::Scene& scene);

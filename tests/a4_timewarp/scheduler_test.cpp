@@ -1,5 +1,7 @@
 // Whole scenes by the framework's teaching timewarp on the decisions under test, against the ordered run. Every decision takes part, so
 // one that is wrong may fail all of these: see first that the tests of each are right.
+#include <algorithm>
+
 #include "tests/a4_timewarp/a4_fixtures.h"
 
 namespace tumble::a4_testing {
@@ -33,6 +35,12 @@ TEST(Scheduler, DoesNotDisturbWhoIsFarAway) {
   for (const VirtualTimes::Move& move : run.virtual_times.moves)
     if (move.to_s < move.from_s && run.virtual_times.processes[static_cast<std::size_t>(move.process)] == "lone")
       return expect_true(false, "the lone ball is never rolled back", "it goes back from " + show(move.from_s) + " to " + show(move.to_s) + " s", {.scene = "the same", .slip = "rollback of everyone: that is what retroactive detection does", .handout = equation(8)});
+}
+
+TEST(Scheduler, SplitsAHeapWhereItsContactsOpen) {
+  const Trajectory run = expect_the_references_trace(heap_of_balls({0.05, 0.02, 1.4}, 0.8), 10, "a ball drops between two that touch on a floor; they slide apart, and another one falls on them");
+  const auto opened = std::count_if(run.events.begin(), run.events.end(), [](const Event& event) { return event.kind == EventKind::kBreak; });
+  expect_true(opened >= 2, "contacts that open", std::to_string(opened), {.scene = "the same", .slip = "contact_groups or on_group_check: the run above stopped before the heap came apart", .handout = equation(5)});
 }
 
 TEST(Scheduler, ForgetsWhatIsCertain) {

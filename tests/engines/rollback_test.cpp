@@ -95,7 +95,7 @@ TEST(RollbackRestore, LeavesNoByteOfGroupsInContactChanged) {
 }
 
 TEST(RollbackRestore, LeavesNoByteOfLinkedBodiesChanged) {
-  expect_as_if_it_had_never_been(pendula_and_balls(5, 0.8), 35, 10);
+  expect_as_if_it_had_never_been(pendula_and_balls(5, 0.8), 25, 10);
   expect_as_if_it_had_never_been(sized("robots", 1, 0.3), 30, 2);
 }
 
@@ -103,7 +103,7 @@ TEST(RollbackRestore, LeavesNoByteOfLinkedBodiesChanged) {
 TEST(RollbackRestore, LeavesCallbacksAsTheyWere) {
   const std::vector<engines::Callback> callbacks{{0.25, {0, 1, 4}, [](int, RigidBodyState& state) { state.momentum_world.y() += 0.3; }},
                                                  {0.5, {2}, [](int, RigidBodyState& state) { state.momentum_world.x() -= 0.2; }}};
-  expect_as_if_it_had_never_been(pendula_and_balls(4, 0.8), 40, 8, callbacks);
+  expect_as_if_it_had_never_been(pendula_and_balls(4, 0.8), 28, 8, callbacks);
 }
 
 // What stands is told in enough detail to tell two times apart.

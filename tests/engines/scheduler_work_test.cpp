@@ -1,10 +1,9 @@
 // What a scheduler pays, measured: right decisions, decisions that are right and dear, decisions that are wrong, and one that never ends.
 #include <gtest/gtest.h>
 
-#include "assignments/a4_timewarp/a4_binding.h"
 #include "framework/engines/cost/scheduler_work.h"
-#include "framework/modules/load.h"
 #include "tests/engines/event_scenes.h"
+#include "tests/engines/taught_laws.h"
 
 namespace tumble::testing {
 namespace {
@@ -15,15 +14,6 @@ using engines::SchedulerRun;
 using engines::SchedulerTrial;
 
 constexpr int kBalls = 8;
-
-Laws decided_laws() {
-  modules::Registry registry;
-  register_assignments(registry);
-  Laws laws = test_laws();
-  const auto file = std::filesystem::path(TUMBLE_BINARY_DIR) / "modules" / "a4_reference.so";
-  a4::bind(*std::static_pointer_cast<const a4::Module>(modules::load_module(registry.find("a4"), file)), laws);
-  return laws;
-}
 
 /// Whatever happens sends back all, as retroactive detection does.
 void send_everybody_back(const scene::Scene& scene, Laws& laws) {
@@ -51,7 +41,7 @@ SchedulerRun run_of(const Laws& laws, double most_s = 60.0) {
 }
 
 TEST(SchedulerWork, RightDecisionsCommitAllAndAreCounted) {
-  const SchedulerRun run = run_of(decided_laws());
+  const SchedulerRun run = run_of(taught_laws());
   EXPECT_TRUE(run.is_right()) << run.stopped_by;
   EXPECT_EQ(run.error(), 0.0);
   EXPECT_EQ(run.processes, static_cast<std::size_t>(kBalls));
@@ -61,9 +51,9 @@ TEST(SchedulerWork, RightDecisionsCommitAllAndAreCounted) {
 }
 
 TEST(SchedulerWork, SendingEverybodyBackIsRightAndDearAndTheCauseIsNamed) {
-  Laws laws = decided_laws();
+  Laws laws = taught_laws();
   send_everybody_back(sized("gas", kBalls, 1.0), laws);
-  const SchedulerCurve dear{"your scheduler", false, {}, {run_of(laws)}}, right{"reference", true, {}, {run_of(decided_laws())}};
+  const SchedulerCurve dear{"your scheduler", false, {}, {run_of(laws)}}, right{"reference", true, {}, {run_of(taught_laws())}};
   ASSERT_TRUE(dear.by_size[0].is_right()) << dear.by_size[0].stopped_by;
   const std::vector<SchedulerReading> readings = engines::read_scheduler(dear, &right);
   ASSERT_GE(readings.size(), 2u);
@@ -73,11 +63,8 @@ TEST(SchedulerWork, SendingEverybodyBackIsRightAndDearAndTheCauseIsNamed) {
 }
 
 TEST(SchedulerWork, AnImpactThatIsLostIsAnError) {
-  Laws laws = decided_laws();
-  laws.scheduling.on_collision_check = [right = laws.scheduling.on_collision_check](const ScheduledEvent& event, CheckFinding finding, double step) {
-    if (finding.contact && finding.contact->time > 0.5) finding.contact.reset();
-    return right(event, finding, step);
-  };
+  Laws laws = taught_laws();
+  lose_impacts_after(0.5, laws);
   const SchedulerRun run = run_of(laws);
   EXPECT_FALSE(run.is_right());
   EXPECT_GT(run.error(), 0.2);   // of the second half of the time something like half of the events
@@ -86,7 +73,7 @@ TEST(SchedulerWork, AnImpactThatIsLostIsAnError) {
 }
 
 TEST(SchedulerWork, ARunThatTakesTooLongIsStoppedAndSaysSo) {
-  const SchedulerRun run = run_of(decided_laws(), 0.0);
+  const SchedulerRun run = run_of(taught_laws(), 0.0);
   EXPECT_NE(run.stopped_by.find("takes more than"), std::string::npos) << run.stopped_by;
   EXPECT_EQ(run.error(), 1.0);
 }

@@ -1,34 +1,15 @@
 // The teaching timewarp: on right decisions it commits what the reference commits; on wrong ones it stops, in words, and never crashes.
 #include <gtest/gtest.h>
 
-#include "assignments/a4_timewarp/a4_binding.h"
 #include "framework/engines/run.h"
-#include "framework/modules/load.h"
 #include "framework/scene/load_scene.h"
 #include "tests/engines/event_process_scenes.h"
-#include "tests/engines/reference_laws.h"
+#include "tests/engines/taught_laws.h"
 
 namespace tumble::testing {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-/// Impulses in other words than any solution, decisions the reference's.
-Laws taught_laws() {
-  modules::Registry registry;
-  register_assignments(registry);
-  Laws laws = test_laws();
-  const auto file = std::filesystem::path(TUMBLE_BINARY_DIR) / "modules" / "a4_reference.so";
-  a4::bind(*std::static_pointer_cast<const a4::Module>(modules::load_module(registry.find("a4"), file)), laws);
-  return laws;
-}
-
-/// All laws the reference's: for scenes with links and lasting contacts.
-Laws all_laws() {
-  Laws laws = reference_laws();
-  laws.scheduling = taught_laws().scheduling;
-  return laws;
-}
 
 Trajectory run_taught(const scene::Scene& scene, const Laws& laws, const std::vector<engines::Callback>& callbacks = {}, const std::string& engine = "tw") {
   TrajectoryRecorder recorder;
@@ -53,7 +34,7 @@ TEST(TaughtTimewarp, CommitsTheReferencesTrace) {
 // ---- Groups and callbacks ------------------------------------------------------------------------------------------------
 
 void expect_the_references_trace_of(const scene::Scene& scene, std::size_t least, const std::vector<engines::Callback>& callbacks = {}) {
-  const Trajectory reference = run_taught(scene, all_laws(), callbacks, "ordered"), run = run_taught(scene, all_laws(), callbacks);
+  const Trajectory reference = run_taught(scene, taught_reference_laws(), callbacks, "ordered"), run = run_taught(scene, taught_reference_laws(), callbacks);
   ASSERT_EQ(reference.stopped_by, "") << scene.name;
   ASSERT_GE(reference.events.size(), least) << scene.name;
   EXPECT_EQ(difference(reference, run), "") << scene.name;
@@ -66,7 +47,7 @@ TEST(TaughtTimewarp, CommitsTheReferencesTraceOfLinkedBodies) {
 
 // Towers fuse, are hit and come apart; dominoes fall; an arm throws its block; rocks roll.
 TEST(TaughtTimewarp, CommitsTheReferencesTraceOfGroupsInContact) {
-  const Trajectory tower = run_taught(tower_and_projectile(5.0), all_laws());
+  const Trajectory tower = run_taught(tower_and_projectile(5.0), taught_reference_laws());
   EXPECT_GT(tower.counters.counts.at("rollbacks"), 0U);
   expect_the_references_trace_of(tower_and_projectile(5.0), 15);
   expect_the_references_trace_of(sized("dominoes_row", 4, 0.5), 5);
@@ -88,17 +69,17 @@ TEST(TaughtTimewarp, CommitsTheReferencesTraceWithCallbacks) {
 }
 
 TEST(TaughtTimewarp, StopsWhereGroupsAreWrong) {
-  Laws laws = all_laws();
+  Laws laws = taught_reference_laws();
   laws.scheduling.contact_groups = [](const std::vector<std::int32_t>& bodies, const std::vector<GroupContact>&) { return std::vector<std::vector<std::int32_t>>{bodies}; };
   EXPECT_NE(run_taught(tower_and_projectile(5.0), laws).stopped_by.find("contact_groups makes {"), std::string::npos);
-  laws = all_laws();
+  laws = taught_reference_laws();
   laws.scheduling.on_group_check = [right = laws.scheduling.on_group_check](const ScheduledEvent& event, const std::vector<GroupContact>& contacts, double step) {
     GroupDecision decision = right(event, contacts, step);
     if (decision.groups.size() > 1) decision.groups.pop_back();
     return decision;
   };
   EXPECT_NE(run_taught(tower_and_projectile(5.0), laws).stopped_by.find("on_group_check makes {"), std::string::npos);
-  laws = all_laws();
+  laws = taught_reference_laws();
   laws.scheduling.on_group_check = [](const ScheduledEvent& event, const std::vector<GroupContact>&, double step) {   // a group for ever
     ScheduledEvent next = event;
     next.safe_time = event.stamp.time;
@@ -114,35 +95,35 @@ TEST(TaughtTimewarp, BearsAnyAnswerAboutGroups) {
   scene.duration_s = 0.3;
   const std::vector<engines::Callback> kick{{0.15, {1}, [](int, RigidBodyState& state) { state.momentum_world.z() += 0.5; }}};
   for (const double time : {-1.0, 0.0, 0.12, 1e9, kInfinity, -kInfinity, kUnset}) {
-    Laws laws = all_laws();
+    Laws laws = taught_reference_laws();
     laws.scheduling.on_group_check = [right = laws.scheduling.on_group_check, time](const ScheduledEvent& event, const std::vector<GroupContact>& contacts, double step) {
       GroupDecision decision = right(event, contacts, step);
       decision.next.stamp.time = decision.next.safe_time = time;
       return decision;
     };
     EXPECT_NE(run_taught(scene, laws, kick).stopped_by, "") << time;
-    laws = all_laws();
+    laws = taught_reference_laws();
     laws.scheduling.on_group_check = [right = laws.scheduling.on_group_check, time](const ScheduledEvent& event, const std::vector<GroupContact>& contacts, double step) {
       GroupDecision decision = right(event, contacts, step);
       for (Rollback& rollback : decision.rollbacks) rollback.stamp.time = time;
       return decision;
     };
     EXPECT_NE(run_taught(scene, laws, kick).stopped_by, "") << time;
-    laws = all_laws();
+    laws = taught_reference_laws();
     laws.scheduling.on_callback = [time](const ScheduledEvent& event, const std::vector<LocalTime>&) {
       return std::vector<Rollback>{{event.receivers.front(), {time, 0, WorkKind::kCallback, 0, -1}}, {1000, event.stamp}};
     };
     EXPECT_NE(run_taught(scene, laws, kick).stopped_by, "") << time;
   }
   for (const std::vector<std::vector<std::int32_t>>& groups : {std::vector<std::vector<std::int32_t>>{}, {{}}, {{-7}}, {{1000, 1}}, {{1}, {1}}}) {
-    Laws laws = all_laws();
+    Laws laws = taught_reference_laws();
     laws.scheduling.contact_groups = [groups](const std::vector<std::int32_t>&, const std::vector<GroupContact>&) { return groups; };
     EXPECT_NE(run_taught(scene, laws).stopped_by, "");
   }
 }
 
 TEST(TaughtTimewarp, StopsWhereACallbackSendsNobodyBack) {
-  Laws laws = all_laws();
+  Laws laws = taught_reference_laws();
   laws.scheduling.on_callback = [](const ScheduledEvent&, const std::vector<LocalTime>&) { return std::vector<Rollback>{}; };
   const std::vector<engines::Callback> kick{{0.213, {0, 1}, [](int, RigidBodyState& state) { state.momentum_world.y() += 0.3; }}};
   const std::string stop = run_taught(pendula_and_balls(2, 0.4), laws, kick).stopped_by;
@@ -170,10 +151,7 @@ TEST(TaughtTimewarp, TellsVirtualTimes) {
 
 TEST(TaughtTimewarp, StopsWhereAnImpactIsLost) {
   Laws laws = taught_laws();
-  laws.scheduling.on_collision_check = [right = laws.scheduling.on_collision_check](const ScheduledEvent& event, CheckFinding finding, double step) {
-    if (finding.contact && finding.contact->time > 0.5) finding.contact.reset();
-    return right(event, finding, step);
-  };
+  lose_impacts_after(0.5, laws);
   const std::string stop = stop_of(laws);
   EXPECT_NE(stop.find("is missing: expected"), std::string::npos) << stop;
 }

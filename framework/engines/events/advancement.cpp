@@ -58,6 +58,7 @@ class AdvancementRun {
   // From now to the end of the largest step, or as far as the duration.
   void step() {
     ++run_.counters.steps;
+    if (run_.world().processes()) run_.world().processes()->passages().forget_before(time_);
     end_ = run_.impacts().window_end(time_);
     queue_ = {};
     boxes_.clear();

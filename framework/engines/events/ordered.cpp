@@ -32,6 +32,7 @@ class OrderedRun {
 
  private:
   void look_through_window(double begin) {
+    if (run_.world().processes()) run_.world().processes()->passages().forget_before(std::min(begin, run_.next_frame()));
     end_ = run_.impacts().window_end(begin);
     begin_ = begin;
     for (const int a : run_.world().movers()) first_of_[a] = first_among_all(a);

@@ -16,6 +16,7 @@ namespace tumble::a4 {
 namespace {
 
 constexpr std::size_t kCommitAfter = 512;      // events worked at before global virtual time is looked at again
+constexpr std::size_t kForgetAfter = 1;        // going on of each body, likewise: what passages keep should stay in the nearer caches
 constexpr int kMostThreads = 64;
 constexpr int kFewestStates = 8;               // a passage keeps two steps behind what is certain, and one that is looked at
 
@@ -114,9 +115,11 @@ void Conductor::go_alone() {
     if (!queue.empty()) alone().fetch(queue.front());
     work_alone_at(due);
     const double gvt = queue.empty() ? kInfinity : queue.front().key.time;
-    if (alone().executed.size() >= commit_at_ || all_.run.next_frame() < gvt) {
+    const bool keeps_much = all_.world().processes() && ++since_commit_ >= kForgetAfter * all_.world().movers().size();
+    if (keeps_much || alone().executed.size() >= commit_at_ || all_.run.next_frame() < gvt) {
       commit_before(std::min(gvt, duration));
       commit_at_ = alone().executed.size() + kCommitAfter;
+      since_commit_ = 0;
       adapt_window();
     }
   }

@@ -67,6 +67,7 @@ class Conductor {
   int since_trial_ = 0;                            // events, or rounds
   double last_trial_ = 0.0;                        // [s]
   std::size_t commit_at_;                          // events worked at before global virtual time is looked at again
+  std::size_t since_commit_ = 0;                   // events
   std::optional<EventKey> working_at_;             // alone
   std::vector<std::uint8_t> wanted_;               // by body: home
   std::vector<int> leaders_;                       // by body: of processes that must have one home

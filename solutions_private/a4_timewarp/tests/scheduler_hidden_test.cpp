@@ -26,6 +26,10 @@ TEST(Scheduler, KeepsTiesInOrder) {
   expect_the_references_trace(scene_of(bodies, 3.0, 0.25), 6, "two rows of three balls that touch are hit by two others at the same instant");
 }
 
+TEST(Scheduler, KeepsOtherHeapsInOrder) {
+  for (const Vector3d& last_at : {Vector3d(0.3, 0, 0.9), Vector3d(-0.12, 0.01, 0.6)}) expect_the_references_trace(heap_of_balls(last_at, 0.7), 10, "a heap of three balls slides apart, and another one falls beside it");
+}
+
 TEST(Scheduler, LooksAtBallsThatDriftSlowly) {
   std::vector<scene::BodySpec> bodies{wall("left", {-0.6, 0, 0}, {1, 0, 0}), ball("slow", {0.0, 0, 0}, {0.002, 0, 0}), ball("fast", {0.5, 0, 0}, {-2.5, 0, 0}), ball("third", {1.5, 0.05, 0}, {-0.7, 0, 0})};
   expect_the_references_trace(scene_of(bodies, 3.0, 0.2), 4, "a slow ball between a wall and a fast one");

@@ -1,0 +1,47 @@
+/// What benchmarks of the engines share: one run of a scene with a size, its counts and its time.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "framework/scene/scene.h"
+#include "framework/trajectory/trajectory.h"
+
+namespace tumble::testing {
+
+/// Keeps counters, and counts events, where a recorder would keep them all.
+class Tally final : public TrajectorySink {
+ public:
+  void begin(const TrajectoryInfo&, const std::vector<TrajectoryBody>&) override {}
+  void frame(const Frame& frame) override;
+  void event(const Event& event) override { collisions += event.kind == EventKind::kCollision ? 1 : 0; }
+  void end(const Counters& counters, const std::string& stopped) override;
+
+  std::map<std::string, std::uint64_t> counts;
+  std::map<std::string, double> stages;          // [s]
+  std::string stopped_by;
+  std::uint64_t collisions = 0;
+  double energy_at_0 = 0.0, energy_error = 0.0;   // [J]; of the first
+};
+
+struct Measured {
+  double seconds = 0.0, cpu = 0.0;               // of the run without what comes before its first step; CPU of all threads [s]
+  Tally tally, building;                         // of the run; of a run that ends before its first step
+  int bodies = 0;                                // movable
+  double simulated = 0.0, step = 0.0;            // [s]
+
+  double count(const char* what) const;
+  double undone() const;                         // part of all integrations
+  double w_h() const;                            // discontinuities a body and largest step, each counted for its two bodies
+  double a_body_second(double amount) const { return amount / bodies / simulated; }
+};
+
+enum class Clock { kCpu, kWall };                // CPU time is what neighbours on the machine do not lengthen; threads are compared by the wall's
+
+/// A scene with a size by one engine: the least disturbed of several runs where they are short. Pictures are no part of it.
+/// @param engine    rd, rd_auto (in closed form, as the others go), ca, tw, or tw2, tw4, ... (threads)
+/// @param duration  [s]
+Measured measure(const std::string& scene, int n, const std::string& engine, double duration, Clock clock = Clock::kCpu);
+
+}  // namespace tumble::testing
