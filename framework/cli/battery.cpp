@@ -89,6 +89,8 @@ void run_battery(Context& context, const Options& options) {
   battery::Given given;
   provide(context, options.modules, given);
   given.is_long = options.is_long;
+  if (options.is_long)
+    given.on_measure = [](const Measure& m) { fmt::print(stderr, "tumble:    {}: {}\n", m.what, !m.error.empty() ? m.error : !m.not_run.empty() ? m.not_run : report::shown_value(m)); };
   given.truth = [truths](const std::string& id) {
     std::string name = id;
     if (const auto slash = name.find('/'); slash != std::string::npos) name.replace(slash, 1, "__");

@@ -22,12 +22,14 @@ struct Given {
   bool is_long = false;                                         // the lengths of the table; else short ones, for every day
   std::function<truths::Case(const std::string& id)> truth;     // a file of reference values: "chain/links8_horizontal"
   std::map<std::string, modules::AnyModule> modules{};          // whose functions are no laws, by id; what nobody provides is absent
+  std::function<void(const report::Measure&)> on_measure{};     // told of each as it is found: long rows take minutes; may be empty
 };
 
 /// Collects what a case measures.
 class Findings {
  public:
-  explicit Findings(report::BatteryRow& row) : row_(row) {}
+  /// @param on_measure  as Given::on_measure
+  Findings(report::BatteryRow& row, std::function<void(const report::Measure&)> on_measure) : row_(row), on_measure_(std::move(on_measure)) {}
 
   void at_most(const std::string& what, double value, double threshold, const std::string& unit, const std::string& why);
   void at_least(const std::string& what, double value, double threshold, const std::string& unit, const std::string& why);
@@ -42,7 +44,10 @@ class Findings {
   void part(const std::string& what, const std::function<void()>& measure);
 
  private:
+  void add(report::Measure measure);
+
   report::BatteryRow& row_;
+  std::function<void(const report::Measure&)> on_measure_;
 };
 
 /// One row of the table of hard cases.

@@ -89,6 +89,10 @@ CollisionShape::CollisionShape(const Shape& shape) {
     radius_ = sphere->radius;
   } else if (const auto* box = std::get_if<Box>(&shape)) {
     pieces_.push_back(box_polytope(box->half_extents_body));
+  } else if (const auto* curved = std::get_if<Ellipsoid>(&shape)) {
+    ellipsoid_ = *curved;
+    pieces_.push_back(box_polytope(curved->semi_axes_body));
+    for (Vector3d& corner : pieces_.back().vertices) corner += curved->center_body;
   } else if (const auto* solid = std::get_if<MeshSolid>(&shape)) {
     if (solid->is_convex) {
       pieces_.push_back(hull_polytope(solid->mesh_body));

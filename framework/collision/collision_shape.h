@@ -2,9 +2,11 @@
 ///
 /// Sphere: one point and its radius. Box and convex model: one polytope. Other models: one flat piece a face, so that a
 /// pair of solids is a set of pairs of convex pieces, for which bounds on the time of impact exist. A half-space has no
-/// pieces; every other shape meets it by its vertices.
+/// pieces; every other shape meets it by its vertices. Ellipsoid: a curved surface that meets half-spaces only (ellipsoid.h); its piece
+/// and its vertices are those of the box around it.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "framework/collision/polytope.h"
@@ -35,6 +37,7 @@ class CollisionShape {
   bool is_half_space() const { return pieces_.empty(); }
   bool is_ball() const { return pieces_.size() == 1 && pieces_[0].vertices.size() == 1; }
   bool is_closed_surface() const { return pieces_.size() > 1; }
+  const Ellipsoid* ellipsoid() const { return ellipsoid_ ? &*ellipsoid_ : nullptr; }   // null: none
   /// Thickness around the pieces. [m]
   double radius() const { return radius_; }
   /// Of the smallest ball about the centre of mass that holds the solid; infinite for a half-space. [m]
@@ -59,6 +62,7 @@ class CollisionShape {
   Polytope corners_;
   std::vector<Face> faces_;                     // of a solid made of flat pieces
   std::vector<std::vector<int>> neighbours_;
+  std::optional<Ellipsoid> ellipsoid_;
   double radius_ = 0.0;
   double bounding_radius_ = 0.0;
 };

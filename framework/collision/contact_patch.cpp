@@ -24,7 +24,9 @@ FlatHull contact_patch(const CollisionShape& a, const Pose& pose_a, const Collis
                        double tolerance) {
   const Vector3d& n = gap.normal_b_to_a_world;
   std::vector<Vector3d> points;
-  if (b.is_half_space()) {
+  if (a.ellipsoid() || b.ellipsoid()) {
+    points = {gap.point_a_world};
+  } else if (b.is_half_space()) {
     points = lowest_vertices(a, pose_a, n, tolerance);
   } else if (a.is_half_space()) {
     points = lowest_vertices(b, pose_b, -n, tolerance);

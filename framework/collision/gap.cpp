@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/collision/ellipsoid.h"
 #include "framework/collision/piece_pairs.h"
 
 namespace tumble::collision {
@@ -17,8 +18,20 @@ Gap flipped(Gap gap) {
   return gap;
 }
 
+Gap gap_of_ellipsoid(const CollisionShape& a, const Pose& pose_a, const Pose& plane) {
+  const Matrix3d rotation = pose_a.world_from_body.toRotationMatrix();
+  const Vector3d n = plane.world_from_body.toRotationMatrix().col(2), up_body = rotation.transpose() * n;
+  Gap gap;
+  gap.distance = n.dot(pose_a.com_world - plane.com_world) + lowest_height(*a.ellipsoid(), up_body);
+  gap.normal_b_to_a_world = n;
+  gap.point_a_world = pose_a.com_world + rotation * lowest_point(*a.ellipsoid(), up_body);
+  gap.point_b_world = gap.point_a_world - gap.distance * n;
+  return gap;
+}
+
 // Against a half-space the nearest point is the vertex that lies lowest along the normal.
 Gap gap_to_half_space(const CollisionShape& a, const Pose& pose_a, const Pose& plane) {
+  if (a.ellipsoid()) return gap_of_ellipsoid(a, pose_a, plane);
   const Matrix3d rotation = pose_a.world_from_body.toRotationMatrix();
   const Vector3d n = plane.world_from_body.toRotationMatrix().col(2);
   const Vector3d offset = pose_a.com_world - plane.com_world;

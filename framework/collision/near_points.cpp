@@ -44,6 +44,12 @@ double height_of(const PlacedPolytope& piece, const Vector3d& n, double side, co
   return side * height + n.dot(piece.translation);
 }
 
+std::vector<NearPoint> nearest_point(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double reach, PairCache* cache) {
+  const Gap gap = compute_gap(a, pose_a, b, pose_b, cache);
+  if (gap.distance > reach) return {};
+  return {{gap.point_a_world, gap.point_b_world, gap.normal_b_to_a_world, gap.distance}};
+}
+
 std::vector<NearPoint> above_half_space(const CollisionShape& a, const Pose& pose_a, const Pose& plane, double reach) {
   const Matrix3d R = pose_a.world_from_body.toRotationMatrix();
   const Vector3d n = plane.world_from_body.toRotationMatrix().col(2);
@@ -236,6 +242,7 @@ std::vector<NearPoint> between_surfaces(const Query& query, const Vector3d& com_
 }  // namespace
 
 std::vector<NearPoint> near_points(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double reach, PairCache* cache) {
+  if (a.ellipsoid() || b.ellipsoid()) return nearest_point(a, pose_a, b, pose_b, reach, cache);
   if (b.is_half_space()) return a.is_half_space() ? std::vector<NearPoint>{} : above_half_space(a, pose_a, pose_b, reach);
   if (a.is_half_space()) {
     std::vector<NearPoint> points = above_half_space(b, pose_b, pose_a, reach);
@@ -245,11 +252,7 @@ std::vector<NearPoint> near_points(const CollisionShape& a, const Pose& pose_a, 
   const Query query(a, pose_a, b, pose_b);
   const bool convex = !a.is_closed_surface() && !b.is_closed_surface(), of_ball = a.is_ball() || b.is_ball();
   if (of_ball && !convex) return of_a_ball(query, pose_b.com_world, reach, cache);
-  if (of_ball) {
-    const Gap gap = compute_gap(a, pose_a, b, pose_b, cache);
-    if (gap.distance > reach) return {};
-    return {{gap.point_a_world, gap.point_b_world, gap.normal_b_to_a_world, gap.distance}};
-  }
+  if (of_ball) return nearest_point(a, pose_a, b, pose_b, reach, cache);
   return convex ? between_convex(query, pose_b.com_world, reach, cache) : between_surfaces(query, pose_b.com_world, reach, cache);
 }
 

@@ -15,7 +15,7 @@ struct NearPoint {
 };
 
 /// Corners of the regions of A and B that face each other less than `reach` apart, each with its own gap; sorted in a way that does not
-/// depend on where they stand in the world. A ball has one point on a convex solid, one a
+/// depend on where they stand in the world. An ellipsoid has one point; a ball has one on a convex solid, one a
 /// wall on others; a solid on a half-space those of its vertices that are near and foremost of all about them.
 /// Surfaces that are not convex push along the normals of their faces, and of edges and corners that are foremost of all about them:
 /// not along those of the rims between their triangles. Where faces lie flat on each other the normal is that of a face, exact however small the gap.

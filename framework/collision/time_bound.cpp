@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "framework/collision/ellipsoid.h"
 #include "framework/collision/inline_vector.h"
 #include "framework/collision/piece_pairs.h"
 
@@ -20,11 +21,14 @@ struct VertexLine {
 
 using VertexLines = InlineVector<VertexLine, 32>;
 
+// Largest acceleration that turning gives an arm of 1 m. [1/s^2]
+double bend_of_turning(const MotionBounds& bounds) { return bounds.angular_acceleration + bounds.angular_speed * (bounds.angular_speed + bounds.angular_velocity_error); }
+
 // Lines of all vertices of a piece of a body. `side` is +1 for A (heights along n) and -1 for B (heights along -n).
 void collect_lines(const PlacedPolytope& piece, const MotionState& state, const MotionBounds& bounds, const Vector3d& n, double side, VertexLines& lines) {
   lines.clear();
   const Polytope& p = *piece.polytope;
-  const double bend_of_arm = 0.5 * (bounds.angular_acceleration + bounds.angular_speed * (bounds.angular_speed + bounds.angular_velocity_error));
+  const double bend_of_arm = 0.5 * bend_of_turning(bounds);
   const Vector3d up = piece.in_body(side * n), turn = piece.in_body(side * n.cross(state.omega_world));  // n . (w x r) = (n x w) . r
   double lowest;
   p.lowest(up, lowest);
@@ -118,6 +122,16 @@ TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a, 
 
   if (b.is_half_space()) {
     const Vector3d n = query.rotation_b.col(2);
+    if (a.ellipsoid()) {
+      const Matrix3d body_from_world = query.rotation_a.transpose();
+      const double arm = a.bounding_radius();
+      bound.gap = gap_distance(a, state_a.pose, b, state_b.pose);
+      bound.duration = duration_of_ellipsoid(*a.ellipsoid(), body_from_world * n, body_from_world * n.cross(state_a.omega_world),
+                                             {std::max(bound.gap, 0.0), n.dot(relative.velocity) - bounds_a.angular_velocity_error * arm,
+                                              0.5 * (n.dot(relative.acceleration) - relative.deviation - bend_of_turning(bounds_a) * arm)},
+                                             horizon);
+      return bound;
+    }
     collect_lines({&a.corners(), query.rotation_a, query.offset}, state_a, bounds_a, n, 1.0, lines_a);
     lines_b.push_back({0.0, 0.0, 0.0});   // nothing turns
     along(gap_distance(a, state_a.pose, b, state_b.pose), n, lines_b);

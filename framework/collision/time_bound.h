@@ -8,6 +8,7 @@
 /// path turns at w + e, w the angular velocity that its states say: the rate of an arm is w x r + e x r, of which the second part is
 /// taken at its largest, |e| |r|, and the first changes by alpha x r + w x ((w + e) x r). The piece pairs of solids that are not
 /// convex are all looked at that can come near within the bound.
+/// Of an ellipsoid over a half-space all points of the surface are looked at together, by its support function (ellipsoid.h).
 /// Source: B. Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems, PhD thesis, Berkeley 1996, ch. 2, extended to
 /// arms of single vertices.
 #pragma once

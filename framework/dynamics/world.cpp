@@ -6,6 +6,7 @@
 #include "framework/dynamics/anchors.h"
 #include "framework/dynamics/build_links.h"
 #include "framework/scene/build_shape.h"
+#include "framework/scene/check_scene.h"
 
 namespace tumble {
 namespace {
@@ -46,6 +47,7 @@ int find_body(const World& world, const std::string& name) {
 
 World build_world(const scene::Scene& scene) {
   World world;
+  scene::check_ellipsoids(scene, [&](const std::string&, const std::string& problem, const std::string& remedy) { throw UserError(scene.name, problem, remedy); });
   std::vector<scene::Solid> solids = scene::build_solids(scene);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) world.bodies.push_back(build_body(scene.bodies[i], std::move(solids[i])));
   world.gravity_world = scene.gravity_m_s2;

@@ -75,6 +75,12 @@ TriangleMesh surface(const Box& box, double) {
   return mesh;
 }
 
+TriangleMesh surface(const Ellipsoid& ellipsoid, double) {
+  TriangleMesh mesh = subdivided_sphere(kSphereSubdivisions);
+  for (Vector3d& vertex : mesh.vertices) vertex = ellipsoid.center_body + ellipsoid.semi_axes_body.cwiseProduct(vertex);
+  return mesh;
+}
+
 TriangleMesh surface(const HalfSpace&, double extent) {
   return {{{-extent, -extent, 0}, {extent, -extent, 0}, {extent, extent, 0}, {-extent, extent, 0}}, {{0, 1, 2}, {0, 2, 3}}};
 }
@@ -83,6 +89,8 @@ TriangleMesh surface(const MeshSolid& solid, double) { return solid.mesh_body; }
 
 double radius(const Sphere& sphere) { return sphere.radius; }
 double radius(const Box& box) { return box.half_extents_body.norm(); }
+// A bound that is reached where the middle lies on the longest axis, or at the origin.
+double radius(const Ellipsoid& ellipsoid) { return ellipsoid.center_body.norm() + ellipsoid.semi_axes_body.maxCoeff(); }
 double radius(const HalfSpace&) { return std::numeric_limits<double>::infinity(); }
 double radius(const MeshSolid& solid) {
   double largest_squared = 0.0;

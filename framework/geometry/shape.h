@@ -17,6 +17,13 @@ struct Box {
   Vector3d half_extents_body;  // (3), > 0 [m]
 };
 
+/// Ellipsoid whose axes lie along the body's axes; its middle need not be the centre of mass (a rattleback is the lower part of one).
+/// It meets half-spaces only.
+struct Ellipsoid {
+  Vector3d semi_axes_body;                       // (3), > 0 [m]
+  Vector3d center_body = Vector3d::Zero();       // (3) [m]
+};
+
 /// Everything at or below z = 0 of the body frame: an immovable floor or wall without end; the normal is +z.
 struct HalfSpace {};
 
@@ -26,7 +33,7 @@ struct MeshSolid {
   bool is_convex;          // decided once, when the model is read
 };
 
-using Shape = std::variant<Sphere, Box, HalfSpace, MeshSolid>;
+using Shape = std::variant<Sphere, Box, HalfSpace, MeshSolid, Ellipsoid>;
 
 /// The shape's surface as triangles for drawing and picking; a half-space is a square of side 2 * extent about the origin.
 /// @param extent  [m]; only for a half-space
@@ -36,7 +43,8 @@ TriangleMesh surface_of(const Shape& shape, double extent = 50.0);
 /// @param subdivisions  >= 0
 TriangleMesh subdivided_sphere(int subdivisions);
 
-/// Radius of the smallest ball about the body's origin that holds the shape; infinite for a half-space. [m]
+/// Radius of the smallest ball about the body's origin that holds the shape (of an ellipsoid beside its middle a bound); infinite for a
+/// half-space. [m]
 double bounding_radius(const Shape& shape);
 
 }  // namespace tumble

@@ -88,6 +88,8 @@ void Stage::add_actor(const scene::BodySpec& spec, const Shape& shape, std::size
     actor.scale = box->half_extents_body;
   } else if (const auto* solid = std::get_if<MeshSolid>(&shape)) {
     actor.geometry = geometry_of(solid->mesh_body);
+  } else if (std::holds_alternative<Ellipsoid>(shape)) {
+    actor.geometry = geometry_of(surface_of(shape));
   } else {
     const auto* plane = std::get_if<scene::PlaneSpec>(&spec.shape);
     const double extent = plane != nullptr ? plane->drawn_half_extent_m : 5.0;

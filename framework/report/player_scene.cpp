@@ -1,6 +1,7 @@
 #include "framework/report/player_scene.h"
 
 #include <cmath>
+#include <deque>
 #include <map>
 
 namespace tumble::report {
@@ -13,6 +14,8 @@ Json triple(const Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
 /// Meshes used twice are told once.
 class Meshes {
  public:
+  /// Of a shape that the page knows no better than by its triangles.
+  std::size_t index_of_surface(const Shape& shape) { return index_of(made_.emplace_back(surface_of(shape))); }
   std::size_t index_of(const TriangleMesh& mesh) {
     for (std::size_t i = 0; i < meshes_.size(); ++i)
       if (meshes_[i]->vertices == mesh.vertices && meshes_[i]->faces == mesh.faces) return i;
@@ -34,12 +37,14 @@ class Meshes {
 
  private:
   std::vector<const TriangleMesh*> meshes_;
+  std::deque<TriangleMesh> made_;
 };
 
 Json shape_json(const Shape& shape, const scene::BodySpec& spec, Meshes& meshes) {
   if (const auto* sphere = std::get_if<Sphere>(&shape)) return {{"kind", "sphere"}, {"radius", sphere->radius}};
   if (const auto* box = std::get_if<Box>(&shape)) return {{"kind", "box"}, {"half", triple(box->half_extents_body)}};
   if (const auto* solid = std::get_if<MeshSolid>(&shape)) return {{"kind", "mesh"}, {"mesh", meshes.index_of(solid->mesh_body)}};
+  if (std::holds_alternative<Ellipsoid>(shape)) return {{"kind", "mesh"}, {"mesh", meshes.index_of_surface(shape)}};
   const auto* plane = std::get_if<scene::PlaneSpec>(&spec.shape);
   return {{"kind", "plane"}, {"extent", plane != nullptr ? plane->drawn_half_extent_m : 5.0}};
 }

@@ -29,7 +29,7 @@ const std::vector<Vector3d>& Anchors::vertices_of(const BodySpec& body, const st
   if (const auto* model = std::get_if<ModelSpec>(&body.shape)) key = "\n" + model->file + "\n" + model->object + "\n" + std::to_string(model->metres_per_unit);
   const auto known = vertices_.find(key);
   if (known != vertices_.end()) return known->second;
-  if (std::holds_alternative<SphereSpec>(body.shape) || std::holds_alternative<PlaneSpec>(body.shape))
+  if (std::holds_alternative<SphereSpec>(body.shape) || std::holds_alternative<PlaneSpec>(body.shape) || std::holds_alternative<EllipsoidSpec>(body.shape))
     document_.refuse(pointer, "body '" + body.name + "' has no vertices", "Only models and boxes have: give point_body_m or point_world_m.");
   try {
     return vertices_.emplace(key, surface_of(build_solid(body, scene_.file).shape).vertices).first->second;

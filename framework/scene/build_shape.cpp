@@ -34,6 +34,13 @@ UnitSolid box(const Vector3d& h) {
   return {Box{h}, 8.0 * h.prod(), moments.asDiagonal()};
 }
 
+UnitSolid ellipsoid(const EllipsoidSpec& spec) {
+  // I_xx = m (b^2 + c^2) / 5 with semi-axes a, b, c, and so on round; about its middle
+  const Vector3d s = spec.semi_axes_m.cwiseProduct(spec.semi_axes_m);
+  const Vector3d moments = Vector3d(s.y() + s.z(), s.z() + s.x(), s.x() + s.y()) / 5.0;
+  return {Ellipsoid{spec.semi_axes_m, spec.center_m}, 4.0 / 3.0 * std::numbers::pi * spec.semi_axes_m.prod(), moments.asDiagonal()};
+}
+
 std::filesystem::path find_root(const std::filesystem::path& scene_file) {
   if (const char* told = std::getenv("TUMBLE_ROOT")) return told;
   const auto start = scene_file.empty() ? std::filesystem::current_path() : std::filesystem::absolute(scene_file).parent_path();
@@ -79,6 +86,7 @@ class Models {
 UnitSolid unit_solid(const BodySpec& body, Models& models) {
   if (const auto* spec = std::get_if<SphereSpec>(&body.shape)) return sphere(spec->radius_m);
   if (const auto* spec = std::get_if<BoxSpec>(&body.shape)) return box(spec->half_extents_m);
+  if (const auto* spec = std::get_if<EllipsoidSpec>(&body.shape)) return ellipsoid(*spec);
   if (const auto* spec = std::get_if<ModelSpec>(&body.shape)) return models.get(*spec, body.name);
   return {};  // a half-space has neither volume nor inertia
 }

@@ -23,6 +23,9 @@ void check_mass(const BodySpec& body, const Refuse& refuse) {
   if (!body.density_kg_m3 && !body.mass_kg) refuse("", "it has neither density_kg_m3 nor mass_kg", "Give one of the two, or \"immovable\": true.");
   if (body.inertia_body_kg_m2 && !body.mass_kg) refuse("inertia_body_kg_m2", "moments of inertia of its own need a mass of its own", "Give mass_kg instead of density_kg_m3.");
   const auto* sphere = std::get_if<SphereSpec>(&body.shape);
+  const auto* ellipsoid = std::get_if<EllipsoidSpec>(&body.shape);
+  if (ellipsoid != nullptr && !ellipsoid->center_m.isZero(0) && !body.inertia_body_kg_m2)
+    refuse("shape/ellipsoid/center_m", "an ellipsoid whose middle is not its centre of mass is not of one density", "Give mass_kg and inertia_body_kg_m2, about the centre of mass.");
   if (sphere != nullptr && sphere->radius_m == 0.0 && !body.mass_kg) refuse("density_kg_m3", "a point (radius 0) has no volume", "Give mass_kg.");
 }
 
@@ -57,6 +60,20 @@ void check_body(const BodySpec& body, const Refuse& refuse) {
   if (body.immovable && !body.omega_world_rad_s.isZero(0)) refuse("angular_velocity_rad_s", "it is immovable and spins", "An immovable body does not turn: delete angular_velocity_rad_s.");
 }
 
+void check_ellipsoids(const Scene& scene, const Refuse& refuse) {
+  const auto is_named = [](const auto& pair, const std::string& a, const std::string& b) { return (pair.first == a && pair.second == b) || (pair.first == b && pair.second == a); };
+  for (const BodySpec& body : scene.bodies) {
+    if (!body.collides || !std::holds_alternative<EllipsoidSpec>(body.shape)) continue;
+    for (const BodySpec& other : scene.bodies) {
+      if (&other == &body || !other.collides || std::holds_alternative<PlaneSpec>(other.shape) || (body.immovable && other.immovable)) continue;
+      if (std::any_of(scene.apart.begin(), scene.apart.end(), [&](const auto& pair) { return is_named(pair, body.name, other.name); })) continue;
+      if (std::any_of(scene.joints.begin(), scene.joints.end(), [&](const JointSpec& j) { return is_named(std::pair(j.body_a, j.body_b), body.name, other.name); })) continue;
+      refuse(body.pointer, "body '" + body.name + "' is an ellipsoid and may meet '" + other.name + "', which is no plane: ellipsoids meet planes only",
+             "Name the two under \"apart\", give one of them \"collides\": false, or use a convex model.");
+    }
+  }
+}
+
 void check_scene(const Scene& scene, const Refuse& refuse) {
   if (scene.bodies.empty()) refuse("/bodies", "the scene has no body", "Add one, here or under \"repeat\".");
   if (scene.step_s > scene.duration_s) refuse("/step_s", "the step is longer than the whole run", "Give a shorter step_s or a longer duration_s.");
@@ -68,6 +85,7 @@ void check_scene(const Scene& scene, const Refuse& refuse) {
     const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(), [&](const BodySpec& b) { return b.name == force.body; });
     if (body != scene.bodies.end() && body->immovable) refuse(pointer, "body '" + force.body + "' is immovable: no force moves it", "Name a movable body.");
   }
+  check_ellipsoids(scene, refuse);
   check_links(scene, refuse);
   if ((scene.camera.eye_m - scene.camera.target_m).norm() == 0.0) refuse("/camera/target_m", "the camera stands where it looks", "Move eye_m or target_m.");
   if (scene.camera.follow) names.expect(*scene.camera.follow, "/camera/follow", refuse);

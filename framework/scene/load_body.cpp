@@ -19,6 +19,11 @@ ShapeSpec shape(const json& value) {
     read(value.at("plane"), "drawn_half_extent_m", plane.drawn_half_extent_m);
     return plane;
   }
+  if (value.contains("ellipsoid")) {
+    EllipsoidSpec ellipsoid{read_vector(value.at("ellipsoid").at("semi_axes_m"))};
+    read(value.at("ellipsoid"), "center_m", ellipsoid.center_m);
+    return ellipsoid;
+  }
   const json& entry = value.at("model");
   ModelSpec model;
   model.file = entry.at("file");

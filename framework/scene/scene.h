@@ -21,12 +21,17 @@ struct SphereSpec { double radius_m; };
 struct BoxSpec { Vector3d half_extents_m; };
 /// Half-space: the solid on the negative side of the plane through the body's position; the body's +z is the normal.
 struct PlaneSpec { double drawn_half_extent_m = 5.0; };
+/// Axes along the body's; meets planes only. A middle beside the centre of mass needs moments of inertia of its own.
+struct EllipsoidSpec {
+  Vector3d semi_axes_m;
+  Vector3d center_m = Vector3d::Zero();   // body frame
+};
 struct ModelSpec {
   std::string file;            // relative to the scene file, then to models/
   std::string object;          // empty: the file must hold exactly one
   double metres_per_unit = 1.0;
 };
-using ShapeSpec = std::variant<SphereSpec, BoxSpec, PlaneSpec, ModelSpec>;
+using ShapeSpec = std::variant<SphereSpec, BoxSpec, PlaneSpec, ModelSpec, EllipsoidSpec>;
 
 /// Motion of an immovable body along its own law: position = start + velocity t + amplitude sin(angular_frequency t).
 struct PrescribedMotion {

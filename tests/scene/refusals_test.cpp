@@ -81,6 +81,22 @@ TEST(SceneRefusals, AQuaternionThatIsNotUnitSaysItsLength) {
 
 TEST(SceneRefusals, AKeyThatStandsTwiceIsRefused) { expect_words(refusal(scene_with(body_with(R"("mass_kg": 1, "mass_kg": 2)"))), {"/bodies/0/mass_kg", "twice"}); }
 
+TEST(SceneRefusals, AnEllipsoidMeetsPlanesOnlyAndSaysWhatElseItMayMeet) {
+  const std::string egg = R"({ "name": "egg", "shape": { "ellipsoid": { "semi_axes_m": [0.2, 0.1, 0.1] } }, "mass_kg": 1, "position_m": [0, 0, 1] })";
+  const std::string floor = R"({ "name": "floor", "shape": { "plane": {} }, "immovable": true })";
+  EXPECT_EQ(refusal(scene_with(egg + ",\n" + floor)), "");
+  expect_words(refusal(scene_with(kBall + ",\n" + egg)), {"s.json:6", "/bodies/1", "'egg' is an ellipsoid and may meet 'ball'", "planes only", "apart"});
+  EXPECT_EQ(refusal(scene_with(kBall + ",\n" + egg, R"(, "apart": [["egg", "ball"]])")), "");
+}
+
+TEST(SceneRefusals, AnEllipsoidBesideItsCentreOfMassNeedsMomentsOfItsOwn) {
+  const auto egg = [](const std::string& more) {
+    return scene_with(R"({ "name": "egg", "shape": { "ellipsoid": { "semi_axes_m": [0.2, 0.1, 0.1], "center_m": [0, 0, 0.05] } }, )" + more + " }");
+  };
+  expect_words(refusal(egg(R"("mass_kg": 1)")), {"/bodies/0/shape/ellipsoid/center_m", "not of one density", "inertia_body_kg_m2"});
+  EXPECT_EQ(refusal(egg(R"("mass_kg": 1, "inertia_body_kg_m2": [[2e-4, -2e-5, 0], [-2e-5, 16e-4, 0], [0, 0, 17e-4]])")), "");
+}
+
 TEST(SceneRefusals, ATrailingCommaIsNotJson) { expect_words(refusal(scene_with(kBall + ",")), {"not JSON", "none after the last"}); }
 
 }  // namespace

@@ -32,28 +32,37 @@ std::string missing(const std::string& needs, const Laws& laws) {
 
 }  // namespace
 
+void Findings::add(report::Measure measure) {
+  if (on_measure_) on_measure_(measure);
+  row_.measures.push_back(std::move(measure));
+}
+
 void Findings::at_most(const std::string& what, double value, double threshold, const std::string& unit, const std::string& why) {
-  row_.measures.push_back(measure(what, value, threshold, unit, why));
+  add(measure(what, value, threshold, unit, why));
 }
 
 void Findings::at_least(const std::string& what, double value, double threshold, const std::string& unit, const std::string& why) {
-  row_.measures.push_back(measure(what, value, threshold, unit, why));
-  row_.measures.back().at_least = true;
+  report::Measure m = measure(what, value, threshold, unit, why);
+  m.at_least = true;
+  add(std::move(m));
 }
 
 void Findings::must_fail(const std::string& what, double value, double threshold, const std::string& unit, const std::string& why) {
-  row_.measures.push_back(measure(what, value, threshold, unit, why));
-  row_.measures.back().must_fail = true;
+  report::Measure m = measure(what, value, threshold, unit, why);
+  m.must_fail = true;
+  add(std::move(m));
 }
 
 void Findings::is_true(const std::string& what, bool answer, const std::string& why) {
-  row_.measures.push_back(measure(what, answer ? 1.0 : 0.0, 1.0, "", why));
-  row_.measures.back().is_question = true;
+  report::Measure m = measure(what, answer ? 1.0 : 0.0, 1.0, "", why);
+  m.is_question = true;
+  add(std::move(m));
 }
 
 void Findings::not_run(const std::string& what, const std::string& reason) {
-  row_.measures.push_back(measure(what, kUnset, kUnset, "", ""));
-  row_.measures.back().not_run = reason;
+  report::Measure m = measure(what, kUnset, kUnset, "", "");
+  m.not_run = reason;
+  add(std::move(m));
 }
 
 void Findings::part(const std::string& what, const std::function<void()>& work) {
@@ -62,8 +71,9 @@ void Findings::part(const std::string& what, const std::function<void()>& work) 
   } catch (const NotImplemented& stub) {
     not_run(what, stub.what());
   } catch (const std::exception& error) {
-    row_.measures.push_back(measure(what, kUnset, kUnset, "", ""));
-    row_.measures.back().error = error.what();
+    report::Measure m = measure(what, kUnset, kUnset, "", "");
+    m.error = error.what();
+    add(std::move(m));
   }
 }
 
@@ -77,7 +87,7 @@ std::vector<Case> cases() {
 report::BatteryRow run(const Case& the_case, const Given& given) {
   report::BatteryRow row{the_case.row, the_case.name, the_case.about, {}, {}, the_case.not_part};
   if (!the_case.run) return row;
-  Findings findings(row);
+  Findings findings(row, given.on_measure);
   if (const std::string lack = missing(the_case.needs, given.laws); !lack.empty()) findings.not_run("all", lack);
   else findings.part("all", [&] { the_case.run(given, findings); });
   for (report::Measure& m : row.measures) m.shortfall = known_shortfall(row.row, m.what, given.is_long);
