@@ -66,6 +66,55 @@ TEST(PaperScenes, RobotsAgree) { expect_engines_agree(sized("robots", 1, 0.7), 2
 // Until rocks have been in lasting contact for some steps.
 TEST(PaperScenes, AvalancheAgrees) { expect_engines_agree(sized("avalanche", 5, 1.5), 10, 0.5, 1e-3); }
 
+Trajectory run_on(int threads, const scene::Scene& scene, const engines::TimewarpTrial& trial, const std::vector<engines::Callback>& callbacks = {}, const std::string& engine = "tw") {
+  TrajectoryRecorder recorder;
+  engines::RunOptions options;
+  options.engine = engine;
+  options.timewarp = engines::fast_timewarp();
+  options.trial = trial;
+  options.threads = threads;
+  options.callbacks = callbacks;
+  engines::run_scene(scene, laws(), options, recorder);
+  return recorder.trajectory();
+}
+
+// What is undone over what is committed: nowhere more than all, and little of it on average, also where threads are held up.
+TEST(PaperScenes, UndoLittleOfTheirWork) {
+  engines::TimewarpTrial delayed;
+  delayed.seed = 14;
+  delayed.delay_s = 1e-5;
+  for (const int threads : {1, 2}) {
+    double sum = 0.0;
+    const std::vector<scene::Scene> scenes{sized("atoms", 60, 1.0), sized("cars", 30, 1.0), sized("robots", 2, 0.7), sized("avalanche", 10, 1.0)};
+    for (const scene::Scene& scene : scenes) {
+      const Trajectory run = run_on(threads, scene, threads > 1 ? delayed : engines::TimewarpTrial{});
+      ASSERT_EQ(run.stopped_by, "") << scene.name;
+      const double undone = static_cast<double>(run.counters.counts.at("undone_integrations")), committed = static_cast<double>(run.counters.counts.at("integrations")) - undone;
+      EXPECT_LE(undone, committed) << scene.name << ", " << threads << " threads";
+      sum += undone / committed;
+    }
+    EXPECT_LE(sum / static_cast<double>(scenes.size()), 0.15) << threads << " threads";
+  }
+}
+
+// A row falls, each domino upon the next, until the last has been struck; then it turns out that somebody held the first at the start of its fall.
+// Groups that fused, split and fused again along the row are taken back, each body once.
+TEST(LateEvent, AtTheFirstOfARowOfDominoesRollsEachBackOnce) {
+  engines::TimewarpTrial late;
+  late.late_callbacks = true;
+  for (const int n : {3, 6, 12}) {
+    const scene::Scene row = sized("dominoes_row", n, 0.15 * n + 0.3);
+    const std::vector<engines::Callback> hold{{0.05, {body_named(run_with("tw", sized("dominoes_row", n, 0.0)), "domino_1")}, [](int, RigidBodyState& state) {
+      state.momentum_world.setZero();
+      state.angular_momentum_world.setZero();
+    }}};
+    const Trajectory reference = run_on(1, row, {}, hold, "ordered"), run = run_on(1, row, late, hold);
+    EXPECT_EQ(difference(reference, run), "") << n;
+    EXPECT_EQ(run.counters.counts.at("rollbacks"), static_cast<std::uint64_t>(n)) << n;
+    EXPECT_GE(run.counters.counts.at("anti_messages"), static_cast<std::uint64_t>(n - 1)) << n;
+  }
+}
+
 TEST(Robots, CarryABlockAndThrowItOverTheirShoulder) {
   const Trajectory run = run_with("tw", sized("robots", 1, 1.2));
   ASSERT_EQ(run.stopped_by, "");
