@@ -26,14 +26,18 @@ constexpr double kLeastShare = 0.2;  // or so much of a small budget
 constexpr double kAnAnswer = 0.1;    // of how far bodies move: errors above it do not show where they lead
 constexpr double kTrifle = 0.03;     // of what is left of the budget: a run that costs less need not be promising
 constexpr double kUsualOrder = 4.0;  // price and error are exchanged at this rate, so that who has spent more is not taken for who is better
+constexpr double kLeastSlope = 0.5, kMostSlope = 12.0;   // of error over price, to be believed
 constexpr double kForTheBest = 0.4;  // of the budget: to go on where the least error was
 constexpr double kLongest = 2.0;     // shares of the budget, likewise
 constexpr double kFirstRight = 25.0; // s of CPU that a run may take where there is no truth and none has got through yet: it is all there is to know
+constexpr double kLongestFirst = 0.5;   // of the budget, that it may take where there is a truth
 constexpr double kWorthATruth = 0.1; // of the scene: a truth that holds for less says less than its numbers
 constexpr double kSearch = 3.0, kLeastSearch = 6.0;   // budgets, and s of CPU, of the search for a truth
 constexpr double kLeastProbe = 1.0;  // s, and
 constexpr double kProbe = 0.1;       // of the budget: of the run that shows whether a scene's size fits into it
 constexpr int kSmaller = 3;          // and else it gets so many times smaller
+
+const std::vector<double> kSharesAllowed = {1.0, 0.1};   // of what a scene's numbers are allowed: what is asked where there is no truth
 
 struct Ladder {
   CostWay way;
@@ -107,8 +111,12 @@ class Ladders {
   void run() {
     const double first_until = until_ - kForTheBest * budget_;
     for (std::size_t k = 0; k < ladders.size(); ++k) {
+      const double share = std::max(0.0, first_until - cpu_seconds()) / static_cast<double>(ladders.size() - k);
       if (k > 0 && left() <= 0.0) fmt::print(stderr, "{:>2}/{} {:<28} not run: the budget of {:g} s is used up\n", k + 1, ladders.size(), ladders[k].way.name, budget_);
-      else extend(k, std::max(0.0, first_until - cpu_seconds()) / static_cast<double>(ladders.size() - k));
+      else extend(k, share);
+      // Where one run takes more than its share, the others would use up the budget before any shows what accuracy costs.
+      if (k == 0 && !ladders[0].rungs.empty() && ladders[0].rungs.back().spent_s > share)
+        while (next_mark() > 0.0 && can_go_on(0)) extend(0, 0.0);
     }
     while (const std::optional<std::size_t> best = closest()) extend(*best, 0.0);
     std::erase_if(ladders, [](const Ladder& ladder) { return ladder.rungs.empty(); });
@@ -121,8 +129,9 @@ class Ladders {
 
   void extend(std::size_t k, double share) {
     engines::CostOptions own = options_;
-    const bool first = truth_.by_numbers && std::none_of(ladders.begin(), ladders.end(), any_gets_through);
-    own.most_of_rung_s = std::max(first ? kFirstRight : std::min(kLeastRung, kLeastShare * budget_), std::min(left(), kLongest * share));
+    const bool first = std::none_of(ladders.begin(), ladders.end(), any_gets_through) && (truth_.by_numbers || k == 0);
+    const double allowed = !first ? std::min(kLeastRung, kLeastShare * budget_) : truth_.by_numbers ? kFirstRight : kLongestFirst * left();
+    own.most_of_rung_s = std::max(allowed, std::min(left(), kLongest * share));
     if (share == 0.0) own.most_of_rung_s = std::max(kLeastShare * budget_, left());
     engines::extend_ladder(scene_, ladders[k].way, truth_, share, own, words_, ladders[k].rungs, [&](const CostRung& rung) {
       const std::string found = rung.stopped_by.empty() ? fmt::format("error {:.1e}{}, {}", rung.error_m, truth_.by_numbers ? " of allowed" : " m", report::price_of(rung.cpu_s)) : "stopped";
@@ -130,15 +139,30 @@ class Ladders {
     });
   }
 
+  bool can_go_on(std::size_t k) const {
+    const Ladder& ladder = ladders[k];
+    return !ladder.rungs.empty() && engines::next_price(ladder.rungs) <= left() && !engines::ladder_is_done(scene_, ladder.way, truth_, ladder.rungs, words_);
+  }
+
+  /// The largest of the errors whose price is asked that the truth can tell and nothing has reached; 0: there is none.
+  double next_mark() const {
+    const std::vector<double> marks = truth_.by_numbers ? kSharesAllowed : report::CostPage().marks;
+    for (const double mark : marks) {
+      const auto reaches = [&](const CostRung& rung) { return rung.stopped_by.empty() && std::max(rung.error_m, truth_.floor_m) <= mark; };
+      if (mark >= truth_.floor_m && std::none_of(ladders.begin(), ladders.end(), [&](const Ladder& ladder) { return std::any_of(ladder.rungs.begin(), ladder.rungs.end(), reaches); })) return mark;
+    }
+    return 0.0;
+  }
+
   /// Of the ladders that can go on in what is left: what costs next to nothing first, then the one that promises most.
   std::optional<std::size_t> closest() const {
     std::optional<std::size_t> best;
     std::pair<int, double> least;
+    const double mark = next_mark();
     for (std::size_t k = 0; k < ladders.size(); ++k) {
-      const Ladder& ladder = ladders[k];
-      const double next = engines::next_price(ladder.rungs);
-      if (ladder.rungs.empty() || next > left() || engines::ladder_is_done(scene_, ladder.way, truth_, ladder.rungs, words_)) continue;
-      const std::pair<int, double> here = next < kTrifle * left() ? std::pair{0, next} : hope(ladder.rungs.back(), next);
+      if (!can_go_on(k)) continue;
+      const double next = engines::next_price(ladders[k].rungs);
+      const std::pair<int, double> here = next < kTrifle * left() ? std::pair{0, next} : hope(ladders[k].rungs, next, mark);
       if (best && here >= least) continue;
       best = k;
       least = here;
@@ -146,12 +170,23 @@ class Ladders {
     return best;
   }
 
-  /// Small is good: an error, at what it cost; then what blew up, for half the step may hold; last what gives answers that are none.
-  std::pair<int, double> hope(const CostRung& rung, double next) const {
-    if (truth_.by_numbers) return rung.stopped_by.empty() && std::isfinite(rung.error_m) ? std::pair{1, rung.error_m} : std::pair{2, next};
-    if (!rung.stopped_by.empty() || !std::isfinite(rung.error_m)) return {2, next};
-    if (rung.error_m < kAnAnswer * truth_.scale_m) return {1, rung.error_m * std::pow(rung.cpu_s, kUsualOrder)};
-    return {3, next};
+  /// Small is good: what reaches the next mark in the time that is left, by the least; then an error, at what it cost; then what blew up, for
+  /// half the step may hold; last what gives answers that are none.
+  std::pair<int, double> hope(const std::vector<CostRung>& rungs, double next, double mark) const {
+    const CostRung& rung = rungs.back();
+    if (truth_.by_numbers) return rung.stopped_by.empty() && std::isfinite(rung.error_m) ? std::pair{2, rung.error_m} : std::pair{3, next};
+    if (!rung.stopped_by.empty() || !std::isfinite(rung.error_m)) return {3, next};
+    if (rung.error_m > kAnAnswer * truth_.scale_m) return {4, next};
+    const double price = mark > 0.0 ? rung.spent_s * std::pow(rung.error_m / mark, 1.0 / slope_of(rungs)) : std::numeric_limits<double>::infinity();
+    return price < left() ? std::pair{1, price} : std::pair{2, rung.error_m * std::pow(rung.cpu_s, kUsualOrder)};
+  }
+
+  /// By which power of its price the error of a ladder fell last.
+  double slope_of(const std::vector<CostRung>& rungs) const {
+    if (rungs.size() < 2 || !rungs[rungs.size() - 2].stopped_by.empty()) return kUsualOrder;
+    const CostRung &coarse = rungs[rungs.size() - 2], &fine = rungs.back();
+    const double slope = std::log(coarse.error_m / fine.error_m) / std::log(fine.spent_s / coarse.spent_s);
+    return std::isfinite(slope) ? std::clamp(slope, kLeastSlope, kMostSlope) : kUsualOrder;
   }
 
   const scene::Scene& scene_;
@@ -181,7 +216,7 @@ report::CostPage page_of(const Context& context, const std::vector<Ladder>& ladd
   if (truth.by_numbers) {
     page.error_name = "worst number over what is allowed";
     page.error_unit.clear();
-    page.marks = {1.0, 0.1};
+    page.marks = kSharesAllowed;
   }
   page.floor = truth.floor_m;
   page.scale = truth.scale_m;
@@ -256,7 +291,7 @@ MeasuredCost measure_cost(const Context& context, const CostWords& asked) {
   CostTruth truth = found ? *found : engines::by_numbers(subject.scene, options, why);
   if (!found) fmt::print(stderr, "tumble: no truth ({}): runs are judged by the scene's numbers\n", why);
   if (found) check_with_files(context, subject, truth);
-  if (truth.by_numbers)   // there the method of integration hardly matters: the usual one comes first
+  if (truth.by_numbers || subject.scene.contact)   // there the method of integration hardly matters: the usual one comes first
     std::stable_partition(subject.ways.begin(), subject.ways.end(), [](const CostWay& way) { return way.word == "rk4"; });
   Ladders all(subject, truth, words, options);
   all.run();

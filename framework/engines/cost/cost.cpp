@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -20,6 +21,11 @@ namespace {
 constexpr double kShort = 0.1;            // s: after so long runs are not repeated
 constexpr double kNoise = 0.02;           // of what comes before the first step: by so much its time differs from run to run
 constexpr double kCoarsest = 16.0;        // of the scene's own step: where a ladder begins
+constexpr double kLinkedSteps = 32.0;     // of the scene's own: after so long rods and joints are brought back, whatever method goes on between
+constexpr double kSamePrice = 1.2;        // a rung that costs no more than so many times the one before shows that steps are not what costs:
+constexpr double kWorthSkipping = 0.5;    // s: where it costs as much as this
+constexpr long kSkip = 8;                 // the next one has so many times its steps
+constexpr long kMostSteps = 1L << 24;      // a sample
 constexpr int kMostRungs = 14;
 constexpr double kNearFloor = 3.0;        // of the truth's floor: finer runs show nothing
 constexpr double kNoAnswer = 0.1;         // of the scale: a run with a larger error is on the way to others
@@ -27,6 +33,7 @@ constexpr double kGood = 1e-3;            // of the scale: below it, errors that
 constexpr int kMostWorse = 2;             // rungs in a row that are no better than the best
 constexpr int kMostWorseInSteps = 4;      // the same where contacts push once a step: when something lands within a step is as good as drawn by lot
 constexpr double kGrowth = 2.2;           // price of a rung over the one before, as expected
+constexpr double kLeastGrowth = 1.2;      // the same where most of it does not come from steps
 
 std::string too_long(double most_s) { return fmt::format("it would take more than {:.0f} s", most_s); }
 
@@ -122,12 +129,24 @@ RunOptions options_of(const CostWay& way, const CostOptions& options, double fra
   return how;
 }
 
-/// Stops a run that takes too long. The clock is looked at rarely enough to cost nothing.
-StepFunction until_too_long(const StepFunction& step, double most_s) {
+/// Stops a run that takes too long. The clock is looked at rarely enough to cost nothing; within a step too where the method chooses its parts.
+StepFunction until_too_long(const StepFunction& step, double most_s, bool controlled) {
   constexpr int kEach = 64;
-  return [step, until = cpu_seconds() + most_s, most_s, calls = 0](const OdeFunction& f, double t, const VectorXd& y, double h) mutable {
-    if (++calls % kEach == 0 && cpu_seconds() > until) throw StoppedRun(too_long(most_s));
-    return step(f, t, y, h);
+  const auto calls = std::make_shared<int>(0);
+  const auto look = [until = cpu_seconds() + most_s, most_s, calls] {
+    if (++*calls % kEach == 0 && cpu_seconds() > until) throw StoppedRun(too_long(most_s));
+  };
+  if (!controlled)
+    return [step, look](const OdeFunction& f, double t, const VectorXd& y, double h) {
+      look();
+      return step(f, t, y, h);
+    };
+  return [step, look](const OdeFunction& f, double t, const VectorXd& y, double h) {
+    const OdeFunction watched = [&](double at, const VectorXd& state) -> VectorXd {
+      look();
+      return f(at, state);
+    };
+    return step(watched, t, y, h);
   };
 }
 
@@ -153,7 +172,7 @@ CostRun run_of(const scene::Scene& scene, const CostWay& way, const CostTruth& t
   if (way.stabilisation) run.scene.stabilisation = way.stabilisation;
   if (way.method) run.laws.integrate_step = way.method(tolerance);
   if (way.tuned) way.tuned(tolerance, run.laws);
-  if (std::isfinite(options.most_of_rung_s)) run.laws.integrate_step = until_too_long(run.laws.integrate_step, options.most_of_rung_s);
+  if (std::isfinite(options.most_of_rung_s)) run.laws.integrate_step = until_too_long(run.laws.integrate_step, options.most_of_rung_s, way.controlled);
   return run;
 }
 
@@ -187,6 +206,7 @@ CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth
     rung.not_attempted = true;
   }
   rung.spent_s = cpu_seconds() - begun;
+  rung.took_too_long = rung.stopped_by.find(too_long(options.most_of_rung_s)) != std::string::npos;
   if (!std::isfinite(whole)) return rung;   // it never came to an end
   rung.cpu_s = std::max(1e-6, whole - building);
   if (rung.cpu_s < kNoise * building) {   // the difference of two long times is noise: the stages' own clocks know better
@@ -208,9 +228,10 @@ bool steps_are_free(const scene::Scene& scene) { return scene.motors.empty() && 
 long outer_steps(const scene::Scene& scene, const CostTruth& truth) {
   // Motors look between steps, and lasting contacts push once a step: there the step is part of the scene. Rods and joints are held to
   // the tolerance within a step, and brought back at its end.
-  const bool alone = scene.motors.empty() && !scene.contact;
   const double interval = truth.duration_s / static_cast<double>(truth.intervals);
-  return alone ? 1 : std::max(1L, std::lround(interval / (2.0 * scene.step_s)));
+  if (!scene.motors.empty() || scene.contact) return std::max(1L, std::lround(interval / (2.0 * scene.step_s)));
+  const bool linked = !scene.rods.empty() || !scene.joints.empty();   // what drifts apart for long pulls so hard that no tolerance helps
+  return linked ? std::max(1L, std::lround(interval / (kLinkedSteps * scene.step_s))) : 1;
 }
 
 namespace {
@@ -223,14 +244,21 @@ std::size_t most_rungs(const scene::Scene& scene, const CostWay& way, const std:
   return !asked.empty() ? asked.size() : static_cast<std::size_t>(kMostRungs - (way.controlled ? first_decade(scene) - 1 : 0));
 }
 
+/// Twice as many as in the last rung; more where these would cost next to nothing.
+long finer_steps(const std::vector<CostRung>& rungs, double interval) {
+  const auto last = std::lround(interval / rungs.back().step_s);
+  const bool skips = rungs.size() > 1 && rungs.back().stopped_by.empty() && rungs.back().spent_s > kWorthSkipping && rungs.back().spent_s < kSamePrice * rungs[rungs.size() - 2].spent_s;
+  return std::min((skips ? kSkip : 2L) * last, kMostSteps);
+}
+
 /// Steps per sample of the next rung.
-long steps_of(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, const LadderWords& words, std::size_t k) {
+long steps_of(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, const LadderWords& words, const std::vector<CostRung>& rungs) {
   const double interval = truth.duration_s / static_cast<double>(truth.intervals);
   // Motors look and contacts push once a step, and bodies that hang on others and meet something go along a curve through their steps'
   // ends: there steps shrink with the tolerance, but where something else than the integration is looked at.
   if ((way.controlled && (way.tuned || steps_are_free(scene))) || !way.has_ladder) return outer_steps(scene, truth);
-  if (!words.steps_s.empty() && !way.controlled) return std::max(1L, std::lround(interval / words.steps_s[k]));
-  return first_steps(scene, truth) << std::min<std::size_t>(k, 20);
+  if (!words.steps_s.empty() && !way.controlled) return std::max(1L, std::lround(interval / words.steps_s[rungs.size()]));
+  return rungs.empty() ? first_steps(scene, truth) : finer_steps(rungs, interval);
 }
 
 }  // namespace
@@ -253,18 +281,25 @@ bool ladder_is_done(const scene::Scene& scene, const CostWay& way, const CostTru
 
 double next_price(const std::vector<CostRung>& rungs) {
   if (rungs.empty()) return 0.0;
-  return kGrowth * rungs.back().spent_s;
+  const double last = rungs.back().spent_s, most = kGrowth * last;
+  if (rungs.size() < 2 || rungs.back().took_too_long || rungs[rungs.size() - 2].took_too_long) return most;
+  return std::clamp(last + kGrowth * (last - rungs[rungs.size() - 2].spent_s), kLeastGrowth * last, most);   // some of the price may be the same at any step
 }
 
 void extend_ladder(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, double budget_s, const CostOptions& options, const LadderWords& words, std::vector<CostRung>& rungs,
                    const std::function<void(const CostRung&)>& told) {
   const double until = cpu_seconds() + budget_s;
   const bool is_asked = !(way.controlled ? words.tolerances : words.steps_s).empty();
+  if (!rungs.empty() && rungs.back().took_too_long) {
+    if (options.most_of_rung_s < next_price(rungs)) return;
+    rungs.pop_back();
+  }
   while (!ladder_is_done(scene, way, truth, rungs, words)) {
     const std::size_t k = rungs.size();
     const double tolerance = !way.controlled ? kUnset : words.tolerances.empty() ? std::pow(10.0, -first_decade(scene) - static_cast<double>(k)) : words.tolerances[k];
-    rungs.push_back(run_rung(scene, way, truth, steps_of(scene, way, truth, words, k), tolerance, options));
+    rungs.push_back(run_rung(scene, way, truth, steps_of(scene, way, truth, words, rungs), tolerance, options));
     told(rungs.back());
+    if (rungs.back().took_too_long) return;
     if (!is_asked && cpu_seconds() + next_price(rungs) > until) return;
   }
 }

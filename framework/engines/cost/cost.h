@@ -48,6 +48,7 @@ struct CostRung {
   std::vector<double> times, energy_errors;              // by sample [s]; |E - E of the truth| over all the energy there was [-]
   std::map<std::string, double> stage_seconds;
   std::string stopped_by;                                // empty: ran to the end
+  bool took_too_long = false;                            // it was stopped for its time alone
   bool not_attempted = false;                            // a function that it needs is a stub: stopped_by says which
 };
 
@@ -123,7 +124,8 @@ struct LadderWords {
 bool ladder_is_done(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, const std::vector<CostRung>& rungs, const LadderWords& words);
 /// CPU time that the next rung is expected to take. [s]
 double next_price(const std::vector<CostRung>& rungs);
-/// Goes on with a ladder, by one rung at least where it is not done, for so long.
+/// Goes on with a ladder, by one rung at least where it is not done, for so long. What takes too long ends it, for finer runs take longer still;
+/// called again with more than twice the time for a rung, it tries that one again.
 void extend_ladder(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, double budget_s, const CostOptions& options, const LadderWords& words, std::vector<CostRung>& rungs,
                    const std::function<void(const CostRung&)>& told);
 

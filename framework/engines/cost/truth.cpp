@@ -24,11 +24,14 @@ constexpr int kMostHalvings = 7;
 constexpr long kFewestSamples = 4, kMostSamples = 24;
 constexpr double kStepsASample = 8.0;     // of the scene's own steps
 constexpr double kFramesASecond = 60.0;    // that numbers are judged by
+constexpr double kFinerSteps = 4.0;       // steps in one of the scene's own, of the coarser of two fine runs
+constexpr double kOwnSteps = 0.5;         // the same where steps are free: the finer run has the scene's own
 constexpr double kNextPrice = 2.2;        // of a run with half the step, over the one before
 constexpr double kHelps = 0.7;            // of the floor: less gain from half the step is none
 constexpr double kOlder = 3.0;            // what a run with four times the step differs by, over one with twice: of first order, C h (4 - 1) over C h (2 - 1)
 constexpr double kShareLeft = 0.4;        // of the time: kept for looking at less of the scene
 constexpr double kTellEvery = 1.0;        // s of CPU
+constexpr int kLookEach = 32;             // evaluations: the clock itself takes time
 constexpr double kHopeless = 2.0;         // of the time there is: a run that is expected to take so much longer is given up
 
 bool is_smooth(const scene::Scene& scene) {
@@ -66,14 +69,14 @@ class WatchedRecorder final : public TrajectorySink {
   }
   void event(const Event& event) override {
     recorder.event(event);
-    if (++events_ % kLookEach == 0 && cpu_seconds() > until_) throw StoppedRun(kTooLong);
+    if (++events_ % kLookEachEvents == 0 && cpu_seconds() > until_) throw StoppedRun(kTooLong);
   }
   void end(const Counters& counters, const std::string& stopped_by) override { recorder.end(counters, stopped_by); }
   double until() const { return until_; }
   TrajectoryRecorder recorder;
 
  private:
-  static constexpr int kLookEach = 256;
+  static constexpr int kLookEachEvents = 256;
   const Window& window_;
   double begun_, until_, next_;
   long events_ = 0;
@@ -93,9 +96,12 @@ FinerRun run_finely(const scene::Scene& scene, const Laws& laws, const Window& w
   const double begun = cpu_seconds();
   WatchedRecorder watched(window);
   Laws timed = laws;
-  timed.integrate_step = [step = laws.integrate_step, until = watched.until()](const OdeFunction& f, double t, const VectorXd& y, double h) {
-    if (cpu_seconds() > until) throw StoppedRun(kTooLong);
-    return step(f, t, y, h);
+  timed.integrate_step = [step = laws.integrate_step, until = watched.until(), calls = 0](const OdeFunction& f, double t, const VectorXd& y, double h) mutable {
+    const OdeFunction counted = [&](double at, const VectorXd& state) -> VectorXd {   // a step may take many
+      if (++calls % kLookEach == 0 && cpu_seconds() > until) throw StoppedRun(kTooLong);
+      return f(at, state);
+    };
+    return step(counted, t, y, h);
   };
   std::string stopped_by;
   try {
@@ -134,8 +140,11 @@ Pair run_closed(const scene::Scene& scene, const Laws& laws, const Window& windo
           "closed form (parabola, free rotation by elliptic functions) from one impact to the next; its floor is what two engines that use it differ by"};
 }
 
-/// Of the coarser of two fine runs.
-long steps_a_sample(const scene::Scene& scene, const Window& window) { return std::max(1L, std::lround(4.0 * window.duration_s / scene.step_s / static_cast<double>(window.samples))); }
+/// Of the coarser of two fine runs. Where nothing happens once a step, tolerance alone makes them fine.
+long steps_a_sample(const scene::Scene& scene, const Window& window) {
+  const double finer = steps_are_free(scene) ? kOwnSteps : kFinerSteps;
+  return std::max(1L, std::lround(finer * window.duration_s / scene.step_s / static_cast<double>(window.samples)));
+}
 
 std::string two_steps_in_words(long steps, const Window& window) {
   return fmt::format("a run by Fehlberg 7(8) with tolerance {:.0e} at steps of 1/{:.0f} s; its floor is what twice the step differs by", kTight, static_cast<double>(steps * window.samples) / window.duration_s);
