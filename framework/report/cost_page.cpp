@@ -14,12 +14,15 @@ namespace {
 
 constexpr double kExact = 1e-17;                  // m: an error of nothing at all is drawn here
 
+/// Runs that came to no end, or to no answer, are in no picture.
+bool is_drawn(const CostPage& page, const CostPoint& point) { return point.stopped_by.empty() && point.error < page.scale; }
+
 Plot drawn(const CostPage& page, Axis across, const std::string& title, double (*x)(const CostPoint&), const std::string& caption) {
   Plot plot{title, std::move(across), {page.error_name, page.error_unit, Scale::kLog}, {}, {}, caption};
   for (const CostCurve& curve : page.curves) {
     Curve line{std::isfinite(curve.order) ? fmt::format("{}, order {:.2f}", curve.name, curve.order) : curve.name, {}, {}, true};
     for (const CostPoint& point : curve.points) {
-      if (!point.stopped_by.empty() || !(point.error < page.scale) || !(x(point) > 0)) continue;
+      if (!is_drawn(page, point) || !(x(point) > 0)) continue;
       line.x.push_back(x(point));
       line.y.push_back(std::max({point.error, page.floor, kExact}));   // below the floor nothing can be told
     }
@@ -147,10 +150,12 @@ void write_cost_page(const CostPage& cost, const std::filesystem::path& file) {
   page.plot(plot_of_price(cost));
   page.table(table_of_prices(cost));
   const bool by_step = cost.finer.name == "step";
+  const auto has_steps = [&](const CostCurve& curve) { return std::any_of(curve.points.begin(), curve.points.end(), [&](const CostPoint& point) { return is_drawn(cost, point) && point.step > 0; }); };
   page.heading(by_step ? "Order" : "Tolerance");
-  page.plot(drawn(cost, cost.finer, "Error against the " + cost.finer.name, [](const CostPoint& point) { return point.step; },
-                  by_step ? "The slope is the order: halving the step divides the error of a method of order p by 2^p. Methods that choose their own steps are not in this picture."
-                          : "What a finder is asked for, and what it gives. What has no tolerance is not in this picture."));
+  if (std::any_of(cost.curves.begin(), cost.curves.end(), has_steps))
+    page.plot(drawn(cost, cost.finer, "Error against the " + cost.finer.name, [](const CostPoint& point) { return point.step; },
+                    by_step ? "The slope is the order: halving the step divides the error of a method of order p by 2^p. Methods that choose their own steps are not in this picture."
+                            : "What a finder is asked for, and what it gives. What has no tolerance is not in this picture."));
   for (const CostCurve& curve : cost.curves)
     if (!curve.reading.empty()) page.paragraph(curve.reading);
   page.heading("Evaluations");

@@ -133,6 +133,7 @@ TEST_F(CommandLine, CostShowsSolversOverTheirTolerance) {
   const Said said = type("cost double_pendulum --modules reference --methods none --solvers gradients --duration-s 0.5 --tolerances 1e-1,1e-6 --budget-s 2");
   EXPECT_EQ(said.code, 0) << said.err;
   EXPECT_TRUE(holds(said.out, "links by conjugate gradients gets to")) << said.out;
+  EXPECT_FALSE(holds(contents_of(folder_ / "out" / "cost" / "double_pendulum" / "index.html"), "nothing to draw"));   // of steps, where nothing has one
   EXPECT_TRUE(holds(type("cost t_handle --modules reference --solvers gradients").err, "has no rods and no joints"));
 }
 

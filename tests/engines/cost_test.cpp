@@ -111,6 +111,60 @@ TEST(Cost, ARunThatTakesTooLongIsStoppedAndSaysSo) {
   EXPECT_NE(rung.stopped_by.find("it would take more than"), std::string::npos) << rung.stopped_by;
 }
 
+TEST(Cost, WithinOneLongStepAControlledMethodIsStoppedToo) {
+  const scene::Scene scene = turning();
+  const CostTruth truth = engines::find_truth(scene, library_laws(), {});
+  engines::CostOptions hurried;
+  hurried.most_of_rung_s = 0.0;
+  const CostRung rung = engines::run_rung(scene, way_of("dopri5"), truth, 1, 1e-12, hurried);   // one step a sample: fewer than the clock is looked at by steps
+  EXPECT_TRUE(rung.took_too_long) << rung.stopped_by;
+}
+
+TEST(Cost, ALadderEndsWhereARunTakesTooLongAndGoesOnThereWithMoreTime) {
+  const scene::Scene scene = turning();
+  const CostTruth truth = engines::find_truth(scene, library_laws(), {});
+  const CostWay way = way_of("rk4");
+  engines::CostOptions hurried;
+  hurried.most_of_rung_s = 0.0;
+  std::vector<CostRung> rungs;
+  const auto nobody = [](const CostRung&) {};
+  engines::extend_ladder(scene, way, truth, 30.0, hurried, {}, rungs, nobody);
+  ASSERT_TRUE(rungs.back().took_too_long) << rungs.back().stopped_by;
+  const std::size_t all = rungs.size();
+  const double step = rungs.back().step_s;
+  engines::extend_ladder(scene, way, truth, 30.0, hurried, {}, rungs, nobody);   // no more time: nothing is run
+  EXPECT_EQ(rungs.size(), all);
+  engines::extend_ladder(scene, way, truth, 0.0, {}, {}, rungs, nobody);   // one rung: the same again
+  ASSERT_EQ(rungs.size(), all);
+  EXPECT_TRUE(rungs.back().stopped_by.empty()) << rungs.back().stopped_by;
+  EXPECT_EQ(rungs.back().step_s, step);
+}
+
+/// A rung that was run. @param spent_s  CPU time
+CostRung rung_of(double step_s, double error_m, double spent_s) {
+  CostRung rung;
+  rung.step_s = step_s;
+  rung.error_m = error_m;
+  rung.cpu_s = rung.spent_s = spent_s;
+  return rung;
+}
+
+TEST(Cost, ThePriceOfTheNextRungLeavesOutWhatDoesNotComeFromSteps) {
+  EXPECT_DOUBLE_EQ(engines::next_price({rung_of(0.1, 0.1, 1.0)}), 2.2);   // twice the steps, and a little
+  EXPECT_DOUBLE_EQ(engines::next_price({rung_of(0.1, 0.1, 1.0), rung_of(0.05, 0.1, 2.0)}), 2.0 + 2.2 * 1.0);
+  EXPECT_DOUBLE_EQ(engines::next_price({rung_of(0.1, 0.1, 2.0), rung_of(0.05, 0.1, 2.0)}), 1.2 * 2.0);
+}
+
+TEST(Cost, WhereStepsAreNotWhatCostsTheNextRungIsMuchFiner) {
+  const scene::Scene scene = turning();
+  const CostTruth truth = engines::find_truth(scene, library_laws(), {});
+  const double interval = truth.duration_s / static_cast<double>(truth.intervals);
+  std::vector<CostRung> same = {rung_of(interval, 0.1, 1.0), rung_of(interval / 2, 0.05, 1.0)}, twice = {rung_of(interval, 0.1, 1.0), rung_of(interval / 2, 0.05, 2.0)};
+  for (auto* rungs : {&same, &twice}) engines::extend_ladder(scene, way_of("rk4"), truth, 0.0, {}, {}, *rungs, [](const CostRung&) {});
+  EXPECT_DOUBLE_EQ(same.back().step_s, interval / 16);
+  EXPECT_DOUBLE_EQ(twice.back().step_s, interval / 4);
+}
+
 TEST(Cost, EnergyThatTheMethodLosesIsSeen) {
   const scene::Scene scene = turning();
   const CostTruth truth = engines::find_truth(scene, library_laws(), {});

@@ -17,6 +17,7 @@ class EventPane {
     this.ofBody = html('input', { type: 'checkbox' });
     this.count = html('span', { className: 'count' });
     this.list = html('div', { className: 'events', tabIndex: 0 });
+    this.list.style.setProperty('--run', `${Math.min(16, Math.max(...player.runs.map(run => (run.label || '').length)))}ch`);   // what stands behind it stands in columns
     this.sheet = html('div', { className: 'sheet' });
     this.list.append(this.sheet);
     box.append(html('div', { className: 'filter' }, this.kind, html('label', {}, this.ofBody, ' of the chosen body'), this.count), this.list);
