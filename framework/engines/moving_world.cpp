@@ -102,6 +102,7 @@ void MovingWorld::set_path(int body, const RigidBodyState& start, const RigidBod
   path.bounds.reset();
   path.end = end;
   path.smooth.emplace(start, end, world_.bodies[body].inertia, time_, target_, momenta);
+  path.smooth->begin_momenta(states_[body]);
 }
 
 void MovingWorld::put_to_rest(int body, int support) {

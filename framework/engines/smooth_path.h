@@ -21,6 +21,13 @@ class SmoothPath {
   /// @pre t0 < t1. Velocities are those of the states' momenta.
   SmoothPath(const RigidBodyState& start, const RigidBodyState& end, const Inertia& inertia, double t0, double t1, Momenta momenta = Momenta::kOfPath);
 
+  /// Momenta that change evenly begin with those of `state`, where the path begins with a velocity of its own: a straight path has that of its end
+  /// from the start, which the blows and the weight of the whole step have made.
+  void begin_momenta(const RigidBodyState& state) {
+    momentum_[0] = state.momentum_world;
+    angular_momentum_[0] = state.angular_momentum_world;
+  }
+
   RigidBodyState at(double t) const;
   /// Velocities of the path.
   collision::MotionState motion_at(double t) const;

@@ -24,7 +24,7 @@ void add_rollbacks(std::vector<Case>& cases);
 /// Of row 13: points, edges and what lies half over an edge (spikes.cpp).
 void spikes(const Given& given, Findings& findings);
 
-/// Of row 31: a body with a curved surface that turns back (rattleback.cpp).
+/// Of row 31: bodies with a curved surface (rattleback.cpp).
 void rattleback(const Given& given, Findings& findings);
 
 /// Why a measure of a row is known not to be reached; empty: it must be. The one list of shortfalls (shortfalls.cpp).

@@ -219,7 +219,8 @@ void add_friction(std::vector<Case>& cases) {
   cases.push_back({28, "friction threshold", "A block on an incline slips below the friction that equals its slope and sticks from there on. Smoothed friction creeps, whatever the coefficient.", "a1 a3", friction_threshold});
   cases.push_back({29, "friction cone", "A box pushed sideways in any direction must move in that direction. Friction linearised to a pyramid holds more along the diagonal: some engines do not move it at all. "
                    "On balls it rolls or slips, as the coefficient says.", "a1 a3", friction_cone});
-  cases.push_back({31, "turntable, spun coin", "A block is carried along by a turning table up to the radius mu g / w^2 and slips beyond. A coin spun on its edge falls over and must not gain energy on its many contacts.", "a1 a3", turntables});
+  cases.push_back({31, "turntable, coin, rattleback", "A block is carried along by a turning table up to the radius mu g / w^2 and slips beyond. A coin spun on its edge falls over and must not gain energy on its many contacts. A rattleback "
+                   "spun against its sense turns back, with nothing but a table under it.", "a1 a3", turntables});
 }
 
 }  // namespace tumble::battery

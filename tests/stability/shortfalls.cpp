@@ -1,4 +1,6 @@
 // The one list of what the battery asks for and the project does not reach. A measure stays in the table with its value, marked SHORT.
+#include <array>
+
 #include "tests/stability/cases.h"
 
 namespace tumble::battery {
@@ -11,9 +13,7 @@ struct Shortfall {
   const char* why;
 };
 
-constexpr Shortfall kShortfalls[] = {
-    {30, "6 x 6 x 6 balls: rise of the energy", true, "impacts taken with the step they fall into ('in_step') let bodies go on for the rest of it: of order h"},
-};
+constexpr std::array<Shortfall, 0> kShortfalls{};   // none is known
 
 }  // namespace
 
