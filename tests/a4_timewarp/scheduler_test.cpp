@@ -38,7 +38,7 @@ TEST(Scheduler, DoesNotDisturbWhoIsFarAway) {
 }
 
 TEST(Scheduler, SplitsAHeapWhereItsContactsOpen) {
-  const Trajectory run = expect_the_references_trace(heap_of_balls({0.05, 0.02, 1.4}, 0.8), 10, "a ball drops between two that touch on a floor; they slide apart, and another one falls on them");
+  const Trajectory run = expect_the_references_trace(heap_of_balls({0.05, 0.02, 0.8}, 0.45), 6, "a ball drops between two that touch on a floor; they slide apart, and another one falls on them");
   if (!run.stopped_by.empty()) return;
   const auto opened = std::count_if(run.events.begin(), run.events.end(), [](const Event& event) { return event.kind == EventKind::kBreak; });
   expect_true(opened >= 2, "contacts that open", std::to_string(opened), {.scene = "the same", .slip = "contact_groups or on_group_check: the heap did not come apart", .handout = equation(5)});
