@@ -1,4 +1,5 @@
 // What accuracy costs: the truth's floor, the order that a ladder shows, and the sentence that reads it.
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -114,10 +115,18 @@ TEST(Cost, ARunThatTakesTooLongIsStoppedAndSaysSo) {
 TEST(Cost, WithinOneLongStepAControlledMethodIsStoppedToo) {
   const scene::Scene scene = turning();
   const CostTruth truth = engines::find_truth(scene, library_laws(), {});
+  long evaluations = 0;
+  CostWay way = way_of("dopri5");
+  way.method = [&](double) -> StepFunction {
+    return [&](const OdeFunction& f, double t, const VectorXd& y, double) -> VectorXd {   // whose steps have no end, nearly
+      for (int k = 0; k < 100000; ++k, ++evaluations) f(t, y);
+      return y;
+    };
+  };
   engines::CostOptions hurried;
   hurried.most_of_rung_s = 0.0;
-  const CostRung rung = engines::run_rung(scene, way_of("dopri5"), truth, 1, 1e-12, hurried);   // one step a sample: fewer than the clock is looked at by steps
-  EXPECT_TRUE(rung.took_too_long) << rung.stopped_by;
+  EXPECT_TRUE(engines::run_rung(scene, way, truth, 1, 1e-6, hurried).took_too_long);
+  EXPECT_LT(evaluations, 200);   // the clock is looked at each 64
 }
 
 TEST(Cost, ALadderEndsWhereARunTakesTooLongAndGoesOnThereWithMoreTime) {
@@ -130,6 +139,7 @@ TEST(Cost, ALadderEndsWhereARunTakesTooLongAndGoesOnThereWithMoreTime) {
   const auto nobody = [](const CostRung&) {};
   engines::extend_ladder(scene, way, truth, 30.0, hurried, {}, rungs, nobody);
   ASSERT_TRUE(rungs.back().took_too_long) << rungs.back().stopped_by;
+  EXPECT_EQ(std::count_if(rungs.begin(), rungs.end(), [](const CostRung& rung) { return rung.took_too_long; }), 1);   // finer ones are not tried
   const std::size_t all = rungs.size();
   const double step = rungs.back().step_s;
   engines::extend_ladder(scene, way, truth, 30.0, hurried, {}, rungs, nobody);   // no more time: nothing is run
