@@ -118,7 +118,7 @@ namespace {
 void tippe_top(const Given& given, Findings& findings) {
   constexpr double kTop = 0.006, kRound = 0.015, kBeside = 0.2 * kRound;   // kg, m: mass, radius, centre of mass below the middle
   const Matrix3d own = (kTop * kRound * kRound * Vector3d(131.0 / 350, 131.0 / 350, 0.4)).asDiagonal();
-  const auto to_contact = [](const Vector3d& axis_world) -> Vector3d { return kBeside * axis_world - kRound * Vector3d::UnitZ(); };
+  const auto to_contact = [&](const Vector3d& axis_world) -> Vector3d { return kBeside * axis_world - kRound * Vector3d::UnitZ(); };
   scene::BodySpec top = rough(truths::ball("top", kTop, kRound, Vector3d::Zero(), Vector3d::Zero(), 0.0), 0.1);
   top.shape = scene::EllipsoidSpec{Vector3d::Constant(kRound), Vector3d(0, 0, kBeside)};
   top.inertia_body_kg_m2 = own;
