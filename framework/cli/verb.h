@@ -34,6 +34,7 @@ void add_explain(CLI::App& app, Context& context);
 void add_grade(CLI::App& app, Context& context);
 void add_handouts(CLI::App& app, Context& context);
 void add_inspect(CLI::App& app, Context& context);
+void add_plots(CLI::App& app, Context& context);
 void add_poke(CLI::App& app, Context& context);
 void add_release(CLI::App& app, Context& context);
 void add_run(CLI::App& app, Context& context);

@@ -11,6 +11,7 @@ void add_verbs(CLI::App& app, Context& context) {
   add_poke(app, context);
   add_engines(app, context);
   add_cost(app, context);
+  add_plots(app, context);
   add_explain(app, context);
   add_grade(app, context);
   add_audit(app, context);

@@ -36,8 +36,7 @@ figure { margin: 0; flex: 1 1 20rem; max-width: 100%; } figure img, figure video
 figure .label { font-weight: 600; margin: 0 0 .3rem; } figcaption { color: var(--soft); font-size: .88rem; margin-top: .35rem; }
 .tiles { display: flex; flex-wrap: wrap; gap: 1rem; } .tile { border: 1px solid var(--line); border-top: 4px solid var(--ink); padding: .6rem 1.1rem; min-width: 8rem; }
 .tile b { display: block; font-size: 1.5rem; font-variant-numeric: tabular-nums; } .tile span { color: var(--soft); font-size: .86rem; }
-.plot-figure { max-width: 46rem; margin: .8rem 0 1.4rem; } svg.plot { width: 100%; height: auto; display: block; font: 11.5px "DejaVu Sans", Arial, sans-serif; fill: var(--ink); }
-svg.plot .grid { stroke: #d9e0e6; stroke-width: .8; } svg.plot .halo { paint-order: stroke; stroke: #fff; stroke-width: 3px; }
+.plot-figure { max-width: 46rem; margin: .8rem 0 1.4rem; } svg.plot { width: 100%; height: auto; display: block; }
 footer { margin-top: 2.5rem; border-top: 1px solid var(--line); color: var(--soft); font-size: .8rem; overflow-wrap: anywhere; }
 @media screen and (max-width: 44rem) { body { padding: 1.1rem .9rem 2rem; } th, td { padding: .3rem .5rem; } .plot-figure { overflow-x: auto; } .plot-figure svg { min-width: 35rem; } }
 @media print { .wide { overflow: visible; } table { font-size: 9pt; } body { padding: 0; max-width: none; font-size: 11pt; } a { color: inherit; text-decoration: none; }
@@ -152,7 +151,7 @@ std::string Page::html() const {
   const std::string title = html_escape(title_);
   std::string html = "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n";
   html += std::string("<meta http-equiv=\"Content-Security-Policy\" content=\"") + kPolicy + "\">\n";
-  html += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" + title + "</title>\n<style>" + kStyle +
+  html += "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n<title>" + title + "</title>\n<style>" + kStyle + plot_style() +
           "</style>\n</head>\n<body>\n<header><h1>" + title + "</h1>";
   html += (subtitle_.empty() ? "" : "<p>" + html_escape(subtitle_) + "</p>") + "</header>\n<main>\n" + body_ + "</main>\n";
   if (!record_.empty()) html += "<footer><p>" + record_ + "</p></footer>\n";

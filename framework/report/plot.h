@@ -47,6 +47,9 @@ struct Plot {
 /// @pre low < high, finite; positive where logarithmic
 std::vector<double> ticks_of(double low, double high, Scale scale);
 
+/// CSS rules that svg_of relies on: a page holds them once.
+const char* plot_style();
+
 /// <svg> element of 640 x 360 units. A plot without a point to draw says so in the frame.
 /// Curves of more than 2000 points are drawn by the least and the largest of each of 1000 parts.
 std::string svg_of(const Plot& plot);

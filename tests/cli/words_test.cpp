@@ -326,6 +326,27 @@ TEST_F(CommandLine, PokeWantsOneWayToPoint) {
   EXPECT_EQ(type("poke poked_box --pixel 320,240 --force up --duration-s 0.2").code, 2);
 }
 
+TEST_F(CommandLine, PlotsOfAPageBecomePicturesOfTheWidthAskedFor) {
+  ASSERT_EQ(type("cost toi --budget-s 1 --out .").code, 0);
+  if (std::system("command -v rsvg-convert >/dev/null") == 0) {
+    const Said said = type("plots toi/index.html --width-px 900");
+    ASSERT_EQ(said.code, 0) << said.err;
+    ASSERT_FALSE(said.out.empty());
+    const std::string png = contents_of(folder_ / said.out.substr(0, said.out.find('\n')));
+    ASSERT_GT(png.size(), 24u);
+    EXPECT_EQ(png.substr(1, 3), "PNG");
+    EXPECT_EQ(static_cast<unsigned char>(png[18]) * 256 + static_cast<unsigned char>(png[19]), 900);   // the width in its header
+  }
+  const Said drawn = type("plots toi/index.html --svg --out drawn");
+  EXPECT_TRUE(contents_of(folder_ / drawn.out.substr(0, drawn.out.find('\n'))).starts_with("<?xml")) << drawn.err;
+  std::ofstream(folder_ / "empty.html") << "<p>words</p>";
+  for (const char* page : {"empty.html", "nowhere.html"}) {
+    const Said refused = type(std::string("plots ") + page);
+    EXPECT_EQ(refused.code, 2);
+    EXPECT_TRUE(holds(refused.err, page)) << refused.err;
+  }
+}
+
 TEST_F(CommandLine, EnginesAreComparedInATableAndOnAPage) {
   const Said said = type("engines gas --sizes 10,20 --duration-s 0.5 --modules a1=reference");
   EXPECT_EQ(said.code, 0) << said.out << said.err;
