@@ -13,3 +13,10 @@ done
 ./tumble run cradle_in_flight --modules a1=reference,a4=reference --virtual-times "$folder/cradle_in_flight.png" --moves 38,46,51 --chart-until-s 1
 ./tumble run late_hit --modules a1=reference,a4=reference --virtual-times "$folder/late_hit_found.png" --moves 12,14 --chart-until-s 1.2
 ./tumble run late_hit --modules a1=reference,a4=reference --virtual-times "$folder/late_hit_undone.png" --moves 15,18,26,28 --chart-until-s 1.3
+
+# A plot of a page: its own folder, since a page has several.
+pages=$(mktemp -d)
+trap 'rm -rf "$pages"' EXIT
+./tumble cost t_handle --methods euler,midpoint,rk4 --engines none --steps 1/60,1/120,1/240,1/480,1/960,1/1920 --duration-s 2 --modules reference --out "$pages"
+./tumble plots "$pages/t_handle/index.html" --out "$pages/plots"
+cp "$pages/plots/error_against_evaluations.png" "$folder/accuracy_and_its_price.png"
