@@ -21,7 +21,7 @@ for handout in "$root"/handouts/*.md; do
   [ "$formulas" -ge 20 ] || fail "$page has $formulas formulas, expected 20 or more"
   figures=$(grep -c '^!\[' "$handout" || true) inlined=$(grep -o 'src="data:image/png' "$page" | wc -l)
   [ "$figures" = "$inlined" ] || fail "$page holds $inlined of $figures figures"
-  grep -Eq '(^|>)##+ ' "$page" && fail "$page shows a heading as text: it wants an empty line before it"
+  grep -Eq '(^|> ?)##+ ' "$page" && fail "$page shows a heading as text: it wants an empty line before it"
   wide=$(awk '/^```/ { in_code = !in_code; next } in_code && length($0) > 122 { print FILENAME ":" NR }' "$handout")   # what a line of the PDF holds
   [ -z "$wide" ] || fail "code runs over the margin of the page: $wide"
   if grep -Eq '<(img|script|link)[^>]*(src|href)="(https?:)?//' "$page"; then fail "$page asks for something from the network"; fi
