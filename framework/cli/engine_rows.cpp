@@ -105,7 +105,7 @@ void keep(EngineRow& row, const Trajectory& run) {
   }
 }
 
-/// Stops a run that has taken its time: laws, frames and events are where it can be stopped.
+/// Stops a run that has taken its time, where it calls a law: that of a step, and that of an impact.
 class Deadline {
  public:
   explicit Deadline(double most_s) : most_s_(most_s), until_(cpu_seconds() + most_s) {}

@@ -10,15 +10,20 @@
 
 namespace tumble::testing {
 
-inline Trajectory run_by(const std::string& engine, const scene::Scene& scene, const engines::TimewarpTrial& trial = {}, double frame_rate_hz = 60.0, const Laws& laws = test_laws()) {
+/// @param options  what a run is told beside; whose timewarp it is need not be
+inline Trajectory run_as_told(engines::RunOptions options, const scene::Scene& scene, const Laws& laws) {
   TrajectoryRecorder recorder;
-  engines::RunOptions options;
-  options.engine = engine;
   options.timewarp = engines::fast_timewarp();
-  options.trial = trial;
-  options.frame_rate_hz = frame_rate_hz;
   engines::run_scene(scene, laws, options, recorder);
   return recorder.trajectory();
+}
+
+inline Trajectory run_by(const std::string& engine, const scene::Scene& scene, const engines::TimewarpTrial& trial = {}, double frame_rate_hz = 60.0, const Laws& laws = test_laws()) {
+  engines::RunOptions options;
+  options.engine = engine;
+  options.trial = trial;
+  options.frame_rate_hz = frame_rate_hz;
+  return run_as_told(std::move(options), scene, laws);
 }
 
 /// Empty where two runs committed the same, frames included; else where they first part.

@@ -67,15 +67,12 @@ TEST(PaperScenes, RobotsAgree) { expect_engines_agree(sized("robots", 1, 0.7), 2
 TEST(PaperScenes, AvalancheAgrees) { expect_engines_agree(sized("avalanche", 5, 1.5), 10, 0.5, 1e-3); }
 
 Trajectory run_on(int threads, const scene::Scene& scene, const engines::TimewarpTrial& trial, const std::vector<engines::Callback>& callbacks = {}, const std::string& engine = "tw") {
-  TrajectoryRecorder recorder;
   engines::RunOptions options;
   options.engine = engine;
-  options.timewarp = engines::fast_timewarp();
   options.trial = trial;
   options.threads = threads;
   options.callbacks = callbacks;
-  engines::run_scene(scene, laws(), options, recorder);
-  return recorder.trajectory();
+  return run_as_told(std::move(options), scene, laws());
 }
 
 // What is undone over what is committed: nowhere more than all, and little of it on average, also where threads are held up.

@@ -132,14 +132,11 @@ TEST(Processes, OnSeveralThreadsCommitTheReferencesTrace) {
 // ---- Callbacks -------------------------------------------------------------------------------------------------------------
 
 Trajectory run_with_callbacks(const std::string& engine, const scene::Scene& scene, const std::vector<engines::Callback>& callbacks, const TimewarpTrial& trial = {}) {
-  TrajectoryRecorder recorder;
   engines::RunOptions options;
   options.engine = engine;
-  options.timewarp = engines::fast_timewarp();
   options.trial = trial;
   options.callbacks = callbacks;
-  engines::run_scene(scene, laws(), options, recorder);
-  return recorder.trajectory();
+  return run_as_told(std::move(options), scene, laws());
 }
 
 // Each is handed to all balls at once; the local virtual times of most lie beyond it by then.
