@@ -5,12 +5,6 @@
 namespace tumble {
 namespace {
 
-Vector6d six(const Vector3d& linear, const Vector3d& angular) {
-  Vector6d both;
-  both << linear, angular;
-  return both;
-}
-
 // What the three rows of a point share: how B's point moves against A's, and what it accelerates by turning.
 struct PointMotion {
   Vector3d apart, velocity, centripetal;
@@ -22,26 +16,38 @@ PointMotion point_motion(const Body& a, const Vector3d& r_a, const Body& b, cons
   return {(a.com_world - b.com_world) + r_a - r_b, (a.velocity_world - b.velocity_world) + turning_a - turning_b, a.omega_world.cross(turning_a) - b.omega_world.cross(turning_b)};
 }
 
-ConstraintRow point_row(int axis, const PointMotion& motion, const Vector3d& r_a, const Vector3d& r_b) {
-  const Vector3d e = Vector3d::Unit(axis);
-  ConstraintRow row;
-  row.jacobian_a = six(e, r_a.cross(e));
-  row.jacobian_b = -six(e, r_b.cross(e));
-  row.value = motion.apart[axis];
-  row.rate = motion.velocity[axis];
-  row.velocity_product = motion.centripetal[axis];
-  return row;
+Constraint& append_row(int index_a, int index_b, std::vector<Constraint>& rows) {
+  Constraint& constraint = rows.emplace_back();
+  constraint.body_a = index_a;
+  constraint.body_b = index_b;
+  return constraint;
 }
 
-ConstraintRow axes_row(const Vector3d& x_a, const Body& a, const Vector3d& z_b, const Body& b) {
-  ConstraintRow row;
+void append_point_rows(const PointMotion& motion, const Vector3d& r_a, const Vector3d& r_b, int index_a, int index_b, std::vector<Constraint>& rows) {
+  for (int axis = 0; axis < 3; ++axis) {
+    Constraint& constraint = append_row(index_a, index_b, rows);
+    const Vector3d e = Vector3d::Unit(axis);
+    constraint.row.jacobian_a.head<3>() = e;
+    constraint.row.jacobian_a.tail<3>() = r_a.cross(e);
+    constraint.row.jacobian_b.head<3>() = -e;
+    constraint.row.jacobian_b.tail<3>() = e.cross(r_b);
+    constraint.row.value = motion.apart[axis];
+    constraint.row.rate = motion.velocity[axis];
+    constraint.row.velocity_product = motion.centripetal[axis];
+  }
+}
+
+/// x_a of A and z_b of B stay at right angles.
+void append_axes_row(const Vector3d& x_a, const Body& a, int index_a, const Vector3d& z_b, const Body& b, int index_b, std::vector<Constraint>& rows) {
   const Vector3d across = x_a.cross(z_b), turning = a.omega_world - b.omega_world;
-  row.jacobian_a = six(Vector3d::Zero(), across);
-  row.jacobian_b = -row.jacobian_a;
+  ConstraintRow& row = append_row(index_a, index_b, rows).row;
+  row.jacobian_a.head<3>().setZero();
+  row.jacobian_a.tail<3>() = across;
+  row.jacobian_b.head<3>().setZero();
+  row.jacobian_b.tail<3>() = -across;
   row.value = x_a.dot(z_b);
   row.rate = across.dot(turning);
   row.velocity_product = (a.omega_world.cross(x_a).cross(z_b) + x_a.cross(b.omega_world.cross(z_b))).dot(turning);
-  return row;
 }
 
 }  // namespace
@@ -58,12 +64,12 @@ int row_count(scene::JointKind kind) {
 void append_joint_rows(const JointLink& joint, const Body& a, int index_a, const Body& b, int index_b, std::vector<Constraint>& rows) {
   const Vector3d r_a = a.world_from_body * joint.a.point_body, r_b = b.world_from_body * joint.b.point_body;
   const PointMotion motion = point_motion(a, r_a, b, r_b);
-  for (int axis = 0; axis < 3; ++axis) rows.push_back({index_a, index_b, point_row(axis, motion, r_a, r_b)});
+  append_point_rows(motion, r_a, r_b, index_a, index_b, rows);
   if (joint.kind == scene::JointKind::kBall) return;
   const Matrix3d axes_a = (a.world_from_body * joint.a_from_joint).toRotationMatrix(), axes_b = (b.world_from_body * joint.b_from_joint).toRotationMatrix();
-  rows.push_back({index_a, index_b, axes_row(axes_a.col(0), a, axes_b.col(2), b)});
-  rows.push_back({index_a, index_b, axes_row(axes_a.col(1), a, axes_b.col(2), b)});
-  if (joint.kind == scene::JointKind::kWeld) rows.push_back({index_a, index_b, axes_row(axes_a.col(0), a, axes_b.col(1), b)});
+  append_axes_row(axes_a.col(0), a, index_a, axes_b.col(2), b, index_b, rows);
+  append_axes_row(axes_a.col(1), a, index_a, axes_b.col(2), b, index_b, rows);
+  if (joint.kind == scene::JointKind::kWeld) append_axes_row(axes_a.col(0), a, index_a, axes_b.col(1), b, index_b, rows);
 }
 
 HingeMotion hinge_motion(const JointLink& joint, const Body& a, const Body& b) {

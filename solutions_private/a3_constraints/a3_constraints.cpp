@@ -80,22 +80,30 @@ namespace {
 class Envelope {
  public:
   /// @param first  (m), the column of each row's first entry, at most the row itself
-  explicit Envelope(const std::vector<Eigen::Index>& first) : first_(first), begin_(first.size() + 1, 0), inverse_pivots_(first.size(), 0.0) {
-    for (std::size_t i = 0; i < first.size(); ++i) begin_[i + 1] = begin_[i] + static_cast<Eigen::Index>(i) - first[i] + 1;
-    entries_.assign(static_cast<std::size_t>(begin_.back()), 0.0);
+  explicit Envelope(std::vector<Eigen::Index> first) : first_(std::move(first)), origin_(first_.size()), inverse_pivots_(first_.size(), 0.0) {
+    Eigen::Index stored = 0;
+    for (std::size_t i = 0; i < first_.size(); ++i) {
+      origin_[i] = stored - first_[i];
+      stored += static_cast<Eigen::Index>(i) - first_[i] + 1;
+    }
+    entries_.assign(static_cast<std::size_t>(stored), 0.0);
   }
 
-  double& at(Eigen::Index row, Eigen::Index column) { return this->row(row)[column]; }
+  Eigen::Index first(Eigen::Index i) const { return first_[static_cast<std::size_t>(i)]; }
+  /// Row i, to be counted by column from the matrix' first.
+  double* row(Eigen::Index i) { return entries_.data() + origin_[static_cast<std::size_t>(i)]; }
+  const double* row(Eigen::Index i) const { return entries_.data() + origin_[static_cast<std::size_t>(i)]; }
 
   void factorise(double dependent) {
     for (Eigen::Index i = 0; i < size(); ++i) {
       double* const of_i = row(i);
+      const Eigen::Index first_of_i = first(i);
       double pivot = of_i[i];
-      for (Eigen::Index j = first(i); j < i; ++j) {  // first L_ij D_j, which the columns to come need
-        const Eigen::Index from = std::max(first(i), first(j));
+      for (Eigen::Index j = first_of_i; j < i; ++j) {  // first L_ij D_j, which the columns to come need
+        const Eigen::Index from = std::max(first_of_i, first(j));
         of_i[j] -= product(of_i + from, row(j) + from, j - from);
       }
-      for (Eigen::Index j = first(i); j < i; ++j) {
+      for (Eigen::Index j = first_of_i; j < i; ++j) {
         const double times_pivot = of_i[j];
         of_i[j] *= inverse_pivots_[static_cast<std::size_t>(j)];
         pivot -= times_pivot * of_i[j];
@@ -104,7 +112,7 @@ class Envelope {
     }
   }
 
-  VectorXd solve(VectorXd unknown) const {
+  void solve_in_place(VectorXd& unknown) const {
     double* const x = unknown.data();
     for (Eigen::Index i = 0; i < size(); ++i) x[i] -= product(row(i) + first(i), x + first(i), i - first(i));
     for (Eigen::Index i = 0; i < size(); ++i) x[i] *= inverse_pivots_[static_cast<std::size_t>(i)];
@@ -113,7 +121,6 @@ class Envelope {
       const double x_i = x[i];
       for (Eigen::Index k = first(i); k < i; ++k) x[k] -= of_i[k] * x_i;
     }
-    return unknown;
   }
 
  private:
@@ -129,12 +136,8 @@ class Envelope {
     return even + odd;
   }
   Eigen::Index size() const { return static_cast<Eigen::Index>(first_.size()); }
-  Eigen::Index first(Eigen::Index i) const { return first_[static_cast<std::size_t>(i)]; }
-  /// Row i, to be counted by column from the matrix' first.
-  double* row(Eigen::Index i) { return entries_.data() + begin_[static_cast<std::size_t>(i)] - first(i); }
-  const double* row(Eigen::Index i) const { return entries_.data() + begin_[static_cast<std::size_t>(i)] - first(i); }
 
-  std::vector<Eigen::Index> first_, begin_;
+  std::vector<Eigen::Index> first_, origin_;
   std::vector<double> entries_, inverse_pivots_;
 };
 
@@ -148,40 +151,34 @@ class RowSystem {
 
   /// M^-1 J^T lambda, (6n).
   VectorXd response(const VectorXd& lambda) const {
-    // Forces are summed before they are divided by masses: neighbours' tensions cancel where they should.
-    VectorXd change = VectorXd::Zero(6 * static_cast<Eigen::Index>(bodies_.size()));
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      change.segment<6>(6 * rows_[i].body_a) += lambda[static_cast<Eigen::Index>(i)] * rows_[i].row.jacobian_a;
-      change.segment<6>(6 * rows_[i].body_b) += lambda[static_cast<Eigen::Index>(i)] * rows_[i].row.jacobian_b;
-    }
-    for (std::size_t i = 0; i < bodies_.size(); ++i) {
-      auto six = change.segment<6>(6 * static_cast<Eigen::Index>(i));
-      six = accelerated(bodies_[i], six);
-    }
+    VectorXd change(6 * static_cast<Eigen::Index>(bodies_.size()));
+    respond(lambda, change);
     return change;
-  }
-
-  /// J u for u as six numbers a body, (m).
-  VectorXd rates(const VectorXd& u) const {
-    VectorXd result(static_cast<Eigen::Index>(rows_.size()));
-    for (std::size_t i = 0; i < rows_.size(); ++i)
-      result[static_cast<Eigen::Index>(i)] = rows_[i].row.jacobian_a.dot(u.segment<6>(6 * rows_[i].body_a)) + rows_[i].row.jacobian_b.dot(u.segment<6>(6 * rows_[i].body_b));
-    return result;
   }
 
   /// lambda with A lambda = wanted, by a factorisation and refinement: what is left over is computed by way of the bodies, in
   /// which light and heavy ones do not swallow each other's digits as they do in A.
-  VectorXd solve(const VectorXd& wanted) const {
+  /// @param least_rounds  2 refine once at least: lambda keeps its digits where masses differ. 1 does where only A lambda is to be right
+  VectorXd solve(const VectorXd& wanted, int least_rounds) const {
     constexpr int kMostRounds = 8;
-    VectorXd lambda = VectorXd::Zero(wanted.size());
-    VectorXd left = scale_.cwiseProduct(wanted);
-    for (int round = 0; round < kMostRounds && left.squaredNorm() > 0; ++round) {
-      const VectorXd next = lambda + scale_.cwiseProduct(solve_once(left));
-      const VectorXd next_left = scale_.cwiseProduct(wanted - rates(response(next)));
-      if (!(next_left.norm() < left.norm())) break;
-      const bool is_done = next_left.norm() > 0.5 * left.norm();
-      lambda = next;
-      left = next_left;
+    // What the forces' own rounding leaves, A having a unit diagonal: more rounds would only stir it.
+    constexpr double kRoundOff = 2 * std::numeric_limits<double>::epsilon();
+    VectorXd lambda = VectorXd::Zero(wanted.size()), scaled = lambda, left = scale_.cwiseProduct(wanted);
+    VectorXd next(wanted.size()), next_left(wanted.size()), change(6 * static_cast<Eigen::Index>(bodies_.size()));
+    double size_left = left.norm();
+    for (int round = 0; round < kMostRounds && size_left > 0; ++round) {
+      next = left;
+      solve_once(next);
+      scaled += next;
+      next = scale_.cwiseProduct(scaled);
+      respond(next, change);
+      leave(wanted, change, next_left);
+      const double size_next = next_left.norm();
+      if (!(size_next < size_left)) break;
+      const bool is_done = size_next > 0.5 * size_left || (round + 1 >= least_rounds && size_next <= kRoundOff * scaled.norm());
+      lambda.swap(next);
+      left.swap(next_left);
+      size_left = size_next;
       if (is_done) break;
     }
     return lambda;
@@ -190,48 +187,90 @@ class RowSystem {
  private:
   static Vector6d accelerated(const ConstrainedBody& body, const Vector6d& force) {
     Vector6d u;
-    u << body.inverse_mass * force.head<3>(), body.inverse_inertia_world * force.tail<3>();
+    u.head<3>() = body.inverse_mass * force.head<3>();
+    u.tail<3>().noalias() = body.inverse_inertia_world * force.tail<3>();
     return u;
+  }
+
+  /// change = M^-1 J^T lambda. Forces are summed before they are divided by masses: neighbours' tensions cancel where they should.
+  void respond(const VectorXd& lambda, VectorXd& change) const {
+    change.setZero();
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const double force = lambda[static_cast<Eigen::Index>(i)];
+      double* const on_a = change.data() + 6 * rows_[i].body_a;
+      double* const on_b = change.data() + 6 * rows_[i].body_b;
+      for (int k = 0; k < 6; ++k) on_a[k] += force * rows_[i].row.jacobian_a[k];
+      for (int k = 0; k < 6; ++k) on_b[k] += force * rows_[i].row.jacobian_b[k];
+    }
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      Eigen::Map<Vector6d> six(change.data() + 6 * i);
+      six = accelerated(bodies_[i], six);
+    }
+  }
+
+  /// left = what u does not give of the wanted J u, scaled.
+  void leave(const VectorXd& wanted, const VectorXd& u, VectorXd& left) const {
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      const auto at = static_cast<Eigen::Index>(i);
+      left[at] = scale_[at] * (wanted[at] - (product(rows_[i].row.jacobian_a, u.data() + 6 * rows_[i].body_a) + product(rows_[i].row.jacobian_b, u.data() + 6 * rows_[i].body_b)));
+    }
+  }
+
+  static double product(const Vector6d& jacobian, const double* u) {
+    return (jacobian[0] * u[0] + jacobian[1] * u[1] + jacobian[2] * u[2]) + (jacobian[3] * u[3] + jacobian[4] * u[4] + jacobian[5] * u[5]);
+  }
+
+  /// The rows of each body, in order, one body after the other. Rows meet in A where they share a body that can be moved: the ceiling,
+  /// which may hold all of them, couples none, and has none here.
+  struct Touching {
+    std::vector<std::size_t> rows, begin;   // of body k: rows[begin[k]] to rows[begin[k + 1]]
+  };
+  Touching rows_touching() const {
+    Touching touching;
+    std::vector<char> moves(bodies_.size());
+    for (std::size_t k = 0; k < bodies_.size(); ++k) moves[k] = bodies_[k].inverse_mass != 0 || !bodies_[k].inverse_inertia_world.isZero(0);
+    const auto for_each_end = [&](const auto& what) {
+      for (std::size_t i = 0; i < rows_.size(); ++i)
+        for (const int body : {rows_[i].body_a, rows_[i].body_b})
+          if (moves[static_cast<std::size_t>(body)]) what(i, static_cast<std::size_t>(body));
+    };
+    touching.begin.assign(bodies_.size() + 2, 0);
+    for_each_end([&](std::size_t, std::size_t body) { ++touching.begin[body + 2]; });
+    for (std::size_t k = 2; k < touching.begin.size(); ++k) touching.begin[k] += touching.begin[k - 1];
+    touching.rows.resize(touching.begin.back());
+    for_each_end([&](std::size_t i, std::size_t body) { touching.rows[touching.begin[body + 1]++] = i; });
+    return touching;
   }
 
   /// A, row by row below its diagonal, scaled; and its factor, of whichever kind suits how its rows meet.
   void factorise() {
-    const std::vector<std::vector<std::size_t>> touching = rows_touching();
+    const Touching touching = rows_touching();
     std::vector<Eigen::Index> first(rows_.size());
     std::size_t stored = 0;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       std::size_t least = i;
-      for (const int body : {rows_[i].body_a, rows_[i].body_b})
-        if (const auto& rows = touching[static_cast<std::size_t>(body)]; !rows.empty()) least = std::min(least, rows.front());
+      for (const int body : {rows_[i].body_a, rows_[i].body_b}) {
+        const std::size_t k = touching.begin[static_cast<std::size_t>(body)];
+        if (k != touching.begin[static_cast<std::size_t>(body) + 1]) least = std::min(least, touching.rows[k]);
+      }
       first[i] = static_cast<Eigen::Index>(least);
       stored += i - least + 1;
     }
     scale_ = VectorXd::Zero(static_cast<Eigen::Index>(rows_.size()));
-    if (stored <= kWide * rows_.size()) factorise_envelope(first, touching);
+    if (stored <= kWide * rows_.size()) factorise_envelope(std::move(first), touching);
     else factorise_sparse(touching);
-  }
-
-  /// The rows of each body, in order. Rows meet in A where they share a body that can be moved: the ceiling, which may hold all of
-  /// them, couples none, and has none here.
-  std::vector<std::vector<std::size_t>> rows_touching() const {
-    std::vector<std::vector<std::size_t>> touching(bodies_.size());
-    for (std::size_t i = 0; i < rows_.size(); ++i) {
-      for (const int body : {rows_[i].body_a, rows_[i].body_b}) {
-        const ConstrainedBody& b = bodies_[static_cast<std::size_t>(body)];
-        if (b.inverse_mass != 0 || !b.inverse_inertia_world.isZero(0)) touching[static_cast<std::size_t>(body)].push_back(i);
-      }
-    }
-    return touching;
   }
 
   /// add(i, j, J_i M^-1 J_j^T of one body) for i >= j.
   template <class Add>
-  void for_each_product(const std::vector<std::vector<std::size_t>>& touching, const Add& add) const {
+  void for_each_product(const Touching& touching, const Add& add) const {
     for (std::size_t k = 0; k < bodies_.size(); ++k) {
       const auto jacobian = [&](std::size_t i) -> const Vector6d& { return rows_[i].body_a == static_cast<int>(k) ? rows_[i].row.jacobian_a : rows_[i].row.jacobian_b; };
-      for (auto j = touching[k].begin(); j != touching[k].end(); ++j) {
-        const Vector6d moved = accelerated(bodies_[k], jacobian(*j));
-        for (auto i = j; i != touching[k].end(); ++i) add(*i, *j, moved.dot(jacobian(*i)));
+      const std::size_t end = touching.begin[k + 1];
+      for (std::size_t at = touching.begin[k]; at != end; ++at) {
+        const std::size_t j = touching.rows[at];
+        const Vector6d moved = accelerated(bodies_[k], jacobian(j));
+        for (std::size_t other = at; other != end; ++other) add(touching.rows[other], j, product(jacobian(touching.rows[other]), moved.data()));
       }
     }
   }
@@ -239,19 +278,20 @@ class RowSystem {
   /// The diagonal makes the scale.
   void scale_by_diagonal() { scale_ = (scale_.array() > 0).select(scale_.array().rsqrt(), 0.0); }
 
-  void factorise_envelope(const std::vector<Eigen::Index>& first, const std::vector<std::vector<std::size_t>>& touching) {
-    envelope_.emplace(first);
-    for_each_product(touching, [&](std::size_t i, std::size_t j, double value) { envelope_->at(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) += value; });
-    for (Eigen::Index i = 0; i < scale_.size(); ++i) scale_[i] = envelope_->at(i, i);
+  void factorise_envelope(std::vector<Eigen::Index> first, const Touching& touching) {
+    envelope_.emplace(std::move(first));
+    for_each_product(touching, [&](std::size_t i, std::size_t j, double value) { envelope_->row(static_cast<Eigen::Index>(i))[j] += value; });
+    for (Eigen::Index i = 0; i < scale_.size(); ++i) scale_[i] = envelope_->row(i)[i];
     scale_by_diagonal();
     for (Eigen::Index i = 0; i < scale_.size(); ++i) {
-      for (Eigen::Index j = first[static_cast<std::size_t>(i)]; j < i; ++j) envelope_->at(i, j) *= scale_[i] * scale_[j];
-      envelope_->at(i, i) = 1.0;  // a row that moves nothing stands alone, with 0 to do
+      double* const row = envelope_->row(i);
+      for (Eigen::Index j = envelope_->first(i); j < i; ++j) row[j] *= scale_[i] * scale_[j];
+      row[i] = 1.0;  // a row that moves nothing stands alone, with 0 to do
     }
     envelope_->factorise(kDependent);
   }
 
-  void factorise_sparse(const std::vector<std::vector<std::size_t>>& touching) {
+  void factorise_sparse(const Touching& touching) {
     const int m = static_cast<int>(rows_.size());
     std::vector<Eigen::Triplet<double>> entries;
     for_each_product(touching, [&](std::size_t i, std::size_t j, double value) {
@@ -268,13 +308,13 @@ class RowSystem {
     inverse_pivots_ = (sparse_.vectorD().array() > kDependent).select(sparse_.vectorD().cwiseInverse(), 0.0);
   }
 
-  VectorXd solve_once(const VectorXd& b) const {
-    if (envelope_) return envelope_->solve(b);
-    VectorXd x = sparse_.permutationP() * b;
-    sparse_.matrixL().solveInPlace(x);
-    x = inverse_pivots_.cwiseProduct(x);
-    sparse_.matrixU().solveInPlace(x);
-    return sparse_.permutationPinv() * x;
+  void solve_once(VectorXd& x) const {
+    if (envelope_) return envelope_->solve_in_place(x);
+    VectorXd permuted = sparse_.permutationP() * x;
+    sparse_.matrixL().solveInPlace(permuted);
+    permuted = inverse_pivots_.cwiseProduct(permuted);
+    sparse_.matrixU().solveInPlace(permuted);
+    x = sparse_.permutationPinv() * permuted;
   }
 
   // A row that says what others say leaves a pivot of round-off only, some 1e-16 times the links in the loop. The shift keeps it
@@ -301,12 +341,12 @@ VectorXd constraint_multipliers(const std::vector<Constraint>& rows, const std::
     const double free = row.jacobian_a.dot(bodies[static_cast<std::size_t>(a)].free_acceleration) + row.jacobian_b.dot(bodies[static_cast<std::size_t>(b)].free_acceleration);
     right_hand_side[static_cast<Eigen::Index>(i)] -= free + row.velocity_product;
   }
-  return RowSystem(rows, bodies).solve(right_hand_side);
+  return RowSystem(rows, bodies).solve(right_hand_side, 2);
 }
 
 VectorXd constraint_correction(const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies, const VectorXd& error) {
   const RowSystem system(rows, bodies);
-  return -system.response(system.solve(error));
+  return -system.response(system.solve(error, 1));
 }
 
 // ---- Resting contact ---------------------------------------------------------------------------------------------------
