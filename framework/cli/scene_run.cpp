@@ -90,6 +90,8 @@ void print_summary(const scene::Scene& scene, const Laws& laws, const Trajectory
   for (const auto& notice : run.counters.notices) fmt::print("  note     {}\n", notice);
   if (!run.stopped_by.empty()) fmt::print("  STOPPED  {}\n", run.stopped_by);
   fmt::print("{}", judgement_table(checks));
+  const bool all_right = std::all_of(checks.begin(), checks.end(), [](const CheckResult& check) { return check.passed; });
+  if (!searched.empty() && run.stopped_by.empty() && !all_right) fmt::print("  the run is what was asked for; the scene's own numbers may ask for more: a smaller --accuracy, or more --budget-s, shows whether they do\n");
 }
 
 void print_json(const scene::Scene& scene, const PlannedRun& plan, const Trajectory& run, const std::vector<CheckResult>& checks, double cpu_s) {

@@ -11,6 +11,9 @@ constexpr const char* kPolicy =
     "default-src 'none'; img-src 'self' file: data:; media-src 'self' file: data:; style-src 'unsafe-inline'; "
     "base-uri 'none'; form-action 'none'";
 
+// A table of more columns stands closer, so that it fits the page and paper.
+constexpr std::size_t kManyColumns = 8;
+
 // Colours pass 4.5:1 against their ground and differ in lightness, not in hue alone.
 constexpr const char* kStyle = R"(
 :root { --ink: #1c2733; --soft: #5b6875; --line: #d9e0e6; --wash: #f4f7f9; --good: #00664b; --warn: #8a5a00; --bad: #a82c00; --link: #005a96; }
@@ -24,6 +27,7 @@ p { max-width: 52rem; } a { color: var(--link); } nav { margin: .8rem 0 1.1rem; 
 .wide { overflow-x: auto; margin: .8rem 0 1.2rem; } table { border-collapse: collapse; font-size: .93rem; }
 caption { text-align: left; color: var(--soft); padding-bottom: .3rem; }
 th, td { padding: .32rem .8rem; border-bottom: 1px solid var(--line); text-align: left; vertical-align: top; }
+.many { font-size: .86rem; } .many th, .many td { padding: .3rem .45rem; }
 thead th { border-bottom: 2px solid var(--ink); white-space: nowrap; } tbody tr:nth-child(even) { background: var(--wash); }
 .number { text-align: right; font-variant-numeric: tabular-nums; white-space: nowrap; }
 .muted { color: var(--soft); } .good { color: var(--good); font-weight: 600; } .warning { color: var(--warn); font-weight: 600; }
@@ -110,7 +114,7 @@ void Page::fold(std::string_view summary, std::string_view text, bool open) {
 }
 
 void Page::table(const Table& table) {
-  body_ += "<div class=\"wide\"><table>";
+  body_ += table.columns.size() > kManyColumns ? "<div class=\"wide\"><table class=\"many\">" : "<div class=\"wide\"><table>";
   if (!table.caption.empty()) body_ += "<caption>" + html_escape(table.caption) + "</caption>";
   body_ += "<thead><tr>";
   for (const Column& column : table.columns)
