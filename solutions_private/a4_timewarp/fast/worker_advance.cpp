@@ -79,7 +79,9 @@ void Worker::advance(int body) {
   const Flight flight = history(body).back();
   const double from = process(body).horizon, gvt = global_virtual_time();
   double to = horizon_after(body, flight, from);
-  if (to > gvt + all_.window) to = std::max(from, gvt + all_.window);
+  // A ball's flight that one thread takes on is undone as a whole however short it is cut, and costs the same: the window is for others.
+  const bool is_bounded = flight.passage >= 0 || all_.threads > 1;
+  if (is_bounded && to > gvt + all_.window) to = std::max(from, gvt + all_.window);
   const auto own_end = all_.run.own_end(body, flight, to);
   if (own_end) to = own_end->time;
   const double swept_from = std::min(from, gvt);
