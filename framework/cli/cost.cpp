@@ -78,7 +78,7 @@ void add_cost(CLI::App& app, Context& context) {
   verb->add_option("--modules", words->modules, "Whose laws, as for tumble run; of an assignment: whose module is looked at (default student)")->type_name("WORDS");
   verb->add_option("--on", words->on, "Of an assignment: the scene that it is measured on")->type_name("SCENE");
   verb->add_option("--duration-s", words->duration_s, "Simulated time [s] instead of the scene's")->check(CLI::PositiveNumber);
-  verb->add_option("--budget-s", words->budget_s, "CPU time of all ladders together [s], default 36, of all: 4 a scene; the truth takes 18 s at most beside")->check(CLI::PositiveNumber);
+  verb->add_option("--budget-s", words->budget_s, "CPU time of all ladders together [s], default 30, of all: 4 a scene; the truth takes 18 s at most beside")->check(CLI::PositiveNumber);
   verb->add_option("--n", words->n, "Size of a scene whose size is a parameter");
   verb->add_option("--out", words->out, "Folder in which the page SCENE/index.html is made")->capture_default_str();
   verb->footer("Example: tumble cost double_pendulum --modules reference\n         tumble cost a2 --modules mine/a2_integration.cpp\nTimes are CPU times in this run and are meant to be compared with each other only.");

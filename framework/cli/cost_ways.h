@@ -20,7 +20,7 @@ struct CostWords {
   std::optional<int> n;
   std::optional<double> budget_s;        // CPU time of all ladders together [s]; empty: usual_budget_s
 
-  static constexpr double kUsualBudget = 36.0;    // with the search for the truth a scene takes less than a minute
+  static constexpr double kUsualBudget = 30.0;    // with the search for the truth a scene takes less than a minute
   double budget() const { return budget_s.value_or(kUsualBudget); }
 
   /// @throws UserError for what is neither a number nor 1/N

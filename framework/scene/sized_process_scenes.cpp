@@ -290,8 +290,8 @@ Scene avalanche(int n) {
     scene.bodies.push_back(rock);
   }
   const double far = std::max(8.0, 0.5 * width + 5.0);
-  scene.camera.eye_m = {0.95 * far, -0.9 * far, 0.7 * far};
-  scene.camera.target_m = {-2.7, 0.0, 1.8};
+  scene.camera.eye_m = {1.2 * far, -1.15 * far, 0.85 * far};
+  scene.camera.target_m = {-2.2, 0.0, 1.2};
   return scene;
 }
 
