@@ -12,13 +12,26 @@
 
 namespace tumble::peers {
 
+/// One thing that the project wants to reach, as numbers that the rows decide. A goal names some of: an error, a step, a price, a peer.
+///   error, step          the row of that step is at most so wrong
+///   error, price_s       the cheapest row of that error costs at most so much
+///   error, ratio, peer   ... at most so many times the peer's cheapest of that error
+///   step, ratio, peer    the row of that step costs at most so many times the peer's row of the same step, whatever their errors
+///   error                some row is at most so wrong
+///   step, ratio, bench   a step costs at most so many times one of that step in the other case
+struct Goal {
+  std::string words;
+  double error = std::numeric_limits<double>::quiet_NaN(), step = std::numeric_limits<double>::quiet_NaN();   // step [s]
+  double price_s = std::numeric_limits<double>::quiet_NaN(), ratio = std::numeric_limits<double>::quiet_NaN();
+  std::string peer = {}, bench = {};
+};
+
 struct BenchCase {
   std::string id;                     // "S3-100": unique, a file's name
   std::string name, title;            // a few words for tables, and a line
   std::string error_name, error_unit; // of the one number that is drawn
   std::string truth;                  // where the truth comes from, for the page
-  std::string goal;                   // what the project wants to reach
-  double goal_error = std::numeric_limits<double>::quiet_NaN(), goal_price_s = std::numeric_limits<double>::quiet_NaN();   // where the goal has both as numbers
+  std::vector<Goal> goals;
   std::string note;                   // what to know when reading the picture
   scene::Scene scene;
   std::vector<double> sample_times;   // [s], ascending, ends of steps of every ladder; the last is the end of the run

@@ -7,11 +7,11 @@
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
+#include "framework/dynamics/methods.h"
 #include "framework/engines/run.h"
 #include "framework/engines/truths/memory_scene.h"
 #include "tests/bench/peers/harness.h"
 #include "tests/engines/reference_laws.h"
-#include "tests/stability/methods.h"
 #if __has_include("framework/engines/timewarp/fast_timewarp.h")   // a tree without timewarp is measured as well
 #include "framework/engines/timewarp/fast_timewarp.h"
 #define TUMBLE_HAS_TIMEWARP
@@ -22,9 +22,9 @@ namespace {
 
 // Retroactive detection by a method, or engines that go from event to event, where a flight is a closed form and there is no step.
 const std::vector<std::pair<std::string, std::string>> kEventEngines = {{"ca", "conservative advancement"}, {"tw", "timewarp"}};
-const std::string kRungeKutta = "RK4", kDormandPrince = "Dormand-Prince", kLocated = "RK4, plastic impacts located";
+const std::string kRungeKutta = "RK4", kDormandPrince = "Dormand-Prince", kFehlberg = "Fehlberg 7(8)", kLocated = "RK4, plastic impacts located";
 // s: within it the method chooses its own, and at its end joints are projected.
-constexpr double kAdaptiveStep = 1.0 / 30, kAdaptiveStepOfTop = 1.0;
+constexpr double kAdaptiveStep = 1.0 / 30, kAdaptiveStepOfTop = 1.0, kAdaptiveStepOfBob = 1.0 / 480;
 
 class Clock final : public TrajectorySink {
  public:
@@ -63,7 +63,8 @@ engines::RunOptions options_of(const std::string& engine) {
 Observed run(const BenchCase& bench, const Setting& setting, double& reached) {
   Laws laws = testing::reference_laws();
   laws.impulse_source = laws.integrator_source = laws.constraint_source = "reference";
-  if (setting.method == kDormandPrince) laws.integrate_step = battery::dormand_prince(setting.tolerance);
+  if (setting.method == kDormandPrince) laws.integrate_step = step_of(method_named("dopri5"), setting.tolerance);
+  if (setting.method == kFehlberg) laws.integrate_step = step_of(method_named("fehlberg78"), setting.tolerance);
   scene::Scene scene = bench.scene;
   if (setting.method == kLocated) scene.contact->plastic_impacts = scene::PlasticImpacts::kLocated;
   std::string engine = "rd";
@@ -101,8 +102,11 @@ std::vector<std::vector<Setting>> ladders(const BenchCase& bench) {
     all = {{{kRungeKutta, step}}, {{kLocated, step}}};
   }
   if (scene == "S1" || scene == "S2" || scene == "S6") {
-    all.emplace_back();
-    for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14}) all.back().push_back({kDormandPrince, scene == "S1" ? kAdaptiveStepOfTop : kAdaptiveStep, tolerance});
+    const double within = scene == "S1" ? kAdaptiveStepOfTop : scene == "S6" ? kAdaptiveStepOfBob : kAdaptiveStep;
+    for (const std::string& method : {kDormandPrince, kFehlberg}) {
+      all.emplace_back();
+      for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14}) all.back().push_back({method, within, tolerance});
+    }
   }
   const bool only_flies = bench.scene.joints.empty() && !bench.scene.contact;
   for (const auto& [word, method] : kEventEngines)
