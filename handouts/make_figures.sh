@@ -17,6 +17,13 @@ done
 # A plot of a page: its own folder, since a page has several.
 pages=$(mktemp -d)
 trap 'rm -rf "$pages"' EXIT
+plot_of() { # PAGE PLOT FIGURE
+  ./tumble plots "$pages/$1/index.html" --out "$pages/$1/plots"
+  cp "$pages/$1/plots/$2.png" "$folder/$3.png"
+}
 ./tumble cost t_handle --methods euler,midpoint,rk4 --engines none --steps 1/60,1/120,1/240,1/480,1/960,1/1920 --duration-s 2 --modules reference --out "$pages"
-./tumble plots "$pages/t_handle/index.html" --out "$pages/plots"
-cp "$pages/plots/error_against_evaluations.png" "$folder/accuracy_and_its_price.png"
+plot_of t_handle error_against_evaluations accuracy_and_its_price
+./tumble cost double_pendulum --methods none --engines none --stabilisations none,baumgarte,projection --steps 1/30,1/60,1/120,1/240,1/480,1/960,1/1920 --modules reference --out "$pages"
+plot_of double_pendulum error_against_the_step stabilisation_and_its_worth
+./tumble engines atoms --sizes 10,20,40,80,160 --duration-s 1 --modules reference --out "$pages"
+plot_of atoms work_a_body_and_simulated_second work_of_three_engines
