@@ -130,6 +130,35 @@ TEST(Processes, OnSeveralThreadsCommitTheReferencesTrace) {
   }
 }
 
+// ---- Bounds ----------------------------------------------------------------------------------------------------------------
+
+// Of rocks it is what a body has gone on that grows too long, of bobs, which swing on one flight, the steps that their passages keep.
+TEST(CapOfStates, OfEightIsKeptByProcessesAndChangesNothing) {
+  for (const scene::Scene& scene : {sized("avalanche", 24, 1.0), pendula_and_balls(5, 0.9)}) {
+    const Trajectory reference = run_with("ordered", scene);
+    ASSERT_EQ(reference.stopped_by, "") << scene.name;
+    const auto run_capped = [&](int threads, int most_states) {
+      engines::RunOptions options;
+      options.engine = "tw";
+      options.threads = threads;
+      options.most_states = most_states;
+      if (threads == 1) options.trial = {3, true, 1.0, 0, 0.0};   // work by lot up to a second ahead of global virtual time
+      return run_as_told(std::move(options), scene, laws());
+    };
+    const Trajectory free = run_capped(1, 0);
+    EXPECT_EQ(difference(reference, free), "") << scene.name;
+    if (scene.name == "avalanche") {
+      EXPECT_GT(free.counters.counts.at("most_states_of_a_body"), 8U);
+    }
+    for (const int threads : {1, 2}) {
+      const Trajectory capped = run_capped(threads, 8);
+      EXPECT_EQ(difference(reference, capped), "") << scene.name << ", " << threads << " threads";
+      EXPECT_GT(capped.counters.counts.at("held_back"), 0U) << scene.name << ", " << threads << " threads";
+      EXPECT_LE(capped.counters.counts.at("most_states_of_a_body"), 8U) << scene.name << ", " << threads << " threads";
+    }
+  }
+}
+
 // ---- Callbacks -------------------------------------------------------------------------------------------------------------
 
 Trajectory run_with_callbacks(const std::string& engine, const scene::Scene& scene, const std::vector<engines::Callback>& callbacks, const TimewarpTrial& trial = {}) {
