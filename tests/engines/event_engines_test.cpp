@@ -124,6 +124,29 @@ TEST(CommitSafety, NothingIsShownThatIsTakenBack) {
   }
 }
 
+// As it was written down at each move, on one thread and two, where work is done by lot and rolled back by force.
+TEST(CommitSafety, GlobalVirtualTimeNeverFalls) {
+  for (const int threads : {1, 2})
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      VirtualTimes times;
+      OrderOfCommits sink;
+      engines::RunOptions options;
+      options.engine = "tw";
+      options.timewarp = engines::fast_timewarp(&times);
+      options.threads = threads;
+      options.trial = {seed, true, 0.3, 7, 0.2};
+      engines::run_scene(sized("gas", 60, 1.0), test_laws(), options, sink);
+      ASSERT_GT(times.moves.size(), 500U);
+      int back = 0, fallen = 0;
+      for (std::size_t k = 1; k < times.moves.size(); ++k) {
+        back += times.moves[k].to_s < times.moves[k].from_s ? 1 : 0;
+        fallen += times.moves[k].global_virtual_time_s < times.moves[k - 1].global_virtual_time_s ? 1 : 0;
+      }
+      EXPECT_GT(back, 20) << threads << " threads, seed " << seed;
+      EXPECT_EQ(fallen, 0) << threads << " threads, seed " << seed;
+    }
+}
+
 TEST(ElasticGas, KeepsItsEnergyAndNothingOverlapsAtAnyRedraw) {
   const Trajectory run = run_by("tw", sized("gas", 300, 250.0), {}, 1.0);
   ASSERT_GT(run.events.size(), 100000U);
