@@ -83,6 +83,37 @@ TEST(Zeno, ComesToRestInFiniteTimeAndFewEvents) {
   }
 }
 
+// Others go on while it comes to rest: global virtual time, the earliest that anybody may still change, passes the instant at which its
+// bounces gather, and the run comes to its end.
+TEST(Zeno, AmongOtherMoversDoesNotHoldUpGlobalVirtualTime) {
+  const double gathers = std::sqrt(2.0 / 9.81) * 3.0;   // s: 1.3546
+  std::vector<scene::BodySpec> bodies{plane("floor", {0, 0, 0}, {0, 0, 1}), ball("ball", 0.1, 1.0, {0, 0, 1.1}, Vector3d::Zero())};
+  bodies[1].restitution = 0.5;
+  for (int i = 0; i < 6; ++i) bodies.push_back(ball("other" + std::to_string(i), 0.1, 1.0, {2.0 + 0.5 * (i % 3), 0.5 * (i / 3), 0.5 + 0.1 * i}, {i % 3 == 0 ? 0.3 : -0.3, 0, 0}));
+  const scene::Scene scene = scene_of(bodies, 3.0, Vector3d(0, 0, -9.81));
+  const Trajectory reference = run_by("ordered", scene);
+  for (const int threads : {1, 2}) {
+    VirtualTimes times;
+    TrajectoryRecorder recorder;
+    engines::RunOptions options;
+    options.engine = "tw";
+    options.timewarp = engines::fast_timewarp(&times);
+    options.threads = threads;
+    engines::run_scene(scene, test_laws(), options, recorder);
+    EXPECT_EQ(difference(reference, recorder.trajectory()), "") << threads << " threads";
+    EXPECT_EQ(recorder.trajectory().frames.back().time, 3.0) << threads << " threads";
+    const std::vector<Event>& events = recorder.trajectory().events;
+    const auto of_ball = [](const Event& event) { return event.body_a == 1 || event.body_b == 1; };
+    EXPECT_LT(std::count_if(events.begin(), events.end(), of_ball), 60) << threads << " threads";
+    const auto rest = std::find_if(events.begin(), events.end(), [&](const Event& event) { return event.kind == EventKind::kRest && of_ball(event); });
+    ASSERT_NE(rest, events.end()) << threads << " threads";
+    EXPECT_NEAR(rest->time, gathers, 1e-3) << threads << " threads";   // s: as above
+    EXPECT_GT(std::count_if(events.begin(), events.end(), [&](const Event& event) { return !of_ball(event) && event.time > gathers; }), 10) << threads << " threads";
+    EXPECT_LT(times.moves.front().global_virtual_time_s, gathers) << threads << " threads";
+    EXPECT_GT(times.moves.back().global_virtual_time_s, 2.0 * gathers) << threads << " threads";
+  }
+}
+
 TEST(ZeroLookAhead, IsOrderedByGenerationAndAnEndlessChainIsReported) {
   // A ball that fills the room between two walls bounces to and fro without time passing.
   std::vector<scene::BodySpec> bodies{plane("left", {-0.125, 0, 0}, {1, 0, 0}), plane("right", {0.125, 0, 0}, {-1, 0, 0}), ball("ball", 0.125, 1.0, {0, 0, 0}, {1, 0, 0})};

@@ -169,7 +169,7 @@ Trajectory run_with_callbacks(const std::string& engine, const scene::Scene& sce
   return run_as_told(std::move(options), scene, laws());
 }
 
-// Each is handed to all balls at once; the local virtual times of most lie beyond it by then.
+// Each is handed to all balls at once, whose local virtual times lie beyond it by then.
 TEST(LateCallback, ActsOnceInTheCommittedTraceHoweverOftenItWasTakenBack) {
   const scene::Scene scene = sized("gas", 60, 1.0);
   std::vector<engines::Callback> callbacks;
@@ -195,6 +195,14 @@ TEST(LateCallback, ActsOnceInTheCommittedTraceHoweverOftenItWasTakenBack) {
     EXPECT_EQ(acts(run), 180);
   }
   EXPECT_GT(calls, 20 * 180);   // some were taken back
+  // Taken last of all, each finds its sixty balls at the end of the run already: the first alone sends 50 of them back or more.
+  engines::TimewarpTrial late;
+  late.late_callbacks = true;
+  const Trajectory run = run_with_callbacks("tw", scene, {callbacks[0]}, late);
+  EXPECT_EQ(difference(run_with_callbacks("ordered", scene, {callbacks[0]}), run), "");
+  EXPECT_EQ(acts(run), 60);
+  EXPECT_GE(run.counters.counts.at("rollbacks"), 50U);
+  EXPECT_GT(run.counters.counts.at("undone_integrations"), 50U);
 }
 
 TEST(LateCallback, ChangesProcessesToo) {
