@@ -63,6 +63,7 @@ constexpr double kWheel = 0.22;          // radius [m]
 constexpr double kLane = 1.0;            // between pendula [m]: those that swing far meet their neighbours
 constexpr double kRod = 1.5;             // [m]
 constexpr double kBob = 0.12;            // [m]
+constexpr double kBay = 1.8;             // between vehicles side by side or behind each other [m]: one is 1.54 m wide and 1.28 m long
 
 // A motor asks for a turn that is never reached: full torque at a standstill, none at 10 rad/s.
 void add_vehicle(int number, const Vector3d& at, Scene& scene) {
@@ -109,7 +110,9 @@ Scene cars(int n) {
   floor.friction = 1.0;
   scene.bodies.push_back(floor);
   std::vector<Vector3d> bobs;   // where they begin: two that swing towards each other must not begin in each other
-  for (int v = 0; v < vehicles; ++v) add_vehicle(v + 1, {-0.5 * kLane * across - 0.9, ((v + 0.5) / vehicles - 0.5) * kLane * across, 0}, scene);
+  // Vehicles stand in front of the pendula, spread over their width; in ranks where one is too short.
+  const int most_abreast = std::max(1, static_cast<int>(kLane * across / kBay)), ranks = (vehicles - 1) / most_abreast + 1, abreast = (vehicles - 1) / ranks + 1;
+  for (int v = 0; v < vehicles; ++v) add_vehicle(v + 1, {-0.5 * kLane * across - 0.9 - kBay * (v / abreast), ((v % abreast + 0.5) / abreast - 0.5) * kLane * across, 0}, scene);
   for (int i = 0; i < n; ++i) {
     const Vector3d pivot((i / across - 0.5 * (across - 1)) * kLane, (i % across - 0.5 * (across - 1)) * kLane, 0.42 + kRod);
     Vector3d place;

@@ -54,18 +54,44 @@ TEST(Cradle, WithGapsPassesTheBlowOnInOrder) {
   }
 }
 
-TEST(Cradle, ThatTouchesPassesTheBlowOnInOneInstantByGenerations) {
+// A row of balls that touch, the first of which comes from afar; counted from where the blow comes, or from the other end: then each effect
+// has lower bodies than its cause, and must come after it all the same.
+scene::Scene touching_row(int n, bool from_the_end) {
   std::vector<scene::BodySpec> bodies;
-  for (int i = 0; i < 8; ++i) bodies.push_back(ball("ball" + std::to_string(i), 0.125, 1.0, {0.25 * i, 0, 0}, Vector3d::Zero()));
-  bodies[0].position_m.x() = -1.0;
-  bodies[0].velocity_m_s.x() = 2.0;
-  for (const char* engine : kEventEngines) {
-    const Trajectory run = run_by(engine, scene_of(bodies, 1.0));
-    ASSERT_EQ(run.events.size(), 7U) << engine;
-    for (const Event& event : run.events) EXPECT_EQ(event.time, run.events.front().time);
-    EXPECT_EQ(run.frames.back().poses.back().velocity_world.x(), 2.0) << engine;
-    for (std::size_t i = 0; i < 7; ++i) EXPECT_EQ(run.frames.back().poses[i].velocity_world.x(), 0.0) << engine;
+  for (int i = 0; i < n; ++i) {
+    const int place = from_the_end ? n - 1 - i : i;
+    bodies.push_back(ball("ball" + std::to_string(i), 0.125, 1.0, {place == 0 ? -1.0 : 0.25 * place, 0, 0}, {place == 0 ? 2.0 : 0.0, 0, 0}));
   }
+  return scene_of(std::move(bodies), 1.0);
+}
+
+void expect_the_blow_to_pass(const Trajectory& run, int n, bool from_the_end) {
+  ASSERT_EQ(run.events.size(), static_cast<std::size_t>(n - 1));
+  for (int k = 0; k + 1 < n; ++k) {
+    const Event& event = run.events[static_cast<std::size_t>(k)];
+    EXPECT_EQ(event.time, run.events.front().time) << "blow " << k;
+    EXPECT_EQ(std::min(event.body_a, event.body_b), from_the_end ? n - 2 - k : k) << "blow " << k;
+  }
+  for (int i = 0; i < n; ++i) EXPECT_EQ(run.frames.back().poses[static_cast<std::size_t>(i)].velocity_world.x(), i == (from_the_end ? 0 : n - 1) ? 2.0 : 0.0) << "ball " << i;
+}
+
+TEST(Cradle, ThatTouchesPassesTheBlowOnInOneInstantByGenerations) {
+  for (const int n : {5, 12, 50})
+    for (const bool from_the_end : {false, true}) {
+      const scene::Scene scene = touching_row(n, from_the_end);
+      for (const char* engine : kEventEngines) {
+        SCOPED_TRACE(std::string(engine) + ", " + std::to_string(n) + " balls");
+        expect_the_blow_to_pass(run_by(engine, scene), n, from_the_end);
+      }
+      for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed) + ", " + std::to_string(n) + " balls");
+        engines::RunOptions options;
+        options.engine = "tw";
+        options.threads = seed % 2 == 0 ? 2 : 1;
+        options.trial = {seed, true, 0.5, 0, 0.0};
+        expect_the_blow_to_pass(run_as_told(std::move(options), scene, test_laws()), n, from_the_end);
+      }
+    }
 }
 
 // Bounces of a ball with e = 0.5 from 1 m end at sqrt(2 h / g) (1 + e) / (1 - e) = 1.3546 s.
@@ -80,6 +106,37 @@ TEST(Zeno, ComesToRestInFiniteTimeAndFewEvents) {
     EXPECT_NEAR(run.events.back().time, std::sqrt(2.0 / 9.81) * 3.0, 1e-3) << engine;   // s: what bounces below the rest speed of 1e-3 m/s would still take is 4e-4
     EXPECT_EQ(run.frames.back().poses[1].velocity_world.norm(), 0.0);
     EXPECT_NEAR(run.frames.back().poses[1].com_world.z(), 0.1, 1e-12);
+  }
+}
+
+// Others go on while it comes to rest: global virtual time, the earliest that anybody may still change, passes the instant at which its
+// bounces gather, and the run comes to its end.
+TEST(Zeno, AmongOtherMoversDoesNotHoldUpGlobalVirtualTime) {
+  const double gathers = std::sqrt(2.0 / 9.81) * 3.0;   // s: 1.3546
+  std::vector<scene::BodySpec> bodies{plane("floor", {0, 0, 0}, {0, 0, 1}), ball("ball", 0.1, 1.0, {0, 0, 1.1}, Vector3d::Zero())};
+  bodies[1].restitution = 0.5;
+  for (int i = 0; i < 6; ++i) bodies.push_back(ball("other" + std::to_string(i), 0.1, 1.0, {2.0 + 0.5 * (i % 3), 0.5 * (i / 3), 0.5 + 0.1 * i}, {i % 3 == 0 ? 0.3 : -0.3, 0, 0}));
+  const scene::Scene scene = scene_of(bodies, 3.0, Vector3d(0, 0, -9.81));
+  const Trajectory reference = run_by("ordered", scene);
+  for (const int threads : {1, 2}) {
+    VirtualTimes times;
+    TrajectoryRecorder recorder;
+    engines::RunOptions options;
+    options.engine = "tw";
+    options.timewarp = engines::fast_timewarp(&times);
+    options.threads = threads;
+    engines::run_scene(scene, test_laws(), options, recorder);
+    EXPECT_EQ(difference(reference, recorder.trajectory()), "") << threads << " threads";
+    EXPECT_EQ(recorder.trajectory().frames.back().time, 3.0) << threads << " threads";
+    const std::vector<Event>& events = recorder.trajectory().events;
+    const auto of_ball = [](const Event& event) { return event.body_a == 1 || event.body_b == 1; };
+    EXPECT_LT(std::count_if(events.begin(), events.end(), of_ball), 60) << threads << " threads";
+    const auto rest = std::find_if(events.begin(), events.end(), [&](const Event& event) { return event.kind == EventKind::kRest && of_ball(event); });
+    ASSERT_NE(rest, events.end()) << threads << " threads";
+    EXPECT_NEAR(rest->time, gathers, 1e-3) << threads << " threads";   // s: as above
+    EXPECT_GT(std::count_if(events.begin(), events.end(), [&](const Event& event) { return !of_ball(event) && event.time > gathers; }), 10) << threads << " threads";
+    EXPECT_LT(times.moves.front().global_virtual_time_s, gathers) << threads << " threads";
+    EXPECT_GT(times.moves.back().global_virtual_time_s, 2.0 * gathers) << threads << " threads";
   }
 }
 
@@ -124,14 +181,36 @@ TEST(CommitSafety, NothingIsShownThatIsTakenBack) {
   }
 }
 
+// As it was written down at each move, on one thread and two, where work is done by lot and rolled back by force.
+TEST(CommitSafety, GlobalVirtualTimeNeverFalls) {
+  for (const int threads : {1, 2})
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+      VirtualTimes times;
+      OrderOfCommits sink;
+      engines::RunOptions options;
+      options.engine = "tw";
+      options.timewarp = engines::fast_timewarp(&times);
+      options.threads = threads;
+      options.trial = {seed, true, 0.3, 7, 0.2};
+      engines::run_scene(sized("gas", 60, 1.0), test_laws(), options, sink);
+      ASSERT_GT(times.moves.size(), 500U);
+      int back = 0, fallen = 0;
+      for (std::size_t k = 1; k < times.moves.size(); ++k) {
+        back += times.moves[k].to_s < times.moves[k].from_s ? 1 : 0;
+        fallen += times.moves[k].global_virtual_time_s < times.moves[k - 1].global_virtual_time_s ? 1 : 0;
+      }
+      EXPECT_GT(back, 20) << threads << " threads, seed " << seed;
+      EXPECT_EQ(fallen, 0) << threads << " threads, seed " << seed;
+    }
+}
+
 TEST(ElasticGas, KeepsItsEnergyAndNothingOverlapsAtAnyRedraw) {
   const Trajectory run = run_by("tw", sized("gas", 300, 250.0), {}, 1.0);
   ASSERT_GT(run.events.size(), 100000U);
   const double energy = run.frames.front().kinetic_energy;
   // Each collision rounds two velocities: a random walk of 1e5 steps of eps is 4e-14, a drift always one way 1e-11.
   for (const Frame& frame : run.frames) ASSERT_NEAR(frame.kinetic_energy, energy, 1e-10 * energy);
-  for (std::size_t k = 0; k < run.frames.size(); k += 25) {
-    const Frame& frame = run.frames[k];
+  for (const Frame& frame : run.frames) {
     double smallest = 1.0;
     for (std::size_t i = 6; i < frame.poses.size(); ++i)   // after the six walls
       for (std::size_t j = i + 1; j < frame.poses.size(); ++j) smallest = std::min(smallest, (frame.poses[i].com_world - frame.poses[j].com_world).norm() - 0.2);

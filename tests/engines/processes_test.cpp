@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
+#include "framework/engines/events/flight_world.h"
 #include "tests/engines/event_process_scenes.h"
 #include "tests/engines/reference_laws.h"
 
@@ -129,6 +130,35 @@ TEST(Processes, OnSeveralThreadsCommitTheReferencesTrace) {
   }
 }
 
+// ---- Bounds ----------------------------------------------------------------------------------------------------------------
+
+// Of rocks it is what a body has gone on that grows too long, of bobs, which swing on one flight, the steps that their passages keep.
+TEST(CapOfStates, OfEightIsKeptByProcessesAndChangesNothing) {
+  for (const scene::Scene& scene : {sized("avalanche", 24, 1.0), pendula_and_balls(5, 0.9)}) {
+    const Trajectory reference = run_with("ordered", scene);
+    ASSERT_EQ(reference.stopped_by, "") << scene.name;
+    const auto run_capped = [&](int threads, int most_states) {
+      engines::RunOptions options;
+      options.engine = "tw";
+      options.threads = threads;
+      options.most_states = most_states;
+      if (threads == 1) options.trial = {3, true, 1.0, 0, 0.0};   // work by lot up to a second ahead of global virtual time
+      return run_as_told(std::move(options), scene, laws());
+    };
+    const Trajectory free = run_capped(1, 0);
+    EXPECT_EQ(difference(reference, free), "") << scene.name;
+    if (scene.name == "avalanche") {
+      EXPECT_GT(free.counters.counts.at("most_states_of_a_body"), 8U);
+    }
+    for (const int threads : {1, 2}) {
+      const Trajectory capped = run_capped(threads, 8);
+      EXPECT_EQ(difference(reference, capped), "") << scene.name << ", " << threads << " threads";
+      EXPECT_GT(capped.counters.counts.at("held_back"), 0U) << scene.name << ", " << threads << " threads";
+      EXPECT_LE(capped.counters.counts.at("most_states_of_a_body"), 8U) << scene.name << ", " << threads << " threads";
+    }
+  }
+}
+
 // ---- Callbacks -------------------------------------------------------------------------------------------------------------
 
 Trajectory run_with_callbacks(const std::string& engine, const scene::Scene& scene, const std::vector<engines::Callback>& callbacks, const TimewarpTrial& trial = {}) {
@@ -139,7 +169,7 @@ Trajectory run_with_callbacks(const std::string& engine, const scene::Scene& sce
   return run_as_told(std::move(options), scene, laws());
 }
 
-// Each is handed to all balls at once; the local virtual times of most lie beyond it by then.
+// Each is handed to all balls at once, whose local virtual times lie beyond it by then.
 TEST(LateCallback, ActsOnceInTheCommittedTraceHoweverOftenItWasTakenBack) {
   const scene::Scene scene = sized("gas", 60, 1.0);
   std::vector<engines::Callback> callbacks;
@@ -165,6 +195,14 @@ TEST(LateCallback, ActsOnceInTheCommittedTraceHoweverOftenItWasTakenBack) {
     EXPECT_EQ(acts(run), 180);
   }
   EXPECT_GT(calls, 20 * 180);   // some were taken back
+  // Taken last of all, each finds its sixty balls at the end of the run already: the first alone sends 50 of them back or more.
+  engines::TimewarpTrial late;
+  late.late_callbacks = true;
+  const Trajectory run = run_with_callbacks("tw", scene, {callbacks[0]}, late);
+  EXPECT_EQ(difference(run_with_callbacks("ordered", scene, {callbacks[0]}), run), "");
+  EXPECT_EQ(acts(run), 60);
+  EXPECT_GE(run.counters.counts.at("rollbacks"), 50U);
+  EXPECT_GT(run.counters.counts.at("undone_integrations"), 50U);
 }
 
 TEST(LateCallback, ChangesProcessesToo) {
@@ -227,6 +265,20 @@ TEST(SizedScenes, BeginApartAtTheirOwnSize) {
       EXPECT_EQ(run.stopped_by, "") << sized_scene.name;
       EXPECT_GE(run.frames.front().smallest_gap, 0.0) << sized_scene.name;
     }) << sized_scene.name;
+  }
+}
+
+// Where every body stands; what links them is left out, which would take more than 20 s to set up.
+TEST(SizedScenes, BeginApartWhereTheyAreLarge) {
+  for (const scene::SizedScene& sized_scene : scene::sized_scenes()) {
+    // Each rock is a solid of its own to prepare; an arm is ten bodies, of which each pair of links is looked up by name.
+    const int n = sized_scene.name == "avalanche" ? 1000 : sized_scene.name == "robots" ? 500 : 20'000;
+    scene::Scene scene = sized(sized_scene.name, n, 1e-6);
+    scene.rods.clear();
+    scene.joints.clear();
+    scene.motors.clear();
+    scene.point_forces.clear();
+    EXPECT_NO_THROW(engines::FlightWorld(scene, "tw", laws(), {})) << sized_scene.name;   // an overlap at the start is refused
   }
 }
 

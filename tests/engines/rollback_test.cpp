@@ -127,6 +127,26 @@ TEST(RollbackRestore, WouldTellADifference) {
 }
 
 // The teaching path's box: six heaps, from which what is taken back is thrown away when it comes to the top.
+// Boxes of a body at rest, in steady motion, and in one that comes back, of which global virtual time leaves three at a time.
+TEST(SweptBox, KeepsNoMoreThanTwiceWhatIsThereHoweverManyStepsHavePassed) {
+  const auto speeds = {Vector3d(0, 0, 0), Vector3d(0.5, -0.25, 0), Vector3d(1, 2, -3)};
+  for (const Vector3d& speed : speeds) {
+    engines::SweptBox swept;
+    Vector3d middle = Vector3d::Zero();
+    for (std::uint64_t id = 0; id < 10'000; ++id) {
+      if (id >= 3) swept.remove(id - 3);
+      middle += (speed.x() == 1.0 && id % 200 >= 100 ? -1.0 : 1.0) * speed;
+      swept.add(id, {middle - Vector3d::Ones(), middle + Vector3d::Ones()});
+      ASSERT_LE(swept.kept(), 2 * std::min<std::size_t>(id + 1, 3) + 16) << "step " << id << " at " << speed.transpose() << " m a step";
+      if (id % 7 == 0) {   // and the box is around the last three
+        const engines::Box box = swept.box();
+        ASSERT_TRUE((box.low.array() <= middle.array() - 1).all() && (box.high.array() >= middle.array() + 1).all());
+        ASSERT_LE((box.high - box.low - Vector3d::Constant(2)).cwiseAbs().maxCoeff(), 2 * speed.cwiseAbs().maxCoeff());
+      }
+    }
+  }
+}
+
 TEST(SweptBox, IsTheSameBytesAfterOneToFiftyStepsAndARollback) {
   Random random(11);
   const auto any_box = [&] {

@@ -1,7 +1,11 @@
 // Scenes whose size is a parameter: as many bodies as asked for, at kept density, the same each time.
 #include <algorithm>
+#include <limits>
 #include <set>
+#include <tuple>
+#include <vector>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
@@ -10,6 +14,8 @@
 
 namespace tumble::testing {
 namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 int movers(const scene::Scene& scene) {
   int count = 0;
@@ -28,13 +34,49 @@ TEST(SizedScenes, HaveAsManyBodiesAsAskedForWithNamesOfTheirOwn) {
     }
 }
 
-TEST(SizedScenes, KeepTheirDensity) {
-  // Room between the left and the right wall, the near and the far one, floor and ceiling, a body; small rooms have layers that are not full.
-  const auto room = [](int n) {
-    const scene::Scene scene = scene::make_sized_scene("gas", n);
-    return 8.0 * scene.bodies[1].position_m.x() * scene.bodies[3].position_m.y() * scene.bodies[5].position_m.z() / n;
+// Room a body, where walls stand around it: between the left and the right, the near and the far one, floor and ceiling.
+TEST(SizedScenes, InARoomKeepTheirDensity) {
+  for (const auto& [name, tolerance] : {std::pair("gas", 0.02), {"atoms", 0.12}}) {   // layers that are not full: of atoms two of 11 are, at n = 1000
+    const auto room = [&](int n) {
+      const scene::Scene scene = scene::make_sized_scene(name, n);
+      return 8.0 * scene.bodies[1].position_m.x() * scene.bodies[3].position_m.y() * scene.bodies[5].position_m.z() / n;
+    };
+    EXPECT_NEAR(room(1000), room(64'000), tolerance * room(64'000)) << name;
+  }
+  for (const char* name : {"pong", "pong_ghosts"}) {
+    const auto room = [&](int n) {
+      const scene::Scene scene = scene::make_sized_scene(name, n);
+      return 4.0 * scene.bodies[1].position_m.x() * scene.bodies[3].position_m.y() / n;
+    };
+    EXPECT_NEAR(room(1000), room(64'000), 0.1 * room(64'000)) << name;   // half a ball's place more at each wall: 7 % of 22 rows by 46
+  }
+}
+
+// Ground a body: of the box around where they begin; along a row, length a body. A scene that kept its width would be off by the ratio of sizes.
+TEST(SizedScenes, OnTheGroundKeepTheirDensity) {
+  const auto ground = [](const char* name, const char* kind, int n, bool is_row) {
+    const scene::Scene scene = scene::make_sized_scene(name, n);
+    Eigen::AlignedBox2d box;
+    for (const scene::BodySpec& body : scene.bodies)
+      if (body.name.starts_with(kind)) box.extend(Eigen::Vector2d(body.position_m.head<2>()));
+    return (is_row ? box.sizes().x() : box.volume()) / n;
   };
-  EXPECT_NEAR(room(1000), room(100000), 0.02 * room(100000));
+  for (const auto& [name, kind, few, many, is_row] : {std::tuple("cars", "bob_", 400, 6400, false), {"robots", "hand_", 100, 900, false}, {"avalanche", "rock_", 400, 6400, false},
+                                                      {"dominoes_row", "domino_", 100, 10'000, true}, {"cradle", "ball_", 100, 10'000, true}})
+    EXPECT_NEAR(ground(name, kind, few, is_row), ground(name, kind, many, is_row), 0.25 * ground(name, kind, many, is_row)) << name;   // the outermost have half their place outside the box: 19 % of 10 rows by 10
+}
+
+// 1.54 m wide: at 20,000 pendula 200 vehicles have 141 m for a row.
+TEST(SizedScenes, OfManyCarsHaveRoomForEachVehicle) {
+  for (const int n : {400, 4000, 20'000}) {
+    std::vector<Vector3d> wheels;
+    for (const scene::BodySpec& body : scene::make_sized_scene("cars", n).bodies)
+      if (body.name.starts_with("wheel")) wheels.push_back(body.position_m);
+    double nearest = kInfinity;
+    for (std::size_t i = 0; i < wheels.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) nearest = std::min(nearest, (wheels[i] - wheels[j]).norm());
+    EXPECT_GT(nearest, 0.44) << n;   // m: a wheel's diameter
+  }
 }
 
 TEST(SizedScenes, AreTheSameEachTime) {

@@ -7,6 +7,7 @@ namespace {
 
 constexpr double kSlack = 1e-9;      // of lengths, on boxes: rounding hides nothing
 constexpr double kRounding = 1e-14;  // of coordinates
+constexpr std::size_t kMostKept = 2, kFewKept = 16;   // of the boxes that are there, and so many: what a heap may hold
 
 }  // namespace
 
@@ -17,10 +18,30 @@ double until_end(const FlightWorld& world, const Flight& flight, double t) {
 }
 
 void SweptBox::add(std::uint64_t id, const Box& box) {
-  alive_.insert(id);
+  alive_.emplace(id, box);
+  if (kept() >= kMostKept * alive_.size() + kFewKept) return rebuild();
   for (std::size_t axis = 0; axis < kAxes; ++axis) {
     bounds_[axis].emplace(-box.low[static_cast<Eigen::Index>(axis)], id);
     bounds_[kAxes + axis].emplace(box.high[static_cast<Eigen::Index>(axis)], id);
+  }
+}
+
+std::size_t SweptBox::kept() const {
+  std::size_t most = 0;
+  for (const auto& heap : bounds_) most = std::max(most, heap.size());
+  return most;
+}
+
+// Of what is there alone. So many have been added since the last time that it costs each of them no more than its own place did.
+void SweptBox::rebuild() {
+  for (std::size_t axis = 0; axis < kAxes; ++axis) {
+    std::vector<Bound> lows, highs;
+    for (const auto& [id, box] : alive_) {
+      lows.emplace_back(-box.low[static_cast<Eigen::Index>(axis)], id);
+      highs.emplace_back(box.high[static_cast<Eigen::Index>(axis)], id);
+    }
+    bounds_[axis] = Heap({}, std::move(lows));
+    bounds_[kAxes + axis] = Heap({}, std::move(highs));
   }
 }
 

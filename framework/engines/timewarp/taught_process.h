@@ -4,9 +4,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <map>
 #include <queue>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -16,7 +17,7 @@
 namespace tumble::engines {
 
 /// The least box around boxes that come and go: six heaps, of minima and maxima along each axis. What has gone is thrown away when it
-/// comes to the top.
+/// comes to the top, or when a heap holds more of it than of what is there: of a body at rest nothing comes to the top.
 /// Source: B. Mirtich, "Timewarp rigid body simulation", SIGGRAPH 2000.   Cost: O(log boxes) each, on average
 class SweptBox {
  public:
@@ -24,13 +25,18 @@ class SweptBox {
   void remove(std::uint64_t id) { alive_.erase(id); }
   /// Overlaps nothing where there is no box.
   Box box() const;
+  /// Bounds that the largest heap holds, of boxes that are there or have gone: after an add at most twice as many as are there, and 16.
+  std::size_t kept() const;
 
  private:
-  using Bound = std::pair<double, std::uint64_t>;
-  static constexpr std::size_t kAxes = 3;
+  void rebuild();
 
-  std::set<std::uint64_t> alive_;
-  mutable std::array<std::priority_queue<Bound>, 2 * kAxes> bounds_;   // of -low, then of high
+  static constexpr std::size_t kAxes = 3;
+  using Bound = std::pair<double, std::uint64_t>;
+  using Heap = std::priority_queue<Bound>;
+
+  std::map<std::uint64_t, Box> alive_;
+  mutable std::array<Heap, 2 * kAxes> bounds_;   // of -low, then of high
 };
 
 /// Where a body was at one time, and on which flight: what it takes to go on from there.

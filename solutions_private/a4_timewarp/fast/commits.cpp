@@ -1,6 +1,9 @@
 // What is committed, and when. Part of Conductor.
 #include <algorithm>
 
+#include <fmt/format.h>
+
+#include "framework/core/error.h"
 #include "solutions_private/a4_timewarp/fast/conductor.h"
 
 namespace tumble::a4 {
@@ -9,8 +12,17 @@ bool Conductor::still_stands(int body, std::uint32_t serial) const {
   return body < 0 || !all_.world().can_move(body) || all_.histories[body].find(serial) < all_.histories[body].size();
 }
 
+// What is committed stays: it lies before all that is still to come, and global virtual time never falls.
+void Conductor::require_certain(const EventKey& key) const {
+  if (key.time < all_.committed) throw PreconditionError(fmt::format("timewarp: global virtual time fell from {:.17g} s to {:.17g} s", all_.committed, key.time));
+  for (const Domain& domain : all_.domains)
+    if (!domain.queue.empty() && domain.queue.front().key.time <= all_.run.duration() && domain.queue.front().key < key)
+      throw PreconditionError(fmt::format("timewarp: what lies before {:.17g} s is to be committed while an event at {:.17g} s is still to come", key.time, domain.queue.front().key.time));
+}
+
 // Everything before `key`, in order, and frames among it.
 void Conductor::commit_before(const EventKey& key) {
+  require_certain(key);
   std::vector<Executed>& executed = alone().executed;
   for (std::size_t k = 1; k < workers_.size(); ++k) {
     executed.insert(executed.end(), std::make_move_iterator(workers_[k]->executed.begin()), std::make_move_iterator(workers_[k]->executed.end()));

@@ -292,8 +292,6 @@ void Conductor::end(const std::string& stopped_by) {
     all_.run.cost.narrow.root_findings += worker->cost.narrow.root_findings;
   }
   all_.run.counters.states_kept = static_cast<std::uint64_t>(most_kept_);
-  double global = 0.0;   // it never goes back
-  for (VirtualTimes::Move& move : alone().moves) move.global_virtual_time_s = global = std::max(global, move.global_virtual_time_s);
   if (record_) record_->moves = std::move(alone().moves);
   all_.run.end(stopped_by);
 }

@@ -25,6 +25,7 @@ void Conductor::try_rollback(const std::function<void()>& take_a_step) {
   const int steps = 1 + (watch_->first + kStride * trials_++) % watch_->most_steps;
   const auto go_back = [&] {
     all_.global_virtual_time = t;
+    all_.committed = std::min(all_.committed, t);   // the rounding by which a trial goes back
     for (const int body : all_.world().movers()) alone().go_back(body, t);
     return standing_of(all_, workers_, t);
   };

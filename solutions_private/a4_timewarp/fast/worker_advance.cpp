@@ -71,7 +71,7 @@ Box Worker::swept_box(int body, double from, double to) const {
 double Worker::global_virtual_time() const {
   if (all_.threads > 1) return all_.global_virtual_time;
   const engines::EventQueue<Due>& queue = all_.domains[kBorder].queue;
-  return queue.empty() ? kInfinity : std::min(queue.front().key.time, now);
+  return queue.empty() ? now : std::min(queue.front().key.time, now);
 }
 
 // All members of a process go on together; `body` is the first of them. Nobody goes beyond the window, nor out of the territory.

@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "framework/core/cpu_time.h"
+#include "framework/core/error.h"
 
 namespace tumble::a4 {
 
@@ -175,6 +176,7 @@ void Worker::roll_back(int body, std::size_t keep) {
     ++counters.rollbacks;
     while (flights.size() > place) {
       const Flight dropped = flights.back();
+      require(dropped.begin >= all_.committed, "timewarp: what is committed is to be taken back");
       all_.histories.pop(now_at);
       --kept;
       ++counters.undone_integrations;
