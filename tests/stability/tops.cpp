@@ -128,32 +128,64 @@ void intermediate_axis(const Given& given, Findings& findings) {
 
 // ---- Row 27 ----------------------------------------------------------------------------------------------------------
 
+/// Tilt of the top's axis. [rad]
+double tilt_from_upright(const Frame& frame) {
+  const Vector3d axis = frame.poses[0].world_from_body * Vector3d::UnitZ();
+  return std::atan2(axis.head<2>().norm(), axis.z());
+}
+
+/// A top on its tip, which is at the origin, turned by q. @param axial, across  moments about its axis, and across it about the tip [kg m^2]
+scene::Scene top_on_its_tip(double m, double l, double across, double axial, const Quaterniond& q, double spin) {
+  scene::Scene scene = truths::empty_scene("top", 1.0, 1e-9);
+  scene.gravity_m_s2 = kDown;
+  scene.stabilisation = scene::StabilisationSpec{};
+  scene::BodySpec top = truths::point_mass("top", m, q * Vector3d(0, 0, l), Vector3d::Zero());
+  const double about_com = across - m * l * l;   // Steiner
+  top.inertia_body_kg_m2 = Vector3d(about_com, about_com, axial).asDiagonal();
+  top.world_from_body = q;
+  top.omega_world_rad_s = q * Vector3d(0, 0, spin);
+  scene.bodies = {top};
+  scene.joints = {{"tip", scene::JointKind::kBall, "top", "", Vector3d::Zero(), Vector3d::UnitZ()}};
+  return scene;
+}
+
+/// Let go at rest but for its spin a top nods between its first tilt and one that a cubic gives.
+void nutation(const Given& given, Findings& findings) {
+  const truths::Case truth = given.truth("heavy_top/nutating_released_from_rest");
+  const auto input = [&](const char* name) { return truth.input(name).number(); };
+  const double m = input("m"), l = input("l"), across = input("It_about_fixed_point"), axial = input("I3"), spin = input("psidot0"), h = 1e-4;
+  const double lowest = truth.output("nutation_theta_min").number(), highest = truth.output("nutation_theta_max").number();
+  const long steps = given.is_long ? 100000 : 10000;
+  const scene::Scene scene = top_on_its_tip(m, l, across, axial, Quaterniond(Eigen::AngleAxisd(input("theta0"), Vector3d::UnitX())), spin);
+  const Trajectory run = truths::run_in_steps(scene, given.laws, static_cast<double>(steps) * h, steps, steps);
+  double outside = 0.0, largest = 0.0, again = INFINITY;
+  for (const Frame& frame : run.frames) {
+    const double tilt = tilt_from_upright(frame);
+    outside = std::max({outside, lowest - tilt, tilt - highest});
+    largest = std::max(largest, tilt);
+    if (frame.time > 0.1) again = std::min(again, tilt);
+  }
+  const std::string name = fmt::format("nutating top, {:g} s, every step: ", run.frames.back().time);
+  findings.at_most(name + "tilt outside of the cubic's bounds", outside, 1e-9, "rad", "the bounds are those of energy and two momenta, which RK4 at spin h = 0.012 keeps to (spin h)^5 / 1920 = 1e-13 a step");
+  // It nods by sin^2(a t / 2) of the band, a = I3 w3 / It: a step's end is at most half a step from the turning point.
+  const double a = axial * spin / across, missed = 0.5 * (highest - lowest) * 0.5 * std::pow(0.5 * a * h, 2);
+  findings.at_most(name + "how far the upper bound is from what it reaches", highest - largest, 2 * missed + 1e-9, "rad", "half a step from the turning point, (band / 2)(a h / 2)^2 / 2, twice for a band that is not small");
+  findings.at_most(name + "how far the lower bound is from where it comes back to", again - lowest, 2 * missed + 1e-9, "rad", "the same: it nods, between both bounds");
+}
+
 void heavy_top(const Given& given, Findings& findings) {
   compare_with_truth(given, findings, "heavy_top/nutating_released_from_rest");
+  findings.part("nutation", [&] { nutation(given, findings); });
   if (given.is_long)   // seconds each
     for (const char* id : {"heavy_top/sleeping_tilt_1e-3", "heavy_top/sleeping_unstable_tilt_1e-3", "heavy_top/looping"}) compare_with_truth(given, findings, id);
   // A top on its tip, upright but for a thousandth, one spin above and one below what keeps it asleep.
   const double m = 1.0, l = 0.1, across = 0.02, axial = 0.01, critical = 2 * std::sqrt(across * m * kG * l) / axial;
   report::Plot plot{"Tilt of a sleeping top", {"time", "s"}, {"tilt", "rad", report::Scale::kLog}, {}, {}, "Above the critical spin a tilt stays as small as it was; below it the top falls."};
   for (const double part : {1.1, 0.9}) {
-    scene::Scene scene = truths::empty_scene("top", 1.0, 1e-9);
-    scene.gravity_m_s2 = kDown;
-    scene.stabilisation = scene::StabilisationSpec{};
-    const Quaterniond q(Eigen::AngleAxisd(1e-3, Vector3d::UnitY()));
-    scene::BodySpec top = truths::point_mass("top", m, q * Vector3d(0, 0, l), Vector3d::Zero());
-    const double about_com = across - m * l * l;
-    top.inertia_body_kg_m2 = Vector3d(about_com, about_com, axial).asDiagonal();
-    top.world_from_body = q;
-    top.omega_world_rad_s = q * Vector3d(0, 0, part * critical);
-    scene.bodies = {top};
-    scene.joints = {{"tip", scene::JointKind::kBall, "top", "", Vector3d::Zero(), Vector3d::UnitZ()}};
+    const scene::Scene scene = top_on_its_tip(m, l, across, axial, Quaterniond(Eigen::AngleAxisd(1e-3, Vector3d::UnitY())), part * critical);
     const Trajectory run = run_by_steps(scene, given.laws, given.is_long ? 20.0 : 3.0, 1e-3, 2000);
-    const auto tilt = [](const Frame& frame) {
-      const Vector3d axis = frame.poses[0].world_from_body * Vector3d::UnitZ();
-      return std::atan2(axis.head<2>().norm(), axis.z());
-    };
     double largest = 0.0;
-    for (const Frame& frame : run.frames) largest = std::max(largest, tilt(frame));
+    for (const Frame& frame : run.frames) largest = std::max(largest, tilt_from_upright(frame));
     // Linearised: z'' - i a z' - b z = 0 with a = I3 w / It, b = m g l / It; let go at rest it reaches a / sqrt(a^2 - 4 b) times its tilt.
     const double a = axial * part * critical / across, b = m * kG * l / across;
     if (part > 1) findings.at_most("spin 1.1 of the critical one: largest tilt", largest, 1e-3 * a / std::sqrt(a * a - 4 * b) * (1 + 1e-4), "rad", "of the linearised equation a / sqrt(a^2 - 4 b) times the first tilt, and (1e-3)^2 for what is not linear");
@@ -161,7 +193,7 @@ void heavy_top(const Given& given, Findings& findings) {
       findings.at_least("spin 0.9 of the critical one: largest tilt", largest, 0.3, "rad", "below the critical spin a top does not sleep");
       findings.must_fail("spin 0.9 of the critical one: sleeps", largest, 1e-2, "rad", "a battery in which it slept would hold any top upright");
     }
-    plot.curves.push_back(curve_of(fmt::format("{:g} of the critical spin", part), run, tilt));
+    plot.curves.push_back(curve_of(fmt::format("{:g} of the critical spin", part), run, tilt_from_upright));
   }
   findings.plot(std::move(plot));
 }
