@@ -44,6 +44,17 @@ void painleve(const Given& given, Findings& findings) {
     if (mu == 1.3) findings.at_most("mu = 1.3: normal force against m g / A", std::abs(force / expected - 1), 1e-2, "", "below 4/3 acceleration-level forces exist and are used; it turns by 1e-3 rad/s in the first microsecond, which A = 0.04 sees 25 times");
   }
   findings.must_fail("forces alone, mu = 1.4: pull that sliding would need", -kG / compliance(1.4), 0.0, "N", "A < 0: no force keeps it from sinking in; acceleration-level methods have no answer");
+  // Forces change velocities by what a step is long, an impulse by what it must, however short the step.
+  for (const double mu : {1.3, 1.4}) {
+    const auto jump = [&](double h) {
+      const Trajectory run = truths::run_in_steps(sliding_rod(mu), given.laws, h, 1, 1);
+      return std::abs(run.frames.back().poses[0].velocity_world.x() - run.frames.front().poses[0].velocity_world.x());
+    };
+    const std::string name = fmt::format("mu = {:g}: speed lost in a step of 1e-8 s", mu);
+    if (mu < 4.0 / 3) findings.at_most(name, jump(1e-8), 2e-8 * mu * kG / compliance(mu), "m/s", "mu N h / m, twice: forces do");
+    else findings.at_least(name, jump(1e-8), 0.1, "m/s", "of the 3 m/s it slides with: no force is large enough, and an impulse without a collision stops the end's sliding");
+    if (mu > 4.0 / 3) findings.at_most(name + " over that of 1e-6 s, - 1", std::abs(jump(1e-8) / jump(1e-6) - 1), 1e-3, "", "it does not go with the step: an impulse");
+  }
   for (const double mu : {1.3, 1.4, 2.0}) {
     const std::string name = fmt::format("mu = {:g}, 1 s", mu);
     findings.part(name, [&] {
