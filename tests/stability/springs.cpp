@@ -94,6 +94,17 @@ void limit_of_rk4(const Given& given, Findings& findings) {
   }
 }
 
+/// Ten steps just beyond the range double the swing: too little to refuse a run for, and too much to say nothing.
+void told_with_the_largest_step(const Given& given, Findings& findings) {
+  const auto notices_of = [&](const Laws& laws, double h) { return run_in_steps(swing(kStiff), laws, 10 * h, 10, 1).counters.notices; };
+  const auto tells = [](const std::vector<std::string>& notices, const char* words) {
+    return std::any_of(notices.begin(), notices.end(), [&](const std::string& notice) { return notice.find("'spring'") != std::string::npos && notice.find(words) != std::string::npos; });
+  };
+  findings.is_true("RK4, 10 steps at 1.01 of that step: run, and told with the largest stable step", tells(notices_of(with_method(given.laws, "RK4", rk4), 1.01 * 2 * std::sqrt(2.0) / kStiff), "at most 0.002828 s"),
+                   "whoever is told that a step is too long wants to know which is not: 2 sqrt(2) / w");
+  findings.is_true("explicit Euler, 10 steps of w h = 0.2: told that no step will do", tells(notices_of(with_method(given.laws, "explicit Euler", explicit_euler), 2e-4), "at every step size"), "|1 + i w h| > 1 for every h");
+}
+
 void error_of_dormand_prince(const Given& given, Findings& findings) {
   constexpr double kTolerance = 1e-10, kTau = 6.283185307179586;
   const double t = 100 * kTau / kStiff;
@@ -109,6 +120,7 @@ void stiff_spring(const Given& given, Findings& findings) {
   findings.part("symplectic Euler", [&] { band_of_symplectic_euler(given, findings, plot); });
   findings.part("explicit Euler", [&] { growth_of_explicit_euler(given, findings, plot); });
   findings.part("RK4", [&] { limit_of_rk4(given, findings); });
+  findings.part("told with the largest step", [&] { told_with_the_largest_step(given, findings); });
   findings.part("Dormand-Prince", [&] { error_of_dormand_prince(given, findings); });
   for (const char* id : {"spring_mass/undamped_stiff_k1e6", "spring_mass/damped_stiff_k1e6_c20", "elastic_pendulum/stiff_1e5", "two_body_spring/stiff_k1e4"}) compare_with_truth(given, findings, id);
   plot.limits.push_back({(1 + 0.95) / (1 - 0.95), "band at w h = 1.9"});
