@@ -120,7 +120,8 @@ void refuse_unstable_springs(const World& world, const Laws& laws, const StepsOf
     throw UserError(where, what + fmt::format(", 10^{:.0f} times over the run", over_the_run / std::log(10.0)),
                     springs->largest_step > 0 ? fmt::format("take a step of at most {:.4g} s (\"step_s\"), a softer spring or more damping", springs->largest_step)
                                               : "this method lengthens it at every step size: take another method (a2's rk4_step), or damp the spring");
-  if (over_the_run > std::log(kSeen)) notices.push_back(what);
+  if (over_the_run > std::log(kSeen))
+    notices.push_back(what + (springs->largest_step > 0 ? fmt::format("; steps of at most {:.4g} s do not", springs->largest_step) : "; this method does at every step size"));
 }
 
 std::optional<std::string> EnergyWatch::look(const World& world, const std::vector<RigidBodyState>& states) {

@@ -47,6 +47,12 @@ VectorXd rk4(const OdeFunction& f, double t, const VectorXd& y, double h) {
 
 std::function<VectorXd(const OdeFunction&, double, const VectorXd&, double)> dormand_prince(double tolerance) { return step_of(method_named("dopri5"), tolerance); }
 
+Quaterniond exponential_step(const Quaterniond& q, const Vector3d& L, const Vector3d& moments, double h) {
+  const double spin = (q.conjugate() * L).z() / moments.z(), rate = L.norm() / moments.x();
+  const Quaterniond precession(Eigen::AngleAxisd(h * rate, L.normalized())), own(Eigen::AngleAxisd(h * spin * (1 - moments.z() / moments.x()), Vector3d::UnitZ()));
+  return (precession * q * own).normalized();
+}
+
 // Accelerations in the place of velocities: the rows shall accelerate as wanted, whatever their velocity product.
 Laws with_gauss_seidel(Laws laws, int sweeps) {
   laws.constraint_multipliers = [sweeps](const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies, const VectorXd& wanted) -> VectorXd {

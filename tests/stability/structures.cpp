@@ -115,7 +115,7 @@ void wedge(const Given& given, Findings& findings) {
         const double way = drift_of(run, 0);
         if (part > 1) findings.at_most(name + ": way of the ball", way, kCreep, "m", "self-locking from mu = tan(a); creep at most 1e-3 of the body");
         else findings.must_fail(name + ": stays", way, kCreep, "m", "2 % below the limit it is squeezed out");
-        findings.at_most(name + ": penetration over the ball's size", std::max(0.0, -smallest_gap(run)) / 0.2, 1e-9, "", "pressed, not pressed in");
+        findings.at_least(name + ": smallest gap", smallest_gap(run), 0.0, "m", "pressed, not pressed in");
         if (a == 0.2) plot.curves.push_back(curve_of(fmt::format("mu = {:g} tan(a)", part), run, [&](const Frame& f) { return std::max(1e-14, (f.poses[0].com_world - run.frames.front().poses[0].com_world).norm()); }));
       });
     }

@@ -25,6 +25,40 @@ scene::Scene free_top(const Vector3d& moments, const Vector3d& omega_body, const
 
 // ---- Row 7 -----------------------------------------------------------------------------------------------------------
 
+/// Spin of a needle about its axis, conserved, by the laws and RK4: how far it comes off. [rad/s] Their state holds L in the world frame.
+double spin_lost_by_rk4(const Given& given, const Vector3d& moments, const Quaterniond& q, const Vector3d& omega, double h, long steps) {
+  const Laws laws = with_method(given.laws, "RK4", rk4);
+  const Inertia inertia = finite_inertia(1.0, moments.asDiagonal());
+  const OdeFunction f = [&](double, const VectorXd& y) { return laws.state_derivative(unpack(y), inertia, {Vector3d::Zero(), Vector3d::Zero()}); };
+  RigidBodyState state{Vector3d::Zero(), q, Vector3d::Zero(), q * moments.cwiseProduct(omega)};
+  double lost = 0.0;
+  for (long i = 0; i < steps; ++i) {
+    state = unpack(laws.integrate_step(f, static_cast<double>(i) * h, pack(state), h));
+    state.world_from_body = laws.renormalize(state.world_from_body);
+    lost = std::max(lost, std::abs((state.world_from_body.conjugate() * state.angular_momentum_world).x() / moments.x() - omega.x()));
+  }
+  return lost;
+}
+
+/// RK4's stages stand off the needle's direction by (w h)^2, and I_min turns each of them into a spin |L| (w h)^2 / I_min too large: of
+/// which the fourth order has to take off all but rounding.
+void needles_by_the_laws(const Given& given, Findings& findings) {
+  const Quaterniond q = Quaterniond(0.3, 0.5, -0.4, 0.7).normalized();
+  const Vector3d omega(1.0, 0.3, 0.2);
+  struct Needle {
+    double axial, across, h;
+  };
+  for (const auto& [axial, across, h] : {Needle{1e-6, 1.0, 5e-5}, Needle{1e-9, 2.0, 1e-5}}) {
+    const Vector3d moments(axial, across, across);
+    const double floor = kRounding * moments.cwiseProduct(omega).norm() / axial;
+    const std::string name = fmt::format("I = ({:g}, {:g}, {:g}) by the laws and RK4, h = {:g} s, ", axial, across, across, h);
+    const long steps = std::lround((given.is_long ? 10.0 : 1.0) / h);
+    findings.at_most(name + "100 steps: spin about the axis", spin_lost_by_rk4(given, moments, q, omega, h, 100), 100 * floor, "rad/s", "a state with L in the world frame knows it to u |L| / I_min; above 100 times that something else is wrong");
+    findings.at_most(name + fmt::format("{} steps: spin about the axis", steps), spin_lost_by_rk4(given, moments, q, omega, h, steps), static_cast<double>(steps) * floor, "rad/s", "each step rounds the orientation once: u |L| / I_min a step");
+    if (axial < 1e-8) findings.must_fail("the same needle, h = 2e-4 s, 100 steps: spin about the axis", spin_lost_by_rk4(given, moments, q, omega, 2e-4, 100), 100 * floor, "rad/s", "a turn of 2e-4 a step is nothing for any other body: here the stages spin 30 rad/s too fast");
+  }
+}
+
 void needle(const Given& given, Findings& findings) {
   report::Plot plot{"Spin of a needle about its axis: error of what is recovered", {"moment about the axis over moment across it", "", report::Scale::kLog}, {"error", "rad/s", report::Scale::kLog}, {}, {},
                     "In the body frame nothing is lost; recovered from an angular momentum in the world frame the spin loses u |L| / I_min."};
@@ -57,14 +91,28 @@ void needle(const Given& given, Findings& findings) {
   }
   plot.curves = {body_frame, world_frame, floor};
   findings.plot(std::move(plot));
+  needles_by_the_laws(given, findings);
   for (const char* id : {"free_top_needle/needle_1e-6", "free_top_needle/needle_1e-6_spun", "free_top_asymmetric/needle_asymmetric"}) compare_with_truth(given, findings, id, !given.is_long);
   compare_with_truth(given, findings, "mass_properties/plate_1e-6");
 }
 
 // ---- Row 20 ----------------------------------------------------------------------------------------------------------
 
+/// One second by steps of the exponential map, against the truth of 60 digits.
+void high_spin_by_exponentials(const Given& given, Findings& findings) {
+  const truths::Case truth = given.truth("free_top_symmetric/high_spin_1e4");
+  const Vector3d moments = truth.input("I_principal").vector3();
+  const VectorXd q0 = truth.input("q0").vector(), q1 = truth.output("q_t1").vector();
+  Quaterniond q(q0[0], q0[1], q0[2], q0[3]);
+  const Vector3d omega = truth.input("omega0_body").vector3(), L = q * moments.cwiseProduct(omega);
+  const long steps = std::lround(omega.norm() / 0.05);
+  for (long i = 0; i < steps; ++i) q = exponential_step(q, L, moments, 1.0 / static_cast<double>(steps));
+  findings.at_most("steps of the exponential map, w h = 0.05, 1 s: orientation", angle_between(q, Quaterniond(q1[0], q1[1], q1[2], q1[3])), 1e3 * truth.floor("q_t1"), "rad", "exact but for rounding, 1e-16 at each of 2e5 steps: a thousand floors of u w t");
+}
+
 void high_spin(const Given& given, Findings& findings) {
   compare_with_truth(given, findings, "free_top_symmetric/high_spin_1e4", true);
+  findings.part("exponential map", [&] { high_spin_by_exponentials(given, findings); });
   const Vector3d moments(1.0, 1.0, 2.0), omega(3.0, 0.0, 1e4);
   const FreeRotation rotation(moments.asDiagonal());
   const double speed = omega.norm(), t = given.is_long ? 1.0 : 0.1;
@@ -128,32 +176,64 @@ void intermediate_axis(const Given& given, Findings& findings) {
 
 // ---- Row 27 ----------------------------------------------------------------------------------------------------------
 
+/// Tilt of the top's axis. [rad]
+double tilt_from_upright(const Frame& frame) {
+  const Vector3d axis = frame.poses[0].world_from_body * Vector3d::UnitZ();
+  return std::atan2(axis.head<2>().norm(), axis.z());
+}
+
+/// A top on its tip, which is at the origin, turned by q. @param axial, across  moments about its axis, and across it about the tip [kg m^2]
+scene::Scene top_on_its_tip(double m, double l, double across, double axial, const Quaterniond& q, double spin) {
+  scene::Scene scene = truths::empty_scene("top", 1.0, 1e-9);
+  scene.gravity_m_s2 = kDown;
+  scene.stabilisation = scene::StabilisationSpec{};
+  scene::BodySpec top = truths::point_mass("top", m, q * Vector3d(0, 0, l), Vector3d::Zero());
+  const double about_com = across - m * l * l;   // Steiner
+  top.inertia_body_kg_m2 = Vector3d(about_com, about_com, axial).asDiagonal();
+  top.world_from_body = q;
+  top.omega_world_rad_s = q * Vector3d(0, 0, spin);
+  scene.bodies = {top};
+  scene.joints = {{"tip", scene::JointKind::kBall, "top", "", Vector3d::Zero(), Vector3d::UnitZ()}};
+  return scene;
+}
+
+/// Let go at rest but for its spin a top nods between its first tilt and one that a cubic gives.
+void nutation(const Given& given, Findings& findings) {
+  const truths::Case truth = given.truth("heavy_top/nutating_released_from_rest");
+  const auto input = [&](const char* name) { return truth.input(name).number(); };
+  const double m = input("m"), l = input("l"), across = input("It_about_fixed_point"), axial = input("I3"), spin = input("psidot0"), h = 1e-4;
+  const double lowest = truth.output("nutation_theta_min").number(), highest = truth.output("nutation_theta_max").number();
+  const long steps = given.is_long ? 100000 : 10000;
+  const scene::Scene scene = top_on_its_tip(m, l, across, axial, Quaterniond(Eigen::AngleAxisd(input("theta0"), Vector3d::UnitX())), spin);
+  const Trajectory run = truths::run_in_steps(scene, given.laws, static_cast<double>(steps) * h, steps, steps);
+  double outside = 0.0, largest = 0.0, again = INFINITY;
+  for (const Frame& frame : run.frames) {
+    const double tilt = tilt_from_upright(frame);
+    outside = std::max({outside, lowest - tilt, tilt - highest});
+    largest = std::max(largest, tilt);
+    if (frame.time > 0.1) again = std::min(again, tilt);
+  }
+  const std::string name = fmt::format("nutating top, {:g} s, every step: ", run.frames.back().time);
+  findings.at_most(name + "tilt outside of the cubic's bounds", outside, 1e-9, "rad", "the bounds are those of energy and two momenta, which RK4 at spin h = 0.012 keeps to (spin h)^5 / 1920 = 1e-13 a step");
+  // It nods by sin^2(a t / 2) of the band, a = I3 w3 / It: a step's end is at most half a step from the turning point.
+  const double a = axial * spin / across, missed = 0.5 * (highest - lowest) * 0.5 * std::pow(0.5 * a * h, 2);
+  findings.at_most(name + "how far the upper bound is from what it reaches", highest - largest, 2 * missed + 1e-9, "rad", "half a step from the turning point, (band / 2)(a h / 2)^2 / 2, twice for a band that is not small");
+  findings.at_most(name + "how far the lower bound is from where it comes back to", again - lowest, 2 * missed + 1e-9, "rad", "the same: it nods, between both bounds");
+}
+
 void heavy_top(const Given& given, Findings& findings) {
   compare_with_truth(given, findings, "heavy_top/nutating_released_from_rest");
+  findings.part("nutation", [&] { nutation(given, findings); });
   if (given.is_long)   // seconds each
     for (const char* id : {"heavy_top/sleeping_tilt_1e-3", "heavy_top/sleeping_unstable_tilt_1e-3", "heavy_top/looping"}) compare_with_truth(given, findings, id);
   // A top on its tip, upright but for a thousandth, one spin above and one below what keeps it asleep.
   const double m = 1.0, l = 0.1, across = 0.02, axial = 0.01, critical = 2 * std::sqrt(across * m * kG * l) / axial;
   report::Plot plot{"Tilt of a sleeping top", {"time", "s"}, {"tilt", "rad", report::Scale::kLog}, {}, {}, "Above the critical spin a tilt stays as small as it was; below it the top falls."};
   for (const double part : {1.1, 0.9}) {
-    scene::Scene scene = truths::empty_scene("top", 1.0, 1e-9);
-    scene.gravity_m_s2 = kDown;
-    scene.stabilisation = scene::StabilisationSpec{};
-    const Quaterniond q(Eigen::AngleAxisd(1e-3, Vector3d::UnitY()));
-    scene::BodySpec top = truths::point_mass("top", m, q * Vector3d(0, 0, l), Vector3d::Zero());
-    const double about_com = across - m * l * l;
-    top.inertia_body_kg_m2 = Vector3d(about_com, about_com, axial).asDiagonal();
-    top.world_from_body = q;
-    top.omega_world_rad_s = q * Vector3d(0, 0, part * critical);
-    scene.bodies = {top};
-    scene.joints = {{"tip", scene::JointKind::kBall, "top", "", Vector3d::Zero(), Vector3d::UnitZ()}};
+    const scene::Scene scene = top_on_its_tip(m, l, across, axial, Quaterniond(Eigen::AngleAxisd(1e-3, Vector3d::UnitY())), part * critical);
     const Trajectory run = run_by_steps(scene, given.laws, given.is_long ? 20.0 : 3.0, 1e-3, 2000);
-    const auto tilt = [](const Frame& frame) {
-      const Vector3d axis = frame.poses[0].world_from_body * Vector3d::UnitZ();
-      return std::atan2(axis.head<2>().norm(), axis.z());
-    };
     double largest = 0.0;
-    for (const Frame& frame : run.frames) largest = std::max(largest, tilt(frame));
+    for (const Frame& frame : run.frames) largest = std::max(largest, tilt_from_upright(frame));
     // Linearised: z'' - i a z' - b z = 0 with a = I3 w / It, b = m g l / It; let go at rest it reaches a / sqrt(a^2 - 4 b) times its tilt.
     const double a = axial * part * critical / across, b = m * kG * l / across;
     if (part > 1) findings.at_most("spin 1.1 of the critical one: largest tilt", largest, 1e-3 * a / std::sqrt(a * a - 4 * b) * (1 + 1e-4), "rad", "of the linearised equation a / sqrt(a^2 - 4 b) times the first tilt, and (1e-3)^2 for what is not linear");
@@ -161,7 +241,7 @@ void heavy_top(const Given& given, Findings& findings) {
       findings.at_least("spin 0.9 of the critical one: largest tilt", largest, 0.3, "rad", "below the critical spin a top does not sleep");
       findings.must_fail("spin 0.9 of the critical one: sleeps", largest, 1e-2, "rad", "a battery in which it slept would hold any top upright");
     }
-    plot.curves.push_back(curve_of(fmt::format("{:g} of the critical spin", part), run, tilt));
+    plot.curves.push_back(curve_of(fmt::format("{:g} of the critical spin", part), run, tilt_from_upright));
   }
   findings.plot(std::move(plot));
 }
