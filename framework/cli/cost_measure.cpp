@@ -66,10 +66,19 @@ double middle_price(const std::vector<Ladder>& ladders, const CostTruth& truth) 
   return prices[prices.size() / 2];
 }
 
+/// What a way's evaluations are, for people.
+std::string counted_in_words(std::string counter) {
+  if (counter == "derivative_evaluations") return "derivatives asked for";
+  if (counter == "gap_evaluations") return "gaps looked at";
+  std::replace(counter.begin(), counter.end(), '_', ' ');
+  return counter;
+}
+
 report::CostCurve curve_of(const Ladder& ladder, const CostTruth& truth, double price, bool smooth) {
   report::CostCurve curve;
   curve.name = ladder.way.name;
   curve.reading = engines::read_ladder(ladder.way, ladder.rungs, truth, smooth);
+  curve.counted = counted_in_words(ladder.way.counted);
   curve.is_subject = ladder.way.name.starts_with("your ");
   const auto fit = engines::order_of(ladder.way, ladder.rungs, truth);
   if (fit && !ladder.way.controlled) curve.order = fit->order;

@@ -17,12 +17,15 @@ constexpr double kExact = 1e-17;                  // m: an error of nothing at a
 /// Runs that came to no end, or to no answer, are in no picture.
 bool is_drawn(const CostPage& page, const CostPoint& point) { return point.stopped_by.empty() && point.error < page.scale; }
 
-Plot drawn(const CostPage& page, Axis across, const std::string& title, double (*x)(const CostPoint&), const std::string& caption) {
+const std::string& counted_by(const CostPage& page, const CostCurve& curve) { return curve.counted.empty() ? page.counted : curve.counted; }
+
+/// @param counting  what curves count that are drawn; empty: all are
+Plot drawn(const CostPage& page, Axis across, const std::string& title, double (*x)(const CostPoint&), const std::string& caption, const std::string& counting = "") {
   Plot plot{title, std::move(across), {page.error_name, page.error_unit, Scale::kLog}, {}, {}, caption};
   for (const CostCurve& curve : page.curves) {
     Curve line{std::isfinite(curve.order) ? fmt::format("{}, order {:.2f}", curve.name, curve.order) : curve.name, {}, {}, true};
     for (const CostPoint& point : curve.points) {
-      if (!is_drawn(page, point) || !(x(point) > 0)) continue;
+      if (!is_drawn(page, point) || !(x(point) > 0) || (!counting.empty() && counted_by(page, curve) != counting)) continue;
       line.x.push_back(x(point));
       line.y.push_back(std::max({point.error, page.floor, kExact}));   // below the floor nothing can be told
     }
@@ -142,6 +145,19 @@ Plot plot_of_price(const CostPage& page) {
   return drawn(page, {"CPU time", "s", Scale::kLog}, "Error against CPU time", [](const CostPoint& point) { return point.cpu_s; }, "Left is cheaper, down is more accurate. A method of order p falls by p decades where its price rises by one.");
 }
 
+std::vector<Plot> plots_of_evaluations(const CostPage& page) {
+  std::vector<std::string> counters;
+  for (const CostCurve& curve : page.curves)
+    if (std::find(counters.begin(), counters.end(), counted_by(page, curve)) == counters.end()) counters.push_back(counted_by(page, curve));
+  std::vector<Plot> plots;
+  for (const std::string& counter : counters) {
+    Plot plot = drawn(page, {counter, "-", Scale::kLog}, counters.size() > 1 ? "Error against " + counter : "Error against evaluations", [](const CostPoint& point) { return point.evaluations; },
+                          "What a method costs on any machine. What asks for none, as closed forms do, is not in this picture.", counter);
+    if (std::any_of(plot.curves.begin(), plot.curves.end(), [](const Curve& curve) { return !curve.x.empty(); })) plots.push_back(std::move(plot));
+  }
+  return plots;
+}
+
 void write_cost_page(const CostPage& cost, const std::filesystem::path& file) {
   Page page("What accuracy costs", cost.title);
   for (const CostCurve& curve : cost.curves)
@@ -158,8 +174,9 @@ void write_cost_page(const CostPage& cost, const std::filesystem::path& file) {
                             : "What a finder is asked for, and what it gives. What has no tolerance is not in this picture."));
   for (const CostCurve& curve : cost.curves)
     if (!curve.reading.empty()) page.paragraph(curve.reading);
-  page.heading("Evaluations");
-  page.plot(drawn(cost, {cost.counted, "-", Scale::kLog}, "Error against evaluations", [](const CostPoint& point) { return point.evaluations; }, "What a method costs on any machine. Closed forms ask for none, and are not in this picture."));
+  const std::vector<Plot> evaluations = plots_of_evaluations(cost);
+  if (!evaluations.empty()) page.heading("Evaluations");
+  for (const Plot& plot : evaluations) page.plot(plot);
   const auto has_energy = [](const CostCurve& curve) { return !curve.times.empty(); };
   if (std::any_of(cost.curves.begin(), cost.curves.end(), has_energy)) {
     page.heading("Energy");
