@@ -206,16 +206,6 @@ class Ladders {
   double until_;
 };
 
-/// A file of tests/truths about the same problem tells the truth's error better than two runs of one engine do.
-void check_with_files(const Context& context, const CostSubject& subject, CostTruth& truth) {
-  const std::filesystem::path folder = context.root / "tests" / "truths";
-  if (!std::filesystem::is_directory(folder)) return;
-  for (const auto& file : find_truths(folder)) {
-    const truths::Case known = read_truth(file);
-    engines::check_truth(subject.scene, subject.truth_laws, truths::known_places(subject.scene, known), "tests/truths/" + file.filename().string(), truth);
-  }
-}
-
 report::CostPage page_of(const Context& context, const std::vector<Ladder>& ladders, const CostTruth& truth, const CostSubject& subject) {
   report::CostPage page;
   page.title = subject.title;
@@ -284,6 +274,15 @@ std::vector<std::string> verdicts(const report::CostPage& page) {
   return words;
 }
 
+void check_with_files(const Context& context, const scene::Scene& scene, const Laws& laws, CostTruth& truth) {
+  const std::filesystem::path folder = context.root / "tests" / "truths";
+  if (!std::filesystem::is_directory(folder)) return;
+  for (const auto& file : find_truths(folder)) {
+    const truths::Case known = read_truth(file);
+    engines::check_truth(scene, laws, truths::known_places(scene, known), "tests/truths/" + file.filename().string(), truth);
+  }
+}
+
 MeasuredCost measure_cost(const Context& context, const CostWords& asked) {
   asked.steps_s();   // refused before anything is run
   engines::CostOptions options;
@@ -299,7 +298,7 @@ MeasuredCost measure_cost(const Context& context, const CostWords& asked) {
   if (!found && subject.scene.checks.empty()) throw UserError(subject.scene.name, "there is no truth to compare with (" + why + "), and the scene has no numbers to be judged by", "Give it \"checks\", or a shorter --duration-s.");
   CostTruth truth = found ? *found : engines::by_numbers(subject.scene, options, why);
   if (!found) fmt::print(stderr, "tumble: no truth ({}): runs are judged by the scene's numbers\n", why);
-  if (found) check_with_files(context, subject, truth);
+  if (found) check_with_files(context, subject.scene, subject.truth_laws, truth);
   if (truth.by_numbers || subject.scene.contact)   // there the method of integration hardly matters: the usual one comes first
     std::stable_partition(subject.ways.begin(), subject.ways.end(), [](const CostWay& way) { return way.word == "rk4"; });
   Ladders all(subject, truth, words, options);

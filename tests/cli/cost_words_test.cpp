@@ -61,6 +61,21 @@ TEST_F(CommandLine, CostShowsSolversOverTheirTolerance) {
   EXPECT_TRUE(holds(type("cost t_handle --modules reference --solvers gradients").err, "has no rods and no joints"));
 }
 
+TEST_F(CommandLine, AChoiceIsToldBeforeItIsPaid) {
+  const Said said = type("run double_pendulum --modules reference --accuracy 1e-9 --duration-s 0.2");
+  EXPECT_EQ(said.code, 0) << said.out << said.err;
+  const std::size_t chosen = said.err.find("tumble: chosen "), ran = said.err.find("ran in ");
+  ASSERT_NE(chosen, std::string::npos) << said.err;
+  EXPECT_LT(chosen, ran) << said.err;
+  EXPECT_TRUE(holds(said.err.substr(chosen), ": expected are ")) << said.err;
+}
+
+TEST_F(CommandLine, AnAccuracyIsHeldAgainstTheFilesThatKnowTheScene) {
+  const Said said = type("run bouncing_ball --modules reference --accuracy 1e-6 --duration-s 0.5");
+  EXPECT_EQ(said.code, 0) << said.err;
+  EXPECT_TRUE(holds(said.out, "tests/truths/bouncing_ball__e0.8.json")) << said.out;
+}
+
 TEST_F(CommandLine, AnAccuracyIsRefusedWhereASceneHasNoTruth) {
   const Said said = type("run collide_off_centre_e0 --modules reference --accuracy 1e-6");
   EXPECT_EQ(said.code, 2) << said.out;
