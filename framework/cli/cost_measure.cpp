@@ -206,6 +206,11 @@ class Ladders {
   double until_;
 };
 
+/// Whether one of a scene's numbers shows how nearly right a run is: a gap that must not be negative is kept to or not.
+bool allows_something(const scene::Scene& scene) {
+  return std::any_of(scene.checks.begin(), scene.checks.end(), [](const scene::CheckSpec& check) { return check.tolerance > 0.0; });
+}
+
 report::CostPage page_of(const Context& context, const std::vector<Ladder>& ladders, const CostTruth& truth, const CostSubject& subject) {
   report::CostPage page;
   page.title = subject.title;
@@ -215,7 +220,7 @@ report::CostPage page_of(const Context& context, const std::vector<Ladder>& ladd
   if (truth.by_numbers) {
     page.error_name = "worst number over what is allowed";
     page.error_unit.clear();
-    page.marks = kSharesAllowed;
+    page.marks = allows_something(subject.scene) ? kSharesAllowed : std::vector<double>{1.0};
   }
   page.floor = truth.floor_m;
   page.scale = truth.scale_m;
@@ -223,6 +228,8 @@ report::CostPage page_of(const Context& context, const std::vector<Ladder>& ladd
   const double price = middle_price(ladders, truth);
   for (const Ladder& ladder : ladders) page.curves.push_back(curve_of(ladder, truth, price, is_smooth(subject.scene)));
   page.readings = verdicts(page);
+  if (truth.by_numbers && !allows_something(subject.scene))
+    page.readings.push_back("The scene's numbers allow nothing at all, so a run keeps to them or does not: nothing here tells how accurate one is, only which runs are right and what these cost.");
   if (truth.by_numbers) page.readings.push_back("Judged by the scene's own numbers, for there is no truth to compare places with: " + truth.why_by_numbers + ".");
   else if (truth.duration_s < (1.0 - 1e-9) * truth.asked_s)
     page.readings.push_back(fmt::format("Looked at are the first {:.3g} s of {:.3g} s: {}.", truth.duration_s, truth.asked_s, truth.shortened_by));

@@ -59,7 +59,7 @@ std::string unbroken(const std::string& fineness) {
 Table table_of_prices(const CostPage& page) {
   Table table;
   table.caption = "CPU time for an error of at most this much, and what was needed for it. \u2013: it does not get there.";
-  if (page.error_unit.empty()) table.caption = "CPU time for a run that is right by all its numbers, or uses up a tenth of what they allow, and what was needed for it. \u2013: it does not get there.";
+  if (page.error_unit.empty()) table.caption = std::string("CPU time for a run that is right by all its numbers") + (page.marks.size() > 1 ? ", or uses up a tenth of what they allow" : "") + ", and what was needed for it. \u2013: it does not get there.";
   table.columns = {{""}, {"order", true}};
   for (const double mark : page.marks) table.columns.insert(table.columns.end(), {{mark_in_words(page, mark), true}, {"by"}});
   for (const CostCurve& curve : page.curves) {
