@@ -121,7 +121,7 @@ class Ladders {
     const double first_until = until_ - kForTheBest * budget_;
     for (std::size_t k = 0; k < ladders.size(); ++k) {
       const double share = std::max(0.0, first_until - cpu_seconds()) / static_cast<double>(ladders.size() - k);
-      if (k > 0 && left() <= 0.0) fmt::print(stderr, "{:>2}/{} {:<28} not run: the budget of {:g} s is used up\n", k + 1, ladders.size(), ladders[k].way.name, budget_);
+      if (k > 0 && left() <= 0.0) leave_out(k);
       else extend(k, share);
       // Where one run takes more than its share, the others would use up the budget before any shows what accuracy costs.
       if (k == 0 && !ladders[0].rungs.empty() && ladders[0].rungs.back().spent_s > share)
@@ -132,9 +132,15 @@ class Ladders {
   }
 
   std::vector<Ladder> ladders;
+  std::vector<std::string> not_run;   // which ways, and why
 
  private:
   double left() const { return std::max(0.0, until_ - cpu_seconds()); }
+
+  void leave_out(std::size_t k) {
+    not_run.push_back(fmt::format("{}: the budget of {:g} s was used up before its turn", ladders[k].way.name, budget_));
+    fmt::print(stderr, "{:>2}/{} not run: {}\n", k + 1, ladders.size(), not_run.back());
+  }
 
   void extend(std::size_t k, double share) {
     engines::CostOptions own = options_;
@@ -313,6 +319,8 @@ MeasuredCost measure_cost(const Context& context, const CostWords& asked) {
   const std::vector<Ladder>& ladders = all.ladders;
   MeasuredCost measured;
   measured.page = page_of(context, ladders, truth, subject);
+  measured.page.not_run = subject.not_run;
+  measured.page.not_run.insert(measured.page.not_run.end(), all.not_run.begin(), all.not_run.end());
   if (usual_n) {
     measured.size = fmt::format("n = {}", *words.n);
     measured.page.title += ", " + measured.size;

@@ -127,18 +127,23 @@ std::vector<std::string> methods_for(const scene::Scene& scene, const CostWords&
   return chosen;
 }
 
-std::vector<std::string> engines_for(const scene::Scene& scene, const CostWords& words) {
+/// What suits the scene; what is left out is said in `not_run`.
+std::vector<std::string> engines_for(const CostWords& words, CostSubject& subject) {
   if (!words.engines.empty()) return is_none(words.engines) ? std::vector<std::string>{} : words.engines;
   std::vector<std::string> chosen;
-  if (!(scene.contact && scene.contact->sleep)) chosen.push_back("ca");   // what sleeps is followed by rd alone
-  if (!(scene.contact && scene.contact->sleep) && engines::fast_timewarp()) chosen.push_back("tw");
-  if (engines::goes_in_closed_form(scene)) chosen.push_back("auto");
+  const bool sleeps = subject.scene.contact && subject.scene.contact->sleep;
+  for (const char* word : {"ca", "tw"}) {
+    if (sleeps) subject.not_run.push_back(fmt::format("{}: bodies that rest fall asleep in this scene, which rd alone follows", word));
+    else if (std::string(word) == "tw" && !engines::fast_timewarp()) subject.not_run.push_back("tw: this tree holds no timewarp of its own");
+    else chosen.emplace_back(word);
+  }
+  if (engines::goes_in_closed_form(subject.scene)) chosen.push_back("auto");
   return chosen;
 }
 
 void add_engines(const CostWords& words, const Laws& laws, CostSubject& subject) {
   const bool in_closed_form = engines::goes_in_closed_form(subject.scene);
-  for (const std::string& word : engines_for(subject.scene, words)) subject.ways.push_back(way_by_engine(word, laws, in_closed_form));
+  for (const std::string& word : engines_for(words, subject)) subject.ways.push_back(way_by_engine(word, laws, in_closed_form));
 }
 
 CostSubject of_scene(const Context& context, const CostWords& words) {

@@ -165,6 +165,7 @@ void write_cost_page(const CostPage& cost, const std::filesystem::path& file) {
   for (const std::string& reading : cost.readings) page.paragraph(reading);
   page.plot(plot_of_price(cost));
   page.table(table_of_prices(cost));
+  for (const std::string& what : cost.not_run) page.paragraph("Not run: " + what + ".", Look::kMuted);
   const bool by_step = cost.finer.name == "step";
   const auto has_steps = [&](const CostCurve& curve) { return std::any_of(curve.points.begin(), curve.points.end(), [&](const CostPoint& point) { return is_drawn(cost, point) && point.step > 0; }); };
   page.heading(by_step ? "Order" : "Tolerance");

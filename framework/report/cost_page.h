@@ -44,6 +44,7 @@ struct CostPage {
   double floor;                      // of the truth [m]
   double scale;                      // errors above it are no answer, and not drawn [m]
   std::vector<CostCurve> curves;
+  std::vector<std::string> not_run;  // what has no curve, and why: "ca: bodies fall asleep here"
   std::string record;
 };
 

@@ -76,6 +76,12 @@ TEST_F(CommandLine, AnAccuracyIsHeldAgainstTheFilesThatKnowTheScene) {
   EXPECT_TRUE(holds(said.out, "tests/truths/bouncing_ball__e0.8.json")) << said.out;
 }
 
+TEST_F(CommandLine, CostSaysWhatItLeavesOut) {
+  const Said said = type("cost bowl --modules reference --methods rk4,euler,midpoint --duration-s 0.1 --budget-s 0.01");
+  EXPECT_EQ(said.code, 0) << said.err;
+  EXPECT_TRUE(holds(said.out, "Not run: ca: bodies that rest fall asleep")) << said.out;
+}
+
 TEST_F(CommandLine, AnAccuracyIsRefusedWhereASceneHasNoTruth) {
   const Said said = type("run collide_off_centre_e0 --modules reference --accuracy 1e-6");
   EXPECT_EQ(said.code, 2) << said.out;

@@ -1,7 +1,12 @@
 // The page of what accuracy costs: which curve stands on which axis.
 #include "framework/report/cost_page.h"
 
+#include <fstream>
+#include <iterator>
+
 #include <gtest/gtest.h>
+
+#include "framework/core/files.h"
 
 namespace tumble::testing {
 namespace {
@@ -53,6 +58,22 @@ TEST(CostPage, DrawsNoPlotOfWhatNothingAskedFor) {
   CostCurve closed_form = counting("closed form", "");
   for (CostPoint& point : closed_form.points) point.evaluations = 0.0;
   EXPECT_TRUE(plots_of_evaluations(page_of({closed_form})).empty());
+}
+
+std::string written(const CostPage& page) {
+  const PrivateFolder folder;
+  write_cost_page(page, folder.path() / "index.html");
+  std::ifstream in(folder.path() / "index.html");
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(CostPage, SaysWhatWasNotRunAndWhy) {
+  CostPage page = page_of({counting("RK4", "")});
+  EXPECT_EQ(written(page).find("Not run: "), std::string::npos);
+  page.not_run = {"tw: bodies fall asleep", "Euler: the budget is used up"};
+  const std::string html = written(page);
+  EXPECT_NE(html.find("Not run: tw: bodies fall asleep."), std::string::npos);
+  EXPECT_NE(html.find("Not run: Euler: the budget is used up."), std::string::npos);
 }
 
 }  // namespace
