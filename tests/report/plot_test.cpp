@@ -57,27 +57,33 @@ TEST(Plots, OfOneValueShowTheDecadeAboutIt) {
 }
 
 TEST(Plots, OfNothingSaySo) {
-  EXPECT_NE(svg_of({"t", {"x"}, {"y"}, {}, {}}).find("nothing to draw"), std::string::npos);
-  EXPECT_NE(svg_of({"t", {"x"}, {"y"}, {{"c", {1.0}, {std::nan("")}}}, {}}).find("nothing to draw"), std::string::npos);
-  EXPECT_EQ(svg_of({"t", {"x"}, {"y"}, {{"c", {1.0, 2.0}, {5.0, 5.0}}}, {}}).find("nothing to draw"), std::string::npos);   // a level line is something
+  EXPECT_NE(svg_of(Plot{"t", {"x"}, {"y"}, {}, {}}).find("nothing to draw"), std::string::npos);
+  EXPECT_NE(svg_of(Plot{"t", {"x"}, {"y"}, {{"c", {1.0}, {std::nan("")}}}, {}}).find("nothing to draw"), std::string::npos);
+  EXPECT_EQ(svg_of(Plot{"t", {"x"}, {"y"}, {{"c", {1.0, 2.0}, {5.0, 5.0}}}, {}}).find("nothing to draw"), std::string::npos);   // a level line is something
+}
+
+TEST(Plots, WriteAUnitAtEveryAxis) {
+  const std::string svg = svg_of(Plot{"t", {"share"}, {"error", "m"}, {{"c", {1, 2}, {1, 2}}}, {}});
+  EXPECT_EQ(count(svg, ">share [-]<"), 1u) << svg;   // a number
+  EXPECT_EQ(count(svg, ">error [m]<"), 1u) << svg;
 }
 
 TEST(Plots, EscapeWhatTheyAreTold) {
-  const std::string svg = svg_of({"<script>", {"<a>", "<b>"}, {"y"}, {{"<c>", {1, 2}, {1, 2}}}, {{1.5, "<d>"}}});
+  const std::string svg = svg_of(Plot{"<script>", {"<a>", "<b>"}, {"y"}, {{"<c>", {1, 2}, {1, 2}}}, {{1.5, "<d>"}}});
   for (const char* bad : {"<script>", "<a>", "<b>", "<c>", "<d>"}) EXPECT_EQ(svg.find(bad), std::string::npos) << bad;
 }
 
 TEST(Plots, KeepTheExtremesOfLongCurves) {
   Curve curve{"long", {}, {}};
   for (int i = 0; i < 100000; ++i) curve.x.push_back(i), curve.y.push_back(i == 54321 ? 100.0 : 0.0);
-  const std::string svg = svg_of({"t", {"x"}, {"y"}, {curve}, {}});
+  const std::string svg = svg_of(Plot{"t", {"x"}, {"y"}, {curve}, {}});
   EXPECT_LT(svg.size(), 60000u);
   EXPECT_NE(svg.find(" 48.6"), std::string::npos);   // the peak, 6 of 112 parts of 272 units below the top at 34
 }
 
 TEST(Plots, StandInAPageWithTheirCaption) {
   Page page("t");
-  page.plot({"title", {"x"}, {"y"}, {{"c", {1, 2}, {1, 2}}}, {}, "what to see"});
+  page.plot(Plot{"title", {"x"}, {"y"}, {{"c", {1, 2}, {1, 2}}}, {}, "what to see"});
   EXPECT_EQ(count(page.html(), "<svg"), 1u);
   EXPECT_NE(page.html().find("<figcaption>what to see</figcaption>"), std::string::npos);
 }
