@@ -77,26 +77,26 @@ Table table_of_prices(const CostPage& page) {
   return table;
 }
 
-Table table_of_stages(const CostPage& page) {
+/// Of each curve's example: the same runs as in the picture of energies.
+StackedBars bars_of_stages(const CostPage& page) {
   std::set<std::string> stages;   // that took any time
   for (const CostCurve& curve : page.curves)
     for (const auto& [stage, seconds] : curve.stage_seconds)
       if (seconds > 0) stages.insert(stage);
-  Table table;
-  table.caption = "Where the time of the same runs went, in per cent of what the stages took together.";
-  table.columns = {{""}, {"run"}};
-  for (const std::string& stage : stages) table.columns.push_back({stage, true});
+  StackedBars bars;
+  bars.title = "Where the time of the same runs went";
+  bars.axis = {"share of what the stages took together", "%"};
+  bars.parts.assign(stages.begin(), stages.end());
   for (const CostCurve& curve : page.curves) {
-    if (curve.stage_seconds.empty()) continue;
     const double all = std::accumulate(curve.stage_seconds.begin(), curve.stage_seconds.end(), 0.0, [](double sum, const auto& stage) { return sum + stage.second; });
-    std::vector<Cell> cells{{curve.name}, {unbroken(curve.points[curve.example].fineness), "", Look::kMuted}};
+    if (!(all > 0)) continue;
+    bars.rows.push_back({fmt::format("{}, {}", curve.name, curve.points[curve.example].fineness), {}});
     for (const std::string& stage : stages) {
       const auto found = curve.stage_seconds.find(stage);
-      cells.push_back({all > 0 && found != curve.stage_seconds.end() && found->second > 0 ? fmt::format("{:.1f}", 100.0 * found->second / all) : "0"});
+      bars.rows.back().values.push_back(found == curve.stage_seconds.end() ? 0.0 : std::max(0.0, 100.0 * found->second / all));
     }
-    table.rows.push_back(std::move(cells));
   }
-  return table;
+  return bars;
 }
 
 std::string all_points(const CostPage& page) {
@@ -182,8 +182,9 @@ void write_cost_page(const CostPage& cost, const std::filesystem::path& file) {
   if (std::any_of(cost.curves.begin(), cost.curves.end(), has_energy)) {
     page.heading("Energy");
     page.plot(plot_of_energy(cost));
-    page.heading("Where the time went");
-    page.table(table_of_stages(cost));
+    const StackedBars stages = bars_of_stages(cost);
+    if (!stages.rows.empty()) page.heading("Where the time went");
+    if (!stages.rows.empty()) page.plot(stages);
   }
   page.heading("How it was measured");
   page.paragraph(cost.about);

@@ -76,5 +76,16 @@ TEST(CostPage, SaysWhatWasNotRunAndWhy) {
   EXPECT_NE(html.find("Not run: Euler: the budget is used up."), std::string::npos);
 }
 
+TEST(CostPage, ShowsWhereTheTimeWentAsSharesOfAHundred) {
+  CostCurve curve = counting("RK4", "");
+  curve.times = {0.0, 1.0};
+  curve.energy_errors = {0.0, 1e-6};
+  curve.stage_seconds = {{"detect", 0.03}, {"integrate", 0.01}, {"impulses", 0.0}};
+  const std::string html = written(page_of({curve}));
+  EXPECT_NE(html.find(">75<"), std::string::npos);
+  EXPECT_NE(html.find(">25<"), std::string::npos);
+  EXPECT_EQ(html.find(">impulses<"), std::string::npos);   // what took no time is no part
+}
+
 }  // namespace
 }  // namespace tumble::testing
