@@ -82,6 +82,14 @@ TEST_F(CommandLine, CostSaysWhatItLeavesOut) {
   EXPECT_TRUE(holds(said.out, "Not run: ca: bodies that rest fall asleep")) << said.out;
 }
 
+TEST_F(CommandLine, CostShowsTheMethodsOfAModuleChosenByName) {
+  const Said own = type("cost t_handle --modules a2=reference --methods rk4 --engines none --steps 1/60,1/120 --duration-s 0.5 --budget-s 1");
+  EXPECT_EQ(own.code, 0) << own.err;
+  EXPECT_TRUE(holds(own.out, "reference euler") && holds(own.out, "reference rk4")) << own.out;
+  const Said library = type("cost t_handle --modules library --methods rk4 --engines none --steps 1/60,1/120 --duration-s 0.5 --budget-s 1");
+  EXPECT_FALSE(holds(library.out, "reference ") || holds(library.out, "your ")) << library.out;
+}
+
 TEST_F(CommandLine, AnAccuracyIsRefusedWhereASceneHasNoTruth) {
   const Said said = type("run collide_off_centre_e0 --modules reference --accuracy 1e-6");
   EXPECT_EQ(said.code, 2) << said.out;
