@@ -39,6 +39,17 @@ TEST_F(CommandLine, HelpListsEveryVerb) {
   for (const char* verb : {"check", "watch", "run", "poke", "cost", "inspect", "truths", "grade", "audit", "release", "demo"}) EXPECT_TRUE(holds(said.out, verb)) << verb;
 }
 
+#ifdef TUMBLE_HAS_REFERENCE
+TEST_F(CommandLine, APageOfTwoTimewarpsHasTheVirtualTimesOfBoth) {
+  const Said said = type("run pong_1 --modules reference --engine tw --duration-s 0.5 --html both.html --beside engine=tw,a2=library");
+  const std::string page = contents_of(folder_ / "both.html");
+  std::size_t panels = 0;
+  for (std::size_t at = page.find("\"kind\":\"virtual_times\""); at != std::string::npos; at = page.find("\"kind\":\"virtual_times\"", at + 1)) ++panels;
+  EXPECT_EQ(panels, 2u) << said.err;
+  EXPECT_TRUE(holds(page, "\"title\":\"Virtual times, reference\"") && holds(page, "\"title\":\"Virtual times, library\"")) << said.err;
+}
+#endif
+
 TEST_F(CommandLine, AnUnknownSceneIsAnsweredWithThoseThereAre) {
   const Said said = type("run nonsense");
   EXPECT_EQ(said.code, 2);
