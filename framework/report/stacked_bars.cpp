@@ -97,7 +97,7 @@ std::string svg_of(const StackedBars& bars) {
   if (longest > 0.0)
     for (const double tick : ticks_of(0.0, longest, Scale::kLinear)) {
       const double x = kLeft + tick / longest * (kRight - kLeft);
-      body += fmt::format("<line x1=\"{0:.1f}\" y1=\"{1}\" x2=\"{0:.1f}\" y2=\"{2:.1f}\" class=\"grid\"/>\n", x, kTop, bottom) + text(x, bottom + 15, fmt::format("{:.6g}", tick), "middle");
+      body += fmt::format("<line x1=\"{0:.1f}\" y1=\"{1}\" x2=\"{0:.1f}\" y2=\"{2:.1f}\" class=\"grid\"/>\n", x, kTop, bottom) + text(x, bottom + 15, fmt::format("{:.6g}", std::abs(tick)), "middle");   // the first may be -0
     }
   for (std::size_t i = 0; i < bars.rows.size(); ++i) body += bar(bars.rows[i], kTop + kRow * static_cast<double>(i) + 0.5 * (kRow - kBar), longest);
   body += text(0.5 * (kLeft + kRight), bottom + 34, fmt::format("{} [{}]", bars.axis.name, bars.axis.unit.empty() ? "-" : bars.axis.unit), "middle");

@@ -86,6 +86,7 @@ TEST(StackedBars, AreAsLongAsTheirPartsAndNumberTheWideOnes) {
   for (const auto& [k, value] : {std::pair{0, 60.0}, {1, 39.0}, {2, 1.0}, {3, 50.0}}) EXPECT_NEAR(widths[static_cast<std::size_t>(k)], 4.08 * value, 0.05 + 1e-9) << k;
   for (const char* number : {">60<", ">39<", ">50<"}) EXPECT_GE(count(svg, number), 1u) << number;
   EXPECT_EQ(count(svg, ">1<"), 0u);
+  EXPECT_EQ(count(svg, ">0<"), 1u);   // where the axis begins: not -0
   EXPECT_THROW(svg_of(StackedBars{"t", {"share"}, {"a", "b"}, {{"row", {1.0}}}}), PreconditionError);
 }
 
