@@ -39,6 +39,7 @@ void print_and_write(const report::CostPage& page, const CostWords& words) {
   print(page);
   for (const report::CostCurve& curve : page.curves) fmt::print("  {}\n", curve.reading);
   for (const std::string& reading : page.readings) fmt::print("{}\n", reading);
+  for (const std::string& what : page.not_run) fmt::print("Not run: {}.\n", what);
   const std::filesystem::path file = std::filesystem::path(words.out) / words.name() / "index.html";
   report::write_cost_page(page, file);
   fmt::print("{}\n", file.string());

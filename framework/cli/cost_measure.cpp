@@ -66,10 +66,19 @@ double middle_price(const std::vector<Ladder>& ladders, const CostTruth& truth) 
   return prices[prices.size() / 2];
 }
 
+/// What a way's evaluations are, for people.
+std::string counted_in_words(std::string counter) {
+  if (counter == "derivative_evaluations") return "derivatives asked for";
+  if (counter == "gap_evaluations") return "gaps looked at";
+  std::replace(counter.begin(), counter.end(), '_', ' ');
+  return counter;
+}
+
 report::CostCurve curve_of(const Ladder& ladder, const CostTruth& truth, double price, bool smooth) {
   report::CostCurve curve;
   curve.name = ladder.way.name;
   curve.reading = engines::read_ladder(ladder.way, ladder.rungs, truth, smooth);
+  curve.counted = counted_in_words(ladder.way.counted);
   curve.is_subject = ladder.way.name.starts_with("your ");
   const auto fit = engines::order_of(ladder.way, ladder.rungs, truth);
   if (fit && !ladder.way.controlled) curve.order = fit->order;
@@ -112,7 +121,7 @@ class Ladders {
     const double first_until = until_ - kForTheBest * budget_;
     for (std::size_t k = 0; k < ladders.size(); ++k) {
       const double share = std::max(0.0, first_until - cpu_seconds()) / static_cast<double>(ladders.size() - k);
-      if (k > 0 && left() <= 0.0) fmt::print(stderr, "{:>2}/{} {:<28} not run: the budget of {:g} s is used up\n", k + 1, ladders.size(), ladders[k].way.name, budget_);
+      if (k > 0 && left() <= 0.0) leave_out(k);
       else extend(k, share);
       // Where one run takes more than its share, the others would use up the budget before any shows what accuracy costs.
       if (k == 0 && !ladders[0].rungs.empty() && ladders[0].rungs.back().spent_s > share)
@@ -123,9 +132,15 @@ class Ladders {
   }
 
   std::vector<Ladder> ladders;
+  std::vector<std::string> not_run;   // which ways, and why
 
  private:
   double left() const { return std::max(0.0, until_ - cpu_seconds()); }
+
+  void leave_out(std::size_t k) {
+    not_run.push_back(fmt::format("{}: the budget of {:g} s was used up before its turn", ladders[k].way.name, budget_));
+    fmt::print(stderr, "{:>2}/{} not run: {}\n", k + 1, ladders.size(), not_run.back());
+  }
 
   void extend(std::size_t k, double share) {
     engines::CostOptions own = options_;
@@ -197,14 +212,9 @@ class Ladders {
   double until_;
 };
 
-/// A file of tests/truths about the same problem tells the truth's error better than two runs of one engine do.
-void check_with_files(const Context& context, const CostSubject& subject, CostTruth& truth) {
-  const std::filesystem::path folder = context.root / "tests" / "truths";
-  if (!std::filesystem::is_directory(folder)) return;
-  for (const auto& file : find_truths(folder)) {
-    const truths::Case known = read_truth(file);
-    engines::check_truth(subject.scene, subject.truth_laws, truths::known_places(subject.scene, known), "tests/truths/" + file.filename().string(), truth);
-  }
+/// Whether one of a scene's numbers shows how nearly right a run is: a gap that must not be negative is kept to or not.
+bool allows_something(const scene::Scene& scene) {
+  return std::any_of(scene.checks.begin(), scene.checks.end(), [](const scene::CheckSpec& check) { return check.tolerance > 0.0; });
 }
 
 report::CostPage page_of(const Context& context, const std::vector<Ladder>& ladders, const CostTruth& truth, const CostSubject& subject) {
@@ -216,7 +226,7 @@ report::CostPage page_of(const Context& context, const std::vector<Ladder>& ladd
   if (truth.by_numbers) {
     page.error_name = "worst number over what is allowed";
     page.error_unit.clear();
-    page.marks = kSharesAllowed;
+    page.marks = allows_something(subject.scene) ? kSharesAllowed : std::vector<double>{1.0};
   }
   page.floor = truth.floor_m;
   page.scale = truth.scale_m;
@@ -224,6 +234,8 @@ report::CostPage page_of(const Context& context, const std::vector<Ladder>& ladd
   const double price = middle_price(ladders, truth);
   for (const Ladder& ladder : ladders) page.curves.push_back(curve_of(ladder, truth, price, is_smooth(subject.scene)));
   page.readings = verdicts(page);
+  if (truth.by_numbers && !allows_something(subject.scene))
+    page.readings.push_back("The scene's numbers allow nothing at all, so a run keeps to them or does not: nothing here tells how accurate one is, only which runs are right and what these cost.");
   if (truth.by_numbers) page.readings.push_back("Judged by the scene's own numbers, for there is no truth to compare places with: " + truth.why_by_numbers + ".");
   else if (truth.duration_s < (1.0 - 1e-9) * truth.asked_s)
     page.readings.push_back(fmt::format("Looked at are the first {:.3g} s of {:.3g} s: {}.", truth.duration_s, truth.asked_s, truth.shortened_by));
@@ -275,6 +287,15 @@ std::vector<std::string> verdicts(const report::CostPage& page) {
   return words;
 }
 
+void check_with_files(const Context& context, const scene::Scene& scene, const Laws& laws, CostTruth& truth) {
+  const std::filesystem::path folder = context.root / "tests" / "truths";
+  if (!std::filesystem::is_directory(folder)) return;
+  for (const auto& file : find_truths(folder)) {
+    const truths::Case known = read_truth(file);
+    engines::check_truth(scene, laws, truths::known_places(scene, known), "tests/truths/" + file.filename().string(), truth);
+  }
+}
+
 MeasuredCost measure_cost(const Context& context, const CostWords& asked) {
   asked.steps_s();   // refused before anything is run
   engines::CostOptions options;
@@ -290,7 +311,7 @@ MeasuredCost measure_cost(const Context& context, const CostWords& asked) {
   if (!found && subject.scene.checks.empty()) throw UserError(subject.scene.name, "there is no truth to compare with (" + why + "), and the scene has no numbers to be judged by", "Give it \"checks\", or a shorter --duration-s.");
   CostTruth truth = found ? *found : engines::by_numbers(subject.scene, options, why);
   if (!found) fmt::print(stderr, "tumble: no truth ({}): runs are judged by the scene's numbers\n", why);
-  if (found) check_with_files(context, subject, truth);
+  if (found) check_with_files(context, subject.scene, subject.truth_laws, truth);
   if (truth.by_numbers || subject.scene.contact)   // there the method of integration hardly matters: the usual one comes first
     std::stable_partition(subject.ways.begin(), subject.ways.end(), [](const CostWay& way) { return way.word == "rk4"; });
   Ladders all(subject, truth, words, options);
@@ -298,6 +319,8 @@ MeasuredCost measure_cost(const Context& context, const CostWords& asked) {
   const std::vector<Ladder>& ladders = all.ladders;
   MeasuredCost measured;
   measured.page = page_of(context, ladders, truth, subject);
+  measured.page.not_run = subject.not_run;
+  measured.page.not_run.insert(measured.page.not_run.end(), all.not_run.begin(), all.not_run.end());
   if (usual_n) {
     measured.size = fmt::format("n = {}", *words.n);
     measured.page.title += ", " + measured.size;

@@ -21,6 +21,10 @@ struct MeasuredCost {
 /// @throws UserError as find_subject, and for a scene with neither a truth nor numbers to be judged by
 MeasuredCost measure_cost(const Context& context, const CostWords& words);
 
+/// A file of tests/truths about the same problem tells the truth's error better than two runs of one engine do.
+/// @param laws  right ones
+void check_with_files(const Context& context, const scene::Scene& scene, const Laws& laws, engines::CostTruth& truth);
+
 /// Which way pays at which error, a sentence each.
 std::vector<std::string> verdicts(const report::CostPage& page);
 

@@ -127,50 +127,27 @@ std::vector<std::string> methods_for(const scene::Scene& scene, const CostWords&
   return chosen;
 }
 
-std::vector<std::string> engines_for(const scene::Scene& scene, const CostWords& words) {
+/// What suits the scene; what is left out is said in `not_run`.
+std::vector<std::string> engines_for(const CostWords& words, CostSubject& subject) {
   if (!words.engines.empty()) return is_none(words.engines) ? std::vector<std::string>{} : words.engines;
   std::vector<std::string> chosen;
-  if (!(scene.contact && scene.contact->sleep)) chosen.push_back("ca");   // what sleeps is followed by rd alone
-  if (!(scene.contact && scene.contact->sleep) && engines::fast_timewarp()) chosen.push_back("tw");
-  if (engines::goes_in_closed_form(scene)) chosen.push_back("auto");
+  const bool sleeps = subject.scene.contact && subject.scene.contact->sleep;
+  for (const char* word : {"ca", "tw"}) {
+    if (sleeps) subject.not_run.push_back(fmt::format("{}: bodies that rest fall asleep in this scene, which rd alone follows", word));
+    else if (std::string(word) == "tw" && !engines::fast_timewarp()) subject.not_run.push_back("tw: this tree holds no timewarp of its own");
+    else chosen.emplace_back(word);
+  }
+  if (engines::goes_in_closed_form(subject.scene)) chosen.push_back("auto");
   return chosen;
 }
 
 void add_engines(const CostWords& words, const Laws& laws, CostSubject& subject) {
   const bool in_closed_form = engines::goes_in_closed_form(subject.scene);
-  for (const std::string& word : engines_for(subject.scene, words)) subject.ways.push_back(way_by_engine(word, laws, in_closed_form));
+  for (const std::string& word : engines_for(words, subject)) subject.ways.push_back(way_by_engine(word, laws, in_closed_form));
 }
 
-CostSubject of_scene(const Context& context, const CostWords& words) {
-  CostSubject subject;
-  subject.scene = find_scene(context, words.scene, words.n);
-  const ChosenLaws chosen = choose_laws(context, subject.scene, parse_module_words(words.modules, context.registry));
-  for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
-  subject.title = subject.scene.title;
-  subject.truth_laws = chosen.laws;
-  subject.connections = chosen.connections;
-  // Closed forms first: they cost little, and stand where a budget ends early.
-  const bool in_closed_form = engines::goes_in_closed_form(subject.scene);
-  if (in_closed_form) add_engines(words, chosen.laws, subject);
-  for (const std::string& word : methods_for(subject.scene, words)) subject.ways.push_back(way_by_method(method_named(word), chosen.laws));
-  if (!in_closed_form) add_engines(words, chosen.laws, subject);
-  for (const std::string& word : words.stabilisations) subject.ways.push_back(by_stabilisation(word, subject.scene, chosen.laws));
-  for (const std::string& word : words.impacts) subject.ways.push_back(by_impacts(word, subject.scene, chosen.laws));
-  for (const std::string& word : words.solvers) subject.ways.push_back(by_solver(word, subject.scene, chosen.laws));
-  if (subject.ways.empty()) throw UserError("tumble cost " + words.scene, "--methods, --engines and the other axes leave nothing to run", "Leave one of them out.");
-  return subject;
-}
-
-/// A module's own methods of integration, where it has some; else the scene run by all its laws.
-void add_module(const Context& context, const modules::ModuleKind& kind, const std::string& word, const std::string& whose, const Laws& laws, const scene::Scene& scene, CostSubject& subject) {
-  if (kind.methods.empty()) {
-    const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(kind.id + "=" + word, context.registry));
-    CostWay way = way_by_method(method_named("rk4"), chosen.laws);
-    way.name = fmt::format("{} {}", whose, kind.id);
-    subject.ways.push_back(std::move(way));
-    subject.connections.insert(subject.connections.end(), chosen.connections.begin(), chosen.connections.end());
-    return;
-  }
+/// A module's own methods of integration, each with these laws.
+void add_methods(const Context& context, const modules::ModuleKind& kind, const std::string& word, const std::string& whose, const Laws& laws, CostSubject& subject) {
   modules::AnyModule module;
   if (word == "student" || word == "reference") {
     module = load_word(context, kind, word);
@@ -191,6 +168,19 @@ void add_module(const Context& context, const modules::ModuleKind& kind, const s
     way.laws.integrator_source = fmt::format("{} ({})", named.name, word);
     subject.ways.push_back(std::move(way));
   }
+}
+
+/// A module's own methods of integration, where it has some; else the scene run by all its laws.
+void add_module(const Context& context, const modules::ModuleKind& kind, const std::string& word, const std::string& whose, const Laws& laws, const scene::Scene& scene, CostSubject& subject) {
+  if (kind.methods.empty()) {
+    const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(kind.id + "=" + word, context.registry));
+    CostWay way = way_by_method(method_named("rk4"), chosen.laws);
+    way.name = fmt::format("{} {}", whose, kind.id);
+    subject.ways.push_back(std::move(way));
+    subject.connections.insert(subject.connections.end(), chosen.connections.begin(), chosen.connections.end());
+    return;
+  }
+  add_methods(context, kind, word, whose, laws, subject);
   // Steps alone leave the module's other laws of motion unseen: the derivative, the renormalisation.
   const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(kind.id + "=" + word, context.registry));
   CostWay whole;
@@ -200,6 +190,44 @@ void add_module(const Context& context, const modules::ModuleKind& kind, const s
   whole.laws = chosen.laws;
   subject.ways.push_back(std::move(whole));
   subject.connections.insert(subject.connections.end(), chosen.connections.begin(), chosen.connections.end());
+}
+
+/// Whose methods of integration a scene's words name; empty: nobody's. The reference's are the library's over again, unless they are asked for by name.
+std::string named_motion(const ModuleWords& words, const modules::ModuleKind& kind) {
+  if (const auto own = words.find(kind.id); own != words.end()) return own->second == "library" ? "" : own->second;
+  const auto all = words.find("");
+  return all == words.end() || all->second == "library" || all->second == "reference" ? "" : all->second;
+}
+
+/// Where a module that integrates was chosen by word, what it integrates by is looked at too.
+void add_named_methods(const Context& context, const CostWords& words, const Laws& laws, CostSubject& subject) {
+  if (is_none(words.methods)) return;
+  const ModuleWords named = parse_module_words(words.modules, context.registry);
+  for (const modules::ModuleKind* kind : context.registry.all()) {
+    const std::string word = kind->methods.empty() ? "" : named_motion(named, *kind);
+    if (!word.empty()) add_methods(context, *kind, word, word == "reference" ? "reference" : "your", laws, subject);
+  }
+}
+
+CostSubject of_scene(const Context& context, const CostWords& words) {
+  CostSubject subject;
+  subject.scene = find_scene(context, words.scene, words.n);
+  const ChosenLaws chosen = choose_laws(context, subject.scene, parse_module_words(words.modules, context.registry));
+  for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
+  subject.title = subject.scene.title;
+  subject.truth_laws = chosen.laws;
+  subject.connections = chosen.connections;
+  // Closed forms first: they cost little, and stand where a budget ends early.
+  const bool in_closed_form = engines::goes_in_closed_form(subject.scene);
+  if (in_closed_form) add_engines(words, chosen.laws, subject);
+  add_named_methods(context, words, chosen.laws, subject);
+  for (const std::string& word : methods_for(subject.scene, words)) subject.ways.push_back(way_by_method(method_named(word), chosen.laws));
+  if (!in_closed_form) add_engines(words, chosen.laws, subject);
+  for (const std::string& word : words.stabilisations) subject.ways.push_back(by_stabilisation(word, subject.scene, chosen.laws));
+  for (const std::string& word : words.impacts) subject.ways.push_back(by_impacts(word, subject.scene, chosen.laws));
+  for (const std::string& word : words.solvers) subject.ways.push_back(by_solver(word, subject.scene, chosen.laws));
+  if (subject.ways.empty()) throw UserError("tumble cost " + words.scene, "--methods, --engines and the other axes leave nothing to run", "Leave one of them out.");
+  return subject;
 }
 
 CostSubject of_assignment(const Context& context, const modules::ModuleKind& kind, const CostWords& words) {

@@ -37,6 +37,7 @@ struct CostSubject {
   Laws truth_laws;
   std::string note;                      // what to know when reading the prices; may be empty
   std::vector<engines::CostWay> ways;
+  std::vector<std::string> not_run;      // ways that would be looked at, were it not for a reason
   std::vector<std::shared_ptr<void>> connections;   // to sandboxes
 };
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "framework/cli/cost_measure.h"
 #include "framework/cli/cost_ways.h"
 #include "framework/core/cpu_time.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
@@ -93,6 +94,16 @@ std::string flags_of(const CostChoice& choice) {
                   fmt::format("Ask for {:.1e}, or for less time with --duration-s.", found.closest->rung.error_m));
 }
 
+/// Below the truth's own error nothing can be told.
+std::string told_error(double error, const PlannedRun::Search& search) {
+  return error <= search.truth.floor_m ? "the truth's own error" : fmt::format("an error of {:.1e} m", error);
+}
+
+std::string choice_in_words(const PlannedRun::Search& search) {
+  const CostChoice& choice = search.choice;
+  return fmt::format("{}, {}: expected are {} and {} of CPU time", choice.way.name, fineness_of(choice), told_error(choice.rung.error_m, search), price_of(choice));
+}
+
 PlannedRun::Search look(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const RunWords& words) {
   const double begun = cpu_seconds();
   PlannedRun::Search search;
@@ -104,6 +115,7 @@ PlannedRun::Search look(const Context& context, const scene::Scene& scene, const
   options.shorten = false;
   options.told = [](const std::string& what) { fmt::print(stderr, "tumble: {}\n", what); };
   search.truth = engines::find_truth(scene, chosen.laws, options);
+  check_with_files(context, scene, chosen.laws, search.truth);
   if (words.accuracy_m && search.truth.floor_m > *words.accuracy_m)
     throw UserError(asked_of(words), fmt::format("the truth itself is known to {:.1e} m only, over {:.3g} s ({})", search.truth.floor_m, search.truth.duration_s, search.truth.what), fmt::format("Ask for {:.0e} or more, or for less time with --duration-s.", 2.0 * search.truth.floor_m));
   const double most = words.accuracy_m ? kMostSearch : std::max(kLeastSearch, kSearchOverBudget * *words.budget_s), until = cpu_seconds() + most;
@@ -115,6 +127,7 @@ PlannedRun::Search look(const Context& context, const scene::Scene& scene, const
   search.choice = *found.best;
   search.was_cut_short = found.was_cut_short;
   search.seconds = cpu_seconds() - begun;
+  fmt::print(stderr, "tumble: chosen {}\n", choice_in_words(search));   // before it is paid
   return search;
 }
 
@@ -123,11 +136,6 @@ double error_of(const PlannedRun::Search& search, const Trajectory& run) {
   double most = 0.0;
   for (std::size_t k = 0; k < run.frames.size(); ++k) most = std::max(most, engines::distance_between(run.frames[k], search.truth.samples[k], search.truth.radii));
   return most;
-}
-
-/// Below the truth's own error nothing can be told.
-std::string told_error(double error, const PlannedRun::Search& search) {
-  return error <= search.truth.floor_m ? "the truth's own error" : fmt::format("an error of {:.1e} m", error);
 }
 
 double paid(const PlannedRun::Search& search, double cpu_s) { return std::max(1e-6, cpu_s - search.choice.rung.building_s); }
@@ -176,7 +184,7 @@ std::string search_in_words(const PlannedRun::Search& search, const Trajectory& 
   std::string text = search.wish.error_m ? fmt::format("  asked    an error of at most {:.3g} m in every frame\n", *search.wish.error_m)
                                          : fmt::format("  asked    the least error for {} of CPU time\n", report::price_of(*search.wish.price_s));
   text += fmt::format("  truth    {}: {:.1e} m\n", search.truth.what, search.truth.floor_m);
-  text += fmt::format("  chosen   {}, {}: expected are {} and {} of CPU time\n", choice.way.name, fineness_of(choice), told_error(choice.rung.error_m, search), price_of(choice));
+  text += fmt::format("  chosen   {}\n", choice_in_words(search));
   if (search.wish.price_s && choice.rung.error_m <= 3.0 * search.truth.floor_m) text += "           this is as good as the truth itself: more time would show nothing better\n";
   text += fmt::format("  paid     {} for {}, and {} for models and shapes; looking for it took {}{}\n", told_error(error_of(search, run), search), report::price_of(paid(search, cpu_s)), report::price_of(choice.rung.building_s),
                       report::price_of(search.seconds), search.was_cut_short ? ", after which not all methods had been tried" : "");

@@ -58,7 +58,8 @@ Second second_run(const Context& context, const scene::Scene& scene, const Chose
   const ChosenLaws other = choose_laws(context, scene, with_changes(mine, parse_module_words(beside.modules, context.registry)));
   engines::RunOptions options;
   options.engine = beside.engine.empty() ? words.engine : beside.engine;
-  options.timewarp = engines::fast_timewarp();
+  VirtualTimes times;   // of the fast scheduler; the teaching one tells them to the recorder
+  options.timewarp = engines::fast_timewarp(&times);
   options.step_s = beside.step_s ? beside.step_s : words.step_s;
   options.duration_s = words.duration_s;
   options.command = context.command_line;
@@ -71,10 +72,18 @@ Second second_run(const Context& context, const scene::Scene& scene, const Chose
   }
   Second second{recorder.trajectory(), "", ""};
   if (!ended.empty()) second.run.stopped_by = ended;
+  if (second.run.virtual_times.moves.empty()) second.run.virtual_times = std::move(times);
   second.label_of_first = label_of(chosen, other, first.info, second.run.info);
   second.label = label_of(other, chosen, second.run.info, first.info);
   if (second.label.empty()) second.label_of_first = "first", second.label = "second, alike";
   return second;
+}
+
+/// The chart of a run's local virtual times, where it has some.
+void add_panel(const report::PlayedRun& played, report::PlayerOptions& options) {
+  if (played.run.virtual_times.moves.empty()) return;
+  options.panels.push_back(report::virtual_times_panel(played.run.virtual_times));
+  if (!played.label.empty()) options.panels.back().title += ", " + played.label;
 }
 
 }  // namespace
@@ -115,12 +124,12 @@ void write_page(const Context& context, const scene::Scene& scene, const ChosenL
   if (words.html.empty()) return;
   report::PlayerOptions options;
   options.root = context.root;
-  if (!run.virtual_times.moves.empty()) options.panels.push_back(report::virtual_times_panel(run.virtual_times));
   std::vector<report::PlayedRun> runs;
   Second second;
   if (!words.beside.empty()) second = second_run(context, scene, chosen, run, words);
   runs.push_back({run, second.label_of_first});
   if (!words.beside.empty()) runs.push_back({second.run, second.label});
+  for (const report::PlayedRun& played : runs) add_panel(played, options);
   const auto start = std::chrono::steady_clock::now();
   const std::size_t bytes = report::write_player(words.html, scene, runs, options);
   fmt::print(stderr, "wrote {} ({:.2f} MB) in {:.2f} s\n", words.html, 1e-6 * static_cast<double>(bytes), std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());

@@ -17,12 +17,15 @@ constexpr double kExact = 1e-17;                  // m: an error of nothing at a
 /// Runs that came to no end, or to no answer, are in no picture.
 bool is_drawn(const CostPage& page, const CostPoint& point) { return point.stopped_by.empty() && point.error < page.scale; }
 
-Plot drawn(const CostPage& page, Axis across, const std::string& title, double (*x)(const CostPoint&), const std::string& caption) {
+const std::string& counted_by(const CostPage& page, const CostCurve& curve) { return curve.counted.empty() ? page.counted : curve.counted; }
+
+/// @param counting  what curves count that are drawn; empty: all are
+Plot drawn(const CostPage& page, Axis across, const std::string& title, double (*x)(const CostPoint&), const std::string& caption, const std::string& counting = "") {
   Plot plot{title, std::move(across), {page.error_name, page.error_unit, Scale::kLog}, {}, {}, caption};
   for (const CostCurve& curve : page.curves) {
     Curve line{std::isfinite(curve.order) ? fmt::format("{}, order {:.2f}", curve.name, curve.order) : curve.name, {}, {}, true};
     for (const CostPoint& point : curve.points) {
-      if (!is_drawn(page, point) || !(x(point) > 0)) continue;
+      if (!is_drawn(page, point) || !(x(point) > 0) || (!counting.empty() && counted_by(page, curve) != counting)) continue;
       line.x.push_back(x(point));
       line.y.push_back(std::max({point.error, page.floor, kExact}));   // below the floor nothing can be told
     }
@@ -56,7 +59,7 @@ std::string unbroken(const std::string& fineness) {
 Table table_of_prices(const CostPage& page) {
   Table table;
   table.caption = "CPU time for an error of at most this much, and what was needed for it. \u2013: it does not get there.";
-  if (page.error_unit.empty()) table.caption = "CPU time for a run that is right by all its numbers, or uses up a tenth of what they allow, and what was needed for it. \u2013: it does not get there.";
+  if (page.error_unit.empty()) table.caption = std::string("CPU time for a run that is right by all its numbers") + (page.marks.size() > 1 ? ", or uses up a tenth of what they allow" : "") + ", and what was needed for it. \u2013: it does not get there.";
   table.columns = {{""}, {"order", true}};
   for (const double mark : page.marks) table.columns.insert(table.columns.end(), {{mark_in_words(page, mark), true}, {"by"}});
   for (const CostCurve& curve : page.curves) {
@@ -74,26 +77,26 @@ Table table_of_prices(const CostPage& page) {
   return table;
 }
 
-Table table_of_stages(const CostPage& page) {
+/// Of each curve's example: the same runs as in the picture of energies.
+StackedBars bars_of_stages(const CostPage& page) {
   std::set<std::string> stages;   // that took any time
   for (const CostCurve& curve : page.curves)
     for (const auto& [stage, seconds] : curve.stage_seconds)
       if (seconds > 0) stages.insert(stage);
-  Table table;
-  table.caption = "Where the time of the same runs went, in per cent of what the stages took together.";
-  table.columns = {{""}, {"run"}};
-  for (const std::string& stage : stages) table.columns.push_back({stage, true});
+  StackedBars bars;
+  bars.title = "Where the time of the same runs went";
+  bars.axis = {"share of what the stages took together", "%"};
+  bars.parts.assign(stages.begin(), stages.end());
   for (const CostCurve& curve : page.curves) {
-    if (curve.stage_seconds.empty()) continue;
     const double all = std::accumulate(curve.stage_seconds.begin(), curve.stage_seconds.end(), 0.0, [](double sum, const auto& stage) { return sum + stage.second; });
-    std::vector<Cell> cells{{curve.name}, {unbroken(curve.points[curve.example].fineness), "", Look::kMuted}};
+    if (!(all > 0)) continue;
+    bars.rows.push_back({fmt::format("{}, {}", curve.name, curve.points[curve.example].fineness), {}});
     for (const std::string& stage : stages) {
       const auto found = curve.stage_seconds.find(stage);
-      cells.push_back({all > 0 && found != curve.stage_seconds.end() && found->second > 0 ? fmt::format("{:.1f}", 100.0 * found->second / all) : "0"});
+      bars.rows.back().values.push_back(found == curve.stage_seconds.end() ? 0.0 : std::max(0.0, 100.0 * found->second / all));
     }
-    table.rows.push_back(std::move(cells));
   }
-  return table;
+  return bars;
 }
 
 std::string all_points(const CostPage& page) {
@@ -142,6 +145,19 @@ Plot plot_of_price(const CostPage& page) {
   return drawn(page, {"CPU time", "s", Scale::kLog}, "Error against CPU time", [](const CostPoint& point) { return point.cpu_s; }, "Left is cheaper, down is more accurate. A method of order p falls by p decades where its price rises by one.");
 }
 
+std::vector<Plot> plots_of_evaluations(const CostPage& page) {
+  std::vector<std::string> counters;
+  for (const CostCurve& curve : page.curves)
+    if (std::find(counters.begin(), counters.end(), counted_by(page, curve)) == counters.end()) counters.push_back(counted_by(page, curve));
+  std::vector<Plot> plots;
+  for (const std::string& counter : counters) {
+    Plot plot = drawn(page, {counter, "-", Scale::kLog}, counters.size() > 1 ? "Error against " + counter : "Error against evaluations", [](const CostPoint& point) { return point.evaluations; },
+                          "What a method costs on any machine. What asks for none, as closed forms do, is not in this picture.", counter);
+    if (std::any_of(plot.curves.begin(), plot.curves.end(), [](const Curve& curve) { return !curve.x.empty(); })) plots.push_back(std::move(plot));
+  }
+  return plots;
+}
+
 void write_cost_page(const CostPage& cost, const std::filesystem::path& file) {
   Page page("What accuracy costs", cost.title);
   for (const CostCurve& curve : cost.curves)
@@ -149,6 +165,7 @@ void write_cost_page(const CostPage& cost, const std::filesystem::path& file) {
   for (const std::string& reading : cost.readings) page.paragraph(reading);
   page.plot(plot_of_price(cost));
   page.table(table_of_prices(cost));
+  for (const std::string& what : cost.not_run) page.paragraph("Not run: " + what + ".", Look::kMuted);
   const bool by_step = cost.finer.name == "step";
   const auto has_steps = [&](const CostCurve& curve) { return std::any_of(curve.points.begin(), curve.points.end(), [&](const CostPoint& point) { return is_drawn(cost, point) && point.step > 0; }); };
   page.heading(by_step ? "Order" : "Tolerance");
@@ -158,14 +175,16 @@ void write_cost_page(const CostPage& cost, const std::filesystem::path& file) {
                             : "What a finder is asked for, and what it gives. What has no tolerance is not in this picture."));
   for (const CostCurve& curve : cost.curves)
     if (!curve.reading.empty()) page.paragraph(curve.reading);
-  page.heading("Evaluations");
-  page.plot(drawn(cost, {cost.counted, "-", Scale::kLog}, "Error against evaluations", [](const CostPoint& point) { return point.evaluations; }, "What a method costs on any machine. Closed forms ask for none, and are not in this picture."));
+  const std::vector<Plot> evaluations = plots_of_evaluations(cost);
+  if (!evaluations.empty()) page.heading("Evaluations");
+  for (const Plot& plot : evaluations) page.plot(plot);
   const auto has_energy = [](const CostCurve& curve) { return !curve.times.empty(); };
   if (std::any_of(cost.curves.begin(), cost.curves.end(), has_energy)) {
     page.heading("Energy");
     page.plot(plot_of_energy(cost));
-    page.heading("Where the time went");
-    page.table(table_of_stages(cost));
+    const StackedBars stages = bars_of_stages(cost);
+    if (!stages.rows.empty()) page.heading("Where the time went");
+    if (!stages.rows.empty()) page.plot(stages);
   }
   page.heading("How it was measured");
   page.paragraph(cost.about);

@@ -22,6 +22,7 @@ struct CostPoint {
 struct CostCurve {
   std::string name;
   std::string reading;               // the sentence that reads its curve
+  std::string counted;               // CostPoint::evaluations of its points, in words; empty: the page's
   bool is_subject = false;           // what the page is about: its sentence stands at the head
   double order = std::numeric_limits<double>::quiet_NaN();   // measured; NaN: none to be seen
   std::vector<CostPoint> points;     // coarse to fine
@@ -43,6 +44,7 @@ struct CostPage {
   double floor;                      // of the truth [m]
   double scale;                      // errors above it are no answer, and not drawn [m]
   std::vector<CostCurve> curves;
+  std::vector<std::string> not_run;  // what has no curve, and why: "ca: bodies fall asleep here"
   std::string record;
 };
 
@@ -60,6 +62,9 @@ std::string price_of(double seconds);
 
 /// Error against CPU time, with the measured order in each name; drawn with the floor.
 Plot plot_of_price(const CostPage& page);
+
+/// Error against evaluations: a plot for each thing that curves count, for derivatives and gaps do not share an axis.
+std::vector<Plot> plots_of_evaluations(const CostPage& page);
 
 /// @throws UserError when the file cannot be written
 void write_cost_page(const CostPage& page, const std::filesystem::path& file);

@@ -136,11 +136,14 @@ void Page::figures(const std::vector<Figure>& figures) {
   body_ += "</div>\n";
 }
 
-void Page::plot(const Plot& plot) {
-  body_ += "<figure class=\"plot-figure\">" + svg_of(plot);
-  if (!plot.caption.empty()) body_ += "<figcaption>" + html_escape(plot.caption) + "</figcaption>";
+void Page::figure(const std::string& svg, const std::string& caption) {
+  body_ += "<figure class=\"plot-figure\">" + svg;
+  if (!caption.empty()) body_ += "<figcaption>" + html_escape(caption) + "</figcaption>";
   body_ += "</figure>\n";
 }
+
+void Page::plot(const Plot& plot) { figure(svg_of(plot), plot.caption); }
+void Page::plot(const StackedBars& bars) { figure(svg_of(bars), bars.caption); }
 
 void Page::tiles(const std::vector<std::pair<std::string, Cell>>& tiles) {
   body_ += "<div class=\"tiles\">";

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "framework/report/plot.h"
+#include "framework/report/stacked_bars.h"
 
 namespace tumble::report {
 
@@ -75,6 +76,7 @@ class Page {
   void figures(const std::vector<Figure>& figures);
   /// Drawn in the page itself, with its caption.
   void plot(const Plot& plot);
+  void plot(const StackedBars& bars);
   /// A large number with a name: scores at the head of a page.
   void tiles(const std::vector<std::pair<std::string, Cell>>& tiles);
   /// Last line of the page: command, version, hash.
@@ -87,6 +89,8 @@ class Page {
   void write(const std::filesystem::path& file) const;
 
  private:
+  void figure(const std::string& svg, const std::string& caption);
+
   std::string title_, subtitle_, body_, record_;
 };
 

@@ -71,7 +71,7 @@ std::string line(double x1, double y1, double x2, double y2, const std::string& 
   return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" {}/>\n", x1, y1, x2, y2, stroke);
 }
 
-std::string words_of(const Axis& axis) { return axis.unit.empty() ? axis.name : axis.name + " [" + axis.unit + "]"; }
+std::string words_of(const Axis& axis) { return fmt::format("{} [{}]", axis.name, axis.unit.empty() ? "-" : axis.unit); }
 
 std::string grid(const Axis& axis, const Scaled& at, bool across) {
   std::string svg;

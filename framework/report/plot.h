@@ -18,7 +18,7 @@ enum class Scale { kLinear, kLog };
 
 struct Axis {
   std::string name;             // "time", "error of the top rod's tension"
-  std::string unit = {};        // "s"; empty: none is written
+  std::string unit = {};        // "s"; empty: a number, written [-]
   Scale scale = Scale::kLinear;
 };
 

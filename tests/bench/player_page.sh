@@ -2,6 +2,7 @@
 # Usage: player_page.sh [TUMBLE]
 # The page of 300 colliding balls over 10 s: its size, how long it takes to open, and how many pictures a second it draws where the processor
 # has to draw them (no graphics card: the slowest browser there is). Needs chromium. Prints one line; wall times, so the machine's load stands beside.
+# Exit 1 where the page is ready later than MOST_READY_MS (2000) or draws fewer than LEAST_FPS (30) pictures a second: a busy machine without a graphics card may set others.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 tumble=${1:-$root/build/bin/tumble}
@@ -22,3 +23,9 @@ saw=$(grep -o 'SAW ready=[0-9]* fps=[0-9.]* error=.*' "$folder/log" | head -1)
 word() { sed -n "s/.*$1=\([0-9.]*\).*/\1/p" <<<"$saw"; }
 printf 'page of 300 balls, 10 s: %.2f MB, %s; opens in %s ms; %s pictures a second at 1280x720 drawn by the processor (load %s on %s cores)\n' \
   "$(stat -c %s "$folder/page.html" | awk '{print $1 / 1e6}')" "$events" "$(word ready)" "$(word fps)" "$(cut -d' ' -f1 /proc/loadavg)" "$(nproc)"
+failed=0
+too() { echo "player_page.sh: $1" >&2; failed=1; }
+ready=$(word ready) fps=$(word fps) most_ms=${MOST_READY_MS:-2000} least_fps=${LEAST_FPS:-30}
+awk -v a="${ready:-inf}" -v b="$most_ms" 'BEGIN { exit !(a != "inf" && a + 0 <= b + 0) }' || too "the page was ready after ${ready:-no number of} ms, expected at most $most_ms"
+awk -v a="${fps:-0}" -v b="$least_fps" 'BEGIN { exit !(a + 0 >= b + 0) }' || too "${fps:-no number of} pictures a second, expected at least $least_fps (LEAST_FPS sets another limit)"
+exit $failed

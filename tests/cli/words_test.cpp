@@ -1,56 +1,15 @@
 // The program as a person types it: what it prints where, what it exits with, what it leaves behind.
-#include <cstdlib>
-#include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <regex>
 #include <sstream>
-
-#include <sys/wait.h>
-#include <unistd.h>
-
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "framework/core/files.h"
+#include "tests/cli/command_line.h"
 
 namespace tumble::testing {
 namespace {
-
-namespace fs = std::filesystem;
-
-std::string contents_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-struct Said {
-  int code;
-  std::string out, err;
-};
-
-/// Types words in an empty folder, which ends with the test.
-class CommandLine : public ::testing::Test {
- protected:
-  CommandLine() : folder_(fs::temp_directory_path() / ("tumble words " + std::to_string(::getpid()))) { fs::create_directories(folder_); }
-  ~CommandLine() override { fs::remove_all(folder_); }
-
-  Said type(const std::string& words) const {
-    const fs::path out = folder_.string() + ".out", err = folder_.string() + ".err";
-    const int status = std::system(("cd '" + folder_.string() + "' && TUMBLE_ROOT='" TUMBLE_SOURCE_DIR "' '" TUMBLE_BINARY_DIR "/bin/tumble' " + words + " >'" +
-                                    out.string() + "' 2>'" + err.string() + "'").c_str());
-    Said said{WIFEXITED(status) ? WEXITSTATUS(status) : -1, contents_of(out), contents_of(err)};
-    fs::remove(out);
-    fs::remove(err);
-    return said;
-  }
-  bool left_nothing() const { return fs::is_empty(folder_); }
-
-  fs::path folder_;
-};
-
-bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 TEST_F(CommandLine, WithoutAVerbOrWithAnUnknownOneItTellsAndExitsWith2) {
   EXPECT_EQ(type("").code, 2);
@@ -80,76 +39,16 @@ TEST_F(CommandLine, HelpListsEveryVerb) {
   for (const char* verb : {"check", "watch", "run", "poke", "cost", "inspect", "truths", "grade", "audit", "release", "demo"}) EXPECT_TRUE(holds(said.out, verb)) << verb;
 }
 
-TEST_F(CommandLine, CostReadsTheOrderOfEachMethodAndDrawsIt) {
-  const Said said = type("cost t_handle --modules library --methods euler,rk4,dopri5 --engines none --steps 1/60,1/120,1/240,1/480 --tolerances 1e-6,1e-9 --duration-s 1");
-  EXPECT_EQ(said.code, 0) << said.err;
-  EXPECT_TRUE(holds(said.out, "Euler converges with order") && holds(said.out, "as it should (1)") && holds(said.out, "RK4 converges with order") && holds(said.out, "as it should (4)")) << said.out;
-  const std::string page = contents_of(folder_ / "out" / "cost" / "t_handle" / "index.html");
-  EXPECT_TRUE(holds(page, "Error against CPU time") && holds(page, "the truth&#39;s own error")) << page.size() << " bytes";
-}
-
-TEST_F(CommandLine, AnAccuracyChoosesMethodAndStepAndSaysWhatWasPaid) {
-  const Said said = type("run t_handle --modules a2=library --accuracy 1e-6 --duration-s 2");
-  EXPECT_EQ(said.code, 0) << said.out << said.err;
-  for (const char* words : {"asked    an error of at most 1e-06 m", "truth    closed form", "chosen   ", "paid     ", "the same without looking: "}) EXPECT_TRUE(holds(said.out, words)) << words << '\n' << said.out;
-}
-
-TEST_F(CommandLine, ABudgetChoosesTheLeastErrorForIt) {
-  const Said said = type("run t_handle --modules a2=library --budget-s 2 --duration-s 1");
-  EXPECT_EQ(said.code, 0) << said.out << said.err;
-  EXPECT_TRUE(holds(said.out, "asked    the least error for 2 s of CPU time") && holds(said.out, "the truth's own error")) << said.out;
-}
-
-TEST_F(CommandLine, AnAccuracyRefusesWhatContradictsItAndWhatCannotBe) {
-  const Said both = type("run t_handle --modules a2=library --accuracy 1e-6 --step-s 0.01"), too_fine = type("run t_handle --modules a2=library --accuracy 1e-20 --duration-s 1");
-  EXPECT_EQ(both.code, 2);
-  EXPECT_TRUE(holds(both.err, "it chooses engine, method and step")) << both.err;
-  EXPECT_EQ(too_fine.code, 2);
-  EXPECT_TRUE(holds(too_fine.err, "the truth itself is known to") && holds(too_fine.err, "Ask for ")) << too_fine.err;
-}
-
-TEST_F(CommandLine, AMethodOfTheLibraryCanTakeTheLawsPlace) {
-  EXPECT_TRUE(holds(type("run t_handle --modules a2=library --method dopri5 --tolerance 1e-9 --duration-s 1").out, "motion by Dormand-Prince 5(4) of the library"));
-  EXPECT_TRUE(holds(type("run t_handle --modules a2=library --method dopri5 --duration-s 1").err, "none is given"));
-}
-
-TEST_F(CommandLine, CostOfTimesOfImpactReadsEachRootFinder) {
-  const Said said = type("cost toi --tolerances 1e-3,1e-9");
-  EXPECT_EQ(said.code, 0) << said.err;
-  for (const char* words : {"bisection gets to", "Newton, safeguarded gets to", "TOMS 748 gets to", "closed form (ball, plane) is off by"}) EXPECT_TRUE(holds(said.out, words)) << words << '\n' << said.out;
-  EXPECT_TRUE(fs::exists(folder_ / "out" / "cost" / "toi" / "index.html"));
-}
-
 #ifdef TUMBLE_HAS_REFERENCE
-TEST_F(CommandLine, CostWorksOnScenesOfEveryKind) {   // closed form, springs, contacts, a truth that holds for a while; each for half a second of ladders
-  for (const char* scene : {"bullet_thin_wall", "hung_by_spring", "beam_on_two_supports", "collide_off_centre_e0"}) {
-    const Said said = type(std::string("cost ") + scene + " --modules reference --methods rk4 --engines none --budget-s 0.5");
-    EXPECT_EQ(said.code, 0) << scene << '\n' << said.err;
-    EXPECT_TRUE(fs::exists(folder_ / "out" / "cost" / scene / "index.html")) << scene;
-  }
-}
-
-TEST_F(CommandLine, CostShowsSolversOverTheirTolerance) {
-  const Said said = type("cost double_pendulum --modules reference --methods none --solvers gradients --duration-s 0.5 --tolerances 1e-1,1e-6 --budget-s 2");
-  EXPECT_EQ(said.code, 0) << said.err;
-  EXPECT_TRUE(holds(said.out, "links by conjugate gradients gets to")) << said.out;
-  EXPECT_FALSE(holds(contents_of(folder_ / "out" / "cost" / "double_pendulum" / "index.html"), "nothing to draw"));   // of steps, where nothing has one
-  EXPECT_TRUE(holds(type("cost t_handle --modules reference --solvers gradients").err, "has no rods and no joints"));
-}
-
-TEST_F(CommandLine, AnAccuracyIsRefusedWhereASceneHasNoTruth) {
-  const Said said = type("run collide_off_centre_e0 --modules reference --accuracy 1e-6");
-  EXPECT_EQ(said.code, 2) << said.out;
-  EXPECT_TRUE(holds(said.err, "there is no truth for 4 s of this scene") && holds(said.err, "--duration-s")) << said.err;
+TEST_F(CommandLine, APageOfTwoTimewarpsHasTheVirtualTimesOfBoth) {
+  const Said said = type("run pong_1 --modules reference --engine tw --duration-s 0.5 --html both.html --beside engine=tw,a2=library");
+  const std::string page = contents_of(folder_ / "both.html");
+  std::size_t panels = 0;
+  for (std::size_t at = page.find("\"kind\":\"virtual_times\""); at != std::string::npos; at = page.find("\"kind\":\"virtual_times\"", at + 1)) ++panels;
+  EXPECT_EQ(panels, 2u) << said.err;
+  EXPECT_TRUE(holds(page, "\"title\":\"Virtual times, reference\"") && holds(page, "\"title\":\"Virtual times, library\"")) << said.err;
 }
 #endif
-
-TEST_F(CommandLine, CostRefusesAMethodThatThereIsNot) {
-  const Said said = type("cost t_handle --modules library --methods rk5");
-  EXPECT_EQ(said.code, 2);
-  EXPECT_TRUE(holds(said.err, "there is no method of integration of that name") && holds(said.err, "bulirsch-stoer")) << said.err;
-  EXPECT_TRUE(left_nothing());
-}
 
 TEST_F(CommandLine, AnUnknownSceneIsAnsweredWithThoseThereAre) {
   const Said said = type("run nonsense");

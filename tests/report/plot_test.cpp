@@ -3,6 +3,7 @@
 
 #include <set>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -57,27 +58,63 @@ TEST(Plots, OfOneValueShowTheDecadeAboutIt) {
 }
 
 TEST(Plots, OfNothingSaySo) {
-  EXPECT_NE(svg_of({"t", {"x"}, {"y"}, {}, {}}).find("nothing to draw"), std::string::npos);
-  EXPECT_NE(svg_of({"t", {"x"}, {"y"}, {{"c", {1.0}, {std::nan("")}}}, {}}).find("nothing to draw"), std::string::npos);
-  EXPECT_EQ(svg_of({"t", {"x"}, {"y"}, {{"c", {1.0, 2.0}, {5.0, 5.0}}}, {}}).find("nothing to draw"), std::string::npos);   // a level line is something
+  EXPECT_NE(svg_of(Plot{"t", {"x"}, {"y"}, {}, {}}).find("nothing to draw"), std::string::npos);
+  EXPECT_NE(svg_of(Plot{"t", {"x"}, {"y"}, {{"c", {1.0}, {std::nan("")}}}, {}}).find("nothing to draw"), std::string::npos);
+  EXPECT_EQ(svg_of(Plot{"t", {"x"}, {"y"}, {{"c", {1.0, 2.0}, {5.0, 5.0}}}, {}}).find("nothing to draw"), std::string::npos);   // a level line is something
+}
+
+TEST(Plots, WriteAUnitAtEveryAxis) {
+  const std::string svg = svg_of(Plot{"t", {"share"}, {"error", "m"}, {{"c", {1, 2}, {1, 2}}}, {}});
+  EXPECT_EQ(count(svg, ">share [-]<"), 1u) << svg;   // a number
+  EXPECT_EQ(count(svg, ">error [m]<"), 1u) << svg;
+  EXPECT_EQ(count(svg_of(StackedBars{"t", {"share"}, {"a"}, {{"row", {1.0}}}}), ">share [-]<"), 1u);
+}
+
+/// The widths of a drawing's rectangles that stand in the bars' column.
+std::vector<double> widths_of(const std::string& svg) {
+  std::vector<double> widths;
+  for (std::size_t at = svg.find("<rect x="); at != std::string::npos; at = svg.find("<rect x=", at + 1))
+    if (svg.compare(svg.find("height=\"", at) + 8, 2, "17") == 0) widths.push_back(std::stod(svg.substr(svg.find("width=\"", at) + 7)));
+  return widths;
+}
+
+TEST(StackedBars, AreAsLongAsTheirPartsAndNumberTheWideOnes) {
+  const std::string svg = svg_of(StackedBars{"t", {"share", "%"}, {"a", "b", "c"}, {{"first", {60, 39, 1}}, {"second", {0, 50, 0}}}});
+  const std::vector<double> widths = widths_of(svg);
+  ASSERT_EQ(widths.size(), 4u) << svg;   // what is nothing is not drawn
+  // 408 units are the longest row, 100; a width is written to a tenth of a unit.
+  for (const auto& [k, value] : {std::pair{0, 60.0}, {1, 39.0}, {2, 1.0}, {3, 50.0}}) EXPECT_NEAR(widths[static_cast<std::size_t>(k)], 4.08 * value, 0.05 + 1e-9) << k;
+  for (const char* number : {">60<", ">39<", ">50<"}) EXPECT_GE(count(svg, number), 1u) << number;
+  EXPECT_EQ(count(svg, ">1<"), 0u);
+  EXPECT_EQ(count(svg, ">0<"), 1u);   // where the axis begins: not -0
+  EXPECT_THROW(svg_of(StackedBars{"t", {"share"}, {"a", "b"}, {{"row", {1.0}}}}), PreconditionError);
+}
+
+TEST(StackedBars, EightPartsArePaintedInEightWays) {
+  StackedBars bars{"t", {"share"}, {}, {{"row", {}}}};
+  for (int k = 0; k < 8; ++k) bars.parts.push_back("part " + std::to_string(k)), bars.rows[0].values.push_back(1.0);
+  const std::string svg = svg_of(bars);
+  std::set<std::string> fills;
+  for (std::size_t at = svg.find("height=\"17\" fill=\""); at != std::string::npos; at = svg.find("height=\"17\" fill=\"", at + 1)) fills.insert(svg.substr(at + 18, svg.find('"', at + 18) - at - 18));
+  EXPECT_EQ(fills.size(), 8u);
 }
 
 TEST(Plots, EscapeWhatTheyAreTold) {
-  const std::string svg = svg_of({"<script>", {"<a>", "<b>"}, {"y"}, {{"<c>", {1, 2}, {1, 2}}}, {{1.5, "<d>"}}});
+  const std::string svg = svg_of(Plot{"<script>", {"<a>", "<b>"}, {"y"}, {{"<c>", {1, 2}, {1, 2}}}, {{1.5, "<d>"}}});
   for (const char* bad : {"<script>", "<a>", "<b>", "<c>", "<d>"}) EXPECT_EQ(svg.find(bad), std::string::npos) << bad;
 }
 
 TEST(Plots, KeepTheExtremesOfLongCurves) {
   Curve curve{"long", {}, {}};
   for (int i = 0; i < 100000; ++i) curve.x.push_back(i), curve.y.push_back(i == 54321 ? 100.0 : 0.0);
-  const std::string svg = svg_of({"t", {"x"}, {"y"}, {curve}, {}});
+  const std::string svg = svg_of(Plot{"t", {"x"}, {"y"}, {curve}, {}});
   EXPECT_LT(svg.size(), 60000u);
   EXPECT_NE(svg.find(" 48.6"), std::string::npos);   // the peak, 6 of 112 parts of 272 units below the top at 34
 }
 
 TEST(Plots, StandInAPageWithTheirCaption) {
   Page page("t");
-  page.plot({"title", {"x"}, {"y"}, {{"c", {1, 2}, {1, 2}}}, {}, "what to see"});
+  page.plot(Plot{"title", {"x"}, {"y"}, {{"c", {1, 2}, {1, 2}}}, {}, "what to see"});
   EXPECT_EQ(count(page.html(), "<svg"), 1u);
   EXPECT_NE(page.html().find("<figcaption>what to see</figcaption>"), std::string::npos);
 }

@@ -1,0 +1,91 @@
+// The page of what accuracy costs: which curve stands on which axis.
+#include "framework/report/cost_page.h"
+
+#include <fstream>
+#include <iterator>
+
+#include <gtest/gtest.h>
+
+#include "framework/core/files.h"
+
+namespace tumble::testing {
+namespace {
+
+using namespace report;
+
+/// A curve of two runs, whose evaluations are counted in these words.
+CostCurve counting(const std::string& name, const std::string& counted) {
+  CostCurve curve;
+  curve.name = name;
+  curve.counted = counted;
+  curve.points = {{"1/60 s", 1.0 / 60.0, 1e-2, 0.1, 100.0, ""}, {"1/120 s", 1.0 / 120.0, 1e-3, 0.2, 200.0, ""}};
+  return curve;
+}
+
+CostPage page_of(std::vector<CostCurve> curves) {
+  CostPage page;
+  page.title = "Fall";
+  page.floor = 1e-12;
+  page.scale = 1.0;
+  page.curves = std::move(curves);
+  return page;
+}
+
+std::vector<std::string> drawn_in(const Plot& plot) {
+  std::vector<std::string> names;
+  for (const Curve& curve : plot.curves)
+    if (!curve.x.empty()) names.push_back(curve.name);
+  return names;
+}
+
+TEST(CostPage, NamesWhatItsCurvesCountWhereTheyAgree) {
+  const std::vector<Plot> plots = plots_of_evaluations(page_of({counting("sweeps", "contact sweeps"), counting("newton", "contact sweeps")}));
+  ASSERT_EQ(plots.size(), 1u);
+  EXPECT_EQ(plots[0].x.name, "contact sweeps");
+  EXPECT_EQ(drawn_in(plots[0]), (std::vector<std::string>{"sweeps", "newton"}));
+}
+
+TEST(CostPage, DrawsAPlotForEachThingThatIsCounted) {
+  const std::vector<Plot> plots = plots_of_evaluations(page_of({counting("RK4", ""), counting("bisection", "gaps looked at"), counting("Euler", "derivatives asked for")}));
+  ASSERT_EQ(plots.size(), 2u);
+  EXPECT_EQ(plots[0].x.name, "derivatives asked for");   // what a page counts unless a curve says otherwise
+  EXPECT_EQ(drawn_in(plots[0]), (std::vector<std::string>{"RK4", "Euler"}));
+  EXPECT_EQ(plots[1].x.name, "gaps looked at");
+  EXPECT_EQ(drawn_in(plots[1]), (std::vector<std::string>{"bisection"}));
+}
+
+TEST(CostPage, DrawsNoPlotOfWhatNothingAskedFor) {
+  CostCurve closed_form = counting("closed form", "");
+  for (CostPoint& point : closed_form.points) point.evaluations = 0.0;
+  EXPECT_TRUE(plots_of_evaluations(page_of({closed_form})).empty());
+}
+
+std::string written(const CostPage& page) {
+  const PrivateFolder folder;
+  write_cost_page(page, folder.path() / "index.html");
+  std::ifstream in(folder.path() / "index.html");
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(CostPage, SaysWhatWasNotRunAndWhy) {
+  CostPage page = page_of({counting("RK4", "")});
+  EXPECT_EQ(written(page).find("Not run: "), std::string::npos);
+  page.not_run = {"tw: bodies fall asleep", "Euler: the budget is used up"};
+  const std::string html = written(page);
+  EXPECT_NE(html.find("Not run: tw: bodies fall asleep."), std::string::npos);
+  EXPECT_NE(html.find("Not run: Euler: the budget is used up."), std::string::npos);
+}
+
+TEST(CostPage, ShowsWhereTheTimeWentAsSharesOfAHundred) {
+  CostCurve curve = counting("RK4", "");
+  curve.times = {0.0, 1.0};
+  curve.energy_errors = {0.0, 1e-6};
+  curve.stage_seconds = {{"detect", 0.03}, {"integrate", 0.01}, {"impulses", 0.0}};
+  const std::string html = written(page_of({curve}));
+  EXPECT_NE(html.find(">75<"), std::string::npos);
+  EXPECT_NE(html.find(">25<"), std::string::npos);
+  EXPECT_EQ(html.find(">impulses<"), std::string::npos);   // what took no time is no part
+}
+
+}  // namespace
+}  // namespace tumble::testing
