@@ -39,6 +39,34 @@ TEST(Ties, OfALatticeThatCollidesAtOnceEndTheSameInEveryOrder) {
   }
 }
 
+// Along each axis at once: where rows of all three cross, a ball is hit from six sides at the same instant, by blows of which none is first.
+TEST(Ties, OfBlowsAlongThreeAxesEndTheSameInEveryOrder) {
+  scene::Scene scene = lattice(6, 6, 6, 0.8);
+  for (scene::BodySpec& body : scene.bodies)
+    for (int axis = 0; axis < 3; ++axis) {
+      const int place = static_cast<int>(std::lround(4 * body.position_m[axis])) % 4;
+      body.velocity_m_s[axis] = place == 0 ? 0.5 : place == 2 ? -0.5 : 0.0;
+    }
+  const Trajectory reference = run_by("ordered", scene, {}, 5.0);
+  ASSERT_EQ(reference.stopped_by, "");
+  std::vector<int> blows(scene.bodies.size());   // at the first instant, by body
+  for (const Event& event : reference.events)
+    if (event.time == reference.events.front().time)
+      for (const int body : {event.body_a, event.body_b}) ++blows[static_cast<std::size_t>(body)];
+  ASSERT_GE(std::count_if(blows.begin(), blows.end(), [](int count) { return count >= 6; }), 8);
+  ASSERT_EQ(difference(reference, run_by("ca", scene, {}, 5.0)), "");
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    engines::RunOptions options;
+    options.engine = "tw";
+    options.threads = seed % 4 == 0 ? 2 : 1;
+    options.trial = {seed, true, 0.0, 0, 0.0};
+    options.frame_rate_hz = 5.0;
+    const Trajectory run = run_as_told(std::move(options), scene, test_laws());
+    EXPECT_EQ(difference(reference, run), "") << "seed " << seed;
+    EXPECT_LT((run.frames.back().momentum_world - run.frames.front().momentum_world).norm(), 1e-12);   // N s; 216 balls of 1 kg, 0.9 m/s
+  }
+}
+
 TEST(Cradle, WithGapsPassesTheBlowOnInOrder) {
   for (const int n : {5, 12, 50}) {
     std::vector<scene::BodySpec> bodies;

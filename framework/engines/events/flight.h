@@ -10,6 +10,7 @@ namespace tumble::engines {
 
 /// What happens at one instant, in the order in which it does when the generation is the same.
 enum class EventClass : std::uint8_t {
+  kLookAgain = 0,    // a process that was taken back goes on, before anything of its instant: it may find what comes first; never committed
   kCallback = 1,     // a callback changes bodies; body_a is the first of them, body_b -1, the generation its place in the list
   kCollision = 2,
   kProcess = 3,      // a process's own: an impact within it, a contact that begins or opens; body_a is its first body, body_b -1

@@ -56,7 +56,7 @@ class Conductor {
   // commits.cpp
   void require_certain(const EventKey& key) const;
   void commit_before(const EventKey& key);
-  void commit_before(double t) { commit_before(EventKey{t, 0, EventClass::kCallback, -1, -1}); }   // a key before all others of that time
+  void commit_before(double t) { commit_before(EventKey{t, 0, EventClass::kLookAgain, -1, -1}); }   // a key before all others of that time
   void note_kept();
   bool still_stands(int body, std::uint32_t serial) const;
 

@@ -39,6 +39,8 @@ struct Due {
   EventKey key;
   std::uint32_t serial_a, serial_b;   // of the flights; of a process: its ticket
 };
+/// A process goes on: nothing happens that could be committed.
+inline bool goes_on(const Due& due) { return due.key.kind == EventClass::kAdvance || due.key.kind == EventClass::kLookAgain; }
 
 struct Process {
   double horizon = 0.0;               // local virtual time [s]

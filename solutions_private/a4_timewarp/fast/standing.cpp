@@ -86,7 +86,7 @@ std::string events(Shared& all, std::vector<std::unique_ptr<Worker>>& workers) {
   Bytes bytes;
   for (const Due& due : waiting) {
     bytes << due.key;
-    if (due.key.kind != EventClass::kAdvance) bytes << due.serial_a << due.serial_b;   // else its ticket
+    if (!goes_on(due)) bytes << due.serial_a << due.serial_b;   // else its ticket
   }
   const auto stands = [&](int body, std::uint32_t serial) { return body < 0 || !all.world().can_move(body) || all.histories[body].find(serial) < all.histories[body].size(); };
   std::vector<const Executed*> executed;

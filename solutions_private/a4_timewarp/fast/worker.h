@@ -85,6 +85,8 @@ class alignas(64) Worker {
   void shrink_box(int body);
   void schedule(int body, std::size_t home);
   void schedule(int body) { schedule(body, all_.home[static_cast<std::size_t>(body)]); }
+  void look_again(int body, std::size_t home);
+  void look_again(int body) { look_again(body, all_.home[static_cast<std::size_t>(body)]); }
   double global_virtual_time() const;
 
   void collide(const Due& due);

@@ -89,7 +89,7 @@ void Worker::advance(int body) {
   boxes_.clear();
   for (const int member : members) {
     boxes_.push_back(swept_box(member, swept_from, to));
-    if (!is_alone() && !may_enter(boxes_.back())) return schedule(body, kBorder);
+    if (!is_alone() && !may_enter(boxes_.back())) return look_again(body, kBorder);
   }
   found_.clear();
   if (own_end && own_end->time >= from) found_.push_back({*own_end, flight.serial, 0});
@@ -114,7 +114,7 @@ void Worker::advance_or_leave(int body) {
   try {
     advance(body);
   } catch (...) {
-    schedule(body, kBorder);
+    look_again(body, kBorder);
   }
 }
 
@@ -247,9 +247,13 @@ void Worker::check(int body, const Flight& flight, double from, double to, int o
     return;
   }
   const double until = std::min(to, process(other).horizon);
-  if (!(until > from)) return;   // the other will find it
+  // The other will find what comes later. What comes at this very instant is found now: the other goes on only after all of its instant,
+  // and this may have to come before some of that.
+  if (until < from) return;
   const FlightHistory& flights = history(other);
-  for (std::size_t k = flights.at(from); k < flights.size() && flights[k].begin <= until; ++k) {
+  std::size_t first = flights.at(from);
+  while (first > 0 && flights[first].begin == from) --first;   // all that it flew at this instant: an earlier blow may have to come before a later one
+  for (std::size_t k = first; k < flights.size() && flights[k].begin <= until; ++k) {
     const Flight& its = flights[k];
     const double time = all_.run.impacts().first_impact(body, flight, other, its, std::max(from, its.begin), until, cost);
     if (time >= from && time <= until) offer(body, flight, other, its, time, k + 1 < flights.size() ? &flights[k + 1] : nullptr);
@@ -266,6 +270,12 @@ void Worker::offer(int body, const Flight& flight, int other, const Flight& its,
 void Worker::schedule(int body, std::size_t home) {
   Process& going = process(body);
   push({{going.horizon, kAfterAll, EventClass::kAdvance, body, -1}, ++going.ticket, 0}, home);
+}
+
+// Of what was taken back the impacts are forgotten, those of the very instant, too: one of them may come before all that is known of it.
+void Worker::look_again(int body, std::size_t home) {
+  Process& going = process(body);
+  push({{going.horizon, 0, EventClass::kLookAgain, body, -1}, ++going.ticket, 0}, home);
 }
 
 }  // namespace tumble::a4

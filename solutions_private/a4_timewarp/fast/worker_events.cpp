@@ -28,7 +28,7 @@ bool Worker::look_up(const Due& due, int side, std::size_t& place) {
 
 bool Worker::is_to_come(const Due& due) {
   if (due.key.kind == EventClass::kCallback) return !all_.called[due.key.generation];
-  if (due.key.kind == EventClass::kAdvance) return process(due.key.body_a).ticket == due.serial_a && all_.first_member(due.key.body_a) == due.key.body_a;
+  if (goes_on(due)) return process(due.key.body_a).ticket == due.serial_a && all_.first_member(due.key.body_a) == due.key.body_a;
   std::size_t place = 0;
   return look_up(due, 0, place) && look_up(due, 1, place);
 }
@@ -190,7 +190,7 @@ void Worker::roll_back(int body, std::size_t keep) {
       }
     }
     shrink_box(now_at);
-    if (all_.first_member(now_at) == now_at) schedule(now_at);
+    if (all_.first_member(now_at) == now_at) look_again(now_at);
   }
 }
 
@@ -204,7 +204,7 @@ void Worker::recall(const EventKey& key) {
 void Worker::work_at(const Due& due) {
   now = due.key.time;
   if (due.key.kind == EventClass::kCallback) call(due);
-  else if (due.key.kind != EventClass::kAdvance) collide(due);
+  else if (!goes_on(due)) collide(due);
   else if (is_to_come(due)) {
     if (process(due.key.body_a).horizon >= all_.run.duration()) set_horizon(due.key.body_a, kInfinity);   // nothing is left to find
     else advance(due.key.body_a);
@@ -242,7 +242,7 @@ void Worker::work_before(double end) {
 // Who waits for an impact does not go on before it: it would find the same impact again and again.
 void Worker::leave(const Due& due) {
   left.due.push_back(due);
-  if (due.key.kind == EventClass::kAdvance) return;
+  if (goes_on(due)) return;
   for (const int body : {due.key.body_a, due.key.body_b})
     if (body >= 0 && world().can_move(body)) schedule(all_.first_member(body), kBorder);
 }
@@ -287,7 +287,7 @@ void Worker::go_back(int body, double t) {
   purge(body);
   if (t < process(body).horizon) {
     set_horizon(body, t);
-    schedule(all_.first_member(body));
+    look_again(all_.first_member(body));
   }
   for (const int member : world().members(body, history(body).back())) shrink_box(member);
 }
