@@ -34,6 +34,7 @@ constexpr double kLongestFirst = 0.5;   // of the budget, that it may take where
 constexpr double kWorthATruth = 0.1; // of the scene: a truth that holds for less says less than its numbers
 constexpr double kSearch = 3.0, kLeastSearch = 6.0;   // budgets, and s of CPU, of the search for a truth
 constexpr double kLeastProbe = 1.0;  // s, and
+constexpr double kHostsPart = 0.5;   // of the budget, where a module runs in a sandbox: the other process takes as much again
 constexpr double kProbe = 0.1;       // of the budget: of the run that shows whether a scene's size fits into it
 constexpr int kSmaller = 3;          // and else it gets so many times smaller
 
@@ -113,7 +114,7 @@ bool any_gets_through(const Ladder& ladder) {
 class Ladders {
  public:
   Ladders(const CostSubject& subject, const CostTruth& truth, const CostWords& words, const engines::CostOptions& options)
-      : scene_(subject.scene), truth_(truth), words_{words.steps_s(), words.tolerances}, budget_(words.budget()), options_(options), until_(cpu_seconds() + budget_) {
+      : scene_(subject.scene), truth_(truth), words_{words.steps_s(), words.tolerances}, budget_((subject.connections.empty() ? 1.0 : kHostsPart) * words.budget()), options_(options), until_(cpu_seconds() + budget_) {
     for (const CostWay& way : subject.ways) ladders.push_back({way, {}});
   }
 
