@@ -55,7 +55,6 @@ void needles_by_the_laws(const Given& given, Findings& findings) {
     const long steps = std::lround((given.is_long ? 10.0 : 1.0) / h);
     findings.at_most(name + "100 steps: spin about the axis", spin_lost_by_rk4(given, moments, q, omega, h, 100), 100 * floor, "rad/s", "a state with L in the world frame knows it to u |L| / I_min; above 100 times that something else is wrong");
     findings.at_most(name + fmt::format("{} steps: spin about the axis", steps), spin_lost_by_rk4(given, moments, q, omega, h, steps), static_cast<double>(steps) * floor, "rad/s", "each step rounds the orientation once: u |L| / I_min a step");
-    if (axial < 1e-8) findings.must_fail("the same needle, h = 2e-4 s, 100 steps: spin about the axis", spin_lost_by_rk4(given, moments, q, omega, 2e-4, 100), 100 * floor, "rad/s", "a turn of 2e-4 a step is nothing for any other body: here the stages spin 30 rad/s too fast");
   }
 }
 
