@@ -95,13 +95,13 @@ void audit(Context& context, const Words& words) {
 
 void add_audit(CLI::App& app, Context& context) {
   auto words = std::make_shared<Words>();
-  CLI::App* verb = app.add_subcommand("audit", "Judge every known-wrong solution: which test catches which, and does its story name the slip");
-  verb->add_option("assignment", words->id, "Which, e.g. a1")->required()->type_name("ID");
-  verb->add_option("--mutants", words->mutants, "Known-wrong solutions to judge instead of the assignment's own")->type_name("FOLDER");
-  verb->add_option("--jobs", words->jobs, "At a time")->check(CLI::Range(1, 256))->capture_default_str();
-  verb->add_flag("--json", words->json, "For machines");
-  verb->footer("Exit: 0 all caught and no right solution accused, 1 otherwise.");
-  verb->callback([&context, words] { audit(context, *words); });
+  Verb verb(app, "audit", "Judge every known-wrong solution: which test catches which, and does its story name the slip");
+  verb.option("assignment", words->id, "Which, e.g. a1").required().type_name("ID");
+  verb.option("--mutants", words->mutants, "Known-wrong solutions to judge instead of the assignment's own").type_name("FOLDER");
+  verb.option("--jobs", words->jobs, "At a time").between(1, 256).shows_default();
+  verb.flag("--json", words->json, "For machines");
+  verb.footer("Exit: 0 all caught and no right solution accused, 1 otherwise.");
+  verb.runs([&context, words] { audit(context, *words); });
 }
 
 }  // namespace tumble::cli

@@ -120,13 +120,13 @@ void run_battery(Context& context, const Options& options) {
 
 void add_battery(CLI::App& app, Context& context) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("battery", "Run the cases that are known to break simulations, against thresholds derived beforehand");
-  verb->add_flag("--long", options->is_long, "Whole lengths: stacks of 60 s, a million steps (a quarter of an hour)");
-  verb->add_option("--only", options->only, "Cases by number, or by a word of the name");
-  verb->add_flag("--each", options->each, "Show every measure, not only the one closest to its threshold");
-  verb->add_option("--out", options->out, "Folder of the page battery.html")->capture_default_str();
-  verb->add_option("--modules", options->modules, "student, reference, PATH.cpp or PATH.so")->default_str("reference, where this tree has one");
-  verb->callback([&context, options] { run_battery(context, *options); });
+  Verb verb(app, "battery", "Run the cases that are known to break simulations, against thresholds derived beforehand");
+  verb.flag("--long", options->is_long, "Whole lengths: stacks of 60 s, a million steps (a quarter of an hour)");
+  verb.option("--only", options->only, "Cases by number, or by a word of the name");
+  verb.flag("--each", options->each, "Show every measure, not only the one closest to its threshold");
+  verb.option("--out", options->out, "Folder of the page battery.html").shows_default();
+  verb.option("--modules", options->modules, "student, reference, PATH.cpp or PATH.so").default_text("reference, where this tree has one");
+  verb.runs([&context, options] { run_battery(context, *options); });
 }
 
 }  // namespace tumble::cli

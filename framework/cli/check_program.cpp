@@ -81,9 +81,9 @@ ExitCode run_tests(const Context& context, const CheckWords& words, const fs::pa
 
 }  // namespace
 
-void add_check_words(CLI::App& verb, std::vector<std::string>& rest, std::string& id) {
-  verb.add_option("assignment", id, "Which, e.g. a1")->required()->type_name("ID");
-  verb.add_option("what", rest, "FILE.cpp: instead of your file under assignments/; other words choose tests, e.g. 'CollisionImpulse.*'")->type_name("[FILE] [PATTERN]");
+void add_check_words(Verb& verb, std::vector<std::string>& rest, std::string& id) {
+  verb.option("assignment", id, "Which, e.g. a1").required().type_name("ID");
+  verb.option("what", rest, "FILE.cpp: instead of your file under assignments/; other words choose tests, e.g. 'CollisionImpulse.*'").type_name("[FILE] [PATTERN]");
 }
 
 CheckWords read_check_words(const Context& context, const std::string& id, const std::vector<std::string>& rest) {

@@ -17,7 +17,7 @@ struct CheckWords {
 };
 
 /// Declares "a1 [FILE] [PATTERN...]" on a verb and gives what was said, when asked after the parse.
-void add_check_words(CLI::App& verb, std::vector<std::string>& rest, std::string& id);
+void add_check_words(Verb& verb, std::vector<std::string>& rest, std::string& id);
 /// @throws UserError for an unknown assignment or a missing file
 CheckWords read_check_words(const Context& context, const std::string& id, const std::vector<std::string>& rest);
 

@@ -143,10 +143,10 @@ void demo(Context& context, const Options& options) {
 
 void add_demo(CLI::App& app, Context& context) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("demo", "Grade three submissions of each assignment and draw every scene: the whole path on one page");
-  verb->add_option("--out", options->out, "Folder of the report")->capture_default_str();
-  verb->add_option("--jobs", options->jobs, "Submissions graded at the same time")->check(CLI::Range(1, 64))->capture_default_str();
-  verb->callback([&context, options] { demo(context, *options); });
+  Verb verb(app, "demo", "Grade three submissions of each assignment and draw every scene: the whole path on one page");
+  verb.option("--out", options->out, "Folder of the report").shows_default();
+  verb.option("--jobs", options->jobs, "Submissions graded at the same time").between(1, 64).shows_default();
+  verb.runs([&context, options] { demo(context, *options); });
 }
 
 }  // namespace tumble::cli

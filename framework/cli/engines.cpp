@@ -60,22 +60,22 @@ void run_engines(Context& context, const EnginesWords& words) {
 
 void add_engines(CLI::App& app, Context& context) {
   auto words = std::make_shared<EnginesWords>();
-  CLI::App* verb = app.add_subcommand("engines", "Run a scene by every engine and compare what they count, commit and cost");
-  verb->add_option("scene", words->scene, "A scene file, the bare name of one, or a scene with a size (atoms, cars, ...); none, or all: the course's scenes on one page")->type_name("SCENE");
-  verb->add_flag("--full", words->full, "Of the page of all scenes: sizes as in the paper; takes long");
-  verb->add_flag("--small", words->small, "Of the page of all scenes: four of them, smaller still; takes seconds")->excludes("--full");
-  verb->add_flag("--no-videos", words->no_videos, "Of the page of all scenes: tables, plots and players only");
-  verb->add_option("--n", words->n, "Size of a scene whose size is a parameter");
-  verb->add_option("--sizes", words->sizes, "Sizes to run one after the other: draws work and time against n, e.g. --sizes 50,100,200")->delimiter(',');
-  verb->add_option("--engines", words->engines, "Which, with commas between them; ordered is the reference that goes event by event")->capture_default_str();
-  verb->add_option("--propagator", words->propagator, "Of rd: laws, or auto (closed forms, as the other engines have)")->type_name("WORD");
-  verb->add_option("--modules", words->modules, "Whose laws, as for tumble run")->type_name("WORDS");
-  verb->add_option("--duration-s", words->duration_s, "Simulated time [s] instead of the scene's")->check(CLI::PositiveNumber);
-  verb->add_option("--step-s", words->step_s, "Largest step [s] instead of the scene's")->check(CLI::PositiveNumber);
-  verb->add_option("--threads", words->threads, "Of tw: how many; then times are by the clock")->capture_default_str();
-  verb->add_option("--out", words->out, "Folder in which pages are made: index.html of all scenes, SCENE/index.html of one")->capture_default_str();
-  verb->footer("Example: tumble engines\n         tumble engines atoms --sizes 30,100,300 --modules reference\nTimes are CPU times in this run (by the clock with --threads) and are meant to be compared with each other only.");
-  verb->callback([&context, words] { run_engines(context, *words); });
+  Verb verb(app, "engines", "Run a scene by every engine and compare what they count, commit and cost");
+  verb.option("scene", words->scene, "A scene file, the bare name of one, or a scene with a size (atoms, cars, ...); none, or all: the course's scenes on one page").type_name("SCENE");
+  verb.flag("--full", words->full, "Of the page of all scenes: sizes as in the paper; takes long");
+  verb.flag("--small", words->small, "Of the page of all scenes: four of them, smaller still; takes seconds").excludes("--full");
+  verb.flag("--no-videos", words->no_videos, "Of the page of all scenes: tables, plots and players only");
+  verb.option("--n", words->n, "Size of a scene whose size is a parameter");
+  verb.option("--sizes", words->sizes, "Sizes to run one after the other: draws work and time against n, e.g. --sizes 50,100,200").separated_by(',');
+  verb.option("--engines", words->engines, "Which, with commas between them; ordered is the reference that goes event by event").shows_default();
+  verb.option("--propagator", words->propagator, "Of rd: laws, or auto (closed forms, as the other engines have)").type_name("WORD");
+  verb.option("--modules", words->modules, "Whose laws, as for tumble run").type_name("WORDS");
+  verb.option("--duration-s", words->duration_s, "Simulated time [s] instead of the scene's").positive();
+  verb.option("--step-s", words->step_s, "Largest step [s] instead of the scene's").positive();
+  verb.option("--threads", words->threads, "Of tw: how many; then times are by the clock").shows_default();
+  verb.option("--out", words->out, "Folder in which pages are made: index.html of all scenes, SCENE/index.html of one").shows_default();
+  verb.footer("Example: tumble engines\n         tumble engines atoms --sizes 30,100,300 --modules reference\nTimes are CPU times in this run (by the clock with --threads) and are meant to be compared with each other only.");
+  verb.runs([&context, words] { run_engines(context, *words); });
 }
 
 }  // namespace tumble::cli

@@ -238,14 +238,14 @@ void explain(Context& context, const ExplainWords& words) {
 
 void add_explain(CLI::App& app, Context& context) {
   auto words = std::make_shared<ExplainWords>();
-  CLI::App* verb = app.add_subcommand("explain", "Say which effects a scene has, which entry asked for each, and what each costs");
-  verb->add_option("scene", words->scene, "A scene file, or the bare name of one under assignments/*/scenes")->required()->type_name("SCENE");
-  CLI::Option* run = verb->add_flag("--run", words->run, "Run it, and add times and counts");
-  verb->add_option("--modules", words->modules, "Whose laws, as for tumble run")->type_name("WORDS")->needs(run);
-  verb->add_option("--duration-s", words->duration_s, "Simulated time [s] instead of the scene's")->check(CLI::PositiveNumber)->needs(run);
-  verb->add_flag("--json", words->json, "For machines");
-  verb->footer("Example: tumble explain bouncing_ball --run --modules reference\nExit: 0 told, 1 the run was stopped, 2 something to repair, 4 not attempted.");
-  verb->callback([&context, words] { explain(context, *words); });
+  Verb verb(app, "explain", "Say which effects a scene has, which entry asked for each, and what each costs");
+  verb.option("scene", words->scene, "A scene file, or the bare name of one under assignments/*/scenes").required().type_name("SCENE");
+  const Word run = verb.flag("--run", words->run, "Run it, and add times and counts");
+  verb.option("--modules", words->modules, "Whose laws, as for tumble run").type_name("WORDS").needs(run);
+  verb.option("--duration-s", words->duration_s, "Simulated time [s] instead of the scene's").positive().needs(run);
+  verb.flag("--json", words->json, "For machines");
+  verb.footer("Example: tumble explain bouncing_ball --run --modules reference\nExit: 0 told, 1 the run was stopped, 2 something to repair, 4 not attempted.");
+  verb.runs([&context, words] { explain(context, *words); });
 }
 
 }  // namespace tumble::cli

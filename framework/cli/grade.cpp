@@ -73,15 +73,15 @@ void grade(Context& context, const Words& words) {
 
 void add_grade(CLI::App& app, Context& context) {
   auto words = std::make_shared<Words>();
-  CLI::App* verb = app.add_subcommand("grade", "Grade a folder of submissions: scores, stories, pictures, a gradebook");
-  verb->add_option("assignment", words->id, "Which, e.g. a1")->required()->type_name("ID");
-  verb->add_option("folder", words->folder, "One submission a sub-folder")->required()->type_name("FOLDER");
-  verb->add_option("--out", words->out, "Where results go; default out/grade_ID. A run that was ended goes on from there")->type_name("FOLDER");
-  verb->add_option("--jobs", words->jobs, "Submissions at a time")->check(CLI::Range(1, 256))->capture_default_str();
-  verb->add_option("--budget-s", words->budget_s, "Time for all tests of one submission together; tests after it are out of time, not run")->check(CLI::PositiveNumber)->capture_default_str();
-  verb->add_flag("--no-media", words->no_media, "Without pictures, videos and pages that play: seconds instead of minutes a submission");
-  verb->footer("Exit: 0 all graded, 2 something to repair, 3 the grader failed somewhere (those scores are blank; run it again).");
-  verb->callback([&context, words] { grade(context, *words); });
+  Verb verb(app, "grade", "Grade a folder of submissions: scores, stories, pictures, a gradebook");
+  verb.option("assignment", words->id, "Which, e.g. a1").required().type_name("ID");
+  verb.option("folder", words->folder, "One submission a sub-folder").required().type_name("FOLDER");
+  verb.option("--out", words->out, "Where results go; default out/grade_ID. A run that was ended goes on from there").type_name("FOLDER");
+  verb.option("--jobs", words->jobs, "Submissions at a time").between(1, 256).shows_default();
+  verb.option("--budget-s", words->budget_s, "Time for all tests of one submission together; tests after it are out of time, not run").positive().shows_default();
+  verb.flag("--no-media", words->no_media, "Without pictures, videos and pages that play: seconds instead of minutes a submission");
+  verb.footer("Exit: 0 all graded, 2 something to repair, 3 the grader failed somewhere (those scores are blank; run it again).");
+  verb.runs([&context, words] { grade(context, *words); });
 }
 
 }  // namespace tumble::cli

@@ -136,10 +136,10 @@ void build_handouts(Context& context, const Options& options) {
 
 void add_handouts(CLI::App& app, Context& context) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("handouts", "Build every handout as a page and as a PDF, with figures drawn now");
-  verb->add_option("--out", options->out, "Folder of the pages")->capture_default_str();
-  verb->add_flag("!--no-pdf", options->pdf, "Pages only");
-  verb->callback([&context, options] { build_handouts(context, *options); });
+  Verb verb(app, "handouts", "Build every handout as a page and as a PDF, with figures drawn now");
+  verb.option("--out", options->out, "Folder of the pages").shows_default();
+  verb.flag("!--no-pdf", options->pdf, "Pages only");
+  verb.runs([&context, options] { build_handouts(context, *options); });
 }
 
 }  // namespace tumble::cli

@@ -154,13 +154,13 @@ ExitCode inspect(const Context& context, const InspectWords& words) {
 
 void add_inspect(CLI::App& app, Context& context) {
   auto words = std::make_shared<InspectWords>();
-  CLI::App* verb = app.add_subcommand("inspect", "What a .3ds file holds: is it solid, what does it weigh, what is wrong");
-  verb->add_option("file", words->file, "A .3ds file, or the name of one in models/")->required()->type_name("FILE");
-  verb->add_option("--scale", words->metres_per_unit, "Length of the file's unit [m]: 0.0254 for inches")->capture_default_str()->check(CLI::PositiveNumber);
-  verb->add_option("--density", words->density, "Density [kg/m^3]")->capture_default_str()->check(CLI::PositiveNumber);
-  verb->add_flag("--json", words->json, "The same for machines, all digits");
-  verb->footer("Example: tumble inspect chess_pawn --scale 0.05 --density 700\nExit: 0 every object is a solid, 1 one is not, 2 the file cannot be read.");
-  verb->callback([&context, words] { context.exit = inspect(context, *words); });
+  Verb verb(app, "inspect", "What a .3ds file holds: is it solid, what does it weigh, what is wrong");
+  verb.option("file", words->file, "A .3ds file, or the name of one in models/").required().type_name("FILE");
+  verb.option("--scale", words->metres_per_unit, "Length of the file's unit [m]: 0.0254 for inches").shows_default().positive();
+  verb.option("--density", words->density, "Density [kg/m^3]").shows_default().positive();
+  verb.flag("--json", words->json, "The same for machines, all digits");
+  verb.footer("Example: tumble inspect chess_pawn --scale 0.05 --density 700\nExit: 0 every object is a solid, 1 one is not, 2 the file cannot be read.");
+  verb.runs([&context, words] { context.exit = inspect(context, *words); });
 }
 
 }  // namespace tumble::cli

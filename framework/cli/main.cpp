@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <exception>
 
+#include <CLI/CLI.hpp>
+
 #include "framework/cli/verb.h"
 #include "framework/core/keep_memory.h"
 #include "framework/core/nearest_word.h"

@@ -142,11 +142,11 @@ double paid(const PlannedRun::Search& search, double cpu_s) { return std::max(1e
 
 }  // namespace
 
-void add_plan_words(CLI::App& verb, RunWords& words) {
-  verb.add_option("--accuracy", words.accuracy_m, "Choose method and step for an error of at most this [m] in every frame, and say what it costs")->check(CLI::PositiveNumber)->type_name("M");
-  verb.add_option("--budget-s", words.budget_s, "Choose method and step for the least error that this much CPU time [s] buys")->check(CLI::PositiveNumber)->type_name("S");
-  verb.add_option("--method", words.method, "Method of integration in place of the laws' own: euler, symplectic, midpoint, verlet, rk4, dopri5, fehlberg78, bulirsch-stoer, rosenbrock4")->type_name("WORD");
-  verb.add_option("--tolerance", words.tolerance, "Of a method that chooses its steps by one")->check(CLI::PositiveNumber);
+void add_plan_words(Verb& verb, RunWords& words) {
+  verb.option("--accuracy", words.accuracy_m, "Choose method and step for an error of at most this [m] in every frame, and say what it costs").positive().type_name("M");
+  verb.option("--budget-s", words.budget_s, "Choose method and step for the least error that this much CPU time [s] buys").positive().type_name("S");
+  verb.option("--method", words.method, "Method of integration in place of the laws' own: euler, symplectic, midpoint, verlet, rk4, dopri5, fehlberg78, bulirsch-stoer, rosenbrock4").type_name("WORD");
+  verb.option("--tolerance", words.tolerance, "Of a method that chooses its steps by one").positive();
 }
 
 PlannedRun plan_run(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const RunWords& words) {

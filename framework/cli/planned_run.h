@@ -29,7 +29,7 @@ struct PlannedRun {
 };
 
 /// Declares --accuracy, --budget-s, --method and --tolerance.
-void add_plan_words(CLI::App& verb, RunWords& words);
+void add_plan_words(Verb& verb, RunWords& words);
 
 /// @throws UserError where words contradict each other, where the scene has no truth, or where nothing reaches what is asked for
 PlannedRun plan_run(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const RunWords& words);

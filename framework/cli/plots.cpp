@@ -54,13 +54,13 @@ void write_plots(const Options& options) {
 
 void add_plots(CLI::App& app, Context&) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("plots", "The plots of a page as PNG or SVG, for handouts, slides and papers");
-  verb->add_option("page", options->page, "A page with plots, as cost, engines, battery or grade wrote it")->required()->type_name("PAGE");
-  verb->add_option("--out", options->out, "Folder of the pictures (default: plots beside the page)");
-  verb->add_option("--width-px", options->width_px, "Width of a PNG")->capture_default_str()->check(CLI::Range(64, 8192));
-  verb->add_flag("--svg", options->svg, "SVG instead of PNG");
-  verb->footer("Example: tumble cost double_pendulum; tumble plots out/cost/double_pendulum/index.html");
-  verb->callback([options] { write_plots(*options); });
+  Verb verb(app, "plots", "The plots of a page as PNG or SVG, for handouts, slides and papers");
+  verb.option("page", options->page, "A page with plots, as cost, engines, battery or grade wrote it").required().type_name("PAGE");
+  verb.option("--out", options->out, "Folder of the pictures (default: plots beside the page)");
+  verb.option("--width-px", options->width_px, "Width of a PNG").shows_default().between(64, 8192);
+  verb.flag("--svg", options->svg, "SVG instead of PNG");
+  verb.footer("Example: tumble cost double_pendulum; tumble plots out/cost/double_pendulum/index.html");
+  verb.runs([options] { write_plots(*options); });
 }
 
 }  // namespace tumble::cli

@@ -166,16 +166,16 @@ void poke(Context& context, const PokeWords& words) {
 
 void add_poke(CLI::App& app, Context& context) {
   auto words = std::make_shared<PokeWords>();
-  CLI::App* verb = app.add_subcommand("poke", "Push a body where a pixel, a ray or a point says, and watch");
-  add_run_words(*verb, *words);
-  verb->add_option("--pixel", words->pixel, "X,Y in the scene's picture (see --size); (0,0) is the top left corner")->type_name("X,Y");
-  verb->add_option("--ray", words->ray, "OX,OY,OZ,DX,DY,DZ: from a point [m] along a direction, world")->type_name("RAY");
-  verb->add_option("--point", words->point, "BODY,X,Y,Z: a point that moves with the body, where it is at the start [m], world")->type_name("POINT");
-  verb->add_option("--force", words->force, "FX,FY,FZ [N], world, constant while it lasts")->required()->type_name("FORCE");
-  verb->add_option("--duration-s", words->push_s, "How long the force lasts [s]")->required()->check(CLI::PositiveNumber);
-  verb->footer("The face is found through a tree of boxes over the model, then asked of your own ray function, whose answer counts.\n"
+  Verb verb(app, "poke", "Push a body where a pixel, a ray or a point says, and watch");
+  add_run_words(verb, *words);
+  verb.option("--pixel", words->pixel, "X,Y in the scene's picture (see --size); (0,0) is the top left corner").type_name("X,Y");
+  verb.option("--ray", words->ray, "OX,OY,OZ,DX,DY,DZ: from a point [m] along a direction, world").type_name("RAY");
+  verb.option("--point", words->point, "BODY,X,Y,Z: a point that moves with the body, where it is at the start [m], world").type_name("POINT");
+  verb.option("--force", words->force, "FX,FY,FZ [N], world, constant while it lasts").required().type_name("FORCE");
+  verb.option("--duration-s", words->push_s, "How long the force lasts [s]").required().positive();
+  verb.footer("The face is found through a tree of boxes over the model, then asked of your own ray function, whose answer counts.\n"
                "Example: tumble poke poked_box --pixel 200,250 --force 0,60,0 --duration-s 0.2 --video poke.mp4");
-  verb->callback([&context, words] { poke(context, *words); });
+  verb.runs([&context, words] { poke(context, *words); });
 }
 
 }  // namespace tumble::cli

@@ -116,10 +116,10 @@ void release(Context& context, const Options& options) {
 
 void add_release(CLI::App& app, Context& context) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("release", "Write the starter tree for students: everything but the solutions");
-  verb->add_option("folder", options->folder, "Where to write it (must not exist yet)")->required();
-  verb->add_option("--publish", options->publish, "Assignments whose reference replaces the stub, e.g. after a deadline")->delimiter(',');
-  verb->callback([&context, options] { release(context, *options); });
+  Verb verb(app, "release", "Write the starter tree for students: everything but the solutions");
+  verb.option("folder", options->folder, "Where to write it (must not exist yet)").required();
+  verb.option("--publish", options->publish, "Assignments whose reference replaces the stub, e.g. after a deadline").separated_by(',');
+  verb.runs([&context, options] { release(context, *options); });
 }
 
 }  // namespace tumble::cli

@@ -88,9 +88,9 @@ void add_panel(const report::PlayedRun& played, report::PlayerOptions& options) 
 
 }  // namespace
 
-void add_page_words(CLI::App& verb, RunWords& words) {
-  verb.add_option("--html", words.html, "Write a page that plays the run: motion, curves, events; opens in any browser, needs no network")->type_name("FILE");
-  verb.add_option("--beside", words.beside, "Show a second run in the page, and where the two first differ: whose laws (as --modules), engine=, step-s=, or recording=FILE")->type_name("WORDS");
+void add_page_words(Verb& verb, RunWords& words) {
+  verb.option("--html", words.html, "Write a page that plays the run: motion, curves, events; opens in any browser, needs no network").type_name("FILE");
+  verb.option("--beside", words.beside, "Show a second run in the page, and where the two first differ: whose laws (as --modules), engine=, step-s=, or recording=FILE").type_name("WORDS");
 }
 
 BesideWords parse_beside(const std::string& text) {

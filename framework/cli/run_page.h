@@ -10,7 +10,7 @@
 namespace tumble::cli {
 
 /// Declares --html and --beside.
-void add_page_words(CLI::App& verb, RunWords& words);
+void add_page_words(Verb& verb, RunWords& words);
 
 /// What --beside says: how the second run differs from the first.
 struct BesideWords {

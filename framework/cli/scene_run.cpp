@@ -159,27 +159,27 @@ scene::Scene judged_part(scene::Scene scene, const RunWords& words) {
 
 }  // namespace
 
-void add_run_words(CLI::App& verb, RunWords& words) {
-  verb.add_option("scene", words.scene, "A scene file, or the bare name of one under assignments/*/scenes")->required()->type_name("SCENE");
-  verb.add_option("--modules", words.modules, "Whose laws: student, reference, library, or a submission (PATH.cpp, PATH.so, a folder: in the sandbox); for all or each: a1=student,a2=library")->type_name("WORDS");
-  verb.add_option("--engine", words.engine, "rd: retroactive detection with fixed step; ca: conservative advancement; tw: timewarp; ordered: event by event, the reference; default: the scene's own, or rd")->type_name("WORD");
-  verb.add_option("--propagator", words.propagator, "laws: bodies go by the laws' integration (rd's default); auto: in closed form where nothing but gravity acts")->type_name("WORD");
-  verb.add_option("--threads", words.threads, "Of --engine tw: how many; the run is the same with any number. Laws must keep nothing from one call to the next")->capture_default_str();
-  verb.add_option("--most-states", words.most_states, "Of --engine tw: how many states of a body it keeps at most, 8 or more; 0: as many as it takes")->capture_default_str();
-  verb.add_option("--n", words.n, "Size of a scene whose size is a parameter: such as atoms, pong, cars, avalanche")->check(CLI::PositiveNumber);
-  verb.add_option("--step-s", words.step_s, "Step of the integrator [s] instead of the scene's")->check(CLI::PositiveNumber);
-  verb.add_option("--png", words.png, "Write one picture")->type_name("FILE");
-  verb.add_option("--at-s", words.at_s, "Instant of the picture [s]; default the end")->check(CLI::NonNegativeNumber);
-  verb.add_option("--sheet", words.sheet, "Write a contact sheet (.png)")->type_name("FILE");
-  verb.add_option("--video", words.video, "Write a video (.mp4)")->type_name("FILE");
-  verb.add_option("--trajectory", words.trajectory, "Write the recorded run, every frame and event")->type_name("FILE");
-  verb.add_option("--virtual-times", words.virtual_times, "Of a timewarp on a module's decisions: write a chart (.png) of local virtual times, rollbacks and global virtual time")->type_name("FILE");
-  verb.add_option("--moves", words.moves, "Of --virtual-times: after which moves of the scheduler, such as 3,8,9; default: before and after the first rollbacks")->delimiter(',')->type_name("LIST");
-  verb.add_option("--chart-until-s", words.chart_until_s, "Of --virtual-times: how far it goes [s]")->check(CLI::PositiveNumber);
+void add_run_words(Verb& verb, RunWords& words) {
+  verb.option("scene", words.scene, "A scene file, or the bare name of one under assignments/*/scenes").required().type_name("SCENE");
+  verb.option("--modules", words.modules, "Whose laws: student, reference, library, or a submission (PATH.cpp, PATH.so, a folder: in the sandbox); for all or each: a1=student,a2=library").type_name("WORDS");
+  verb.option("--engine", words.engine, "rd: retroactive detection with fixed step; ca: conservative advancement; tw: timewarp; ordered: event by event, the reference; default: the scene's own, or rd").type_name("WORD");
+  verb.option("--propagator", words.propagator, "laws: bodies go by the laws' integration (rd's default); auto: in closed form where nothing but gravity acts").type_name("WORD");
+  verb.option("--threads", words.threads, "Of --engine tw: how many; the run is the same with any number. Laws must keep nothing from one call to the next").shows_default();
+  verb.option("--most-states", words.most_states, "Of --engine tw: how many states of a body it keeps at most, 8 or more; 0: as many as it takes").shows_default();
+  verb.option("--n", words.n, "Size of a scene whose size is a parameter: such as atoms, pong, cars, avalanche").positive();
+  verb.option("--step-s", words.step_s, "Step of the integrator [s] instead of the scene's").positive();
+  verb.option("--png", words.png, "Write one picture").type_name("FILE");
+  verb.option("--at-s", words.at_s, "Instant of the picture [s]; default the end").not_negative();
+  verb.option("--sheet", words.sheet, "Write a contact sheet (.png)").type_name("FILE");
+  verb.option("--video", words.video, "Write a video (.mp4)").type_name("FILE");
+  verb.option("--trajectory", words.trajectory, "Write the recorded run, every frame and event").type_name("FILE");
+  verb.option("--virtual-times", words.virtual_times, "Of a timewarp on a module's decisions: write a chart (.png) of local virtual times, rollbacks and global virtual time").type_name("FILE");
+  verb.option("--moves", words.moves, "Of --virtual-times: after which moves of the scheduler, such as 3,8,9; default: before and after the first rollbacks").separated_by(',').type_name("LIST");
+  verb.option("--chart-until-s", words.chart_until_s, "Of --virtual-times: how far it goes [s]").positive();
   add_page_words(verb, words);
-  verb.add_option("--speed", words.speed, "Seconds of the run in a second of video: 0.25 is slow motion")->check(CLI::Range(1e-6, 1e6))->capture_default_str();
-  verb.add_option("--size", words.size, "Of pictures and video, in pixels")->type_name("WxH")->capture_default_str();
-  verb.add_flag("--json", words.json, "For machines");
+  verb.option("--speed", words.speed, "Seconds of the run in a second of video: 0.25 is slow motion").between(1e-6, 1e6).shows_default();
+  verb.option("--size", words.size, "Of pictures and video, in pixels").type_name("WxH").shows_default();
+  verb.flag("--json", words.json, "For machines");
 }
 
 PictureSize parse_size(const std::string& text) {

@@ -38,7 +38,7 @@ struct PictureSize {
 };
 
 /// Declares the words on a verb. `words` must outlive the parse.
-void add_run_words(CLI::App& verb, RunWords& words);
+void add_run_words(Verb& verb, RunWords& words);
 
 /// @throws UserError unless "WxH" with both in [16, 4096]
 PictureSize parse_size(const std::string& text);

@@ -136,12 +136,12 @@ ExitCode run_truths(const Context& context, const Options& options) {
 
 void add_truths(CLI::App& app, Context& context) {
   auto options = std::make_shared<Options>();
-  CLI::App* verb = app.add_subcommand("truths", "Compare what is computed here with reference values of high precision");
-  verb->add_option("folder", options->folder, "Folder of truth files, or one file (tests/truths)")->required();
-  verb->add_option("--modules", options->modules, "student, reference, PATH.cpp, PATH.so, a folder of them; or a1=WORD,a2=WORD")->default_str("reference");
-  verb->add_flag("--each", options->each, "Show every output, not only the one closest to its mark");
-  verb->add_flag("--json", options->json, "The same for machines");
-  verb->callback([&context, options] { context.exit = run_truths(context, *options); });
+  Verb verb(app, "truths", "Compare what is computed here with reference values of high precision");
+  verb.option("folder", options->folder, "Folder of truth files, or one file (tests/truths)").required();
+  verb.option("--modules", options->modules, "student, reference, PATH.cpp, PATH.so, a folder of them; or a1=WORD,a2=WORD").default_text("reference");
+  verb.flag("--each", options->each, "Show every output, not only the one closest to its mark");
+  verb.flag("--json", options->json, "The same for machines");
+  verb.runs([&context, options] { context.exit = run_truths(context, *options); });
 }
 
 }  // namespace tumble::cli

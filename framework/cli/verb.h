@@ -4,8 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include <CLI/CLI.hpp>
-
+#include "framework/cli/words.h"
 #include "framework/core/error.h"
 #include "framework/modules/registry.h"
 

@@ -83,9 +83,9 @@ void watch(Context& context, const CheckWords& words) {
 void add_watch(CLI::App& app, Context& context) {
   auto id = std::make_shared<std::string>();
   auto rest = std::make_shared<std::vector<std::string>>();
-  CLI::App* verb = app.add_subcommand("watch", "The same as check, on every save");
-  add_check_words(*verb, *rest, *id);
-  verb->callback([&context, id, rest] { watch(context, read_check_words(context, *id, *rest)); });
+  Verb verb(app, "watch", "The same as check, on every save");
+  add_check_words(verb, *rest, *id);
+  verb.runs([&context, id, rest] { watch(context, read_check_words(context, *id, *rest)); });
 }
 
 }  // namespace tumble::cli
