@@ -38,7 +38,7 @@ std::vector<Stage> stages_of(const std::vector<Effect>& effects) {
   const bool forced = constrained || is_on(effects, "spring") || is_on(effects, "drag");
   return {
       {"integration", "moves bodies by their forces, and takes back what went too far", true,
-       {"steps", "shortened_steps", "integrations", "undone_integrations", "derivative_evaluations", "rollbacks", "gravity_calls", "point_force_calls"}},
+       {"steps", "synchronisations", "shortened_steps", "integrations", "undone_integrations", "derivative_evaluations", "rollbacks", "gravity_calls", "point_force_calls"}},
       {"forces", "springs, drag and motors, with the gravity of what they hold", forced, {"spring_calls", "drag_calls"}},
       {"constraints", "the forces that hold rods and joints, and bringing them back", constrained, {"rod_calls", "joint_calls", "constraint_solves", "constraint_corrections"}},
       {"control", "motors look and set their torques", is_on(effects, "motor"), {"motor_calls"}},

@@ -19,7 +19,8 @@ constexpr bool kDrag = kWithout != "drag";
 constexpr bool kRod = kWithout != "rod";
 constexpr bool kJoint = kWithout != "joint";
 constexpr bool kMotor = kWithout != "motor";
-constexpr bool kContact = kWithout != "contact";
+constexpr bool kCollision = kWithout != "collision";
+constexpr bool kContact = kCollision && kWithout != "contact";   // begins where bodies collide
 constexpr bool kFriction = kWithout != "friction";
 constexpr bool kSleep = kWithout != "sleep";
 constexpr bool kCallback = kWithout != "callback";

@@ -100,9 +100,11 @@ double LastingContacts::reach(Pair pair) {
 // Where blows are dealt with in the step, a body may be as fast by its end as any that can meet it. [m/s], by body
 std::vector<double> LastingContacts::speeds_about(const std::vector<Pair>& candidates) {
   std::vector<double> speeds(moving_.size(), 0.0);
+  std::vector<char> meets(moving_.size(), 0);
+  for (const auto& [a, b] : candidates) meets[a] = meets[b] = 1;
   for (int i = 0; i < moving_.size(); ++i)
     for (const double t : {moving_.time(), moving_.target()}) {
-      if (!moving_.can_move(i) && !moving_.is_driven(i)) continue;
+      if (!meets[i] || (!moving_.can_move(i) && !moving_.is_driven(i))) continue;
       const collision::MotionState state = moving_.motion_at(i, t);
       speeds[i] = std::max(speeds[i], state.velocity_world.norm() + (moving_.shape(i).is_half_space() ? 0.0 : state.omega_world.norm() * moving_.shape(i).bounding_radius()));
     }
@@ -208,20 +210,33 @@ std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidat
 }
 
 // Every group's step. @return the earliest target that one of them asks for: the step begins again for all, and once for many groups is
-// cheaper than once for each. Of ends of sliding, the one that is looked for is that of the earliest.
+// cheaper than once for each. Of ends of sliding, the one that is looked for is that of the earliest. The group that asked last is asked first,
+// and as long as it asks the others' steps would be in vain: one that lies at rest is not solved again for each blow of a pile elsewhere.
 std::optional<double> LastingContacts::take_steps(double h) {
+  const auto step = [&](const Group& group) { return group.pile ? take_pile_step(group, h) : take_step(group, h); };
+  const auto first = std::find_if(groups_.begin(), groups_.end(), [&](const Group& group) { return std::binary_search(group.bodies.begin(), group.bodies.end(), asked_last_); });
+  if (first != groups_.end())
+    if (const auto earlier = step(*first)) return earlier;
+  const auto of_first = static_cast<std::ptrdiff_t>(forces_.size());
+  std::ptrdiff_t before_first = 0;   // forces of groups that stand before it
   std::optional<double> earliest;
   std::optional<Locating> of_earliest;
   for (const Group& group : groups_) {
+    if (first != groups_.end() && &group == &*first) {
+      before_first = static_cast<std::ptrdiff_t>(forces_.size()) - of_first;
+      continue;
+    }
     const std::optional<Locating> before = locating_;
-    const std::optional<double> earlier = group.pile ? take_pile_step(group, h) : take_step(group, h);
+    const std::optional<double> earlier = step(group);
     if (earlier && (!earliest || *earlier < *earliest)) {
       earliest = earlier;
       of_earliest = locating_;
+      asked_last_ = group.bodies.front();
     }
     locating_ = before;
   }
   if (earliest) locating_ = of_earliest;
+  std::rotate(forces_.begin(), forces_.begin() + of_first, forces_.begin() + of_first + before_first);   // in the order of the groups
   return earliest;
 }
 

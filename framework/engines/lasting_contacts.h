@@ -197,6 +197,7 @@ class LastingContacts {
   double searched_from_ = -1e300;                // ends of sliding were looked for since, and how often
   int searches_ = 0;
   std::optional<Locating> locating_;             // the end of sliding that is being looked for
+  int asked_last_ = -1;                          // body of the group that last asked for an earlier target
 };
 
 }  // namespace tumble::engines

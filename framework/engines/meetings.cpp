@@ -63,6 +63,13 @@ bool Meetings::may_meet(int a, int b) {
 std::vector<Meetings::Pair> Meetings::candidates() {
   if (colliding_.size() < 2 || std::none_of(colliding_.begin(), colliding_.end(), [&](int body) { return moving_.can_move(body) || moving_.is_driven(body); })) return {};
   const StageTimer timer(counters_.collision_seconds);
+  std::vector<Pair> pairs = pairs_of_boxes();
+  if (ask_for_ends(pairs)) pairs = pairs_of_boxes();
+  counters_.candidate_pairs += pairs.size();
+  return pairs;
+}
+
+std::vector<Meetings::Pair> Meetings::pairs_of_boxes() {
   std::vector<collision::SweptBox> boxes;
   boxes.reserve(colliding_.size());
   for (const int body : colliding_) boxes.push_back(moving_.swept_box(body));
@@ -72,8 +79,20 @@ std::vector<Meetings::Pair> Meetings::candidates() {
     b = colliding_[b];
   }
   std::erase_if(pairs, [&](const Pair& pair) { return !moving_.may_collide(pair.first, pair.second) || !may_meet(pair.first, pair.second); });
-  counters_.candidate_pairs += pairs.size();
   return pairs;
+}
+
+// In a step that has begun again a body that flies alone still has the box of the longer one: whoever met nobody there meets nobody here.
+// @return whether one of these has met somebody, so that it matters where its path ends now
+bool Meetings::ask_for_ends(const std::vector<Pair>& pairs) {
+  bool any = false;
+  for (const auto& [a, b] : pairs)
+    for (const int body : {a, b})
+      if (moving_.has_roomy_box(body)) {
+        moving_.path_end(body);
+        any = true;
+      }
+  return any;
 }
 
 std::optional<Earliest> Meetings::find_earliest(const std::vector<Pair>& pairs) {

@@ -26,6 +26,8 @@ class Meetings {
 
   Meetings(MovingWorld& moving, const Laws& laws, RunCounters& counters);
 
+  /// Whether there are bodies that may meet at all.
+  bool any() const { return colliding_.size() > 1; }
   /// @throws UserError naming two bodies that overlap at the start by more than roundings, and `where` they were asked for
   void refuse_overlap(const std::string& where) const;
 
@@ -46,6 +48,8 @@ class Meetings {
   void separate(const std::vector<Pair>& pairs);
 
  private:
+  std::vector<Pair> pairs_of_boxes();
+  bool ask_for_ends(const std::vector<Pair>& pairs);
   bool may_meet(int a, int b);
   std::optional<Earliest> find_earliest(const std::vector<Pair>& pairs);
   std::optional<Earliest> find_missed(const std::vector<Pair>& pairs, double target);

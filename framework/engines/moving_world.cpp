@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "framework/core/error.h"
 #include "framework/dynamics/rotation_bounds.h"
@@ -101,6 +102,7 @@ void MovingWorld::set_path(int body, const RigidBodyState& start, const RigidBod
   Path& path = paths_[body];
   path.bounds.reset();
   path.end = end;
+  path.end_known = true;
   path.smooth.emplace(start, end, world_.bodies[body].inertia, time_, target_, momenta);
   path.smooth->begin_momenta(states_[body]);
 }
@@ -234,39 +236,84 @@ RigidBodyState MovingWorld::integrate(int body, double duration, double start_ti
   });
 }
 
+void MovingWorld::begin_path(int body) {
+  Path& path = paths_[body];
+  path.bounds.reset();
+  path.memo_time = path.measured_duration = kUnset;
+  path.smooth.reset();
+  path.turning.reset();
+  path.end_known = true;
+  path.is_stale = false;
+  path.box.reset();
+  if (!can_move(body) || group_of_[body] >= 0) return;
+  path.start = pack(states_[body]);
+  path.acceleration_world.setZero();
+  if (built::kPointForce)
+    for (const int index : active_forces_)
+      if (world_.point_forces[index].body == body) path.acceleration_world += world_.bodies[body].inertia.inverse_mass * world_.point_forces[index].force_world;
+  if (built::kGravity && world_.gravity_world) path.acceleration_world += *world_.gravity_world;
+  path.acceleration_world *= path_bend_;
+  path.end = integrate(body, target_ - time_, time_, path.start);
+}
+
+void MovingWorld::begin_linked_paths() {
+  for (LinkedBodies& group : linked_) {
+    if (asleep(group.bodies().front())) continue;   // they sleep together
+    const std::vector<RigidBodyState> ends = group.advance(states_, time_, target_ - time_);
+    for (std::size_t i = 0; i < ends.size(); ++i) set_path(group.bodies()[i], states_[group.bodies()[i]], ends[i]);
+    integrations_in_step_ += ends.size();
+  }
+}
+
 void MovingWorld::begin_step(double target) {
   const StageTimer timer(counters_.integration_seconds);
   target_ = target;
   integrations_in_step_ = 0;
+  for (int i = 0; i < size(); ++i) begin_path(i);
+  begin_linked_paths();
+}
+
+void MovingWorld::begin_step_again(double target) {
+  const StageTimer timer(counters_.integration_seconds);
+  const bool same_target = target == target_;
+  const std::uint64_t done = std::exchange(integrations_in_step_, 0);
+  std::uint64_t kept = 0;
+  target_ = target;
   for (int i = 0; i < size(); ++i) {
     Path& path = paths_[i];
+    const bool alone = can_move(i) && group_of_[i] < 0 && !path.smooth && !path.is_stale;
+    if (alone && same_target) {
+      if (path.end_known) ++kept;
+      continue;
+    }
+    if (!alone || !path.box || target > path.box_target) {
+      begin_path(i);
+      continue;
+    }
     path.bounds.reset();
     path.memo_time = path.measured_duration = kUnset;
-    path.smooth.reset();
     path.turning.reset();
-    if (!can_move(i) || group_of_[i] >= 0) continue;
-    path.start = pack(states_[i]);
-    path.acceleration_world.setZero();
-    if (built::kPointForce)
-      for (const int index : active_forces_)
-        if (world_.point_forces[index].body == i) path.acceleration_world += world_.bodies[i].inertia.inverse_mass * world_.point_forces[index].force_world;
-    if (built::kGravity && world_.gravity_world) path.acceleration_world += *world_.gravity_world;
-    path.acceleration_world *= path_bend_;
-    path.end = integrate(i, target - time_, time_, path.start);
+    path.end_known = false;
   }
-  for (LinkedBodies& group : linked_) {
-    if (asleep(group.bodies().front())) continue;   // they sleep together
-    const std::vector<RigidBodyState> ends = group.advance(states_, time_, target - time_);
-    for (std::size_t i = 0; i < ends.size(); ++i) set_path(group.bodies()[i], states_[group.bodies()[i]], ends[i]);
-    integrations_in_step_ += ends.size();
+  begin_linked_paths();
+  counters_.undone_integrations += done - kept;
+  integrations_in_step_ += kept;
+}
+
+const RigidBodyState& MovingWorld::path_end(int body) {
+  Path& path = paths_[body];
+  if (!path.end_known) {
+    path.end_known = true;   // first: a series for the whole step is made by whoever asks for all of it
+    path.end = integrate(body, target_ - time_, time_, path.start);
   }
+  return path.end;
 }
 
 RigidBodyState MovingWorld::path(int body, double t) {
   if (!can_move(body)) return still_state(body, t);
   if (t == time_) return states_[body];
   Path& path = paths_[body];
-  if (t == target_) return path.end;
+  if (t == target_) return path_end(body);
   if (path.smooth) return path.smooth->at(t);
   if (t != path.memo_time) {
     path.memo = integrate(body, t - time_, time_, path.start);
@@ -278,7 +325,7 @@ RigidBodyState MovingWorld::path(int body, double t) {
 collision::MotionState MovingWorld::motion_at(int body, double t) {
   if (can_move(body) && paths_[body].smooth && t <= target_) {
     collision::MotionState motion = paths_[body].smooth->motion_at(t);
-    if (t == target_) motion.pose = {paths_[body].end.com_world, paths_[body].end.world_from_body};
+    if (t == target_) motion.pose = {paths_[body].end.com_world, paths_[body].end.world_from_body};   // of a smooth path, always known
     if (t == time_) motion.pose = {states_[body].com_world, states_[body].world_from_body};
     return motion;
   }
@@ -318,6 +365,7 @@ collision::Motion MovingWorld::motion(int body) {
 }
 
 collision::SweptBox MovingWorld::swept_box(int body) {
+  if (has_roomy_box(body)) return *paths_[body].box;
   const double radius = shapes_[body]->bounding_radius();
   const double h = target_ - time_;
   const Vector3d start = path(body, time_).com_world, end = path(body, target_).com_world;
@@ -337,7 +385,12 @@ collision::SweptBox MovingWorld::swept_box(int body) {
   const double shell = built::kContact && world_.contact && std::isfinite(radius) ? kContactMargin * radius : 0.0;
   const Vector3d margin =
       bulge + Vector3d::Constant(radius + shell) + kRounding * (start.cwiseAbs() + end.cwiseAbs() + Vector3d::Constant(std::isfinite(radius) ? radius : 0.0));
-  return {start.cwiseMin(end) - margin, start.cwiseMax(end) + margin, can_move(body) || is_driven(body)};
+  const collision::SweptBox box{start.cwiseMin(end) - margin, start.cwiseMax(end) + margin, can_move(body) || is_driven(body)};
+  if (built::kContact && world_.contact && can_move(body) && !paths_[body].smooth) {   // contacts begin steps again
+    paths_[body].box = box;
+    paths_[body].box_target = target_;
+  }
+  return box;
 }
 
 void MovingWorld::commit(double t) {

@@ -56,7 +56,10 @@ class MovingWorld {
   /// Committed state of a movable body.
   const RigidBodyState& state(int body) const { return states_[body]; }
   const std::vector<RigidBodyState>& states() const { return states_; }
-  void set_state(int body, const RigidBodyState& state) { states_[body] = state; }
+  void set_state(int body, const RigidBodyState& state) {
+    states_[body] = state;
+    paths_[body].is_stale = true;
+  }
   /// Whether the two may collide at all: one can move, both collide, and the scene does not keep them apart.
   bool may_collide(int a, int b) const;
   bool can_move(int body) const { return !world_.bodies[body].immovable() && !rests_[body] && !asleep(body); }
@@ -86,12 +89,15 @@ class MovingWorld {
   /// From here on to the step's target the body goes from `start` (at time(); its velocities may jump there) to `end`.
   void set_path(int body, const RigidBodyState& start, const RigidBodyState& end, SmoothPath::Momenta momenta = SmoothPath::Momenta::kOfPath);
   /// Where the step leads without what set_path has added.
-  const RigidBodyState& path_end(int body) const { return paths_[body].end; }
+  const RigidBodyState& path_end(int body);
   /// The path that set_path has given, or that links have; nothing where the laws are asked at every instant.
   const std::optional<SmoothPath>& smooth_path(int body) const { return paths_[body].smooth; }
 
   /// Begins a step from the committed time: works out the motion's bounds and where all come out.
   void begin_step(double target);
+  /// Begins the step under way again, because some bodies ask for an earlier target or have got other velocities. Nothing is integrated for
+  /// a body that flies alone and has kept its state: its path stays, or its new end is worked out when somebody asks for it.
+  void begin_step_again(double target);
   /// What the step under way has computed was in vain: it will be begun again.
   void give_up_step() { counters_.undone_integrations += integrations_in_step_; }
   double target() const { return target_; }
@@ -106,6 +112,8 @@ class MovingWorld {
   collision::MotionState motion_at(int body, double t);
   collision::Motion motion(int body);
   collision::SweptBox swept_box(int body);
+  /// Whether swept_box tells of a longer step: of a body whose path's end nobody has asked for. path_end(body) ends that.
+  bool has_roomy_box(int body) const { return !paths_[body].end_known; }
   /// All bodies to where their paths are at t; what the step had computed beyond counts as undone when t is before its target.
   void commit(double t);
 
@@ -120,6 +128,10 @@ class MovingWorld {
   struct Path {
     VectorXd start;                 // packed
     RigidBodyState end;
+    bool end_known = true;          // false: worked out by path_end, not yet asked for since the step began again
+    bool is_stale = false;          // the state has been changed since the step began
+    std::optional<collision::SweptBox> box;    // of a body alone, from the step's start to box_target
+    double box_target;
     Vector3d acceleration_world;    // of the path, constant in the step
     std::optional<collision::MotionBounds> bounds;
     double memo_time;
@@ -129,6 +141,8 @@ class MovingWorld {
     std::optional<SpinSeries> turning;         // of a body in closed form, from the step's start
   };
 
+  void begin_path(int body);
+  void begin_linked_paths();
   bool flies_freely(int body) const;
   RigidBodyState fly(int body, double duration, const VectorXd& start);
   RigidBodyState integrate(int body, double duration, double start_time, const VectorXd& start);

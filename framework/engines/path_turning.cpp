@@ -62,7 +62,7 @@ double MovingWorld::turning_error(int body, double duration) {
   Path& path = paths_[body];
   if (duration == path.measured_duration) return path.turning_error;
   const Inertia& inertia = world_.bodies[body].inertia;
-  const auto after = [&](double t) { return time_ + t == target_ ? path.end : integrate(body, t, time_, path.start); };
+  const auto after = [&](double t) { return time_ + t == target_ ? path_end(body) : integrate(body, t, time_, path.start); };
   const auto error_before = [&](double t, const RigidBodyState& state) -> double {
     const double look = kLook * duration;
     const RigidBodyState earlier = after(t - look);
@@ -141,8 +141,7 @@ bool MovingWorld::shorten_step(const std::vector<std::pair<int, int>>& pairs, co
     counters_.notices.push_back(fmt::format("step shortened: {}; where it may meet another body it gets steps of {:.2g} s, so that no collision is missed", turns, duration));
   }
   ++counters_.shortened_steps;
-  counters_.undone_integrations += integrations_in_step_;
-  begin_step(time_ + duration);
+  begin_step_again(time_ + duration);
   return true;
 }
 

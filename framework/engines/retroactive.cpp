@@ -45,6 +45,7 @@ class RetroactiveRun {
 
  private:
   // What the scene does not ask for is asked for by none of these.
+  bool has_collisions() const { return built::kCollision && meetings_.any(); }
   bool has_contacts() const { return built::kContact && contacts_.has_value(); }
   bool has_modes() const { return built::kFriction && built::kContact && modes_.has_value(); }
   bool has_sleepers() const { return built::kSleep && built::kContact && sleepers_.has_value(); }
@@ -57,6 +58,7 @@ class RetroactiveRun {
   void run_to_the_end();
   double next_target() const;
   void switch_forces();
+  std::vector<std::pair<int, int>> pairs_in_step();
   void advance_to(double target);
   void resolve_at(const std::vector<std::pair<int, int>>& pairs, std::pair<int, int> trigger);
   bool stays_on(const TouchingPair& pair, int body, const Vector3d& up) const;
@@ -212,7 +214,7 @@ void RetroactiveRun::watch_for_trouble() {
 // @return all pairs that may meet on the new paths, where there are any
 std::vector<std::pair<int, int>> RetroactiveRun::keep_contacts(std::vector<std::pair<int, int>>& pairs) {
   while (const auto earlier = contacts_->advance(pairs)) {
-    moving_.begin_step(*earlier);
+    moving_.begin_step_again(*earlier);
     pairs = meetings_.candidates();
   }
   if (contacts_->empty()) return {};
@@ -233,20 +235,28 @@ void RetroactiveRun::begin_again() {
   ++counters_.rollbacks;
 }
 
+// Those that may meet in the step under way, which is made shorter where bodies turn too far in it.
+std::vector<std::pair<int, int>> RetroactiveRun::pairs_in_step() {
+  std::vector<std::pair<int, int>> pairs = meetings_.candidates();
+  if (moving_.shorten_step(pairs, [&](const auto& pair) { return has_contacts() && contacts_->deals_in_step(pair); })) pairs = meetings_.candidates();
+  return pairs;
+}
+
 void RetroactiveRun::advance_to(double target) {
   int idle = 0, impacts = 0;
   while (stopped_by_.empty() && moving_.time() < target) {
     moving_.begin_step(target);
     ++counters_.steps;
-    std::vector<std::pair<int, int>> pairs = meetings_.candidates();
-    if (moving_.shorten_step(pairs, [&](const auto& pair) { return has_contacts() && contacts_->deals_in_step(pair); })) pairs = meetings_.candidates();
+    std::vector<std::pair<int, int>> pairs;
+    if (has_collisions()) pairs = pairs_in_step();
     if (has_sleepers() && sleepers_->wake_met(pairs)) {
       begin_again();
       continue;
     }
     std::vector<std::pair<int, int>> near;
     if (has_contacts()) near = keep_contacts(pairs);
-    const std::optional<Earliest> earliest = meetings_.earliest(pairs);
+    std::optional<Earliest> earliest;
+    if (has_collisions()) earliest = meetings_.earliest(pairs);
     if (has_sleepers() && earliest && sleepers_->wake(pairs[earliest->pair])) {
       begin_again();
       continue;
@@ -254,14 +264,15 @@ void RetroactiveRun::advance_to(double target) {
     if (has_modes()) modes_->look();
     const double before = moving_.time(), reached = earliest ? earliest->time : moving_.target();
     record([&] { recorder_.record_before(moving_, reached); });
+    if (reached < target) ++counters_.synchronisations;
     moving_.commit(reached);
     watch_for_trouble();
     if (!stopped_by_.empty()) return;
-    if (!meetings_.apart_at_target()) meetings_.separate(pairs);
+    if (has_collisions() && !meetings_.apart_at_target()) meetings_.separate(pairs);
     const bool apart = !has_contacts() || contacts_->commit();
     if (!apart) meetings_.separate(near);
     if (has_sleepers()) note_touching(near);
-    if (!earliest) continue;
+    if (!built::kCollision || !earliest) continue;
     ++counters_.rollbacks;
     resolve_at(near.empty() ? pairs : near, pairs[earliest->pair]);
     idle = reached > before ? 0 : idle + 1;

@@ -6,7 +6,7 @@ namespace tumble::engines {
 
 void RunCounters::add(const RunCounters& other) {
   for (const auto count :
-       {&RunCounters::steps, &RunCounters::shortened_steps, &RunCounters::integrations, &RunCounters::undone_integrations, &RunCounters::derivative_evaluations,
+       {&RunCounters::steps, &RunCounters::synchronisations, &RunCounters::shortened_steps, &RunCounters::integrations, &RunCounters::undone_integrations, &RunCounters::derivative_evaluations,
         &RunCounters::candidate_pairs, &RunCounters::pair_checks, &RunCounters::rollbacks, &RunCounters::anti_messages, &RunCounters::states_kept,
         &RunCounters::discontinuities, &RunCounters::impacts, &RunCounters::impulses, &RunCounters::micro_impacts, &RunCounters::nudges, &RunCounters::bodies_put_to_rest,
         &RunCounters::bodies_woken, &RunCounters::gravity_calls, &RunCounters::point_force_calls, &RunCounters::spring_calls, &RunCounters::rod_calls,
@@ -29,6 +29,7 @@ void RunCounters::add(const RunCounters& other) {
 Counters RunCounters::named() const {
   Counters named;
   named.counts = {{"steps", steps},
+                  {"synchronisations", synchronisations},
                   {"shortened_steps", shortened_steps},
                   {"integrations", integrations},
                   {"undone_integrations", undone_integrations},

@@ -22,7 +22,14 @@ scene::Scene flying(double duration) {
   return scene_of(bodies, duration);
 }
 
-/// The same, tied in pairs by one kind of link.
+/// The same, and they may not meet.
+scene::Scene passing(double duration) {
+  scene::Scene scene = flying(duration);
+  for (scene::BodySpec& body : scene.bodies) body.collides = false;
+  return scene;
+}
+
+/// As they fly, tied in pairs by one kind of link.
 scene::Scene tied(double duration, const std::string& link) {
   scene::Scene scene = flying(duration);
   for (int i = 0; i < 6; ++i) {
@@ -57,6 +64,7 @@ scene::Scene scene_without(const std::string& effect) {
   if (effect == "drag") return tied(4.0, "spring");
   if (effect == "rod" || effect == "motor") return tied(2.0, "joint");
   if (effect == "joint") return tied(2.0, "rod");
+  if (effect == "collision") return passing(10.0);
   if (effect == "contact" || effect == "callback") return stack(5.0, 0.0, false);
   if (effect == "friction") return stack(1.0, 0.0, true);
   if (effect == "sleep") return stack(1.0, 0.5, true);

@@ -1,0 +1,148 @@
+// A body in free flight, at rest or asleep pays nothing for its neighbours' contacts: what it costs beside a pile is what it costs alone.
+//
+// Retroactive detection (rd) takes all bodies to a common time at every discontinuity, by its definition: a body in flight pays one
+// integration for being begun with again and one for being stopped there, and nothing else. The same for conservative advancement (ca),
+// which moves all bodies to every event. Timewarp (tw) knows no such thing.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "framework/engines/timewarp/fast_timewarp.h"
+#include "tests/engines/reference_laws.h"
+
+namespace tumble::testing {
+namespace {
+
+using Counts = std::map<std::string, std::uint64_t>;
+enum class Others { kNone, kFlying, kLying };
+constexpr int kOthers = 4;
+constexpr double kMassOfOthers = 3.0;   // kg: by it laws are asked whom they are about
+
+/// Five boxes that tumble onto a floor and onto each other, and slide: impacts, and contacts that begin, end and stop sliding.
+void add_pile(scene::Scene& scene, double height, double apart) {
+  for (int i = 0; i < 5; ++i) {
+    scene.bodies.push_back(box("crate " + std::to_string(i), {0.2, 0.2, 0.2}, 1.0, {0.1 * i, 0.05 * i, height + apart * i}, {1.0, 0, 0}));
+    scene.bodies.back().omega_world_rad_s = {0.3 * i, 0.2, 0.1};
+    scene.bodies.back().restitution = 0.3;
+  }
+}
+
+/// A hundred metres beside the pile.
+void add_others(scene::Scene& scene, Others others) {
+  if (others == Others::kNone) return;
+  for (int i = 0; i < kOthers; ++i) {
+    const Vector3d place(100.0 + 10 * i, 0, others == Others::kFlying ? 1000.0 : 0.2);
+    scene.bodies.push_back(box("other " + std::to_string(i), {0.1, 0.2, 0.2}, kMassOfOthers, place, Vector3d::Zero()));
+    if (others == Others::kFlying) scene.bodies.back().omega_world_rad_s = {0.1, 0.2, 0.3};
+  }
+}
+
+scene::Scene scene_with(bool pile, Others others, double height = 0.5, double apart = 0.6, bool sleep = false) {
+  scene::Scene scene = scene_of({plane("floor", Vector3d::Zero(), Vector3d::UnitZ())}, 1.2, Vector3d(0, 0, -9.81));
+  if (pile) add_pile(scene, height, apart);
+  add_others(scene, others);
+  for (scene::BodySpec& body : scene.bodies) body.friction = 0.4;
+  scene.contact.emplace();
+  scene.contact->sleep = sleep;
+  return scene;
+}
+
+Counts counts_of(const scene::Scene& scene, const std::string& engine, const Laws& laws = reference_laws()) {
+  TrajectoryRecorder recorder;
+  engines::RunOptions options;
+  options.engine = engine;
+  options.timewarp = engines::fast_timewarp();
+  engines::run_scene(scene, laws, options, recorder);
+  EXPECT_EQ(recorder.trajectory().stopped_by, "");
+  return recorder.trajectory().counters.counts;
+}
+
+/// How many bodies are taken to common times, and what a scheduler has to keep of the largest number: of these an engine pays by the body.
+bool is_of_the_world(const std::string& counter) { return counter == "steps" || counter == "synchronisations" || counter == "states_kept" || counter == "most_states_of_a_body"; }
+
+/// Every count of `both` is that of the pile and that of the others, except those named.
+void expect_sum(const Counts& pile, const Counts& alone, const Counts& both, const std::vector<std::string>& except, const std::string& story) {
+  for (const auto& [name, count] : both)
+    if (!is_of_the_world(name) && std::find(except.begin(), except.end(), name) == except.end()) {
+      EXPECT_EQ(count, pile.at(name) + alone.at(name)) << name << ", " << story;
+    }
+  EXPECT_GT(pile.at("contacts_begun"), 0u);
+  EXPECT_GT(pile.at("impacts"), 0u);
+}
+
+TEST(Neighbours, InTimewarpABodyInFlightOrAtRestPaysNothingForAPile) {
+  const Counts pile = counts_of(scene_with(true, Others::kNone), "tw");
+  for (const Others others : {Others::kFlying, Others::kLying})
+    expect_sum(pile, counts_of(scene_with(false, others), "tw"), counts_of(scene_with(true, others), "tw"), {}, others == Others::kFlying ? "in flight" : "at rest");
+}
+
+// Where all bodies are at each event, and nothing else, is what a body pays in conservative advancement.
+TEST(Neighbours, InConservativeAdvancementABodyPaysItsPlaceAtEveryEventAndNothingElse) {
+  const Counts pile = counts_of(scene_with(true, Others::kNone), "ca");
+  for (const Others others : {Others::kFlying, Others::kLying}) {
+    const Counts alone = counts_of(scene_with(false, others), "ca"), both = counts_of(scene_with(true, others), "ca");
+    const std::string story = others == Others::kFlying ? "in flight" : "at rest";
+    expect_sum(pile, alone, both, {"integrations"}, story);
+    const std::uint64_t places = both.at("integrations") - pile.at("integrations") - alone.at("integrations");
+    EXPECT_EQ(places % kOthers, 0u) << story;
+    EXPECT_LE(places / kOthers, pile.at("discontinuities") + pile.at("steps")) << story;
+  }
+}
+
+TEST(Neighbours, InRetroactiveDetectionABodyInFlightPaysForCommonTimesAndNothingElse) {
+  const Counts pile = counts_of(scene_with(true, Others::kNone), "rd"), alone = counts_of(scene_with(false, Others::kFlying), "rd"), both = counts_of(scene_with(true, Others::kFlying), "rd");
+  const std::vector<std::string> paid = {"integrations", "undone_integrations", "derivative_evaluations", "gravity_calls"};
+  expect_sum(pile, alone, both, paid, "in flight");
+  for (const char* same : {"steps", "synchronisations"}) EXPECT_EQ(both.at(same), pile.at(same)) << same;
+  // From every common time once as far as the step goes; where the pile stops it, once as far as that. Contacts that begin a step again ask nothing of it.
+  const std::uint64_t integrations = kOthers * (both.at("steps") + both.at("synchronisations"));
+  EXPECT_EQ(both.at("integrations") - pile.at("integrations"), integrations);
+  EXPECT_EQ(both.at("gravity_calls") - pile.at("gravity_calls"), 4 * integrations);   // a step of Runge and Kutta's
+  EXPECT_EQ(alone.at("integrations"), kOthers * alone.at("steps"));
+  EXPECT_EQ(alone.at("synchronisations"), 0u);
+  EXPECT_GT(both.at("contact_landings") + both.at("contacts_begun"), 10u);   // the pile has begun steps again
+}
+
+// They lie and fall asleep while the crates are still high above the floor.
+TEST(Neighbours, ABodyAsleepPaysNothingForAPile) {
+  constexpr double kHigh = 3.5, kApart = 0.8;   // m: 0.8 s, and as long as that no crate's box meets another's
+  const auto counts = [&](bool pile, Others others) {
+    scene::Scene scene = scene_with(pile, others, kHigh, kApart, true);
+    scene.duration_s = 1.5;
+    return counts_of(scene, "rd");
+  };
+  const Counts pile = counts(true, Others::kNone), alone = counts(false, Others::kLying), both = counts(true, Others::kLying);
+  EXPECT_EQ(alone.at("bodies_put_to_sleep"), static_cast<std::uint64_t>(kOthers));
+  expect_sum(pile, alone, both, {}, "asleep");
+}
+
+/// Reference laws that count what is asked about the others, by their mass.
+Laws counting(std::uint64_t& derivatives, std::uint64_t& contact_rows) {
+  Laws laws = reference_laws();
+  laws.state_derivative = [&derivatives, ask = laws.state_derivative](const RigidBodyState& state, const Inertia& inertia, const Wrench& wrench) {
+    if (inertia.mass == kMassOfOthers) ++derivatives;
+    return ask(state, inertia, wrench);
+  };
+  laws.friction_impulses = [&contact_rows](const ContactProblem& problem, const ContactOptions& options) {
+    for (const PushingContact& contact : problem.contacts)
+      for (const int body : {contact.body_a, contact.body_b})
+        if (problem.bodies[body].inverse_mass == 1.0 / kMassOfOthers) ++contact_rows;
+    return solve_contacts(problem, options);
+  };
+  return laws;
+}
+
+// The pile's common times are its steps too. What begins a step again within the pile (blows, ends of sliding) does not solve its contacts again;
+// a box that lies has turning left of rounding, so that its path is looked at four times a step, as that of any body that may meet another.
+TEST(Neighbours, InRetroactiveDetectionABodyAtRestPaysForCommonTimesOnly) {
+  constexpr std::uint64_t kCorners = 4, kStages = 4, kLooks = 4;
+  std::uint64_t derivatives = 0, rows = 0;
+  const Counts both = counts_of(scene_with(true, Others::kLying), "rd", counting(derivatives, rows));
+  const std::uint64_t begun = both.at("steps"), stopped = both.at("synchronisations");
+  EXPECT_GE(rows, kOthers * kCorners * begun / 2);   // it lies
+  EXPECT_LE(rows, kOthers * kCorners * (begun + stopped));
+  EXPECT_LE(derivatives, kOthers * kStages * (begun * (1 + kLooks) + stopped));
+}
+
+}  // namespace
+}  // namespace tumble::testing
