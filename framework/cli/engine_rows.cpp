@@ -14,6 +14,7 @@
 #include "framework/engines/events/trace.h"
 #include "framework/engines/guarded_laws.h"
 #include "framework/engines/run.h"
+#include "framework/engines/run_counters.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 
 namespace tumble::cli {
@@ -96,7 +97,7 @@ void keep(EngineRow& row, const Trajectory& run) {
   row.stopped_by = run.stopped_by;
   row.step_s = run.info.step_s;
   row.simulated_s = run.frames.empty() ? 0.0 : run.frames.back().time;
-  row.w_h = row.simulated_s > 0 ? 2.0 * static_cast<double>(row.counts["discontinuities"]) / (row.bodies * row.simulated_s) * run.info.step_s : 0.0;
+  row.w_h = engines::discontinuities_a_body_and_step(run);
   for (const Frame& frame : run.frames) {
     const Frame& first = run.frames.front();
     const double scale = first.kinetic_energy + std::abs(first.potential_energy);

@@ -20,6 +20,7 @@
 #include "framework/core/nearest_word.h"
 #include "framework/engines/judge.h"
 #include "framework/engines/run.h"
+#include "framework/engines/run_counters.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/grading/worker_connection.h"
 #include "framework/scene/load_scene.h"
@@ -87,6 +88,7 @@ void print_summary(const scene::Scene& scene, const Laws& laws, const Trajectory
   for (const auto& [name, count] : count_events(run)) events += fmt::format("{}{} {}", events.empty() ? "" : " · ", name, count);
   fmt::print("  events   {}\n", events.empty() ? "none" : events);
   print_counts(run.counters.counts);
+  fmt::print("  w h      {:.3g}: discontinuities a body and largest step\n", engines::discontinuities_a_body_and_step(run));
   for (const auto& notice : run.counters.notices) fmt::print("  note     {}\n", notice);
   if (!run.stopped_by.empty()) fmt::print("  STOPPED  {}\n", run.stopped_by);
   fmt::print("{}", judgement_table(checks));
@@ -109,6 +111,7 @@ void print_json(const scene::Scene& scene, const PlannedRun& plan, const Traject
   page["bodies"] = run.bodies.size();
   page["events"] = count_events(run);
   page["counts"] = run.counters.counts;
+  page["w_h"] = engines::discontinuities_a_body_and_step(run);
   page["notices"] = run.counters.notices;
   page["stopped_by"] = run.stopped_by;
   if (plan.search) page["search"] = search_as_json(*plan.search, run, cpu_s);

@@ -139,7 +139,6 @@ void RetroactiveRun::resolve_at(const std::vector<std::pair<int, int>>& pairs, s
     for (const Event& event : echo.events) sink_.event(event);
     resolution.events.insert(resolution.events.end(), echo.events.begin(), echo.events.end());
   }
-  counters_.discontinuities += resolution.events.size();
   if (!resolution.settled)
     stopped_by_ = fmt::format("at t = {:.6f} s, {}: collision (collision_impulse, apply_impulse of {}) left them approaching, however often it was "
                               "applied: the impulse has no effect, the wrong sign or too little size, or a lasting contact is needed there", moving_.time(), subject, laws_.impulse_source);

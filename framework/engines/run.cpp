@@ -10,6 +10,7 @@
 #include "framework/engines/events/ordered.h"
 #include "framework/engines/local_origin.h"
 #include "framework/engines/retroactive.h"
+#include "framework/engines/run_counters.h"
 #include "framework/engines/timewarp/taught_timewarp.h"
 
 namespace tumble::engines {
@@ -101,14 +102,15 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& as
   info.frame_rate_hz = options.frame_rate_hz;
   std::vector<TrajectoryBody> bodies;
   for (const scene::BodySpec& body : scene.bodies) bodies.push_back({body.name, body.immovable});
-  sink.begin(info, bodies);
+  DiscontinuityCount counted(sink);
+  counted.begin(info, bodies);
   const Vector3d origin_world = local_origin(scene);
-  if (origin_world.isZero(0.0)) return engine(scene, laws, options, sink);
+  if (origin_world.isZero(0.0)) return engine(scene, laws, options, counted);
   const scene::Scene local = seen_from(origin_world, scene);
   double mass = 0.0;
   for (const WorldBody& body : build_world(local).bodies)
     if (!body.immovable()) mass += body.inertia.mass;
-  WorldSink world(sink, origin_world, mass, scene.gravity_m_s2.value_or(Vector3d::Zero()));
+  WorldSink world(counted, origin_world, mass, scene.gravity_m_s2.value_or(Vector3d::Zero()));
   engine(local, laws, options, world);
 }
 

@@ -33,6 +33,13 @@ struct Callback {
   std::function<void(int body, RigidBodyState& state)> act;
 };
 
+/// Who moves with whom at a frame that is committed, as the flights of that instant say: what tests of groups look at.
+struct Membership {
+  double time;                     // [s]
+  std::vector<int> passages;       // by body: of the process that it is part of; -1: it flies freely, or is immovable
+  std::vector<int> first_members;  // by body: the least body that moves with it, perhaps itself
+};
+
 struct RunOptions;
 /// An engine that stands outside the framework: timewarp, whose scheduler is an assignment's (see framework/README.md).
 using Engine = std::function<void(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink)>;
@@ -48,7 +55,8 @@ struct RunOptions {
   std::optional<double> step_s;            // overrides the scene's
   std::optional<double> duration_s;        // overrides the scene's
   double frame_rate_hz = 60.0;             // of recorded frames
-  std::vector<Callback> callbacks;         // in order of time; of the engines that go from event to event
+  std::vector<Callback> callbacks;         // in order of time
+  std::function<void(const Membership&)> on_membership;   // told at each frame by the engines that go from event to event; empty: nobody asks
   std::string command;                     // for the record
 };
 

@@ -8,12 +8,12 @@ void RunCounters::add(const RunCounters& other) {
   for (const auto count :
        {&RunCounters::steps, &RunCounters::synchronisations, &RunCounters::shortened_steps, &RunCounters::integrations, &RunCounters::undone_integrations, &RunCounters::derivative_evaluations,
         &RunCounters::candidate_pairs, &RunCounters::pair_checks, &RunCounters::rollbacks, &RunCounters::anti_messages, &RunCounters::states_kept,
-        &RunCounters::discontinuities, &RunCounters::impacts, &RunCounters::impulses, &RunCounters::micro_impacts, &RunCounters::nudges, &RunCounters::bodies_put_to_rest,
+        &RunCounters::impacts, &RunCounters::impulses, &RunCounters::micro_impacts, &RunCounters::nudges, &RunCounters::bodies_put_to_rest,
         &RunCounters::bodies_woken, &RunCounters::gravity_calls, &RunCounters::point_force_calls, &RunCounters::spring_calls, &RunCounters::rod_calls,
         &RunCounters::joint_calls, &RunCounters::drag_calls, &RunCounters::motor_calls, &RunCounters::callback_calls, &RunCounters::constraint_solves,
         &RunCounters::constraint_corrections, &RunCounters::contact_solves, &RunCounters::contact_points, &RunCounters::contact_sweeps,
         &RunCounters::contact_factorisations, &RunCounters::contact_unsolved, &RunCounters::contacts_begun, &RunCounters::contacts_ended, &RunCounters::contact_landings,
-        &RunCounters::friction_points, &RunCounters::bodies_put_to_sleep, &RunCounters::body_steps_asleep, &RunCounters::rounds, &RunCounters::held_back})
+        &RunCounters::friction_points, &RunCounters::bodies_put_to_sleep, &RunCounters::body_steps_asleep, &RunCounters::passages_begun, &RunCounters::passages_let_go, &RunCounters::rounds, &RunCounters::held_back})
     this->*count += other.*count;
   for (const auto seconds :
        {&RunCounters::integration_seconds, &RunCounters::collision_seconds, &RunCounters::impact_seconds, &RunCounters::constraint_seconds, &RunCounters::contact_seconds,
@@ -41,7 +41,6 @@ Counters RunCounters::named() const {
                   {"rollbacks", rollbacks},
                   {"anti_messages", anti_messages},
                   {"states_kept", states_kept},
-                  {"discontinuities", discontinuities},
                   {"impacts", impacts},
                   {"impulses", impulses},
                   {"micro_impacts", micro_impacts},
@@ -69,6 +68,8 @@ Counters RunCounters::named() const {
                   {"friction_points", friction_points},
                   {"bodies_put_to_sleep", bodies_put_to_sleep},
                   {"body_steps_asleep", body_steps_asleep},
+                  {"passages_begun", passages_begun},
+                  {"passages_let_go", passages_let_go},
                   {"rounds_of_threads", rounds},
                   {"held_back", held_back},
                   {"most_states_of_a_body", most_states}};
@@ -85,6 +86,40 @@ Counters RunCounters::named() const {
   if (alone_seconds > 0.0) named.stage_seconds["thread_alone"] = alone_seconds;
   named.notices = notices;
   return named;
+}
+
+bool DiscontinuityCount::is_first_at_its_instant(const Event& event) {
+  const std::pair<int, int> pair(event.body_a, event.body_b);
+  if (event.time == instant_) return pair != pair_ && others_.insert(pair).second;
+  instant_ = event.time;
+  pair_ = pair;
+  if (!others_.empty()) others_.clear();
+  return true;
+}
+
+void DiscontinuityCount::event(const Event& event) {
+  const bool is_one = event.kind != EventKind::kSleep && event.kind != EventKind::kWake && event.kind != EventKind::kStick && event.kind != EventKind::kSlide;
+  const bool holds_from_the_start = event.kind == EventKind::kContact && event.time == 0.0;
+  if (is_one && !holds_from_the_start && is_first_at_its_instant(event)) ++count_;
+  sink_.event(event);
+}
+
+void DiscontinuityCount::end(const Counters& counters, const std::string& stopped_by) {
+  Counters with_count = counters;
+  with_count.counts["discontinuities"] = count_;
+  sink_.end(with_count, stopped_by);
+}
+
+double discontinuities_a_body_and_step(std::uint64_t discontinuities, int movable_bodies, double simulated_s, double step_s) {
+  if (movable_bodies <= 0 || !(simulated_s > 0)) return 0.0;
+  return 2.0 * static_cast<double>(discontinuities) * step_s / (movable_bodies * simulated_s);
+}
+
+double discontinuities_a_body_and_step(const Trajectory& run) {
+  const auto count = run.counters.counts.find("discontinuities");
+  if (count == run.counters.counts.end() || run.frames.empty()) return 0.0;
+  const auto movable = std::count_if(run.bodies.begin(), run.bodies.end(), [](const TrajectoryBody& body) { return !body.immovable; });
+  return discontinuities_a_body_and_step(count->second, static_cast<int>(movable), run.frames.back().time, run.info.step_s);
 }
 
 }  // namespace tumble::engines

@@ -6,6 +6,7 @@
 #include <ctime>
 
 #include "framework/engines/run.h"
+#include "framework/engines/run_counters.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/scene/sized_scenes.h"
 #include "tests/engines/reference_laws.h"
@@ -88,7 +89,7 @@ double Measured::count(const char* what) const {
 
 double Measured::undone() const { return count("undone_integrations") / std::max(1.0, count("integrations")); }
 
-double Measured::w_h() const { return a_body_second(2.0 * count("discontinuities")) * step; }
+double Measured::w_h() const { return engines::discontinuities_a_body_and_step(static_cast<std::uint64_t>(count("discontinuities")), bodies, simulated, step); }
 
 Measured measure(const std::string& name, int n, const std::string& engine, double duration, Clock clock) {
   const scene::Scene scene = scene::make_sized_scene(name, n);

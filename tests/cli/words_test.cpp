@@ -40,6 +40,18 @@ TEST_F(CommandLine, HelpListsEveryVerb) {
 }
 
 #ifdef TUMBLE_HAS_REFERENCE
+// Every engine tells w h, in words and as JSON: 2 x discontinuities x step over bodies and time.
+TEST_F(CommandLine, RunTellsDiscontinuitiesABodyAndStepWhateverTheEngine) {
+  for (const std::string engine : {"rd", "ca", "ordered", "tw"}) {
+    const std::string words = "run gas --n 8 --modules reference --duration-s 1 --propagator auto --engine " + engine;
+    const nlohmann::json page = nlohmann::json::parse(type(words + " --json").out);
+    const double expected = 2.0 * page.at("counts").at("discontinuities").get<double>() * page.at("step_s").get<double>() / (8 * page.at("end_s").get<double>());
+    ASSERT_GT(expected, 0.1) << engine;
+    EXPECT_DOUBLE_EQ(page.at("w_h").get<double>(), expected) << engine;
+    EXPECT_TRUE(holds(type(words).out, "w h ")) << engine;
+  }
+}
+
 TEST_F(CommandLine, APageOfTwoTimewarpsHasTheVirtualTimesOfBoth) {
   const Said said = type("run pong_1 --modules reference --engine tw --duration-s 0.5 --html both.html --beside engine=tw,a2=library");
   const std::string page = contents_of(folder_ / "both.html");

@@ -6,6 +6,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/random.h"
+#include "framework/engines/run_counters.h"
 #include "tests/engines/event_scenes.h"
 
 namespace tumble::testing {
@@ -284,6 +285,50 @@ TEST(Engines, FollowAShakenPlaneAndABallAtRest) {
   bodies[0].motion = scene::PrescribedMotion{Vector3d::Zero(), Vector3d(0, 0, 0.02), 20.0};
   for (int i = 0; i < 4; ++i) bodies.push_back(ball("ball" + std::to_string(i), 0.1, 1.0, {0.5 * i, 0, 0.4 + 0.1 * i}, Vector3d::Zero()));
   expect_the_references_trace(scene_of(bodies, 3.0, Vector3d(0, 0, -9.81)), 10);
+}
+
+// ---- w h -------------------------------------------------------------------------------------------------------------------
+
+// A ball to and fro at 1.8 m/s where its centre has 1.8 m: a bounce each second, the first at 0.5 s. In 10 s that is D = 10, and w h = 2 D h / T.
+TEST(DiscontinuitiesABodyAndStep, OfABallBetweenTwoWallsAreTwoForEachBounceInEveryEngine) {
+  const std::vector<scene::BodySpec> bodies{plane("left", {-1, 0, 0}, {1, 0, 0}), plane("right", {1, 0, 0}, {-1, 0, 0}), ball("ball", 0.1, 1.0, {0, 0, 0}, {1.8, 0, 0})};
+  for (const double step : {1.0 / 30.0, 1.0 / 240.0}) {
+    scene::Scene scene = scene_of(bodies, 10.0);
+    scene.step_s = step;
+    for (const char* engine : {"rd", "ordered", "ca", "tw"}) {
+      const Trajectory run = run_by(engine, scene);
+      EXPECT_EQ(run.counters.counts.at("discontinuities"), 10U) << engine;
+      EXPECT_DOUBLE_EQ(engines::discontinuities_a_body_and_step(run), 2.0 * step) << engine;
+    }
+  }
+}
+
+TEST(DiscontinuitiesABodyAndStep, OfManyBallsAreTheSameInEveryEngine) {
+  const scene::Scene scene = sized("gas", 60, 1.0);
+  const Trajectory reference = run_by("ordered", scene);
+  const double w_h = engines::discontinuities_a_body_and_step(reference);
+  EXPECT_DOUBLE_EQ(w_h, 2.0 * static_cast<double>(reference.events.size()) * scene.step_s / 60.0);   // nothing but blows, one second
+  for (const char* engine : {"rd", "ca", "tw"}) EXPECT_DOUBLE_EQ(engines::discontinuities_a_body_and_step(run_by(engine, scene)), w_h) << engine;
+}
+
+TEST(DiscontinuitiesABodyAndStep, CountABlowOnceHoweverManyImpulsesItTakesAndNothingThatHoldsFromTheStart) {
+  const auto event = [](double time, EventKind kind, int a, int b) { return Event{time, kind, a, b, Vector3d::Zero(), Vector3d::UnitZ(), 0.0, 0.0}; };
+  TrajectoryRecorder recorder;
+  engines::DiscontinuityCount count(recorder);
+  count.begin({}, {});
+  count.event(event(0.0, EventKind::kContact, 0, 1));     // lies there from the start
+  count.event(event(0.5, EventKind::kCollision, 0, 2));   // one blow on a pair of bodies that touch, passed to and fro
+  count.event(event(0.5, EventKind::kCollision, 2, 3));
+  count.event(event(0.5, EventKind::kCollision, 0, 2));
+  count.event(event(0.5, EventKind::kCollision, 2, 3));
+  count.event(event(0.5, EventKind::kContact, 0, 2));     // it does not rebound: the same discontinuity
+  count.event(event(0.75, EventKind::kStick, 0, 2));      // nobody stops for it
+  count.event(event(0.75, EventKind::kBreak, 0, 2));
+  count.event(event(0.8, EventKind::kCollision, 0, 2));   // again, later
+  count.event(event(0.9, EventKind::kSleep, 0, -1));
+  count.end({}, "");
+  EXPECT_EQ(recorder.trajectory().events.size(), 10U);    // all are passed on
+  EXPECT_EQ(recorder.trajectory().counters.counts.at("discontinuities"), 4U);
 }
 
 // A point has no size to measure a grid by; nothing else is in its way but a floor.

@@ -118,6 +118,80 @@ void long_runs(const Laws& laws, Findings& findings) {
   });
 }
 
+/// Looks at what elastic balls keep, as it is committed: the energy; and momentum and angular momentum (about the world's origin) less what
+/// walls have given, of each collision its impulse and that impulse's moment.
+class Conserved final : public TrajectorySink {
+ public:
+  void begin(const TrajectoryInfo&, const std::vector<TrajectoryBody>& bodies) override { bodies_ = bodies; }
+  void event(const Event& event) override {
+    ++collisions;
+    const bool a_is_wall = is_wall(event.body_a);
+    if (a_is_wall == is_wall(event.body_b)) return;
+    const Vector3d impulse_world = (a_is_wall ? -event.impulse : event.impulse) * event.normal_b_to_a_world;
+    by_walls_world_ += impulse_world;
+    turned_by_walls_world_ += event.point_world.cross(impulse_world);
+  }
+  void frame(const Frame& frame) override {
+    if (frame.time == 0.0) {
+      first_ = frame;
+      for (std::size_t i = 0; i < bodies_.size(); ++i)   // of 1 kg each
+        if (!bodies_[i].immovable) speeds_ += frame.poses[i].velocity_world.norm(), moments_ += frame.poses[i].com_world.norm() * frame.poses[i].velocity_world.norm();
+    }
+    energy = std::max(energy, std::abs(frame.kinetic_energy - first_.kinetic_energy) / first_.kinetic_energy);
+    momentum = std::max(momentum, (frame.momentum_world - first_.momentum_world - by_walls_world_).norm() / speeds_);
+    angular_momentum = std::max(angular_momentum, (frame.angular_momentum_world - first_.angular_momentum_world - turned_by_walls_world_).norm() / moments_);
+    by_walls = std::max(by_walls, by_walls_world_.norm() / speeds_);
+  }
+  void end(const Counters&, const std::string& why) override { stopped_by = why; }
+
+  double energy = 0.0, momentum = 0.0, angular_momentum = 0.0;   // largest relative errors; momenta over the sums of m |v| and of |r| m |v| at the start
+  double by_walls = 0.0;                                         // the walls' part of the momentum, over the same
+  std::uint64_t collisions = 0;
+  std::string stopped_by;
+
+ private:
+  bool is_wall(int body) const { return bodies_[static_cast<std::size_t>(body)].immovable; }
+
+  std::vector<TrajectoryBody> bodies_;
+  Frame first_;
+  Vector3d by_walls_world_ = Vector3d::Zero(), turned_by_walls_world_ = Vector3d::Zero();   // [N s], [N m s]
+  double speeds_ = 0.0, moments_ = 0.0;
+};
+
+Conserved conserved(int n, double duration, int threads, const Laws& laws) {
+  Conserved seen;
+  engines::RunOptions options;
+  options.engine = "tw";
+  options.timewarp = engines::fast_timewarp();
+  options.threads = threads;
+  options.duration_s = duration;
+  options.frame_rate_hz = 1.0;
+  engines::run_scene(scene::make_sized_scene("gas", n), laws, options, seen);
+  return seen;
+}
+
+// Each collision rounds two velocities and a place by an ulp: a walk of 10^6 such steps is 1e-13 of the whole, a drift always to one side
+// 1e-10. Impulses too large by a part in 10^9, which no eye would see, are caught.
+constexpr double kConserved = 1e-10;
+
+/// Ten thousand collisions, or a million, on one thread and on two.
+void what_elastic_balls_keep(const Given& given, const Laws& laws, Findings& findings) {
+  const int n = given.is_long ? 1000 : 300;
+  const double least = given.is_long ? 1e6 : 1e4, duration = given.is_long ? 450.0 : 15.0;   // 2.36 collisions a ball and second
+  for (const int threads : {1, 2}) {
+    const Conserved seen = conserved(n, duration, threads, laws);
+    const std::string who = fmt::format("gas of {}, {} thread{}: ", n, threads, threads == 1 ? "" : "s");
+    findings.at_least(who + "collisions", seen.stopped_by.empty() ? static_cast<double>(seen.collisions) : 0.0, least, "", "else it was too short");
+    findings.at_most(who + "energy, largest relative error", seen.energy, kConserved, "", "elastic collisions keep it; rounding alone is 1e-13");
+    findings.at_most(who + "momentum less what walls gave", seen.momentum, kConserved, "", "over the sum of m |v|");
+    findings.at_most(who + "angular momentum less what walls gave", seen.angular_momentum, kConserved, "", "about the origin, over the sum of |r| m |v|");
+    findings.at_least(who + "what walls gave", seen.by_walls, 1e-3, "", "walls have a part in the balance");
+  }
+  Laws wrong = laws;
+  wrong.collision_impulse = [law = laws.collision_impulse](const Contact& contact, const Body& a, const Body& b, double restitution) { return (1.0 + 1e-9) * law(contact, a, b, restitution); };
+  findings.must_fail("gas of 300, impulses too large by a part in 10^9: energy", conserved(300, 15.0, 1, wrong).energy, kConserved, "", "the measure sees it");
+}
+
 /// How many bodies of frames are not, bit for bit, where the other run has them; 1e9 where events differ.
 double differences(const Trajectory& a, const Trajectory& b) {
   if (a.frames.size() != b.frames.size() || engines::compare_traces(a, b)) return 1e9;
@@ -158,6 +232,7 @@ void rollback(const Given& given, Findings& findings) {
   for (std::size_t k = 0; k < std::min(reference.frames.size(), steps.frames.size()); ++k)
     for (std::size_t i = 0; i < reference.bodies.size(); ++i) parted += reference.frames[k].poses[i].com_world != steps.frames[k].poses[i].com_world ? 1.0 : 0.0;
   findings.must_fail("retroactive detection in steps: bodies of frames that differ in any bit", parted, 0.0, "", "it cuts every flight where any body meets anything");
+  findings.part("what elastic balls keep", [&] { what_elastic_balls_keep(given, laws, findings); });
   if (given.is_long) long_runs(laws, findings);
 }
 

@@ -18,7 +18,7 @@ constexpr double kMicroInterval = 0.01;   // of the step: a pair that meets agai
 FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink)
     : laws_(guarded(laws)), step_(options.step_s.value_or(scene.step_s)), duration_(options.duration_s.value_or(scene.duration_s)), rate_(options.frame_rate_hz),
       world_(scene, options.engine, laws_, {step_, scene.rest_speed_m_s}), impacts_(world_, laws_.find_impact_time, step_),
-      meetings_(world_, laws_, {scene.rest_speed_m_s, kMicroInterval * step_}), sink_(sink), callbacks_(options.callbacks) {
+      meetings_(world_, laws_, {scene.rest_speed_m_s, kMicroInterval * step_}), sink_(sink), on_membership_(options.on_membership), callbacks_(options.callbacks) {
   for (std::size_t k = 0; k < callbacks_.size(); ++k) {
     require(!callbacks_[k].bodies.empty() && std::is_sorted(callbacks_[k].bodies.begin(), callbacks_[k].bodies.end()) && (k == 0 || callbacks_[k - 1].time <= callbacks_[k].time),
             "callbacks come in order of time, each with its bodies in order");
@@ -136,7 +136,6 @@ void FlightRun::pass(const EventKey& key) {
 void FlightRun::commit(const EventKey& key, const Event& first, const std::vector<Event>& more) {
   pass(key);
   commit_switches(std::nextafter(key.time, 2 * key.time + 1));
-  ++counters.discontinuities;
   sink_.event(first);
   for (const Event& event : more) sink_.event(event);
 }
@@ -147,9 +146,20 @@ void FlightRun::commit_frame(const FlightOf& flight_of) {
   Frame frame = frame_of(world_, next_frame(), flight_of, states_);
   if (links_) links_->measure(frame, flight_of);
   sink_.frame(frame);
+  if (on_membership_) tell_membership(frame.time, flight_of);
   ++next_;
   if (!callbacks_.empty()) return;   // they bring energy in
   if (const auto runaway = energy_watch_.look(world_.world(), states_)) throw StoppedRun(told_runaway(frame.time, *runaway, laws_));
+}
+
+void FlightRun::tell_membership(double t, const FlightOf& flight_of) const {
+  Membership membership{t, {}, {}};
+  for (int i = 0; i < world_.size(); ++i) {
+    const Flight& flight = flight_of(i);
+    membership.passages.push_back(flight.passage);
+    membership.first_members.push_back(world_.first_member(i, flight));
+  }
+  on_membership_(membership);
 }
 
 void FlightRun::end(const std::string& stopped_by) {

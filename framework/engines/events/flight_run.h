@@ -82,6 +82,9 @@ class FlightRun {
   std::unique_ptr<LinkMeasures> links_;
   EnergyWatch energy_watch_;
   std::vector<RigidBodyState> states_;   // of the frame that was committed last
+  void tell_membership(double t, const FlightOf& flight_of) const;
+
+  std::function<void(const Membership&)> on_membership_;
   std::vector<Callback> callbacks_;
   std::vector<EventKey> callback_keys_;
 };

@@ -48,6 +48,8 @@ Passages::Machine& Passages::machine_of(const std::vector<int>& members, int sti
 
 void Passages::add_counts_to(RunCounters& counters) const {
   counters.add(past_);
+  counters.passages_begun += begun_;
+  counters.passages_let_go += let_go_;
   for (const auto& [members, machine] : machines_) counters.add(machine.counters);
 }
 
@@ -63,6 +65,7 @@ int Passages::begin(const ProcessState& state) {
   passage->holders = static_cast<int>(state.members.size());
   const std::lock_guard lock(mutex_);
   ++passage->machine->users;
+  ++begun_;
   const int number = passages_.take();
   passages_[number] = std::move(passage);
   return number;
@@ -74,6 +77,7 @@ void Passages::release(int number) {
   if (--passage.holders > 0) return;
   kept_ -= passage.steps.size();
   --passage.machine->users;
+  ++let_go_;
   passages_.give_back(number);
 }
 

@@ -127,6 +127,7 @@ class Passages {
   bool is_shared_ = false;
   double forgotten_ = 0.0;
   std::atomic<std::size_t> kept_ = 0;
+  std::uint64_t begun_ = 0, let_go_ = 0;    // passages
 };
 
 }  // namespace tumble::engines

@@ -81,6 +81,7 @@ class TaughtTimewarp {
   void roll_back_one(const Rollback& rollback, const std::string& why);
 
   void look_at_gvt(bool is_over);
+  void check_nothing_leaked();
   void commit();
   void commit_event();
   void commit_frame();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "framework/core/error.h"
 #include "framework/engines/events/ordered.h"
 #include "framework/engines/timewarp/guarded_scheduling.h"
 #include "framework/engines/timewarp/taught_run.h"
@@ -30,6 +31,7 @@ void TaughtTimewarp::run() {
   try {
     loop();
     stopped_by = watch_.missing();
+    if (stopped_by.empty()) check_nothing_leaked();
   } catch (const StoppedRun& stop) {
     stopped_by = stop.what();
   }
@@ -83,6 +85,20 @@ const KeptState& TaughtTimewarp::state_at(int body, double t) {
   if (const KeptState* state = process(body).at(t)) return *state;
   throw StoppedRun(fmt::format("{} is asked for at t = {:.9g} s, and its earliest state is that of {:.9g} s, with global virtual time at {:.9g} s. Likely: too many were purged (states_to_purge), a check is due at a time long gone, or global virtual time is too late",
                                name(body), t, process(body).states().front().time, gvt_));
+}
+
+// Every passage has been let go of with the last state that named it, or is let go of now; and every group check is of a passage that
+// somebody is on.
+void TaughtTimewarp::check_nothing_leaked() {
+  keep_group_checks();
+  const auto checks = [&] {
+    const std::vector<int> ids = queue_.ids();
+    return static_cast<std::size_t>(std::count_if(ids.begin(), ids.end(), [&](int id) { return queue_.event(id).stamp.kind == WorkKind::kGroup; }));
+  };
+  require(checks() == groups_.size(), "no group check outlives its group");
+  if (!world().processes()) return;
+  for (const int body : world().movers()) process(body).drop_oldest(process(body).states().size());
+  require(world().processes()->passages().alive() == 0, "no passage outlives its states");
 }
 
 // ---- A collision check -------------------------------------------------------------------------------------------------
@@ -152,7 +168,9 @@ void run_taught_timewarp(const scene::Scene& scene, const Laws& laws, const RunO
   std::vector<TrajectoryBody> bodies;
   for (const scene::BodySpec& body : scene.bodies) bodies.push_back({body.name, body.immovable});
   reference.begin({}, bodies);
-  run_ordered(scene, laws, options, reference);
+  RunOptions unseen = options;
+  unseen.on_membership = nullptr;
+  run_ordered(scene, laws, unseen, reference);
   TaughtTimewarp(scene, laws, options, sink, reference.trajectory()).run();
 }
 
