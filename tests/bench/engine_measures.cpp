@@ -56,7 +56,8 @@ Once run_once(const scene::Scene& scene, const std::string& engine, double durat
 }
 
 // What a neighbour's work on the machine adds is no engine's.
-Once best_of(const scene::Scene& scene, const std::string& engine, double duration, Clock clock) {
+Once best_of(const scene::Scene& scene, const std::string& engine, double duration, Clock clock, StackSamples& samples) {
+  samples.begin();
   Once best = run_once(scene, engine, duration, clock);
   for (int k = 1; k < kShortRuns && best.seconds < kShort; ++k) {
     Once next = run_once(scene, engine, duration, clock);
@@ -64,6 +65,7 @@ Once best_of(const scene::Scene& scene, const std::string& engine, double durati
     next.cpu = std::min(next.cpu, best.cpu);
     best = std::move(next);
   }
+  samples.end();
   return best;
 }
 
@@ -96,8 +98,10 @@ Measured measure(const std::string& name, int n, const std::string& engine, doub
   for (const scene::BodySpec& body : scene.bodies) measured.bodies += body.immovable ? 0 : 1;
   measured.simulated = duration;
   measured.step = scene.step_s;
-  const Once building = best_of(scene, engine, kNothing, clock);   // reading models, building shapes
-  Once once = best_of(scene, engine, duration, clock);
+  StackSamples unused, samples;
+  const Once building = best_of(scene, engine, kNothing, clock, unused);   // reading models, building shapes
+  Once once = best_of(scene, engine, duration, clock, samples);
+  measured.shares = engines::time_shares(samples);
   measured.seconds = std::max(1e-6, once.seconds - building.seconds);
   measured.cpu = std::max(1e-6, once.cpu - building.cpu);
   measured.tally = std::move(once.tally);

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "framework/scene/scene.h"
+#include "framework/engines/time_parts.h"
 #include "framework/trajectory/trajectory.h"
 
 namespace tumble::testing {
@@ -27,6 +28,7 @@ class Tally final : public TrajectorySink {
 
 struct Measured {
   double seconds = 0.0, cpu = 0.0;               // of the run without what comes before its first step; CPU of all threads [s]
+  engines::TimeShares shares;                    // where its time went, of all the runs that were made
   Tally tally, building;                         // of the run; of a run that ends before its first step
   int bodies = 0;                                // movable
   double simulated = 0.0, step = 0.0;            // [s]

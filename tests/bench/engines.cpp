@@ -39,6 +39,7 @@ void table(const std::string& scene, int n, const std::vector<std::string>& engi
     std::printf("%-10s %7d %-8s %10.2f %10.2f %10.2f %7.1f%% %9.0f %12.0f %10.3f %12.2f %9.4f\n", scene.c_str(), run.bodies, engine.c_str(), run.a_body_second(run.count("integrations")),
                 run.a_body_second(run.count("pair_checks")), run.a_body_second(collisions), 100 * run.undone(), run.count("states_kept"), collisions / run.seconds, run.seconds,
                 1e6 * run.a_body_second(run.seconds), run.w_h());
+    std::printf("    physics %.0f %%: %s (%zu samples)\n", 100 * run.shares.physics, engines::in_words(run.shares).c_str(), run.shares.samples);
     print_critical_path(run, cpu_of_one);
     std::fflush(stdout);
   }
