@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <ctime>
 
+#include "framework/core/error.h"
 #include "framework/engines/run.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/scene/sized_scenes.h"
@@ -92,8 +93,30 @@ double Measured::undone() const { return count("undone_integrations") / std::max
 
 double Measured::w_h() const { return a_body_second(2.0 * count("discontinuities")) * step; }
 
-Measured measure(const std::string& name, int n, const std::string& engine, double duration, Clock clock) {
-  const scene::Scene scene = scene::make_sized_scene(name, n);
+scene::Scene at_a_later_time(const scene::Scene& scene, double at) {
+  engines::RunOptions options;
+  options.engine = "tw";
+  options.timewarp = engines::fast_timewarp();
+  options.duration_s = at;
+  options.frame_rate_hz = 1.0 / at;   // the first and the last
+  TrajectoryRecorder recorder;
+  engines::run_scene(scene, laws_for(scene), options, recorder);
+  require(recorder.trajectory().stopped_by.empty() && recorder.trajectory().frames.back().time == at, "timewarp goes as far as it is asked to");
+  scene::Scene later = scene;
+  for (std::size_t k = 0; k < later.bodies.size(); ++k) {
+    if (later.bodies[k].immovable) continue;
+    const BodyPose& pose = recorder.trajectory().frames.back().poses[k];
+    later.bodies[k].position_m = pose.com_world;
+    later.bodies[k].world_from_body = pose.world_from_body;
+    later.bodies[k].velocity_m_s = pose.velocity_world;
+    later.bodies[k].omega_world_rad_s = pose.omega_world;
+  }
+  return later;
+}
+
+Measured measure(const std::string& name, int n, const std::string& engine, double duration, Clock clock) { return measure(scene::make_sized_scene(name, n), engine, duration, clock); }
+
+Measured measure(const scene::Scene& scene, const std::string& engine, double duration, Clock clock) {
   Measured measured;
   for (const scene::BodySpec& body : scene.bodies) measured.bodies += body.immovable ? 0 : 1;
   measured.simulated = duration;
