@@ -2,10 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 namespace tumble::testing {
 
-/// Measures all, prints one table, writes one page with the table and a picture a figure. @return whether every figure is reached
-bool measure_figures(const std::filesystem::path& page);
+/// Measures all, prints one table, writes one page with the table and a picture a figure.
+/// @param only  one chapter of them, by its name; empty: all
+/// @return whether every figure is reached
+bool measure_figures(const std::filesystem::path& page, const std::string& only = "");
 
 }  // namespace tumble::testing

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <ctime>
 
+#include "framework/core/error.h"
 #include "framework/engines/run.h"
 #include "framework/engines/run_counters.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
@@ -57,7 +58,8 @@ Once run_once(const scene::Scene& scene, const std::string& engine, double durat
 }
 
 // What a neighbour's work on the machine adds is no engine's.
-Once best_of(const scene::Scene& scene, const std::string& engine, double duration, Clock clock) {
+Once best_of(const scene::Scene& scene, const std::string& engine, double duration, Clock clock, StackSamples& samples) {
+  samples.begin();
   Once best = run_once(scene, engine, duration, clock);
   for (int k = 1; k < kShortRuns && best.seconds < kShort; ++k) {
     Once next = run_once(scene, engine, duration, clock);
@@ -65,6 +67,7 @@ Once best_of(const scene::Scene& scene, const std::string& engine, double durati
     next.cpu = std::min(next.cpu, best.cpu);
     best = std::move(next);
   }
+  samples.end();
   return best;
 }
 
@@ -91,14 +94,38 @@ double Measured::undone() const { return count("undone_integrations") / std::max
 
 double Measured::w_h() const { return engines::discontinuities_a_body_and_step(static_cast<std::uint64_t>(count("discontinuities")), bodies, simulated, step); }
 
-Measured measure(const std::string& name, int n, const std::string& engine, double duration, Clock clock) {
-  const scene::Scene scene = scene::make_sized_scene(name, n);
+scene::Scene at_a_later_time(const scene::Scene& scene, double at) {
+  engines::RunOptions options;
+  options.engine = "tw";
+  options.timewarp = engines::fast_timewarp();
+  options.duration_s = at;
+  options.frame_rate_hz = 1.0 / at;   // the first and the last
+  TrajectoryRecorder recorder;
+  engines::run_scene(scene, laws_for(scene), options, recorder);
+  require(recorder.trajectory().stopped_by.empty() && recorder.trajectory().frames.back().time == at, "timewarp goes as far as it is asked to");
+  scene::Scene later = scene;
+  for (std::size_t k = 0; k < later.bodies.size(); ++k) {
+    if (later.bodies[k].immovable) continue;
+    const BodyPose& pose = recorder.trajectory().frames.back().poses[k];
+    later.bodies[k].position_m = pose.com_world;
+    later.bodies[k].world_from_body = pose.world_from_body;
+    later.bodies[k].velocity_m_s = pose.velocity_world;
+    later.bodies[k].omega_world_rad_s = pose.omega_world;
+  }
+  return later;
+}
+
+Measured measure(const std::string& name, int n, const std::string& engine, double duration, Clock clock) { return measure(scene::make_sized_scene(name, n), engine, duration, clock); }
+
+Measured measure(const scene::Scene& scene, const std::string& engine, double duration, Clock clock) {
   Measured measured;
   for (const scene::BodySpec& body : scene.bodies) measured.bodies += body.immovable ? 0 : 1;
   measured.simulated = duration;
   measured.step = scene.step_s;
-  const Once building = best_of(scene, engine, kNothing, clock);   // reading models, building shapes
-  Once once = best_of(scene, engine, duration, clock);
+  StackSamples unused, samples;
+  const Once building = best_of(scene, engine, kNothing, clock, unused);   // reading models, building shapes
+  Once once = best_of(scene, engine, duration, clock, samples);
+  measured.shares = engines::time_shares(samples);
   measured.seconds = std::max(1e-6, once.seconds - building.seconds);
   measured.cpu = std::max(1e-6, once.cpu - building.cpu);
   measured.tally = std::move(once.tally);

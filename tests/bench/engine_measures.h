@@ -6,6 +6,8 @@
 #include <string>
 
 #include "framework/scene/scene.h"
+#include "framework/engines/time_parts.h"
+#include "framework/scene/scene.h"
 #include "framework/trajectory/trajectory.h"
 
 namespace tumble::testing {
@@ -27,6 +29,7 @@ class Tally final : public TrajectorySink {
 
 struct Measured {
   double seconds = 0.0, cpu = 0.0;               // of the run without what comes before its first step; CPU of all threads [s]
+  engines::TimeShares shares;                    // where its time went, of all the runs that were made
   Tally tally, building;                         // of the run; of a run that ends before its first step
   int bodies = 0;                                // movable
   double simulated = 0.0, step = 0.0;            // [s]
@@ -39,9 +42,16 @@ struct Measured {
 
 enum class Clock { kCpu, kWall };                // CPU time is what neighbours on the machine do not lengthen; threads are compared by the wall's
 
-/// A scene with a size by one engine: the least disturbed of several runs where they are short. Pictures are no part of it.
+/// A scene as it stands at a later time, by timewarp: what heaps up needs its time, which is no part of what is compared. Bodies, links and all
+/// else are kept.
+/// @param at  [s]
+scene::Scene at_a_later_time(const scene::Scene& scene, double at);
+
+/// A scene by one engine: the least disturbed of several runs where they are short. Pictures are no part of it.
 /// @param engine    rd, rd_auto (in closed form, as the others go), ca, tw, or tw2, tw4, ... (threads)
 /// @param duration  [s]
+Measured measure(const scene::Scene& scene, const std::string& engine, double duration, Clock clock = Clock::kCpu);
+/// The same for a scene with a size.
 Measured measure(const std::string& scene, int n, const std::string& engine, double duration, Clock clock = Clock::kCpu);
 
 }  // namespace tumble::testing

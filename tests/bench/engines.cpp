@@ -1,5 +1,6 @@
 // What each engine pays for the same scenes. Without words: all figures that timewarp is judged by, one table, one picture each,
-// out/bench/engines.html (engine_figures.cpp); some ten minutes.
+// out/bench/engines.html (engine_figures.cpp), and where each engine's time went (engine_profiles.cpp); some ten minutes.
+//   bench_engines --only "threads"   one chapter of it: one body and two, collisions, growth, threads, the paper's scenes
 //   bench_engines --scene NAME [--n N,N,...] [--engines rd,ca,tw] [--duration-s T]
 // prints one row a size and engine; ratios are of times in this very run. rd_auto is rd in closed form, as the other two go. tw2 is timewarp
 // on two threads: then all times of the table are by the clock, on a machine that has nothing else to do.
@@ -39,6 +40,7 @@ void table(const std::string& scene, int n, const std::vector<std::string>& engi
     std::printf("%-10s %7d %-8s %10.2f %10.2f %10.2f %7.1f%% %9.0f %12.0f %10.3f %12.2f %9.4f\n", scene.c_str(), run.bodies, engine.c_str(), run.a_body_second(run.count("integrations")),
                 run.a_body_second(run.count("pair_checks")), run.a_body_second(collisions), 100 * run.undone(), run.count("states_kept"), collisions / run.seconds, run.seconds,
                 1e6 * run.a_body_second(run.seconds), run.w_h());
+    std::printf("    physics %.0f %%: %s (%zu samples)\n", 100 * run.shares.physics, engines::in_words(run.shares).c_str(), run.shares.samples);
     print_critical_path(run, cpu_of_one);
     std::fflush(stdout);
   }
@@ -74,7 +76,7 @@ std::vector<std::string> parts(const std::string& text) {
 int main(int argc, char** argv) {
   using namespace tumble::testing;
   tumble::keep_freed_memory();
-  std::string scene, sizes = "300", engines = "rd,rd_auto,ca,tw";
+  std::string scene, only, sizes = "300", engines = "rd,rd_auto,ca,tw";
   double duration = 2.0;
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string flag = argv[i];
@@ -82,9 +84,10 @@ int main(int argc, char** argv) {
     else if (flag == "--n") sizes = argv[i + 1];
     else if (flag == "--engines") engines = argv[i + 1];
     else if (flag == "--duration-s") duration = std::atof(argv[i + 1]);
+    else if (flag == "--only") only = argv[i + 1];
     else return std::fprintf(stderr, "bench_engines: %s is no flag of mine\n", argv[i]), 2;
   }
-  if (scene.empty()) return measure_figures("out/bench/engines.html") ? 0 : 1;
+  if (scene.empty()) return measure_figures("out/bench/engines.html", only) ? 0 : 1;
   if (scene == "energy") return energy_over_a_million(), 0;
   const bool has_threads = engines.find("tw2") != std::string::npos || engines.find("tw4") != std::string::npos;
   std::printf("%-10s %7s %-8s %10s %10s %10s %8s %9s %12s %10s %12s %9s\n", "scene", "bodies", "engine", "int/n/s", "checks/n/s", "coll/n/s", "undone", "kept", "coll/s", has_threads ? "clock s" : "CPU s",

@@ -49,6 +49,23 @@ TEST(Threads, CommitTheReferencesTraceOfAtoms) {
   }
 }
 
+// Room is cut finer than threads are many where there are very many bodies; here where there are few, so that most of them come to a border.
+TEST(Threads, WithSeveralTerritoriesEachCommitTheReferencesTrace) {
+  for (const auto& [scene, duration] : {std::pair{"gas", 3.0}, {"atoms", 2.0}}) {
+    const scene::Scene cut = sized(scene, 200, duration);
+    const Trajectory reference = run_by("ordered", cut, {}, 5.0);
+    ASSERT_GT(reference.events.size(), 300U) << scene;
+    for (const int threads : {1, 2, 3}) {
+      engines::TimewarpTrial trial;
+      trial.territories = 7;   // no multiple of the threads: one has more of them
+      const Trajectory run = run_on({threads, trial}, cut, 5.0);
+      EXPECT_EQ(difference(reference, run), "") << scene << ", " << threads << " threads";
+      EXPECT_GE(run.counters.counts.at("rounds_of_threads"), 10U) << scene;
+      EXPECT_LE(100 * run.counters.counts.at("undone_integrations"), 15 * run.counters.counts.at("integrations")) << scene << ", " << threads << " threads";
+    }
+  }
+}
+
 // 200 seeds: which legal event a thread takes, and when it is held up.
 TEST(Threads, InAdversarialOrderAndDelayedLeaveTheTraceAsItIs) {
   const scene::Scene scene = sized("gas", 60, 1.0);

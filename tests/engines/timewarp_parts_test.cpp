@@ -128,6 +128,34 @@ TEST(ActivePairs, AreThoseWhoseBoxesOverlapAndEachIsToldOnce) {
   }
 }
 
+TEST(ActivePairs, OfGridsThatShareBodiesKeepToTheirOwn) {
+  Random random(7);
+  constexpr int kBodies = 90, kGrids = 3;
+  engines::ActivePairs::Entries entries(kBodies);
+  std::vector<engines::ActivePairs> grids;
+  for (int k = 0; k < kGrids; ++k) grids.emplace_back(entries, k, kBodies / kGrids, 0.7);
+  std::vector<std::size_t> home(kBodies);
+  for (int round = 0; round < 20; ++round) {
+    for (int body = 0; body < kBodies; ++body) {
+      const std::size_t next = random.below(kGrids);
+      for (engines::ActivePairs& grid : grids) grid.remove(body);   // of the two that do not hold it, nothing
+      ASSERT_FALSE(grids[home[static_cast<std::size_t>(body)]].holds(body));
+      const Vector3d middle(random.between(-2, 2), random.between(-2, 2), random.between(-2, 2)), half = Vector3d::Constant(body % 20 == 0 ? 15.0 : 0.5);   // some are wide
+      grids[next].set_box(body, {middle - half, middle + half});
+      home[static_cast<std::size_t>(body)] = next;
+    }
+    for (int body = 0; body < kBodies; ++body)
+      for (std::size_t k = 0; k < kGrids; ++k) {
+        std::multiset<int> found, expected;
+        grids[k].for_each_in(grids[home[static_cast<std::size_t>(body)]].box(body), [&](int other) { found.insert(other); });
+        for (int other = 0; other < kBodies; ++other)
+          if (home[static_cast<std::size_t>(other)] == k && grids[k].box(body).overlaps(grids[k].box(other))) expected.insert(other);
+        ASSERT_EQ(found, expected) << "body " << body << ", grid " << k << ", round " << round;
+        ASSERT_EQ(grids[k].holds(body), home[static_cast<std::size_t>(body)] == k);
+      }
+  }
+}
+
 // The judge names the first event at which a run leaves the reference.
 class TraceJudge : public ::testing::Test {
  protected:

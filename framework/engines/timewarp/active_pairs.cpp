@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "framework/core/error.h"
+
 namespace tumble::engines {
 
 Box box_around(const collision::CollisionShape& shape, const Quaterniond& world_from_body) {
@@ -15,11 +17,30 @@ Box box_around(const collision::CollisionShape& shape, const Quaterniond& world_
   return {box.low - margin, box.high + margin};
 }
 
-ActivePairs::ActivePairs(int bodies, double cell) : cell_(cell), entries_(static_cast<std::size_t>(bodies)) {
+ActivePairs::ActivePairs(int bodies, double cell) : own_entries_(std::make_unique<Entries>(static_cast<std::size_t>(bodies))), entries_(own_entries_.get()), number_(0) { make_buckets(bodies, cell); }
+
+ActivePairs::ActivePairs(Entries& entries, int number, int held, double cell) : entries_(&entries), number_(static_cast<std::int16_t>(number)) {
+  require(number >= 0 && number <= std::numeric_limits<std::int16_t>::max(), "grids that share bodies have numbers");
+  make_buckets(held, cell);
+}
+
+void ActivePairs::make_buckets(int held, double cell) {
+  cell_ = cell;
   std::uint32_t heads = 64;
-  while (heads < static_cast<std::uint32_t>(bodies)) heads *= 2;   // a cell holds a few bodies
+  while (heads < static_cast<std::uint32_t>(held)) heads *= 2;   // a cell holds a few bodies
   mask_ = heads - 1;
   buckets_.resize(heads);
+}
+
+// Ascending. From the buckets: entries of others are another thread's affair.
+std::vector<int> ActivePairs::all_in_cells() const {
+  std::vector<int> bodies;
+  for (std::size_t head = 0; head <= mask_; ++head)
+    for (std::int32_t at = static_cast<std::int32_t>(head); at >= 0; at = buckets_[static_cast<std::size_t>(at)].next)
+      for (std::int32_t place = 0; place < buckets_[static_cast<std::size_t>(at)].count; ++place) bodies.push_back(buckets_[static_cast<std::size_t>(at)].slots[static_cast<std::size_t>(place)].body);
+  std::sort(bodies.begin(), bodies.end());
+  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
+  return bodies;
 }
 
 ActivePairs::SmallBox ActivePairs::small_of(const Box& box) {
@@ -85,10 +106,12 @@ void ActivePairs::leave(int body, std::size_t bucket) {
 }
 
 void ActivePairs::take_out(int body) {
-  Entry& entry = entries_[static_cast<std::size_t>(body)];
-  if (entry.is_in_grid) for_each_cell(entry, [&](std::size_t bucket) { leave(body, bucket); });
-  if (entry.is_wide) wide_.erase(std::find(wide_.begin(), wide_.end(), body));
-  entry.is_in_grid = entry.is_wide = false;
+  Entry& its = entry(body);
+  if (its.grid != number_) return;
+  if (its.is_wide) wide_.erase(std::find(wide_.begin(), wide_.end(), body));
+  else for_each_cell(its, [&](std::size_t bucket) { leave(body, bucket); });
+  its.grid = -1;
+  its.is_wide = false;
 }
 
 // A box of very many cells, or of cells that 32 bits do not count, is wide.
@@ -110,11 +133,12 @@ ActivePairs::Entry ActivePairs::entry_of(const Box& box) const {
 }
 
 void ActivePairs::set_box(int body, const Box& box) {
-  Entry& entry = entries_[static_cast<std::size_t>(body)];
-  const Entry next = entry_of(box);
+  Entry& its = entry(body);
+  Entry next = entry_of(box);
+  next.grid = number_;
   if (next.is_wide) {
     take_out(body);
-    entry = next;
+    its = next;
     wide_.insert(std::lower_bound(wide_.begin(), wide_.end(), body), body);
     return;
   }
@@ -122,11 +146,10 @@ void ActivePairs::set_box(int body, const Box& box) {
     __builtin_prefetch(&buckets_[bucket]);
     __builtin_prefetch(reinterpret_cast<const char*>(&buckets_[bucket]) + 64);
   });
-  if (!(entry.is_in_grid && entry.low == next.low && entry.high == next.high)) take_out(body);
-  entry = next;
-  entry.is_in_grid = true;
+  if (its.is_wide || its.grid != number_ || its.low != next.low || its.high != next.high) take_out(body);
+  its = next;
   const SmallBox small = small_of(box);
-  for_each_cell(entry, [&](std::size_t bucket) { enter(body, small, bucket); });
+  for_each_cell(next, [&](std::size_t bucket) { enter(body, small, bucket); });
 }
 
 }  // namespace tumble::engines

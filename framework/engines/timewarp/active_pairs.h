@@ -8,6 +8,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <vector>
 
 #include "framework/collision/collision_shape.h"
@@ -36,22 +37,38 @@ Box box_around(const collision::CollisionShape& shape, const Quaterniond& world_
 
 class ActivePairs {
  public:
+  struct Entry {
+    Box box;
+    std::array<std::int32_t, 3> low{0, 0, 0}, high{-1, -1, -1};   // cells
+    std::int16_t grid = -1;   // that holds it; -1: none
+    bool is_wide = false;
+  };
+  using Entries = std::vector<Entry, LargePages<Entry>>;
+
   /// @param bodies  indices in use are below this
   /// @param cell    edge of a cell [m], > 0: about the size of most boxes
   ActivePairs(int bodies, double cell);
+  /// One of several grids that share bodies among them: each body is in one of them at most, and no grid looks at another's.
+  /// @param entries  by body; outlives the grid
+  /// @param number   of this grid, >= 0 and its own
+  /// @param held     about as many bodies will be in it
+  ActivePairs(Entries& entries, int number, int held, double cell);
+  ActivePairs(const ActivePairs&) = delete;
+  ActivePairs& operator=(const ActivePairs&) = delete;
+  ActivePairs(ActivePairs&&) = default;
 
   /// Enters a body's box, in place of the one it had.
   void set_box(int body, const Box& box);
   /// Takes a body out, if it is in.
   void remove(int body) { take_out(body); }
-  bool holds(int body) const { return entries_[static_cast<std::size_t>(body)].is_in_grid || entries_[static_cast<std::size_t>(body)].is_wide; }
+  bool holds(int body) const { return entry(body).grid == number_; }
   /// The grid as it stands, whatever order it was entered in: by body its box and cells, by bucket who is in it with which box.
   /// @param row  is called with each (what, place, body, numbers), bodies ascending, then buckets with their bodies in no order
   template <class Row>
   void for_each_row(const Row& row) const {
-    for (std::size_t body = 0; body < entries_.size(); ++body) {
-      const Entry& e = entries_[body];
-      if (!e.is_in_grid && !e.is_wide) continue;
+    for (std::size_t body = 0; body < entries_->size(); ++body) {
+      const Entry& e = (*entries_)[body];
+      if (e.grid != number_) continue;
       row(e.is_wide ? 'w' : 'b', 0, static_cast<int>(body), std::array<double, 12>{e.box.low.x(), e.box.low.y(), e.box.low.z(), e.box.high.x(), e.box.high.y(), e.box.high.z(), double(e.low[0]), double(e.low[1]), double(e.low[2]),
                                                                                   double(e.high[0]), double(e.high[1]), double(e.high[2])});
     }
@@ -62,18 +79,18 @@ class ActivePairs {
           row('c', head, slot.body, std::array<double, 12>{slot.box.low[0], slot.box.low[1], slot.box.low[2], slot.box.high[0], slot.box.high[1], slot.box.high[2]});
         }
   }
-  const Box& box(int body) const { return entries_[static_cast<std::size_t>(body)].box; }
+  const Box& box(int body) const { return entry(body).box; }
 
   /// Begins to bring what is known of a body from memory.
   void fetch(int body) const {
-    __builtin_prefetch(&entries_[static_cast<std::size_t>(body)]);
-    __builtin_prefetch(reinterpret_cast<const char*>(&entries_[static_cast<std::size_t>(body)]) + 64);
+    __builtin_prefetch(&entry(body));
+    __builtin_prefetch(reinterpret_cast<const char*>(&entry(body)) + 64);
   }
 
   /// Calls `found(other)` once for each body whose box overlaps this body's.
   template <class Found>
   void for_each_partner(int body, const Found& found) const {
-    for_each_overlapping(entries_[static_cast<std::size_t>(body)], body, found);
+    for_each_overlapping(entry(body), body, found);
   }
 
   /// Calls `found(other)` once for each body whose box overlaps this one, which need not be anybody's here.
@@ -102,12 +119,9 @@ class ActivePairs {
     std::int32_t count = 0, next = -1;
     std::array<Slot, kInABucket> slots;
   };
-  struct Entry {
-    Box box;
-    std::array<std::int32_t, 3> low{0, 0, 0}, high{-1, -1, -1};   // cells
-    bool is_in_grid = false, is_wide = false;
-  };
 
+  const Entry& entry(int body) const { return (*entries_)[static_cast<std::size_t>(body)]; }
+  Entry& entry(int body) { return (*entries_)[static_cast<std::size_t>(body)]; }
   std::size_t bucket_of(std::int32_t i, std::int32_t j, std::int32_t k) const {
     const auto u = [](std::int32_t v) { return static_cast<std::uint32_t>(v); };
     // Primes of M. Teschner et al., "Optimized spatial hashing for collision detection of deformable objects", VMV 2003.
@@ -116,10 +130,10 @@ class ActivePairs {
   template <class Found>
   void for_each_overlapping(const Entry& own, int body, const Found& found) const {
     for (const int other : wide_)
-      if (other != body && own.box.overlaps(entries_[static_cast<std::size_t>(other)].box)) found(other);
+      if (other != body && own.box.overlaps(entry(other).box)) found(other);
     if (own.is_wide) {
-      for (int other = 0; other < static_cast<int>(entries_.size()); ++other)
-        if (other != body && entries_[static_cast<std::size_t>(other)].is_in_grid && own.box.overlaps(entries_[static_cast<std::size_t>(other)].box)) found(other);
+      for (const int other : all_in_cells())
+        if (other != body && own.box.overlaps(entry(other).box)) found(other);
       return;
     }
     const SmallBox small = small_of(own.box);
@@ -131,10 +145,10 @@ class ActivePairs {
             for (std::int32_t place = 0; place < bucket.count; ++place) {
               const Slot& slot = bucket.slots[static_cast<std::size_t>(place)];
               if (!small.overlaps(slot.box) || slot.body == body) continue;
-              const Entry& entry = entries_[static_cast<std::size_t>(slot.body)];
+              const Entry& other = entry(slot.body);
               // The lowest cell that both touch: also tells apart cells that share a bucket.
-              const bool here = (i == std::max(own.low[0], entry.low[0])) & (j == std::max(own.low[1], entry.low[1])) & (k == std::max(own.low[2], entry.low[2]));
-              if (here && own.box.overlaps(entry.box)) found(slot.body);
+              const bool here = (i == std::max(own.low[0], other.low[0])) & (j == std::max(own.low[1], other.low[1])) & (k == std::max(own.low[2], other.low[2]));
+              if (here && own.box.overlaps(other.box)) found(slot.body);
             }
           }
   }
@@ -148,12 +162,16 @@ class ActivePairs {
         for (std::int32_t k = entry.low[2]; k <= entry.high[2]; ++k) work(bucket_of(i, j, k));
   }
   void take_out(int body);
+  std::vector<int> all_in_cells() const;
+  void make_buckets(int held, double cell);
 
   double cell_;
   std::uint32_t mask_;
   std::vector<Bucket, LargePages<Bucket>> buckets_;             // the first mask_ + 1 are heads, the others continue one
   std::vector<std::int32_t> free_;          // continuations not in use
-  std::vector<Entry, LargePages<Entry>> entries_;              // by body
+  std::unique_ptr<Entries> own_entries_;    // of a grid that shares with nobody
+  Entries* entries_;                        // by body
+  std::int16_t number_;
   std::vector<int> wide_;                   // ascending
 };
 

@@ -27,6 +27,7 @@ constexpr double kWidest = 2.0, kNarrowest = 1.0 / 64;   // of the first window
 constexpr double kWindowSteps = 2.0;           // of several threads, the first window: of the time in which a process goes its way at once
 constexpr double kWindowAlone = 2.0;           // of one thread, which is unbounded until too much is undone: of that window
 constexpr double kRound = 0.25;                // of the window is a round: at its end processes have gone their ways, not been cut short
+constexpr double kRoundAlone = 0.125;          // of one thread with several territories: longer rounds find more pairs, shorter ones look at each territory more often
 
 }  // namespace
 
@@ -34,10 +35,11 @@ Conductor::Conductor(const scene::Scene& scene, const Laws& laws, const engines:
     : all_(scene, laws, options, sink), record_(record), watch_(watch), commit_at_(kCommitAfter), wanted_(all_.home), leaders_(all_.home.size()) {
   const FlightWorld& world = all_.world();
   const double bin = bin_for(world, all_.lengths.way, all_.run.duration());
-  const std::size_t domains = all_.threads > 1 ? static_cast<std::size_t>(all_.threads) + 1 : 1;
+  const std::size_t domains = all_.territories > 1 ? static_cast<std::size_t>(all_.territories) + 1 : 1;
+  const int all_bodies = world.size(), a_territory = 2 * all_bodies / all_.territories;
   all_.domains.reserve(domains);
   for (std::size_t k = 0; k < domains; ++k) {
-    all_.domains.emplace_back(world.size(), all_.lengths, bin);
+    all_.domains.emplace_back(all_.boxes, static_cast<int>(k), k == kBorder ? all_bodies : a_territory, all_.lengths, k == kBorder ? bin : bin * all_.territories);
     workers_.push_back(std::make_unique<Worker>(all_, k));
     if (domains > 1) workers_.back()->burdens.assign(static_cast<std::size_t>(world.size()), 0.0);
   }
@@ -67,7 +69,7 @@ void Conductor::run() {
   std::string stopped_by;
   try {
     begin();
-    if (all_.threads > 1) go_in_rounds();
+    if (all_.territories > 1) go_in_rounds();
     else go_alone();
     commit_before(kInfinity);
     check_nothing_leaked();
@@ -95,7 +97,7 @@ void Conductor::begin() {
     if (all_.first_member(body) == body) alone().begin(body);
   alone().now = kInfinity;
   // What going on for the first time has cost is what the time that it covers costs.
-  if (all_.threads > 1)
+  if (all_.territories > 1)
     for (const int body : order) alone().burdens[static_cast<std::size_t>(body)] *= first_window_ / std::max(all_.processes[static_cast<std::size_t>(body)].horizon, 1e-3 * first_window_);
 }
 
@@ -175,12 +177,12 @@ void Conductor::go_in_rounds() {
       meet.arrive_and_wait();
     }
   };
-  for (std::size_t k = 2; k < workers_.size(); ++k)
-    threads.emplace_back([&, k] {
+  for (int thread = 1; thread < all_.threads; ++thread)
+    threads.emplace_back([&, thread] {
       for (;;) {
         meet.arrive_and_wait();
         if (is_over) return;
-        workers_[k]->work_before(end_of_round);
+        work_as(thread, end_of_round);
         meet.arrive_and_wait();
       }
     });
@@ -193,19 +195,25 @@ void Conductor::go_in_rounds() {
   }
 }
 
+// Territories go from thread to thread in turn. One after the other to the end of the round: what each looks at stays in the caches meanwhile.
+void Conductor::work_as(int thread, double end) {
+  for (std::size_t k = 1 + static_cast<std::size_t>(thread); k < workers_.size(); k += static_cast<std::size_t>(all_.threads)) workers_[k]->work_before(end);
+}
+
 void Conductor::go_round(double& end_of_round, std::barrier<>& meet) {
   all_.global_virtual_time = next_time();
-  end_of_round = all_.global_virtual_time + kRound * all_.window;
+  end_of_round = all_.global_virtual_time + (all_.threads > 1 ? kRound : kRoundAlone) * all_.window;
   const double began = thread_seconds();
   settle();
   const double settled = thread_seconds();
-  all_.run.share(true);
+  all_.run.share(all_.threads > 1);
   meet.arrive_and_wait();
-  workers_[1]->work_before(end_of_round);
+  work_as(0, end_of_round);
   meet.arrive_and_wait();
   all_.run.share(false);
-  double busiest = 0.0;
-  for (const auto& worker : workers_) busiest = std::max(busiest, std::exchange(worker->cpu_seconds, 0.0));
+  std::vector<double> of_threads(static_cast<std::size_t>(all_.threads), 0.0);
+  for (std::size_t k = 1; k < workers_.size(); ++k) of_threads[(k - 1) % of_threads.size()] += std::exchange(workers_[k]->cpu_seconds, 0.0);
+  const double busiest = *std::max_element(of_threads.begin(), of_threads.end());
   const double worked = thread_seconds();
   collect_what_is_left();
   work_alone_before(end_of_round);
@@ -241,7 +249,7 @@ void Conductor::work_alone_at(Due due) {
     ++alone().counters.held_back;
     if (Domain* next = next_domain(); next && next->queue.front().key < due.key) {
       const Due first = next->queue.pop();
-      all_.domains[all_.threads > 1 ? all_.home_of(due.key) : kBorder].queue.push(due);
+      all_.domains[all_.territories > 1 ? all_.home_of(due.key) : kBorder].queue.push(due);
       due = first;
     }
     commit_before(due.key);
@@ -256,6 +264,7 @@ void Conductor::work_alone_at(Due due) {
 // ---- How far ahead -------------------------------------------------------------------------------------------------------------
 
 void Conductor::adapt_window() {
+  if (all_.threads == 1 && all_.territories > 1 && !all_.world().processes()) return;   // nobody is cut short by it: it only measures rounds
   if (all_.trial.late_callbacks) return;   // what waits for the late one would wait for the window too
   std::uint64_t done = 0, undone = 0;
   for (const auto& worker : workers_) {
@@ -266,9 +275,9 @@ void Conductor::adapt_window() {
   const double share = static_cast<double>(undone - undone_before_) / static_cast<double>(done - done_before_);
   done_before_ = done;
   undone_before_ = undone;
-  const double first = all_.threads > 1 ? first_window_ : kWindowAlone * first_window_;
+  const double first = all_.territories > 1 ? first_window_ : kWindowAlone * first_window_;
   if (share > kTooMuchUndone) all_.window = std::max(kNarrowest * first, kNarrow * (all_.window < kInfinity ? all_.window : first));
-  else if (share < kTooLittleUndone) all_.window = all_.threads > 1 ? std::min(kWidest * first, kWiden * all_.window) : all_.window > first ? kInfinity : kWiden * all_.window;
+  else if (share < kTooLittleUndone) all_.window = all_.territories > 1 ? std::min(kWidest * first, kWiden * all_.window) : all_.window > first ? kInfinity : kWiden * all_.window;
 }
 
 // ---- The end -------------------------------------------------------------------------------------------------------------------

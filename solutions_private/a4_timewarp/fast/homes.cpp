@@ -23,9 +23,11 @@ int leader_of(std::vector<int>& leaders, int body) {
 // Between two rounds: every body gets its home, every event the queue of whoever it is for.
 void Conductor::settle() {
   double sum = 0.0, most = 0.0;
-  for (std::size_t k = 1; k < workers_.size(); ++k) {
-    sum += workers_[k]->burden;
-    most = std::max(most, workers_[k]->burden);
+  for (int thread = 0; thread < all_.threads; ++thread) {
+    double its = 0.0;
+    for (std::size_t k = 1 + static_cast<std::size_t>(thread); k < workers_.size(); k += static_cast<std::size_t>(all_.threads)) its += workers_[k]->burden;
+    sum += its;
+    most = std::max(most, its);
   }
   const bool is_uneven = most * all_.threads > kUneven * sum && rounds_ - last_cut_ >= kRoundsToJudgeBy;
   if (rounds_ == 0 || is_uneven || rounds_ - last_cut_ >= kRoundsACut) {
@@ -54,7 +56,7 @@ void Conductor::cut_territories() {
     }
     if (box.low.allFinite() && box.high.allFinite()) burdens.push_back({0.5 * (box.low + box.high), work});
   }
-  const std::vector<Box> territories = cut_into_territories(std::move(burdens), all_.threads);
+  const std::vector<Box> territories = cut_into_territories(std::move(burdens), all_.territories);
   for (std::size_t k = 1; k < all_.domains.size(); ++k) {
     all_.domains[k].territory = territories[k - 1];
     all_.domains[k].queue.drain([this](const Due& due) { all_.domains[kBorder].queue.push(due); });

@@ -2,7 +2,8 @@
 ///
 /// Every movable body has a home. Those whose swept boxes lie in one thread's territory are at home there: nobody but that thread touches
 /// them while threads work. The others are at the border, and wait: threads look at what they have done and change nothing about them,
-/// until one thread works alone. With one thread every body is at the border, and that thread always works alone.
+/// until one thread works alone. With one territory every body is at the border, and its thread always works alone. There are more territories
+/// than threads where there are very many bodies: what a thread looks at for a while then fits its caches (territories.h).
 #pragma once
 
 #include <cstdint>
@@ -16,6 +17,7 @@
 #include "framework/trajectory/virtual_times.h"
 #include "solutions_private/a4_timewarp/fast/changes.h"
 #include "solutions_private/a4_timewarp/fast/lengths.h"
+#include "solutions_private/a4_timewarp/fast/territories.h"
 
 namespace tumble::a4 {
 
@@ -62,7 +64,7 @@ struct Executed {
 
 /// One thread's part of the room, or the border.
 struct alignas(64) Domain {
-  Domain(int bodies, const Lengths& lengths, double bin) : pairs(bodies, lengths.cell), queue(bin) {}
+  Domain(ActivePairs::Entries& boxes, int number, int held, const Lengths& lengths, double bin) : pairs(boxes, number, held, lengths.cell), queue(bin) {}
   Box territory;                      // of the border: none
   ActivePairs pairs;                  // whose home is here; obstacles stand at the border
   engines::EventQueue<Due> queue;
@@ -70,17 +72,19 @@ struct alignas(64) Domain {
 
 struct Shared {
   Shared(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink)
-      : run(scene, laws, options, sink), trial(options.trial), threads(options.threads), most_states(options.most_states), histories(static_cast<std::size_t>(run.world().size())),
-        processes(static_cast<std::size_t>(run.world().size())), home(static_cast<std::size_t>(run.world().size()), kBorder), lengths(lengths_for(run.world())) {}
+      : run(scene, laws, options, sink), trial(options.trial), threads(options.threads), territories(territories_for(run.world(), options)), most_states(options.most_states), histories(static_cast<std::size_t>(run.world().size())),
+        processes(static_cast<std::size_t>(run.world().size())), home(static_cast<std::size_t>(run.world().size()), kBorder), boxes(static_cast<std::size_t>(run.world().size())), lengths(lengths_for(run.world())) {}
 
   FlightRun run;
   const engines::TimewarpTrial trial;
   const int threads;
+  const int territories;               // 1: all is the border's, and one thread's
   const int most_states;               // of a body; 0: as many as it takes
   FlightHistories histories;
   Changes changes;
   std::vector<Process, LargePages<Process>> processes;   // by body
   std::vector<std::uint8_t> home;      // by body: place in domains
+  ActivePairs::Entries boxes;          // by body: whatever its home is
   const Lengths lengths;
   std::vector<Domain> domains;         // the border first
   std::vector<int> planes;             // half-spaces

@@ -1,11 +1,17 @@
-/// Which part of the room is whose: one box a thread, with about the same work in each.
+/// Which part of the room is whose: one box a thread, or several, with about the same work in each.
 #pragma once
 
 #include <vector>
 
+#include "framework/engines/events/flight_world.h"
+#include "framework/engines/run.h"
 #include "framework/engines/timewarp/active_pairs.h"
 
 namespace tumble::a4 {
+
+/// How many there are: as many as threads, and a multiple of that where there are so many bodies that looking at them in the order of events
+/// would bring each from memory each time. What is done in one territory, for a while, stays in the nearer caches.
+int territories_for(const engines::FlightWorld& world, const engines::RunOptions& options);
 
 /// Where a body is, and what it has cost of late.
 struct Burden {

@@ -69,7 +69,7 @@ Box Worker::swept_box(int body, double from, double to) const {
 }
 
 double Worker::global_virtual_time() const {
-  if (all_.threads > 1) return all_.global_virtual_time;
+  if (all_.territories > 1) return all_.global_virtual_time;
   const engines::EventQueue<Due>& queue = all_.domains[kBorder].queue;
   return queue.empty() ? now : std::min(queue.front().key.time, now);
 }
@@ -101,7 +101,7 @@ void Worker::advance(int body) {
   std::size_t home = all_.home[static_cast<std::size_t>(body)];
   for (const Due& due : found_) {
     if (due.key.time > to) continue;
-    const std::size_t its_home = all_.threads > 1 ? all_.home_of(due.key) : kBorder;
+    const std::size_t its_home = all_.territories > 1 ? all_.home_of(due.key) : kBorder;
     if (its_home != home) home = kBorder;
     push(due, its_home);
   }

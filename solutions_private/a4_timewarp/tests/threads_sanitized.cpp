@@ -7,12 +7,13 @@
 namespace tumble::testing {
 namespace {
 
-Trajectory run_on(int threads, const scene::Scene& scene, const Laws& laws) {
+Trajectory run_on(int threads, const scene::Scene& scene, const Laws& laws, int territories = 0) {
   TrajectoryRecorder recorder;
   engines::RunOptions options;
   options.engine = "tw";
   options.timewarp = engines::fast_timewarp();
   options.threads = threads;
+  options.trial.territories = territories;
   options.trial.delay_s = 20e-6;
   options.trial.seed = static_cast<std::uint64_t>(threads);
   engines::run_scene(scene, laws, options, recorder);
@@ -30,6 +31,11 @@ void expect_one_trace(const scene::Scene& scene, const Laws& laws) {
 }
 
 TEST(ThreadsUnderSanitizer, ShareBallsWithoutARace) { expect_one_trace(sized("gas", 200, 0.8), test_laws()); }
+
+TEST(ThreadsUnderSanitizer, ShareManyTerritoriesWithoutARace) {
+  const scene::Scene scene = sized("gas", 200, 0.8);
+  EXPECT_EQ(difference(run_on(1, scene, test_laws()), run_on(2, scene, test_laws(), 7)), "");
+}
 
 TEST(ThreadsUnderSanitizer, ShareTumblingSolidsWithoutARace) { expect_one_trace(sized("atoms", 90, 0.4), test_laws()); }
 

@@ -1,0 +1,48 @@
+// The parts that an engine's time is told in: their names are names of functions, and each engine's parts are its whole.
+#include <gtest/gtest.h>
+
+#include "framework/engines/recorder.h"
+#include "framework/engines/run.h"
+#include "framework/engines/time_parts.h"
+#include "framework/engines/timewarp/fast_timewarp.h"
+#include "framework/scene/sized_scenes.h"
+#include "tests/engines/reference_laws.h"
+
+namespace tumble::testing {
+namespace {
+
+constexpr double kRounding = 1e-12;   // a sum of eight shares
+
+// A function that is renamed would silently count as scheduling.
+TEST(TimeParts, AreNamesOfFunctions) {
+  const Laws laws = reference_laws();   // theirs are among the parts
+  for (const StackSamples::Part& part : engines::time_parts())
+    for (const std::string& name : part.functions) EXPECT_TRUE(StackSamples::is_known(name)) << part.name << ": no function begins with " << name;
+  for (const std::string& name : engines::set_up_functions()) EXPECT_TRUE(StackSamples::is_known(name)) << name;
+}
+
+// What a robot's arm costs is its rods, joints and the block in its scoop; nothing that an engine decides.
+TEST(TimeParts, OfRobotsArePhysicsByEveryEngine) {
+  const scene::Scene scene = scene::make_sized_scene("robots", 1);
+  const Laws laws = reference_laws();
+  for (const char* engine : {"rd", "ca", "tw"}) {
+    engines::RunOptions options;
+    options.engine = engine;
+    options.timewarp = engines::fast_timewarp();
+    options.duration_s = 0.3;
+    TrajectoryRecorder recorder;
+    StackSamples samples;
+    samples.begin();
+    engines::run_scene(scene, laws, options, recorder);
+    samples.end();
+    const engines::TimeShares shares = engines::time_shares(samples);
+    if (shares.samples < 10) GTEST_SKIP() << "too quick to tell";
+    double sum = 0.0;
+    for (const auto& [name, share] : shares.parts) sum += share;
+    EXPECT_NEAR(sum, 1.0, kRounding) << engine;
+    EXPECT_GT(shares.physics, 0.7) << engine << ": " << engines::in_words(shares);
+  }
+}
+
+}  // namespace
+}  // namespace tumble::testing
