@@ -18,6 +18,8 @@ constexpr double kUnseenRoom = 1e-9;      // of the way in a step: what the tole
 constexpr double kApart = 32.0;           // shells: farther than this, and than the rest speed goes in a step, a contact has ended
 constexpr double kAssembled = 1e-6;       // of the smaller body: a scene's models have single precision; what does not bounce and is this near at the start stands on each other
 constexpr double kReach = 0.25;           // of the smaller body: points farther away are not looked at
+constexpr double kDeep = 0.01;            // of the smaller body: deeper than this no step leads, save in heaps; a point that is gets a second look
+constexpr double kDeeper = 1.1;           // of how far the two are in each other
 constexpr double kMostTurn = 0.05;        // rad: a group with contacts that turns twice as far gets shorter steps; what is left is of second order
 constexpr double kMoves = 10.0;             // rest speeds: what holds a group that is slower is an equilibrium, however it trembles
 constexpr double kSlips = 1e-4;           // of the rest speed: slower than this nothing slides, though friction may be all there can be
@@ -123,8 +125,16 @@ collision::Pose LastingContacts::pose(int body, const std::vector<RigidBodyState
 }
 
 LastingContacts::Points LastingContacts::points_at(Pair pair, const std::vector<RigidBodyState>& states, double reach) const {
-  return collision::near_points(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states), reach,
-                                moving_.pair_cache(pair.first, pair.second));
+  Points points = collision::near_points(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states), reach,
+                                         moving_.pair_cache(pair.first, pair.second));
+  // Two that touch at corners may face each other along any direction, and a column along it may go in at a narrow side and out at the far end:
+  // no point is deeper than the two are in each other.
+  if (std::any_of(points.begin(), points.end(), [&](const collision::NearPoint& p) { return p.gap < -kDeep * size_of(pair); })) {
+    const collision::Gap deepest = gap_of(pair, states);
+    std::erase_if(points, [&](const collision::NearPoint& p) { return p.gap < std::min(0.0, kDeeper * deepest.distance); });
+    if (points.empty() && deepest.distance <= reach) points.push_back({deepest.point_a_world, deepest.point_b_world, deepest.normal_b_to_a_world, deepest.distance});
+  }
+  return points;
 }
 
 collision::Gap LastingContacts::gap_of(Pair pair, const std::vector<RigidBodyState>& states) const {

@@ -97,7 +97,7 @@ void loop_of(const Given& given, Findings& findings, int n, double duration, dou
 void closed_loop(const Given& given, Findings& findings) {
   report::Plot plot{"N four-bars through the singular posture: place of B0", {"time", "s"}, {"error", "m", report::Scale::kLog}, {}, {{1e-3, "limit for high precision"}}, "Twice in every turn all links lie along one line, where N + 1 motions are possible instead of one."};
   findings.part("2 loops", [&] { loop_of(given, findings, 2, given.is_long ? 20.0 : 3.0, 1e-3, plot); });
-  if (given.is_long) findings.part("40 loops", [&] { loop_of(given, findings, 40, 10.0, 1e-3, plot); });
+  if (given.is_long) findings.part("40 loops", [&] { loop_of(given, findings, 40, 20.0, 1e-3, plot); });
   findings.plot(std::move(plot));
   findings.part("without stabilisation", [&] {
     scene::Scene scene = four_bars(2);
