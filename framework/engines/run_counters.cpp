@@ -13,7 +13,7 @@ void RunCounters::add(const RunCounters& other) {
         &RunCounters::joint_calls, &RunCounters::drag_calls, &RunCounters::motor_calls, &RunCounters::callback_calls, &RunCounters::constraint_solves,
         &RunCounters::constraint_corrections, &RunCounters::contact_solves, &RunCounters::contact_points, &RunCounters::contact_sweeps,
         &RunCounters::contact_factorisations, &RunCounters::contact_unsolved, &RunCounters::contacts_begun, &RunCounters::contacts_ended, &RunCounters::contact_landings,
-        &RunCounters::friction_points, &RunCounters::bodies_put_to_sleep, &RunCounters::body_steps_asleep, &RunCounters::passages_begun, &RunCounters::passages_let_go, &RunCounters::rounds, &RunCounters::held_back})
+        &RunCounters::friction_points, &RunCounters::bodies_put_to_sleep, &RunCounters::body_steps_asleep, &RunCounters::passages_begun, &RunCounters::passages_let_go, &RunCounters::impacts_at_home, &RunCounters::impacts_across, &RunCounters::rounds, &RunCounters::held_back})
     this->*count += other.*count;
   for (const auto seconds :
        {&RunCounters::integration_seconds, &RunCounters::collision_seconds, &RunCounters::impact_seconds, &RunCounters::constraint_seconds, &RunCounters::contact_seconds,
@@ -70,6 +70,9 @@ Counters RunCounters::named() const {
                   {"body_steps_asleep", body_steps_asleep},
                   {"passages_begun", passages_begun},
                   {"passages_let_go", passages_let_go},
+                  {"impacts_at_home", impacts_at_home},
+                  {"impacts_across_territories", impacts_across},
+                  {"least_events_of_a_thread", least_of_a_thread},
                   {"rounds_of_threads", rounds},
                   {"held_back", held_back},
                   {"most_states_of_a_body", most_states}};

@@ -23,6 +23,7 @@ struct RunCounters {
   std::uint64_t pair_checks = 0, anti_messages = 0, states_kept = 0;   // states_kept: the most at any time
   std::uint64_t bodies_put_to_sleep = 0, body_steps_asleep = 0;
   std::uint64_t passages_begun = 0, passages_let_go = 0;   // of processes; fewer let go where the run ends on some, all by who goes back in time
+  std::uint64_t impacts_at_home = 0, impacts_across = 0, least_of_a_thread = 0;   // of threads: see named()
   std::uint64_t rounds = 0, held_back = 0, most_states = 0;   // of threads; events that had to wait for global virtual time; of one body at any time
   collision::ImpactCost collision;
   std::vector<std::string> notices;   // once each
@@ -33,7 +34,9 @@ struct RunCounters {
   /// Adds what another has counted: a thread, or a part of the world.
   void add(const RunCounters& other);
 
-  /// Effects that no entry called for are reported as 0 calls, so that a reader sees that they did not run.
+  /// Effects that no entry called for are reported as 0 calls, so that a reader sees that they did not run. Of threads: impacts that one
+  /// worked at in its own territory; impacts of two bodies that were last at home in two threads' territories; and how many events the
+  /// least busy one worked at at home.
   Counters named() const;
 };
 

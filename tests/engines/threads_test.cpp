@@ -1,9 +1,11 @@
 // Timewarp on several threads commits what the reference commits, to the last bit, whatever the threads' timing; and it keeps its bounds.
+#include <algorithm>
 #include <cmath>
 #include <map>
 
 #include <gtest/gtest.h>
 
+#include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
 #include "tests/engines/event_scenes.h"
 
@@ -107,11 +109,16 @@ TEST(Echo, OfTwoBodiesUndoesNoMoreThanItCommits) {
   const scene::Scene scene = echo();
   const Trajectory reference = run_by("ordered", scene, {}, 0.5);
   ASSERT_GT(reference.events.size(), 200U);
+  const auto of_the_two = std::count_if(reference.events.begin(), reference.events.end(), [](const Event& event) { return event.body_a == 2 && event.body_b == 3; });
+  ASSERT_GT(of_the_two, 50);
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     const Trajectory run = run_on({2, delayed(seed, 1e-4)}, scene, 0.5);
     EXPECT_EQ(difference(reference, run), "") << "seed " << seed;
     const std::uint64_t undone = run.counters.counts.at("undone_integrations"), all = run.counters.counts.at("integrations");
     EXPECT_LE(undone, all - undone) << "seed " << seed;
+    // Each thread has its own of the two bodies: most of their impacts are of two territories, and both threads have work at home.
+    EXPECT_GT(2 * run.counters.counts.at("impacts_across_territories"), static_cast<std::uint64_t>(of_the_two)) << "seed " << seed;
+    EXPECT_GT(run.counters.counts.at("least_events_of_a_thread"), 50U) << "seed " << seed;
     EXPECT_GT(undone, 0U) << "seed " << seed;                                          // the ratio is of something,
     EXPECT_GT(run.counters.counts.at("rounds_of_threads"), 100U) << "seed " << seed;   // and threads worked side by side all the time
   }
@@ -185,7 +192,7 @@ TEST(Memory, OfAGasStaysFlat) {
 
 // A ball hits the next one, that one the next, and so on; when the last has been hit, the first turns out to have been turned back before
 // it began. Nothing of it has happened.
-Trajectory taken_back_row(int n) {
+Trajectory taken_back_row(int n, double duration = kUnset) {
   std::vector<scene::BodySpec> bodies;
   for (int i = 0; i < n; ++i) bodies.push_back(ball("ball" + std::to_string(i), 0.1, 1.0, {0.25 * i, 0, 0}, Vector3d::Zero()));
   bodies[0].velocity_m_s.x() = 1.0;
@@ -196,7 +203,9 @@ Trajectory taken_back_row(int n) {
   options.trial.late_callbacks = true;
   options.frame_rate_hz = 1e-6;
   options.callbacks = {{0.01, {0}, [](int, RigidBodyState& state) { state.momentum_world.x() = -1.0; }}};
-  engines::run_scene(scene_of(std::move(bodies), 0.05 * n + 0.1), test_laws(), options, recorder);
+  if (std::isnan(duration)) duration = 0.05 * n + 0.1;
+  if (duration < options.callbacks.front().time) options.callbacks.clear();
+  engines::run_scene(scene_of(std::move(bodies), duration), test_laws(), options, recorder);
   return recorder.trajectory();
 }
 
@@ -213,6 +222,35 @@ TEST(LateEvent, AtTheFirstOfARowRollsEachBackOnceInTimeLinearInTheirNumber) {
   }
   EXPECT_NEAR(std::log10(work[1000] / work[100]), 1.0, 0.1);
   EXPECT_NEAR(0.5 * std::log10(work[100'000] / work[1000]), 1.0, 0.1);
+}
+
+/// CPU time that a row takes beyond what it takes to set it up, the least of several runs. [s]
+double seconds_of_row(int n) {
+  double run = 1e9, building = 1e9, all = 0.0;
+  for (int k = 0; k < 40 && (k < 5 || all < 0.5); ++k) {
+    double began = cpu_seconds();
+    taken_back_row(n, 1e-9);
+    building = std::min(building, cpu_seconds() - began);
+    began = cpu_seconds();
+    taken_back_row(n);
+    run = std::min(run, cpu_seconds() - began);
+    all += run;
+  }
+  return run - building;
+}
+
+// Least squares through the logarithms: a tenth off is a factor of 1.6 over the two decades, which a neighbour on the machine does not make.
+TEST(LateEvent, AtTheFirstOfARowTakesCpuTimeLinearInTheirNumber) {
+  double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
+  const std::vector<int> sizes{10, 32, 100, 316, 1000};
+  for (const int n : sizes) {
+    const double at = std::log10(n), seconds = seconds_of_row(n), log_s = std::log10(seconds);
+    ASSERT_GT(seconds, 0.0) << n;
+    RecordProperty("microseconds_of_" + std::to_string(n), std::to_string(1e6 * seconds));
+    x += at, y += log_s, xx += at * at, xy += at * log_s;
+  }
+  const double count = static_cast<double>(sizes.size());
+  EXPECT_NEAR((count * xy - x * y) / (count * xx - x * x), 1.0, 0.1);
 }
 
 // ---- Energy ----------------------------------------------------------------------------------------------------------------

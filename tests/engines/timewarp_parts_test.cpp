@@ -61,6 +61,20 @@ TEST(FlightHistories, AreTheSameBytesAfterOneToFiftyFlightsAndARollback) {
   }
 }
 
+// Ten events wait at any time, a tenth of a bin apart, over two turns of the bins: what is held is for some tens, not for each bin that ever held one.
+TEST(EventQueue, HoldsNoMoreMemoryHoweverLongItGoesOn) {
+  struct Item {
+    engines::EventKey key;
+  };
+  engines::EventQueue<Item> queue(1.0);
+  for (int k = 0; k < 100'000; ++k) {
+    queue.push({{0.1 * k, 0, engines::EventClass::kCollision, 0, 1}});
+    if (k >= 10) queue.pop();
+  }
+  EXPECT_EQ(queue.size(), 10U);
+  EXPECT_LT(queue.held(), 200U);
+}
+
 // Whatever the width of its bins: one heap, some in a bin, most bins empty, all far ahead.
 TEST(EventQueue, GivesKeysInTheirOrderWhateverTheOrderTheyCameIn) {
   struct Item {

@@ -1,4 +1,6 @@
 // Row 33: bodies at their own local times, and one that comes late.
+#include <malloc.h>
+
 #include <fmt/format.h>
 
 #include "framework/engines/events/trace.h"
@@ -13,6 +15,9 @@ namespace {
 
 constexpr int kOfTenMillion = 1000;            // balls: all that is known of them fits into the nearer caches
 constexpr double kTenMillionEvents = 4400.0;   // s: 2,360 impacts a second
+constexpr int kRocks = 12;                     // an hour of them takes two minutes, of 30 a quarter of an hour
+constexpr int kCap = 8;                        // states of a body: the least that is allowed
+constexpr double kFlat = 1.05;                 // five parts in a hundred
 
 /// Elastic balls that fly to and fro in a box, each meeting another every few tenths of a second: whoever has gone ahead alone is met by
 /// one that comes late.
@@ -32,13 +37,25 @@ Trajectory run_by(const std::string& engine, const scene::Scene& scene, const La
   return recorder.trajectory();
 }
 
-/// Looks at what is committed as it comes and keeps none of it.
+/// What the program holds of the heap, of all threads. [bytes]
+double allocated() {
+  const struct mallinfo2 now = mallinfo2();
+  return static_cast<double>(now.uordblks + now.hblkhd);
+}
+
+/// Looks at what is committed as it comes and keeps none of it; and at how much memory the run holds when frames are shown.
 class Watch final : public TrajectorySink {
  public:
-  void begin(const TrajectoryInfo&, const std::vector<TrajectoryBody>&) override {}
+  /// @param warm_s  when all has come to move as it will [s];  @param middle_s  the time after that is compared with the time before
+  explicit Watch(double warm_s = 0.0, double middle_s = 0.0) : warm_(warm_s), middle_(middle_s) {}
+
+  void begin(const TrajectoryInfo&, const std::vector<TrajectoryBody>&) override { before_ = allocated(); }
   void frame(const Frame& frame) override {
     if (frame.time < latest) ++out_of_order;
     latest = std::max(latest, frame.time);
+    if (frame.time < warm_) return;
+    double& most = frame.time < middle_ ? most_early : most_late;
+    most = std::max(most, allocated() - before_);
   }
   void event(const Event& event) override {
     if (event.time < latest) ++out_of_order;
@@ -51,15 +68,22 @@ class Watch final : public TrajectorySink {
   }
   double latest = 0.0;
   std::uint64_t events = 0, out_of_order = 0;
+  double most_early = 0.0, most_late = 0.0;   // held by the run [bytes]
   std::map<std::string, std::uint64_t> counts;
   std::string stopped_by;
+
+ private:
+  double warm_, middle_, before_ = 0.0;
 };
 
-Watch watch(const scene::Scene& scene, const Laws& laws) {
-  Watch watch;
+/// From a sixth of the run on, to its middle, is compared with the rest of it.
+Watch watch(const scene::Scene& scene, const Laws& laws, int threads = 1, int most_states = 0) {
+  Watch watch(scene.duration_s / 6.0, scene.duration_s / 2.0);
   engines::RunOptions options;
   options.engine = "tw";
   options.timewarp = engines::fast_timewarp();
+  options.threads = threads;
+  options.most_states = most_states;
   options.frame_rate_hz = 1.0;
   engines::run_scene(scene, laws, options, watch);
   return watch;
@@ -92,7 +116,28 @@ Watch row_taken_back(int n, const Laws& laws) {
   return watch;
 }
 
-/// Minutes of computing: a long row, ten million events, and an hour of rocks.
+/// Rocks that come down the mountain and lie there: what is kept of them does not grow, in bytes, and a cap of eight states a body changes
+/// nothing of it.
+void memory_of_rocks(const Given& given, const Laws& laws, Findings& findings) {
+  scene::Scene scene = scene::make_sized_scene("avalanche", kRocks);
+  scene.duration_s = given.is_long ? 3600.0 : 60.0;
+  for (const int threads : {1, 2}) {
+    const Watch seen = watch(scene, laws, threads);
+    const std::string who = fmt::format("{:.0f} s of {} rocks, {} thread{}: ", scene.duration_s, kRocks, threads, threads == 1 ? "" : "s");
+    findings.at_least(who + "simulated", seen.stopped_by.empty() ? seen.latest : 0.0, scene.duration_s, "s", "to its end");
+    if (!(seen.most_early > 0)) {
+      findings.not_run(who + "bytes", "this program's allocator does not tell what it holds");
+      continue;
+    }
+    findings.at_most(who + "bytes held at most, after the middle over before it", seen.most_late / seen.most_early, kFlat, "", "flat after a warm-up of a sixth");
+  }
+  scene.duration_s = given.is_long ? 600.0 : 10.0;
+  const Watch capped = watch(scene, laws, 1, kCap);
+  findings.at_least(fmt::format("{:.0f} s of {} rocks with a cap of {} states a body: simulated", scene.duration_s, kRocks, kCap), capped.stopped_by.empty() ? capped.latest : 0.0, scene.duration_s, "s", "it finishes all the same");
+  findings.at_most(fmt::format("{} rocks with a cap of {}: states of a body at most", kRocks, kCap), static_cast<double>(capped.counts.at("most_states_of_a_body")), kCap, "", "the cap is kept");
+}
+
+/// Minutes of computing: a long row, and ten million events.
 void long_runs(const Laws& laws, Findings& findings) {
   findings.part("a late event at the first of a long row", [&] {
     const Watch seen = row_taken_back(kOfTheRow, laws);
@@ -105,16 +150,8 @@ void long_runs(const Laws& laws, Findings& findings) {
     scene.duration_s = kTenMillionEvents;
     const Watch seen = watch(scene, laws);
     findings.at_least("gas of 1,000: events committed", static_cast<double>(seen.events), 1e7, "", "else it was too short");
+    if (seen.most_early > 0) findings.at_most("gas of 1,000: bytes held at most, after the middle over before it", seen.most_late / seen.most_early, kFlat, "", "flat after a warm-up of a sixth");
     findings.at_most("gas of 1,000: frames and events shown after later ones", static_cast<double>(seen.out_of_order), 0.0, "", "global virtual time only grows, and nothing is shown before it");
-  });
-  findings.part("an hour of rocks", [&] {
-    scene::Scene scene = scene::make_sized_scene("avalanche", 4);
-    scene.duration_s = 600.0;
-    const Watch start = watch(scene, laws);
-    scene.duration_s = 3600.0;
-    const Watch whole = watch(scene, laws);
-    findings.at_least("an hour of four rocks: simulated", whole.stopped_by.empty() ? whole.latest : 0.0, 3600.0, "s", "to its end");
-    findings.at_most("an hour of four rocks: states kept at most, over those of ten minutes", static_cast<double>(whole.counts.at("states_kept")) / static_cast<double>(start.counts.at("states_kept")), 1.05, "", "flat after warm-up");
   });
 }
 
@@ -232,6 +269,7 @@ void rollback(const Given& given, Findings& findings) {
   for (std::size_t k = 0; k < std::min(reference.frames.size(), steps.frames.size()); ++k)
     for (std::size_t i = 0; i < reference.bodies.size(); ++i) parted += reference.frames[k].poses[i].com_world != steps.frames[k].poses[i].com_world ? 1.0 : 0.0;
   findings.must_fail("retroactive detection in steps: bodies of frames that differ in any bit", parted, 0.0, "", "it cuts every flight where any body meets anything");
+  findings.part("rocks", [&] { memory_of_rocks(given, laws, findings); });
   findings.part("what elastic balls keep", [&] { what_elastic_balls_keep(given, laws, findings); });
   if (given.is_long) long_runs(laws, findings);
 }

@@ -29,7 +29,7 @@ class EventQueue {
     ++size_;
     const std::int64_t bin = bin_of(item.key.time);
     if (bin <= current_) rise(item);
-    else if (bin < current_ + kBins) bins_[static_cast<std::size_t>(bin % kBins)].push_back(item);
+    else if (bin < current_ + kBins) put(bin, item);
     else far_.push_back(item);
     if (heap_.empty()) go_on();
   }
@@ -43,7 +43,7 @@ class EventQueue {
     far_.clear();
     for (std::vector<Item>& bin : bins_) {
       all.insert(all.end(), bin.begin(), bin.end());
-      bin.clear();
+      give_back(bin);
     }
     size_ = 0;
     for (const Item& item : all) work(item);
@@ -56,6 +56,14 @@ class EventQueue {
     for (const Item& item : far_) work(item);
     for (const std::vector<Item>& bin : bins_)
       for (const Item& item : bin) work(item);
+  }
+
+  /// Places for items that memory is held for.
+  std::size_t held() const {
+    std::size_t held = heap_.capacity() + far_.capacity();
+    for (const auto* some : {&bins_, &spare_})
+      for (const std::vector<Item>& bin : *some) held += bin.capacity();
+    return held;
   }
 
   Item pop() {
@@ -81,8 +89,21 @@ class EventQueue {
       if (current_ >= turn_) take_in_far();
       std::vector<Item>& bin = bins_[static_cast<std::size_t>(current_ % kBins)];
       for (const Item& item : bin) rise(item);
-      bin.clear();
+      give_back(bin);
     }
+  }
+  void give_back(std::vector<Item>& bin) {
+    bin.clear();
+    if (bin.capacity() > 0) spare_.push_back(std::move(bin));
+  }
+  // Bins that are empty hold no memory: the next to hold something has it. Else it would grow for a whole turn of the bins, which may be an hour.
+  void put(std::int64_t at, const Item& item) {
+    std::vector<Item>& bin = bins_[static_cast<std::size_t>(at % kBins)];
+    if (bin.capacity() == 0 && !spare_.empty()) {
+      bin.swap(spare_.back());
+      spare_.pop_back();
+    }
+    bin.push_back(item);
   }
   std::size_t waiting_near() const { return size_ - heap_.size() - far_.size(); }
   std::int64_t nearest_far() const {
@@ -96,7 +117,7 @@ class EventQueue {
     std::vector<Item> still_far;
     for (const Item& item : far_) {
       const std::int64_t bin = bin_of(item.key.time);
-      if (bin < current_ + kBins) bins_[static_cast<std::size_t>(bin % kBins)].push_back(item);
+      if (bin < current_ + kBins) put(bin, item);
       else still_far.push_back(item);
     }
     far_.swap(still_far);
@@ -132,6 +153,7 @@ class EventQueue {
 
   double per_second_;
   std::vector<std::vector<Item>> bins_;   // by bin modulo kBins: (current_, current_ + kBins)
+  std::vector<std::vector<Item>> spare_;  // memory of bins that are empty now
   std::vector<Item> heap_;                // bins up to current_
   std::vector<Item> far_;                 // beyond
   std::int64_t current_ = 0, turn_ = 0;   // turn_: the bin at which far_ is looked through again

@@ -300,6 +300,10 @@ void Conductor::end(const std::string& stopped_by) {
     all_.run.cost.narrow.gap_evaluations += worker->cost.narrow.gap_evaluations;
     all_.run.cost.narrow.root_findings += worker->cost.narrow.root_findings;
   }
+  if (workers_.size() > 1) {
+    const auto works_less = [](const auto& x, const auto& y) { return x->worked_at < y->worked_at; };
+    all_.run.counters.least_of_a_thread = (*std::min_element(workers_.begin() + 1, workers_.end(), works_less))->worked_at;
+  }
   all_.run.counters.states_kept = static_cast<std::uint64_t>(most_kept_);
   if (record_) record_->moves = std::move(alone().moves);
   all_.run.end(stopped_by);

@@ -103,6 +103,7 @@ void Conductor::move_home(int body, std::uint8_t home) {
   all_.domains[now].pairs.remove(body);
   all_.domains[home].pairs.set_box(body, box);
   now = home;
+  if (home != kBorder) all_.last_territory[static_cast<std::size_t>(body)] = home;
 }
 
 // The border's queue holds what was the border's in the round before. A body that waits there for an impact goes on there too: on its own

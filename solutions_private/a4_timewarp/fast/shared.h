@@ -73,7 +73,7 @@ struct alignas(64) Domain {
 struct Shared {
   Shared(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink)
       : run(scene, laws, options, sink), trial(options.trial), threads(options.threads), territories(territories_for(run.world(), options)), most_states(options.most_states), histories(static_cast<std::size_t>(run.world().size())),
-        processes(static_cast<std::size_t>(run.world().size())), home(static_cast<std::size_t>(run.world().size()), kBorder), boxes(static_cast<std::size_t>(run.world().size())), lengths(lengths_for(run.world())) {}
+        processes(static_cast<std::size_t>(run.world().size())), home(static_cast<std::size_t>(run.world().size()), kBorder), last_territory(home), boxes(static_cast<std::size_t>(run.world().size())), lengths(lengths_for(run.world())) {}
 
   FlightRun run;
   const engines::TimewarpTrial trial;
@@ -84,6 +84,7 @@ struct Shared {
   Changes changes;
   std::vector<Process, LargePages<Process>> processes;   // by body
   std::vector<std::uint8_t> home;      // by body: place in domains
+  std::vector<std::uint8_t> last_territory;   // by body: the last home that was no border; the border: none yet. With several threads
   ActivePairs::Entries boxes;          // by body: whatever its home is
   const Lengths lengths;
   std::vector<Domain> domains;         // the border first

@@ -30,8 +30,9 @@ void Conductor::try_rollback(const std::function<void()>& take_a_step) {
     return standing_of(all_, workers_, t);
   };
   const engines::Standing before = go_back();
-  for (int k = 0; k < steps && next_time() <= all_.run.duration(); ++k) take_a_step();
-  watch_->tell(t, steps, before, go_back());
+  int taken = 0;
+  for (; taken < steps && next_time() <= all_.run.duration(); ++taken) take_a_step();
+  watch_->tell(t, taken, before, go_back());
 }
 
 }  // namespace tumble::a4

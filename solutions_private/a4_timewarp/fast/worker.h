@@ -57,6 +57,7 @@ class alignas(64) Worker {
   std::vector<double> burdens;            // by body, what its going on has cost; empty: nobody wants to know
   double burden = 0.0;                    // of all together, since territories were cut
   double cpu_seconds = 0.0;               // of work_before
+  std::uint64_t worked_at = 0;            // events, in work_before
   double now = kInfinity;                 // of the event that is worked at: it is in the queue no more, but not done [s]
 
  private:
@@ -90,6 +91,7 @@ class alignas(64) Worker {
   double global_virtual_time() const;
 
   void collide(const Due& due);
+  void note_whose_territory(const Due& due);
   bool look_up(const Due& due, int side, std::size_t& place);
   void call(const Due& due);
   void begin_flights(const Due& due, engines::Meeting meeting);
@@ -111,7 +113,7 @@ class alignas(64) Worker {
 
   std::vector<Due> found_;                             // of advance
   std::vector<Box> boxes_;                             // of advance: by member
-  std::uint64_t worked_at_ = 0;
+  std::uint64_t since_disturbed_ = 0;
 };
 
 }  // namespace tumble::a4

@@ -33,6 +33,13 @@ bool Worker::is_to_come(const Due& due) {
   return look_up(due, 0, place) && look_up(due, 1, place);
 }
 
+void Worker::note_whose_territory(const Due& due) {
+  if (!is_alone()) ++counters.impacts_at_home;
+  if (!world().can_move(due.key.body_a) || !world().can_move(due.key.body_b)) return;
+  const std::uint8_t a = all_.last_territory[static_cast<std::size_t>(due.key.body_a)], b = all_.last_territory[static_cast<std::size_t>(due.key.body_b)];
+  if (a != kBorder && b != kBorder && a != b) ++counters.impacts_across;
+}
+
 void Worker::collide(const Due& due) {
   const int bodies[] = {due.key.body_a, due.key.body_b};
   const std::uint32_t serials[] = {due.serial_a, due.serial_b};
@@ -47,6 +54,7 @@ void Worker::collide(const Due& due) {
   }
   const auto flight_of = [&](int side) -> const Flight& { return world().can_move(bodies[side]) ? history(bodies[side])[history(bodies[side]).find(serials[side])] : all_.immovable(bodies[side]); };
   if (due.key.kind == EventClass::kProcess) return begin_flights(due, all_.run.end_of_passage(due.key, flight_of(0)));
+  if (all_.threads > 1) note_whose_territory(due);
   engines::Meeting meeting = all_.run.meet(due.key, flight_of(0), flight_of(1), counters);
   if (!meeting.begun.empty()) return begin_flights(due, std::move(meeting));
   const std::uint32_t serial_a = world().can_move(bodies[0]) ? process(bodies[0]).next_serial++ : 0;
@@ -228,6 +236,7 @@ void Worker::work_before(double end) {
       ++counters.held_back;
       leave(due);
     } else {
+      ++worked_at;
       try {
         work_at(due);
       } catch (...) {
@@ -273,7 +282,7 @@ Due Worker::next_legal(double last) {
 }
 
 void Worker::disturb() {
-  if (++worked_at_ % static_cast<std::uint64_t>(all_.trial.rollback_every) != 0) return;
+  if (++since_disturbed_ % static_cast<std::uint64_t>(all_.trial.rollback_every) != 0) return;
   const std::vector<int>& movers = world().movers();
   const int body = movers[random_.below(movers.size())];
   const double back = random_.between(0.0, all_.trial.rollback_s);
