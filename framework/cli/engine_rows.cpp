@@ -15,6 +15,7 @@
 #include "framework/engines/guarded_laws.h"
 #include "framework/engines/run.h"
 #include "framework/engines/run_counters.h"
+#include "framework/engines/time_parts.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 
 namespace tumble::cli {
@@ -25,6 +26,7 @@ using report::EngineRow;
 constexpr int kShortRuns = 4;
 constexpr double kShort = 0.5;        // [s] of CPU: what takes longer is timed once
 constexpr double kNoFrames = 1e-6;    // [1/s], where time is taken
+constexpr std::size_t kFewestSamples = 25;   // a share is then known to a tenth
 constexpr double kNoTime = 1e-9;      // steps: a run that ends before anything moves
 
 std::string meaning_of(const std::string& engine) {
@@ -142,8 +144,9 @@ class Deadline {
 /// CPU time, or time by the clock, of a run without pictures [s]. What comes before the first step (models, shapes, overlaps) is the same for all engines and is
 /// no part of what they cost. The best of several short runs is the least disturbed one.
 /// @param counts  what it counted
+/// @param shares  where its time went
 /// @return nothing where it takes more than most_s
-std::optional<double> seconds_of_run(const scene::Scene& scene, const Laws& laws, engines::RunOptions options, bool by_the_clock, double most_s, std::map<std::string, std::uint64_t>& counts) {
+std::optional<double> seconds_of_run(const scene::Scene& scene, const Laws& laws, engines::RunOptions options, bool by_the_clock, double most_s, std::map<std::string, std::uint64_t>& counts, engines::TimeShares& shares) {
   options.frame_rate_hz = kNoFrames;
   engines::RunOptions nothing = options;
   nothing.duration_s = kNoTime * scene.step_s;
@@ -160,11 +163,19 @@ std::optional<double> seconds_of_run(const scene::Scene& scene, const Laws& laws
     counts = recorder.trajectory().counters.counts;
     return seconds;
   };
-  double building = seconds_of(nothing), whole = seconds_of(options);
+  StackSamples samples;
+  const auto sampled = [&] {
+    samples.begin();
+    const double seconds = seconds_of(options);
+    samples.end();
+    return seconds;
+  };
+  double building = seconds_of(nothing), whole = sampled();
   for (int k = 1; k < kShortRuns && whole < kShort; ++k) {
     building = std::min(building, seconds_of(nothing));
-    whole = std::min(whole, seconds_of(options));
+    whole = std::min(whole, sampled());
   }
+  shares = engines::time_shares(samples);
   if (is_over) return std::nullopt;
   return std::max(1e-6, whole - building);
 }
@@ -195,16 +206,22 @@ EngineRun measure_engine(const Context& context, const scene::Scene& scene, cons
   EngineRow& row = measured.row;
   row.engine = choice.engine;
   row.meaning = meaning_of(choice.engine);
+  if (choice.engine == "rd") row.meaning += choice.propagator == "auto" ? ", in closed form" : ", by the laws' integrator";   // the others go in closed form
   row.label = choice.label.empty() ? choice.engine : choice.label;
   for (const scene::BodySpec& body : scene.bodies) row.bodies += body.immovable ? 0 : 1;
+  engines::TimeShares shares;
   try {
-    const auto seconds = choice.is_timed ? seconds_of_run(scene, chosen.laws, options, choice.by_the_clock, choice.most_s, row.counts) : std::optional(kUnset);
+    const auto seconds = choice.is_timed ? seconds_of_run(scene, chosen.laws, options, choice.by_the_clock, choice.most_s, row.counts, shares) : std::optional(kUnset);
     if (!seconds) {
       row.counts.clear();
       row.stopped_by = fmt::format("left out, for it takes more than {:.0f} s", choice.most_s);
       return measured;
     }
     row.cpu_s = *seconds;
+    if (shares.samples >= kFewestSamples) {
+      row.time_parts = shares.parts;
+      row.physics = shares.physics;
+    }
     TrajectoryRecorder recorder;
     options.frame_rate_hz = choice.frame_rate_hz;
     options.timewarp = engines::fast_timewarp(&times);

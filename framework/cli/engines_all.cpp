@@ -36,7 +36,9 @@ constexpr Shown kShown[] = {{"atoms", 60, 100, 300, 0, 0.5, 5, 60},         {"ca
 
 // The slides' sizes are 100 and 200 atoms.
 const std::vector<int> kSmallLadder = {25, 50, 100}, kLadder = {25, 50, 100, 200}, kPaperLadder = {50, 100, 200, 400};
-constexpr double kLadderShare = 12, kPaperLadderShare = 150;
+const std::vector<int> kSmallPong = {1, 50}, kPong = {1, 200, 2000};   // the slides' sizes
+constexpr double kMostOfPong = 10.0;                       // s of CPU: an engine that takes longer is left out at that size
+constexpr double kLadderShare = 12, kPaperLadderShare = 150, kPongShare = 10;
 constexpr double kMostOfPaper = 60.0;                      // s of CPU: an engine that takes longer for a scene is left out of the paper's sizes
 constexpr double kPlayedRate = 60.0, kEnergyRate = 10.0;   // frames a second: of runs that are shown, and of others
 constexpr int kWidth = 960, kHeight = 540;
@@ -185,13 +187,16 @@ EnginesScene show(const Context& context, const EnginesWords& words, const Shown
   return shown;
 }
 
-std::vector<std::vector<EngineRow>> climb(const Context& context, const EnginesWords& words) {
+std::vector<std::vector<EngineRow>> climb(const Context& context, const EnginesWords& words, const char* name, const std::vector<int>& sizes, double most_s) {
   std::vector<std::vector<EngineRow>> ladder;
-  for (const int n : words.full ? kPaperLadder : words.small ? kSmallLadder : kLadder) {
-    const scene::Scene scene = find_scene(context, "atoms", n);
+  for (const int n : sizes) {
+    const scene::Scene scene = find_scene(context, name, n);
     const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(modules_of(context, words), context.registry));
     std::vector<EngineRun> runs;
-    for (const EngineChoice& choice : choices_of_ladder(words)) runs.push_back(measure_engine(context, scene, chosen, choice));
+    for (EngineChoice choice : choices_of_ladder(words)) {
+      choice.most_s = std::min(choice.most_s, most_s);
+      runs.push_back(measure_engine(context, scene, chosen, choice));
+    }
     tell_agreement(runs);
     ladder.push_back(rows_of(runs));
   }
@@ -215,15 +220,19 @@ void engines_of_all(Context& context, const EnginesWords& words) {
     if (size_of(words, shown) > 0) all.push_back(shown);
   const auto share_of = [&](const Shown& shown) { return words.full ? shown.paper_share : shown.share; };
   const double ladder_share = words.full ? kPaperLadderShare : kLadderShare;
-  double total = ladder_share;
+  double total = ladder_share + kPongShare;
   for (const Shown& shown : all) total += share_of(shown);
   Progress progress(total);
   report::EnginesIndex index;
   index.record = context.command_line;
   index.is_full = words.full;
   progress.begin("atoms at several sizes");
-  index.ladder = climb(context, words);
+  index.ladder = climb(context, words, "atoms", words.full ? kPaperLadder : words.small ? kSmallLadder : kLadder, std::numeric_limits<double>::infinity());
   progress.finish(ladder_share);
+  progress.begin("pong at several sizes");
+  index.ghosts = climb(context, words, "pong_ghosts", words.small ? kSmallPong : kPong, kMostOfPong);
+  index.pong = climb(context, words, "pong", words.small ? kSmallPong : kPong, kMostOfPong);
+  progress.finish(kPongShare);
   for (const Shown& shown : all) {
     progress.begin(shown.name);
     index.scenes.push_back(show(context, words, shown, words.out));

@@ -80,6 +80,7 @@ void add_scene(Page& page, const EnginesScene& scene) {
   if (!scene.page.empty()) links.push_back({"Page of its own, with the energy", link_to(scene.page)});
   if (!links.empty()) page.links(links);
   page.table(table_of_engines(scene.rows));
+  if (const StackedBars bars = bars_of_time(scene.rows); !bars.rows.empty()) page.plot(bars);
   for (const EngineRow& row : scene.rows) {
     const std::string what = row.label + " (" + row.meaning + "): ";
     if (row.stopped_by.empty()) page.paragraph(what + row.agreement + ".");
@@ -89,6 +90,35 @@ void add_scene(Page& page, const EnginesScene& scene) {
   for (const std::string& check : scene.checks) checks += check + "\n";
   if (!checks.empty()) page.fold(scene.is_right ? "The scene's own numbers: right" : "The scene's own numbers: NOT right", checks, !scene.is_right);
   page.paragraph("Again: " + scene.command, Look::kMuted);
+}
+
+// The slides' first example.
+void add_pong(Page& page, const EnginesIndex& index) {
+  page.heading("Pong: balls that ignore each other, then collide", 2, "pong_ladder");
+  page.paragraph("Balls that meet nothing but the walls are as many simulations of one ball, and should cost as much: whoever stops all balls where one meets a wall pays more for each, the more there are. Then the same balls "
+                 "collide.");
+  for (const auto& [rows, caption] : {std::pair{&index.ghosts, "They ignore each other."}, {&index.pong, "They collide."}}) {
+    if (rows->empty()) continue;
+    Table table = table_of_ladder(*rows);
+    table.caption = std::string(caption) + " " + table.caption;
+    page.table(table);
+  }
+  Plot plot;
+  plot.title = "Pong: work a ball and simulated second";
+  plot.x = {"balls", "", Scale::kLog};
+  plot.y = {"integrations", "1/s", Scale::kLog};
+  plot.caption = "Flat: a ball costs what happens to it, however many others there are.";
+  for (const auto& [ladder, how] : {std::pair{&index.ghosts, "ignoring each other"}, {&index.pong, "colliding"}})
+    for (const auto& rows : *ladder)
+      for (const EngineRow& row : rows) {
+        if (!row.stopped_by.empty()) continue;
+        const std::string name = fmt::format("{}, {}", row.label, how);
+        auto curve = std::find_if(plot.curves.begin(), plot.curves.end(), [&](const Curve& known) { return known.name == name; });
+        if (curve == plot.curves.end()) curve = plot.curves.insert(plot.curves.end(), {name, {}, {}, true});
+        curve->x.push_back(row.bodies);
+        curve->y.push_back(static_cast<double>(count_of(row, "integrations")) / (row.bodies * row.simulated_s));
+      }
+  page.plot(plot);
 }
 
 void add_slides(Page& page, const EnginesIndex& index) {
@@ -167,6 +197,7 @@ Table table_of_slides(const std::vector<std::vector<EngineRow>>& ladder) {
 void write_engines_index(const EnginesIndex& index, const std::filesystem::path& file) {
   Page page("Three engines, one world", "retroactive detection, conservative advancement and timewarp on the same scenes");
   std::vector<Cell> links{{"All scenes", "#all"}, {"The slides' tables", "#slides"}, {"The model of cost", "#model"}};
+  if (!index.ghosts.empty() || !index.pong.empty()) links.push_back({"Pong", "#pong_ladder"});
   for (const EnginesScene& scene : index.scenes) links.push_back({scene.name, "#" + scene.name});
   page.links(links);
   add_engines(page);
@@ -174,6 +205,7 @@ void write_engines_index(const EnginesIndex& index, const std::filesystem::path&
   page.table(table_of_scenes(index.scenes));
   page.paragraph(std::string("Times are CPU times of this machine in this run; their ratios are what matters. ") + (index.is_full ? "Sizes are those of the paper." : "Sizes are small, so that the page takes little time; ./tumble engines --full runs those of the paper."), Look::kMuted);
   if (!index.ladder.empty()) add_slides(page, index);
+  if (!index.ghosts.empty() || !index.pong.empty()) add_pong(page, index);
   for (const EnginesScene& scene : index.scenes) add_scene(page, scene);
   page.record(index.record);
   page.write(file);

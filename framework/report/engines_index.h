@@ -23,6 +23,7 @@ struct EnginesScene {
 struct EnginesIndex {
   std::vector<EnginesScene> scenes;
   std::vector<std::vector<EngineRow>> ladder;   // of atoms: sizes ascending
+  std::vector<std::vector<EngineRow>> ghosts, pong;   // of balls on a table that ignore each other, and that collide: sizes ascending; may be empty
   bool is_full = false;                         // sizes as in the paper
   std::string record;
 };

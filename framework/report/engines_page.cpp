@@ -1,6 +1,7 @@
 #include "framework/report/engines_page.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -51,6 +52,41 @@ std::vector<Plot> plots_against_n(const std::vector<std::vector<EngineRow>>& lad
           against_n("Time", "CPU time a simulated second", "s", ladder, [](const EngineRow& row) { return row.cpu_s / row.simulated_s; }, "On this machine, in this run.")};
 }
 
+std::vector<StackedBars> bars_of_work(const std::vector<EngineRow>& rows) {
+  StackedBars integrations{"Integrations", {"integrations"}, {"kept", "undone"}, {}, "One body taken from one time to another. Undone: taken back, and paid for."};
+  StackedBars checks{"Pair checks", {"pair checks"}, {"searched for their first impact in an interval"}, {}};
+  StackedBars time{"CPU time", {"CPU time", "ms"}, {"of a run without pictures"}, {}};
+  for (const EngineRow& row : rows) {
+    if (row.counts.empty() || !row.stopped_by.empty()) continue;
+    const double all = static_cast<double>(count_of(row, "integrations")), undone = static_cast<double>(count_of(row, "undone_integrations"));
+    integrations.rows.push_back({row.label, {std::max(0.0, all - undone), undone}});
+    checks.rows.push_back({row.label, {static_cast<double>(count_of(row, "pair_checks"))}});
+    time.rows.push_back({row.label, {1e3 * row.cpu_s}});
+  }
+  return {integrations, checks, time};
+}
+
+StackedBars bars_of_time(const std::vector<EngineRow>& rows) {
+  StackedBars bars;
+  bars.title = "Where the time went";
+  bars.axis = {"share of each engine's time", "%"};
+  std::string physics, too_short;
+  for (const EngineRow& row : rows) {
+    const double sum = std::accumulate(row.time_parts.begin(), row.time_parts.end(), 0.0, [](double x, const auto& part) { return x + part.second; });
+    if (!(sum > 0)) {
+      if (!row.counts.empty()) too_short += (too_short.empty() ? " Too quick to tell: " : ", ") + row.label;
+      continue;
+    }
+    if (bars.parts.empty())
+      for (const auto& [name, share] : row.time_parts) bars.parts.push_back(name);
+    bars.rows.push_back({fmt::format("{}, {:.3g} s", row.label, row.cpu_s), {}});
+    for (const auto& [name, share] : row.time_parts) bars.rows.back().values.push_back(100.0 * share);
+    physics += fmt::format("{}{:.0f} % of {}'s", physics.empty() ? "" : ", ", 100.0 * row.physics, row.label);
+  }
+  bars.caption = fmt::format("By samples of the stack. Contacts, links, motion, impacts and the search for them are physics, which every engine has done by the same functions: {}. Only what is left can differ by who waits for whom.{}", physics, too_short.empty() ? "" : too_short + ".");
+  return bars;
+}
+
 Plot plot_of_energy(const std::vector<EngineRow>& rows) {
   Plot plot;
   plot.title = "Error of the energy";
@@ -58,7 +94,7 @@ Plot plot_of_energy(const std::vector<EngineRow>& rows) {
   plot.y = {"|E - E0| / (kinetic + |potential|)", "", Scale::kLog};
   for (const EngineRow& row : rows)
     if (!row.frame_times.empty()) plot.curves.push_back({row.label + ": " + row.meaning, row.frame_times, row.energy_error, false});
-  plot.caption = "For a scene in which something is lost on purpose (restitution below 1) this is what was lost.";
+  plot.caption = "Where something is lost or added on purpose (restitution below 1, friction, drag, motors) this is what was lost or added.";
   return plot;
 }
 
@@ -97,6 +133,10 @@ void write_engines_page(const std::string& title, const std::string& about, cons
     page.heading("Against the number of bodies");
     for (const Plot& plot : plots_against_n(ladder)) page.plot(plot);
   }
+  page.heading("Work and time");
+  for (const StackedBars& bars : bars_of_work(rows))
+    if (!bars.rows.empty()) page.plot(bars);
+  if (const StackedBars bars = bars_of_time(rows); !bars.rows.empty()) page.plot(bars);
   page.heading("Energy");
   page.plot(plot_of_energy(rows));
   page.record(record);

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "framework/report/html.h"
@@ -22,6 +23,8 @@ struct EngineRow {
   double w_h = 0.0;                            // discontinuities a body and step
   std::map<std::string, std::uint64_t> counts; // of the run's counters
   std::vector<double> frame_times, energy_error;   // |E - E0| / scale, by frame
+  std::vector<std::pair<std::string, double>> time_parts;   // shares of the CPU time, in the same parts for every engine; all 0: too short to tell
+  double physics = 0.0;                        // of them together what is done by the same functions for all engines
   std::string agreement;                       // with the first engine that goes event by event, in words
   std::string stopped_by;                      // also why it did not run
 };
@@ -34,6 +37,11 @@ std::uint64_t count_of(const EngineRow& row, const std::string& name);
 
 /// One column an engine: counts, w h, undone part, time against the quickest.
 Table table_of_engines(const std::vector<EngineRow>& rows);
+
+/// What each engine counted and how long it took, a bar an engine: integrations kept and undone, pair checks, CPU time.
+std::vector<StackedBars> bars_of_work(const std::vector<EngineRow>& rows);
+/// Where each engine's time went, in shares. No rows where no run was long enough to tell.
+StackedBars bars_of_time(const std::vector<EngineRow>& rows);
 
 /// Of a ladder of sizes: work and time against the number of bodies, a curve an engine; steps are counted as integrations.
 std::vector<Plot> plots_against_n(const std::vector<std::vector<EngineRow>>& ladder);

@@ -28,6 +28,42 @@ TEST(CommittedTrace, OfTumblingBoxesUnderGravityIsTheReferences) {
   expect_the_references_trace(scene_of(bodies, 0.8, Vector3d(0, 0, -9.81)), 20);
 }
 
+scene::BodySpec top(const std::string& name, const Vector3d& position, const Vector3d& velocity) {
+  scene::BodySpec body = box(name, {0.1, 0.2, 0.3}, 1.0, position, velocity);   // three different moments
+  body.omega_world_rad_s = {0.1, 3.0, 0.2};
+  return body;
+}
+
+// How a solid turns between two events is known in closed form: whoever meets nobody goes his way, not the scene's steps.
+TEST(ATurningSolid, AloneTakesAsManyIntegrationsHoweverShortTheStep) {
+  scene::Scene scene = scene_of({top("top", Vector3d::Zero(), {0.1, 0.0, 0.0}), plane("floor", {0, 0, -5}, {0, 0, 1})}, 100.0);
+  std::vector<std::uint64_t> integrations, checks;
+  for (const double step : {1.0 / 30, 1.0 / 3000}) {
+    scene.step_s = step;
+    const Trajectory run = run_by("tw", scene, {}, 0.1);
+    EXPECT_EQ(difference(run_by("ordered", scene, {}, 0.1), run), "");
+    integrations.push_back(run.counters.counts.at("integrations"));
+    checks.push_back(run.counters.counts.at("pair_checks"));
+  }
+  EXPECT_EQ(integrations[0], integrations[1]);
+  EXPECT_LE(checks[1], integrations[1]) << "the floor is out of reach: one look each time";
+  EXPECT_LT(integrations[0], 300U) << "3,000 steps of 1/30 s; a ball of that size goes a quarter of its size at once, 10 m in 67";
+}
+
+// From far away, so that each has gone on as if it were alone; the first to be hit is sent on by the blow.
+TEST(ATurningSolid, ThatWentFarIsMetWhereItShouldBe) {
+  for (const double step : {1.0 / 30, 1.0 / 300}) {
+    scene::Scene scene = scene_of({top("left", {-6, 0, 0}, {1.0, 0, 0}), top("right", {6, 0.1, 0}, {-2.0, 0, 0}), top("third", {-9, 0.1, 0.1}, {3.0, 0, 0}), plane("wall", {8, 0, 0}, {-1, 0, 0})}, 12.0);
+    scene.step_s = step;
+    expect_the_references_trace(scene, 3);
+    for (const int territories : {2, 5}) {
+      engines::TimewarpTrial trial;
+      trial.territories = territories;
+      EXPECT_EQ(difference(run_by("ordered", scene), run_by("tw", scene, trial)), "") << territories << " territories";
+    }
+  }
+}
+
 // Processes take their turns in an order drawn by lot, up to a quarter of a second ahead of global virtual time.
 TEST(AdversarialOrder, LeavesTheTraceAsItIs) {
   const scene::Scene scene = sized("gas", 60, 1.5);

@@ -76,6 +76,30 @@ TEST(TablesOfEngines, CountStepsAndWork) {
   EXPECT_EQ(table_of_model(ladder()).rows.size(), 5U);
 }
 
+TEST(BarsOfEngines, TellWhatWasKeptUndoneAndPaid) {
+  std::vector<EngineRow> rows = ladder().front();
+  rows[2].counts = {{"integrations", 4000}, {"undone_integrations", 1000}, {"pair_checks", 70}};
+  rows[0].stopped_by = "it takes more than 60 s";
+  const auto bars = bars_of_work(rows);
+  ASSERT_EQ(bars.size(), 3U);
+  for (const StackedBars& of : bars) ASSERT_EQ(of.rows.size(), 2U) << "who stopped has no bar";
+  EXPECT_EQ(bars[0].rows[1].values, (std::vector<double>{3000, 1000}));
+  EXPECT_EQ(bars[1].rows[1].values, std::vector<double>{70});
+  EXPECT_EQ(bars[2].rows[1].values, std::vector<double>{100});   // 0.1 s in ms
+}
+
+TEST(BarsOfEngines, TellWhereTheTimeWentOfThoseThatWereLongEnough) {
+  std::vector<EngineRow> rows = ladder().front();
+  EXPECT_TRUE(bars_of_time(rows).rows.empty());
+  rows[1].time_parts = {{"contacts", 0.75}, {"scheduling", 0.25}};
+  rows[1].physics = 0.75;
+  const StackedBars bars = bars_of_time(rows);
+  ASSERT_EQ(bars.rows.size(), 1U);
+  EXPECT_EQ(bars.rows[0].values, (std::vector<double>{75, 25}));
+  EXPECT_NE(bars.caption.find("75 % of CA's"), std::string::npos) << bars.caption;
+  EXPECT_NE(bars.caption.find("Too quick to tell: RD-1/30, TW."), std::string::npos) << bars.caption;
+}
+
 TEST(PageOfEngines, TellsEachSceneAndWhatFailed) {
   EnginesScene fine;
   fine.name = "atoms";
@@ -86,10 +110,10 @@ TEST(PageOfEngines, TellsEachSceneAndWhatFailed) {
   failed.name = "cars";
   failed.problem = "a wheel came off";
   const PrivateFolder folder;
-  write_engines_index({{fine, failed}, ladder(), false, "tumble engines"}, folder.path() / "index.html");
+  write_engines_index({{fine, failed}, ladder(), {{row_of("tw", "TW", 1, 0.001, 31)}, {row_of("tw", "TW", 200, 0.001, 1500)}}, {}, false, "tumble engines"}, folder.path() / "index.html");
   std::ifstream file(folder.path() / "index.html");
   const std::string page{std::istreambuf_iterator<char>(file), {}};
-  for (const char* words : {"Atoms &amp; molecules", "id=\"atoms\"", "a wheel came off", "Average integration step", "The model of cost", "first 5 collisions", "--full"})
+  for (const char* words : {"Atoms &amp; molecules", "id=\"atoms\"", "a wheel came off", "Average integration step", "The model of cost", "first 5 collisions", "--full", "TW, ignoring each other"})
     EXPECT_NE(page.find(words), std::string::npos) << words;
   EXPECT_EQ(table_of_scenes({fine, failed}).rows[0][5].text, "30");
 }

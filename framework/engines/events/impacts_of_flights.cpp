@@ -94,7 +94,7 @@ double ImpactsOfFlights::of_ball_and_plane(int ball, const Flight& f, const Flig
   return last_instant_apart(f.begin, f.begin + after, height);
 }
 
-// Whether the balls around the two come within reach in [low, high]: their relative path leaves its chord by at most |a| s^2 / 8.
+// Their relative path leaves its chord by at most |a| s^2 / 8.
 bool ImpactsOfFlights::may_meet(int a, const Flight& f, int b, const Flight& g, double low, double high) const {
   const auto driven = [&](int body) { return !world_.can_move(body) && !world_.is_still(body); };
   if (driven(a) || driven(b)) return true;
@@ -140,6 +140,14 @@ double ImpactsOfFlights::in_windows(int a, const Flight& f, int b, const Flight&
   if (a > b) return in_windows(b, g, a, f, from, to, cost);   // one order, so that the answer has one rounding
   const double begin = std::max(f.begin, g.begin);
   const bool of_pieces = f.passage >= 0 || g.passage >= 0;
+  // Two that do not come near each other in all the windows that are asked for need not be looked at in each.
+  if (const std::int64_t first = window_of(std::max(from, begin)); !of_pieces && window_begin(first + 1) < to && to < kInfinity) {
+    const std::int64_t last = window_of(to);
+    if (!may_meet(a, f, b, g, std::max(begin, window_begin(first)), window_begin(last + 1))) {
+      ++cost.pair_checks;
+      return kInfinity;
+    }
+  }
   const collision::ImpactOptions options{root_finder_};
   std::optional<collision::Motion> motion_a, motion_b;
   for (std::int64_t k = window_of(std::max(from, begin)); window_begin(k) < to; ++k) {

@@ -35,11 +35,13 @@ class ImpactsOfFlights {
   /// @pre can_move(a) or can_move(b); the two do not overlap where the later flight begins (by more than roundings)
   double first_impact(int a, const Flight& f, int b, const Flight& g, double from, double to, CheckCost& cost) const;
 
+  /// Whether the balls around the two come within reach of each other in [low, high]: quick, and never a wrong no.
+  bool may_meet(int a, const Flight& f, int b, const Flight& g, double low, double high) const;
+
  private:
   double window_begin(std::int64_t k) const { return static_cast<double>(k) * window_; }
   std::int64_t window_of(double t) const;
   bool falls(int body, const Flight& flight) const { return world_.can_move(body) && !flight.is_resting; }
-  bool may_meet(int a, const Flight& f, int b, const Flight& g, double low, double high) const;
   bool may_meet_on_passage(int a, const Flight& f, int b, const Flight& g, double low, double high) const;
   double of_balls(int a, const Flight& f, int b, const Flight& g) const;
   double of_ball_and_plane(int ball, const Flight& f, const Flight& plane) const;

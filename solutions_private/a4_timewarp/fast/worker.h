@@ -75,7 +75,12 @@ class alignas(64) Worker {
   bool has_only_flown(int body) const;
   void enter_box(int body, const Box& box);
   template <class Found>
-  void for_each_partner(int body, const Box& box, const Found& found);
+  void for_each_partner(int body, const Box& box, const Found& found) const;
+  template <class Found>
+  void for_each_in(std::size_t home, const Box& box, const Found& found) const;
+  template <class Found>
+  void for_each_elsewhere(std::size_t home, const Box& box, const Found& found) const;
+  bool meets_nobody(int body, const Flight& flight, double from, double to) const;
   void find_obstacles(int body, const Flight& flight, double from, double to);
   void check(int body, const Flight& flight, double from, double to, int other);
   void offer(int body, const Flight& flight, int other, const Flight& its, double time, const Flight* its_next);

@@ -25,7 +25,7 @@ constexpr int kMostStepsAtOnce = 8;
 // ---- A process goes on -------------------------------------------------------------------------------------------------
 
 // Far enough that looking for partners pays, near enough that the box stays small: about the way to the next cell. Solids without closed
-// forms go from window to window, as their impacts are searched.
+// forms go from window to window, as their impacts are searched, while anybody may be met.
 double Worker::horizon_after(int body, const Flight& flight, double t) const {
   const FlightWorld& world = all_.world();
   if (flight.passage >= 0) {
@@ -39,10 +39,23 @@ double Worker::horizon_after(int body, const Flight& flight, double t) const {
     return std::min(all_.run.duration(), to);
   }
   if (flight.is_resting || !world.collides(body)) return all_.run.duration();
-  if (!world.is_ball(body)) return std::min(all_.run.duration(), all_.run.impacts().window_end(t));
   const double way = all_.lengths.way;
   const double speed = world.velocity(body, flight, t).norm() + std::sqrt(0.5 * world.gravity_world().norm() * way);
-  return std::min(all_.run.duration(), t + std::max(way / speed, 1e-9 * all_.run.step()));
+  const double far = std::min(all_.run.duration(), t + std::max(way / speed, 1e-9 * all_.run.step()));
+  if (world.is_ball(body)) return far;
+  const double near = std::min(all_.run.duration(), all_.run.impacts().window_end(t));
+  return far > near && meets_nobody(body, flight, t, far) ? far : near;
+}
+
+// However it turns: what may be there is looked up, not searched.
+bool Worker::meets_nobody(int body, const Flight& flight, double from, double to) const {
+  const Box box = swept_box(body, std::min(from, global_virtual_time()), to);
+  if (!is_alone() && !may_enter(box)) return false;
+  for (const int plane : all_.planes)
+    if (world().may_collide(body, plane) && all_.run.impacts().may_meet(body, flight, plane, all_.immovable(plane), from, to)) return false;
+  bool is_nobody = true;
+  for_each_in(all_.home[static_cast<std::size_t>(body)], box, [&](int other) { is_nobody = is_nobody && (other == body || !world().may_collide(body, other)); });
+  return is_nobody;
 }
 
 // Around the body over [from, to]: a parabola leaves the box of its ends by at most a s^2 / 8.
@@ -177,9 +190,20 @@ void Worker::shrink_box(int body) {
 
 // The border's bodies may be met everywhere, a territory's in it and by the border's.
 template <class Found>
-void Worker::for_each_partner(int body, const Box& box, const Found& found) {
+void Worker::for_each_partner(int body, const Box& box, const Found& found) const {
   const std::size_t home = all_.home[static_cast<std::size_t>(body)];
   all_.domains[home].pairs.for_each_partner(body, found);
+  for_each_elsewhere(home, box, found);
+}
+
+template <class Found>
+void Worker::for_each_in(std::size_t home, const Box& box, const Found& found) const {
+  all_.domains[home].pairs.for_each_in(box, found);
+  for_each_elsewhere(home, box, found);
+}
+
+template <class Found>
+void Worker::for_each_elsewhere(std::size_t home, const Box& box, const Found& found) const {
   if (home != kBorder) return all_.domains[kBorder].pairs.for_each_in(box, found);
   for (std::size_t k = 1; k < all_.domains.size(); ++k)
     if (all_.domains[k].territory.overlaps(box)) all_.domains[k].pairs.for_each_in(box, found);
