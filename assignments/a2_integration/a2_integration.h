@@ -66,7 +66,8 @@ Matrix3d inertia_in_world(const Matrix3d& inertia_body, const Quaterniond& world
 /// (0, w) q is a Hamilton product with the angular velocity, in the world frame, on the left. (A2.5) goes through the body
 /// frame on purpose: a world inverse inertia R I_body^-1 R^T costs a needle (moments 1e-6 : 1) six digits of its turning end
 /// over end.
-/// @param state    x: com_world [m];  q: world_from_body, as near to unit as an integrator keeps it;
+/// @param state    x: com_world [m];  q: world_from_body, as near to unit as an integrator keeps it (for a body without links the engine
+///                 hands over unit length at every stage of a method: R of a longer q is no rotation);
 ///                 P: momentum_world [kg m/s];  L: angular_momentum_world, about the centre of mass [kg m^2/s]
 /// @param inertia  1/m: inverse_mass [1/kg];  I_body^-1: inverse_inertia_body [1/(kg m^2)]
 /// @param wrench   F: force_world [N];  tau: torque_world, about the centre of mass [N m]

@@ -133,6 +133,14 @@ void guard_constraints(const Laws& laws, Laws& safe) {
       return row;
     };
   }
+  if (laws.baumgarte_acceleration) {
+    const Guard guard{"rods and joints", "baumgarte_acceleration", source};
+    safe.baumgarte_acceleration = [guard, law = laws.baumgarte_acceleration](double value, double rate, double time_constant_s) {
+      const double acceleration = guard([&] { return law(value, rate, time_constant_s); });
+      guard.need(std::isfinite(acceleration), kNotANumber);
+      return acceleration;
+    };
+  }
   const auto vector_law = [&](auto& law, const char* effect, const char* name) {
     if (!law) return;
     const Guard guard{effect, name, source};

@@ -41,6 +41,16 @@ void add_force(const Body& body, const Vector3d& force, const Vector3d& point, W
   wrench.torque_world += (point - body.com_world).cross(force);
 }
 
+// Does `work`; a StoppedRun out of it is told again with the link in front. Words are made where they are needed only: this is asked at every stage.
+template <class Work>
+auto of_link(const char* kind, const std::string& name, Work&& work) {
+  try {
+    return work();
+  } catch (const StoppedRun& stop) {
+    throw StoppedRun(fmt::format("{} '{}': {}", kind, name, stop.what()));
+  }
+}
+
 }  // namespace
 
 std::vector<std::vector<int>> groups_of_linked_bodies(const World& world) {
@@ -144,7 +154,8 @@ void LinkedBodies::add_springs(const std::vector<Body>& bodies, std::vector<Wren
   for (const Link& link : springs_) {
     ++counters_.spring_calls;
     const AnchorState a = anchor_of(bodies[link.a.place], link.a.point_body), b = anchor_of(bodies[link.b.place], link.b.point_body);
-    const Vector3d force = laws_.spring_force(world_.springs[link.index].spring, a, b);
+    const SpringLink& spring = world_.springs[link.index];
+    const Vector3d force = of_link("spring", spring.name, [&] { return laws_.spring_force(spring.spring, a, b); });
     add_force(bodies[link.a.place], force, a.point_world, wrenches[link.a.place]);
     add_force(bodies[link.b.place], -force, b.point_world, wrenches[link.b.place]);
   }
@@ -218,7 +229,8 @@ std::vector<Constraint> LinkedBodies::rows(const std::vector<Body>& bodies) {
 void LinkedBodies::append_rods(const std::vector<Body>& bodies, std::vector<Constraint>& rows) {
   for (const Link& link : rods_) {
     ++counters_.rod_calls;
-    rows.push_back({link.a.place, link.b.place, laws_.rod_row(bodies[link.a.place], link.a.point_body, bodies[link.b.place], link.b.point_body, world_.rods[link.index].length)});
+    const RodLink& rod = world_.rods[link.index];
+    rows.push_back({link.a.place, link.b.place, of_link("rod", rod.name, [&] { return laws_.rod_row(bodies[link.a.place], link.a.point_body, bodies[link.b.place], link.b.point_body, rod.length); })});
   }
 }
 
@@ -300,7 +312,7 @@ std::vector<RigidBodyState> LinkedBodies::advance(const std::vector<RigidBodySta
     return derivative(time, state);
   };
   ++counters_.integrations;
-  const VectorXd end = naming("body '" + world_.bodies[bodies_.front()].name + "' and what is linked to it", [&] { return laws_.integrate_step(f, t, y, h); });
+  const VectorXd end = naming(whose(), [&] { return laws_.integrate_step(f, t, y, h); });
   for (std::size_t i = 0; i < local.size(); ++i) {
     local[i] = unpack(end.segment(static_cast<Eigen::Index>(i) * kStateSize, kStateSize));
     local[i].world_from_body = laws_.renormalize(local[i].world_from_body);
@@ -309,7 +321,7 @@ std::vector<RigidBodyState> LinkedBodies::advance(const std::vector<RigidBodySta
   return local;
 }
 
-void LinkedBodies::project_local(std::vector<RigidBodyState>& local, double t, bool places) {
+void LinkedBodies::project_local(std::vector<RigidBodyState>& local, double t, bool places) try {
   const StageTimer timer(counters_.constraint_seconds);
   const auto correction = [&](const std::vector<Body>& bodies, const std::vector<Constraint>& all, bool of_places) {
     std::vector<ConstrainedBody> constrained;
@@ -348,6 +360,8 @@ void LinkedBodies::project_local(std::vector<RigidBodyState>& local, double t, b
     local[i].momentum_world += bodies[i].inertia.mass * change.segment<3>(at);
     local[i].angular_momentum_world += angular_momentum_of(change.segment<3>(at + 3), local[i].world_from_body, bodies[i].inertia);
   }
+} catch (const StoppedRun& stop) {
+  throw StoppedRun(whose() + ": " + stop.what());
 }
 
 void LinkedBodies::project_velocities(std::vector<RigidBodyState>& states, double t) {
@@ -364,7 +378,9 @@ void LinkedBodies::project(std::vector<RigidBodyState>& states, double t) {
   put(local, states);
 }
 
-void LinkedBodies::measure(const std::vector<RigidBodyState>& states, double t, LinkForces& measured) {
+std::string LinkedBodies::whose() const { return "body '" + world_.bodies[bodies_.front()].name + "' and what is linked to it"; }
+
+void LinkedBodies::measure(const std::vector<RigidBodyState>& states, double t, LinkForces& measured) try {
   const std::vector<RigidBodyState> local = take(states);
   time_of_stage_ = t;
   const std::vector<Body> bodies = place_bodies(local, t);
@@ -381,6 +397,8 @@ void LinkedBodies::measure(const std::vector<RigidBodyState>& states, double t, 
       measured.joints[link.index] = multipliers.segment<3>(at).norm();
       at += row_count(world_.joints[link.index].kind);
     }
+} catch (const StoppedRun& stop) {
+  throw StoppedRun(whose() + ": " + stop.what());
 }
 
 void LinkedBodies::measure_springs(const std::vector<Body>& bodies, LinkForces& measured) {

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -74,6 +75,7 @@ class LinkedBodies {
     End a, b;
   };
 
+  std::string whose() const;   // in words
   End end_of(const Anchor& anchor);
   std::vector<Body> place_bodies(const std::vector<RigidBodyState>& local, double t) const;
   std::vector<Wrench> forces(const std::vector<RigidBodyState>& local, const std::vector<Body>& bodies);

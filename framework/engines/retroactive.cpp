@@ -55,6 +55,8 @@ class RetroactiveRun {
     const StageTimer timer(counters_.record_seconds);
     write();
   }
+  void tell_of_light_bodies();
+  void stop_for(const Runaway& runaway);
   void run_to_the_end();
   double next_target() const;
   void switch_forces();
@@ -139,6 +141,7 @@ void RetroactiveRun::resolve_at(const std::vector<std::pair<int, int>>& pairs, s
     for (const Event& event : echo.events) sink_.event(event);
     resolution.events.insert(resolution.events.end(), echo.events.begin(), echo.events.end());
   }
+  for (const Event& event : resolution.events) energy_watch_.note(event);
   if (!resolution.settled)
     stopped_by_ = fmt::format("at t = {:.6f} s, {}: collision (collision_impulse, apply_impulse of {}) left them approaching, however often it was "
                               "applied: the impulse has no effect, the wrong sign or too little size, or a lasting contact is needed there", moving_.time(), subject, laws_.impulse_source);
@@ -283,20 +286,35 @@ void RetroactiveRun::advance_to(double target) {
   }
 }
 
+// On rods between heavy ones.
+void RetroactiveRun::tell_of_light_bodies() {
+  const RunCounters before = counters_;   // what is looked at must not show in what a run counts
+  const std::vector<double> tensions = moving_.measure_links(moving_.states(), 0.0).rods;
+  counters_ = before;
+  tell_of_unstable_rods(moving_.world(), tensions, laws_, {step_, duration_}, counters_.notices);
+}
+
 void RetroactiveRun::run() {
   const std::string where = scene_.file.empty() ? scene_.name : scene_.file.string();
   meetings_.refuse_overlap(where);
-  refuse_unstable_springs(moving_.world(), laws_, {step_, duration_}, where, counters_.notices);
+  refuse_unstable_steps(moving_.world(), laws_, {step_, duration_}, where, counters_.notices);
   for (const PointForce& force : moving_.world().point_forces) {
     switch_times_.insert(force.start);
     switch_times_.insert(force.end);
   }
   try {
+    if (!moving_.world().rods.empty()) tell_of_light_bodies();
     run_to_the_end();
   } catch (const StoppedRun& stop) {
     stopped_by_ = fmt::format("at t = {:.6f} s, {}", moving_.time(), stop.what());
   }
   sink_.end(counters_.named(), stopped_by_);
+}
+
+void RetroactiveRun::stop_for(const Runaway& runaway) {
+  const LinkForces links = moving_.measure_links(moving_.states(), moving_.time());
+  const std::vector<ContactPoint> none;
+  stopped_by_ = told_runaway(moving_.time(), moving_.world(), runaway, {links.springs, links.rods, links.joints, has_contacts() ? contacts_->forces() : none}, laws_);
 }
 
 void RetroactiveRun::run_to_the_end() {
@@ -316,7 +334,7 @@ void RetroactiveRun::run_to_the_end() {
     if (!stopped_by_.empty()) break;
     if (target >= static_cast<double>(grid_index_ + 1) * step_) ++grid_index_;
     switch_forces();
-    if (const auto runaway = energy_watch_.look(moving_.world(), moving_.states())) stopped_by_ = told_runaway(moving_.time(), *runaway, laws_);
+    if (const auto runaway = energy_watch_.look(moving_.world(), moving_.states())) stop_for(*runaway);
     record([&] { recorder_.record_committed(moving_); });
     if (has_sleepers()) sleepers_->look(touching_);
   }
@@ -325,7 +343,13 @@ void RetroactiveRun::run_to_the_end() {
 }  // namespace
 
 void run_retroactive(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink) {
-  RetroactiveRun(scene, laws, options, sink).run();
+  std::optional<RetroactiveRun> run;
+  try {
+    run.emplace(scene, laws, options, sink);
+  } catch (const StoppedRun& stop) {   // links are drawn onto their constraints where they start
+    return sink.end(RunCounters{}.named(), fmt::format("at t = 0.000000 s, {}", stop.what()));
+  }
+  run->run();
 }
 
 }  // namespace tumble::engines

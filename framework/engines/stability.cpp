@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
 #include "framework/dynamics/anchors.h"
+#include "framework/engines/guarded_laws.h"
 
 namespace tumble::engines {
 namespace {
@@ -21,19 +23,30 @@ constexpr double kRoundingOfRest = 1e-6; // of the energy a world at rest has by
 // More springs than this are judged by the largest row sum (Gershgorin), an upper bound at most some times too large.
 constexpr Eigen::Index kMostSprings = 400;
 
-double largest_stable_step(const Laws& laws, double frequency, double damping, double step) {
+// Up to `step`, of what goes at this rate [1/s]. @param amplified  by a step of a given length
+double largest_stable_step(const std::function<double(double)>& amplified, double rate, double step) {
   double stable = 0.0, unstable = step;
   // Down to a thousandth of a radian a step: a method that still lengthens the swing there always does.
-  for (double h = step; h * frequency > 1e-3 && stable == 0.0; h *= 0.5) {
-    if (amplification(laws, frequency, damping, h) <= 1.0 + kNotAtAll) stable = h;
+  for (double h = step; h * rate > 1e-3 && stable == 0.0; h *= 0.5) {
+    if (amplified(h) <= 1.0 + kNotAtAll) stable = h;
     else unstable = h;
   }
   if (stable == 0.0) return 0.0;
   for (int i = 0; i < 40; ++i) {
     const double middle = 0.5 * (stable + unstable);
-    (amplification(laws, frequency, damping, middle) <= 1.0 + kNotAtAll ? stable : unstable) = middle;
+    (amplified(middle) <= 1.0 + kNotAtAll ? stable : unstable) = middle;
   }
   return stable;
+}
+
+double largest_stable_step(const Laws& laws, double frequency, double damping, double step) {
+  return largest_stable_step([&](double h) { return amplification(laws, frequency, damping, h); }, frequency, step);
+}
+
+// Of y' = -rate y, in a step.
+double amplification_of_decay(const Laws& laws, double rate, double step) {
+  const OdeFunction decay = [&](double, const VectorXd& y) { return VectorXd(-rate * y); };
+  return std::abs(laws.integrate_step(decay, 0.0, VectorXd::Ones(1), step)[0]);
 }
 
 /// Largest size of the two eigenvalues; they are real where `discriminant` is not negative, else a conjugate pair.
@@ -110,21 +123,113 @@ std::optional<SpringStability> judge_springs(const World& world, const Laws& law
   return SpringStability{world.springs[most].name, frequency, amplification(laws, frequency, damping, step), largest_stable_step(laws, frequency, damping, step)};
 }
 
-void refuse_unstable_springs(const World& world, const Laws& laws, const StepsOfARun& steps, const std::string& where, std::vector<std::string>& notices) {
-  const auto springs = judge_springs(world, laws, steps.step);
-  if (!springs || !(springs->amplification > 1.0)) return;
-  const double over_the_run = std::log(springs->amplification) * steps.duration / steps.step;
-  const std::string what = fmt::format("a step of {:.3g} s of {} lengthens the swing of spring '{}' ({:.4g} rad/s where the run starts) by a factor {:.6g} each time",
-                                       steps.step, laws.integrator_source, springs->spring, springs->angular_frequency, springs->amplification);
-  if (over_the_run > std::log(kRuin))
-    throw UserError(where, what + fmt::format(", 10^{:.0f} times over the run", over_the_run / std::log(10.0)),
-                    springs->largest_step > 0 ? fmt::format("take a step of at most {:.4g} s (\"step_s\"), a softer spring or more damping", springs->largest_step)
-                                              : "this method lengthens it at every step size: take another method (a2's rk4_step), or damp the spring");
-  if (over_the_run > std::log(kSeen))
-    notices.push_back(what + (springs->largest_step > 0 ? fmt::format("; steps of at most {:.4g} s do not", springs->largest_step) : "; this method does at every step size"));
+std::vector<StepLimit> judge_decays(const World& world, const Laws& laws, double step) {
+  std::vector<StepLimit> limits;
+  for (const Drag& drag : world.drags) {
+    const WorldBody& body = world.bodies[drag.body];
+    if (body.immovable()) continue;
+    const double least_moment = 1.0 / Eigen::SelfAdjointEigenSolver<Matrix3d>(body.inertia.inverse_inertia_body).eigenvalues().maxCoeff();
+    for (const auto& [rate, way] : {std::pair{drag.linear * body.inertia.inverse_mass, "velocity"}, std::pair{drag.angular / least_moment, "turning"}}) {
+      const auto amplified = [&laws, rate = rate](double h) { return amplification_of_decay(laws, rate, h); };
+      if (amplified(step) > 1.0 + kNotAtAll)
+        limits.push_back({fmt::format("what the drag of body '{}' takes from its {} ({:.4g} 1/s)", body.name, way, rate), amplified(step), largest_stable_step(amplified, rate, step), "less drag"});
+    }
+  }
+  if (!world.stabilisation || world.stabilisation->kind != scene::StabilisationKind::kBaumgarte || (world.rods.empty() && world.joints.empty()) || !laws.baumgarte_acceleration) return limits;
+  const double T = world.stabilisation->time_constant_s;
+  const double stiffness = -laws.baumgarte_acceleration(1.0, 0.0, T), damping = -laws.baumgarte_acceleration(0.0, 1.0, T);
+  if (!(stiffness > 0) || !(damping >= 0)) return limits;   // a wrong law is no matter of the step
+  const double frequency = std::sqrt(stiffness), amplified = amplification(laws, frequency, damping, step);
+  if (amplified > 1.0 + kNotAtAll)
+    limits.push_back({fmt::format("the errors of rods and joints that Baumgarte's term takes back (time constant {:.4g} s)", T), amplified, largest_stable_step(laws, frequency, damping, step),
+                      "a longer \"time_constant_s\", or projection"});
+  return limits;
 }
 
-std::optional<std::string> EnergyWatch::look(const World& world, const std::vector<RigidBodyState>& states) {
+std::optional<StepLimit> judge_rods(const World& world, const std::vector<double>& tensions, const Laws& laws, double step) {
+  constexpr std::size_t kMostRods = 100;   // a dense eigenvalue problem of three times that
+  const auto beside_centre = [](const Anchor& anchor) { return anchor.body >= 0 && !anchor.point_body.isZero(0.0); };
+  const auto is_beside = [&](const RodLink& rod) { return beside_centre(rod.a) || beside_centre(rod.b); };
+  if (world.rods.empty() || world.rods.size() > kMostRods || !world.joints.empty() || std::any_of(world.rods.begin(), world.rods.end(), is_beside)) return std::nullopt;
+  std::vector<RigidBodyState> states;
+  std::vector<Eigen::Index> place(world.bodies.size(), -1);
+  Eigen::Index n = 0;
+  for (const WorldBody& body : world.bodies) states.push_back(body.state);
+  const auto end_of = [&](const Anchor& anchor) -> Eigen::Index {
+    if (anchor.body < 0 || world.bodies[anchor.body].immovable()) return -1;
+    if (place[anchor.body] < 0) place[anchor.body] = 3 * n++;
+    return place[anchor.body];
+  };
+  for (const RodLink& rod : world.rods) end_of(rod.a), end_of(rod.b);
+  // In places times sqrt(m): A = M^-1/2 K M^-1/2, the rods' rows J M^-1/2.
+  const Eigen::Index rods = static_cast<Eigen::Index>(world.rods.size());
+  MatrixXd A = MatrixXd::Zero(3 * n, 3 * n), J = MatrixXd::Zero(rods, 3 * n);
+  for (Eigen::Index k = 0; k < rods; ++k) {
+    const RodLink& rod = world.rods[static_cast<std::size_t>(k)];
+    const Vector3d along = (anchor_point(rod.a, states) - anchor_point(rod.b, states)).normalized();
+    const Matrix3d across = tensions[static_cast<std::size_t>(k)] / rod.length * (Matrix3d::Identity() - along * along.transpose());
+    const auto root = [&](const Anchor& anchor) { return std::sqrt(world.bodies[anchor.body].inertia.inverse_mass); };
+    const Eigen::Index a = end_of(rod.a), b = end_of(rod.b);
+    if (a >= 0) A.block<3, 3>(a, a) += root(rod.a) * root(rod.a) * across, J.block<1, 3>(k, a) = root(rod.a) * along.transpose();
+    if (b >= 0) A.block<3, 3>(b, b) += root(rod.b) * root(rod.b) * across, J.block<1, 3>(k, b) = -root(rod.b) * along.transpose();
+    if (a < 0 || b < 0) continue;
+    A.block<3, 3>(a, b) -= root(rod.a) * root(rod.b) * across;
+    A.block<3, 3>(b, a) -= root(rod.a) * root(rod.b) * across;
+  }
+  // A row sum bounds the swings without rods, which are faster than those with them: mostly that will do.
+  const double bound = A.cwiseAbs().rowwise().sum().maxCoeff();
+  if (!(bound > 0) || amplification(laws, std::sqrt(bound), 0.0, step) <= 1.0 + kNotAtAll) return std::nullopt;
+  const MatrixXd keep = MatrixXd::Identity(3 * n, 3 * n) - J.completeOrthogonalDecomposition().pseudoInverse() * J;
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(keep * A * keep);
+  const double squared = solver.eigenvalues()[3 * n - 1];
+  if (!(squared > 0)) return std::nullopt;
+  const double frequency = std::sqrt(squared), amplified = amplification(laws, frequency, 0.0, step);
+  if (amplified <= 1.0 + kNotAtAll) return std::nullopt;
+  Eigen::Index most = 0;
+  solver.eigenvectors().col(3 * n - 1).cwiseAbs().maxCoeff(&most);
+  const auto body = std::find(place.begin(), place.end(), most - most % 3) - place.begin();
+  return StepLimit{fmt::format("the swing of body '{}' across its rods ({:.4g} rad/s where the run starts)", world.bodies[static_cast<std::size_t>(body)].name, frequency), amplified,
+                   largest_stable_step(laws, frequency, 0.0, step), "masses that differ less"};
+}
+
+namespace {
+
+// 10^ so much over the run; what a step does, and how large one may be.
+double growth_over(const StepsOfARun& steps, double amplification) { return std::log(amplification) * steps.duration / steps.step; }
+std::string words_of(const StepLimit& limit, const Laws& laws, double step) {
+  return fmt::format("a step of {:.3g} s of {} lengthens {} by a factor {:.6g} each time", step, laws.integrator_source, limit.of, limit.amplification);
+}
+std::string smaller_steps(const StepLimit& limit) { return limit.largest_step > 0 ? fmt::format("; steps of at most {:.4g} s do not", limit.largest_step) : "; this method does at every step size"; }
+
+void refuse_or_tell(const StepLimit& limit, const Laws& laws, const StepsOfARun& steps, const std::string& where, std::vector<std::string>& notices) {
+  const double over_the_run = growth_over(steps, limit.amplification);
+  const std::string what = words_of(limit, laws, steps.step);
+  if (over_the_run > std::log(kRuin))
+    throw UserError(where, what + fmt::format(", 10^{:.0f} times over the run", over_the_run / std::log(10.0)),
+                    limit.largest_step > 0 ? fmt::format("take a step of at most {:.4g} s (\"step_s\"), {}", limit.largest_step, limit.remedy)
+                                           : "this method lengthens it at every step size: take another method (a2's rk4_step), or " + limit.remedy);
+  if (over_the_run > std::log(kSeen)) notices.push_back(what + smaller_steps(limit));
+}
+
+}  // namespace
+
+void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfARun& steps, const std::string& where, std::vector<std::string>& notices) try {
+  if (const auto springs = judge_springs(world, laws, steps.step); springs && springs->amplification > 1.0)
+    refuse_or_tell({fmt::format("the swing of spring '{}' ({:.4g} rad/s where the run starts)", springs->spring, springs->angular_frequency), springs->amplification, springs->largest_step,
+                    springs->largest_step > 0 ? "a softer spring or more damping" : "damp the spring"},
+                   laws, steps, where, notices);
+  for (const StepLimit& limit : judge_decays(world, laws, steps.step)) refuse_or_tell(limit, laws, steps, where, notices);
+} catch (const StoppedRun&) {
+  // A law that fails here fails in the first step too, which says of whom.
+}
+
+void tell_of_unstable_rods(const World& world, const std::vector<double>& tensions, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices) {
+  const auto limit = judge_rods(world, tensions, laws, steps.step);
+  // A method that lengthens every swing is told of by what it does to energy.
+  if (limit && limit->largest_step > 0 && growth_over(steps, limit->amplification) > std::log(kRuin)) notices.push_back(words_of(*limit, laws, steps.step) + smaller_steps(*limit));
+}
+
+std::optional<Runaway> EnergyWatch::look(const World& world, const std::vector<RigidBodyState>& states) {
   const auto driven = [](const WorldBody& b) { return b.immovable() && !(b.motion.velocity_m_s.isZero(0.0) && b.motion.amplitude_m.isZero(0.0)); };
   if (!world.point_forces.empty() || !world.motors.empty() || std::any_of(world.bodies.begin(), world.bodies.end(), driven)) return std::nullopt;
   const Invariants sums = invariants_of(world, states);
@@ -152,12 +257,32 @@ std::optional<std::string> EnergyWatch::look(const World& world, const std::vect
       fastest = i;
     }
   }
-  return fmt::format("body '{}': runaway energy: the world has {:.4g} J, it began with {:.4g} J and nothing brings energy in", world.bodies[fastest].name, energy, first_energy_);
+  return Runaway{static_cast<int>(fastest), energy, first_energy_, by_blows_};
 }
 
-std::string told_runaway(double time, const std::string& runaway, const Laws& laws) {
-  return fmt::format("at t = {:.6f} s, {} (integrator: {}; impulses: {}; springs, rods, contacts: {}); a shorter step or another method is needed, or one of these is wrong", time, runaway,
-                     laws.integrator_source, laws.impulse_source, laws.constraint_source);
+std::string told_runaway(double time, const World& world, const Runaway& runaway, const ActingForces& acting, const Laws& laws) {
+  std::string effect;
+  double hardest = 0.0;
+  const auto pulls = [&](int a, int b, double force, const auto& words) {
+    if ((a != runaway.body && b != runaway.body) || !(std::abs(force) > hardest)) return;
+    hardest = std::abs(force);
+    effect = fmt::format("{}, with {:.3g} N", words(), hardest);
+  };
+  for (std::size_t k = 0; k < acting.springs.size(); ++k)
+    pulls(world.springs[k].a.body, world.springs[k].b.body, acting.springs[k], [&] { return fmt::format("spring '{}' (spring_force of {})", world.springs[k].name, laws.constraint_source); });
+  for (std::size_t k = 0; k < acting.rods.size(); ++k)
+    pulls(world.rods[k].a.body, world.rods[k].b.body, acting.rods[k], [&] { return fmt::format("rod '{}' (rod_row, constraint_multipliers, constraint_correction of {})", world.rods[k].name, laws.constraint_source); });
+  for (std::size_t k = 0; k < acting.joints.size(); ++k)
+    pulls(world.joints[k].a.body, world.joints[k].b.body, acting.joints[k], [&] { return fmt::format("joint '{}' (constraint_multipliers, constraint_correction of {})", world.joints[k].name, laws.constraint_source); });
+  for (const ContactPoint& contact : acting.contacts)
+    pulls(contact.body_a, contact.body_b, contact.force_on_a_world.norm(), [&] {
+      const int other = contact.body_a == runaway.body ? contact.body_b : contact.body_a;
+      return fmt::format("lasting contact with '{}' (contact_forces of {})", world.bodies[static_cast<std::size_t>(other)].name, laws.constraint_source);
+    });
+  if (runaway.by_blows >= 0.5 * (runaway.energy - runaway.first_energy)) effect = fmt::format("collision (collision_impulse, apply_impulse of {})", laws.impulse_source);
+  else if (effect.empty()) effect = fmt::format("integration (integrate_step, state_derivative of {})", laws.integrator_source);
+  return fmt::format("at t = {:.6f} s, body '{}': runaway energy: the world has {:.4g} J, it began with {:.4g} J and nothing brings energy in. Most likely it comes from {}; a shorter step or another method "
+                     "(here {}) is needed, or that is wrong", time, world.bodies[static_cast<std::size_t>(runaway.body)].name, runaway.energy, runaway.first_energy, effect, laws.integrator_source);
 }
 
 }  // namespace tumble::engines

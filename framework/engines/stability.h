@@ -1,4 +1,4 @@
-/// Whether a step is within the range in which the laws' method can follow a world's springs.
+/// Whether a step is within the range in which the laws' method can follow a world: its springs, its drag, Baumgarte's term, light bodies on rods.
 #pragma once
 
 #include <optional>
@@ -7,6 +7,7 @@
 
 #include "framework/dynamics/laws.h"
 #include "framework/dynamics/world.h"
+#include "framework/trajectory/trajectory.h"
 
 namespace tumble::engines {
 
@@ -25,26 +26,65 @@ struct SpringStability {
 /// @return nothing for a world without springs
 std::optional<SpringStability> judge_springs(const World& world, const Laws& laws, double step);
 
+/// Of anything else that limits a step.
+struct StepLimit {
+  std::string of;                  // in words, with the name
+  double amplification;            // of what should die away, a step
+  double largest_step;             // that does not lengthen it [s]; 0 where none does not
+  std::string remedy;              // beside a shorter step
+};
+
+/// What drag takes from a body's velocities, y' = -c/m y and -c/I y (the least moment), and what Baumgarte's term takes from errors of rods and
+/// joints, e'' = -k e - c e' with the laws' own gains. Those that the method lengthens at this step.
+std::vector<StepLimit> judge_decays(const World& world, const Laws& laws, double step);
+
+/// The fastest swing of bodies across rods that pull: M x'' = -K x, K = sum of (tension / length) (1 - n n^T), where the rods keep their lengths.
+/// A light body between a ceiling and a heavy one has the highest: about sqrt(M g (1/l1 + 1/l2) / m).
+/// @param tensions  of the world's rods where the run starts [N]
+/// @return nothing where the method does not lengthen it, and where rods end beside centres of mass, joints are there too, or there are more than
+///         a hundred rods: such worlds are not judged
+std::optional<StepLimit> judge_rods(const World& world, const std::vector<double>& tensions, const Laws& laws, double step);
+
 struct StepsOfARun {
   double step, duration;           // [s]
 };
 
-/// Refuses a run in which the method would lengthen a swing of the springs a thousand times; tells of one where it can be seen.
-/// @throws UserError naming the spring, what happens to it and the largest step that does not do it
-void refuse_unstable_springs(const World& world, const Laws& laws, const StepsOfARun& steps, const std::string& where, std::vector<std::string>& notices);
+/// Refuses a run in which the method would lengthen a thousand times what springs, drag or Baumgarte's term take part in; tells of one where it can be seen.
+/// @throws UserError naming the spring, body or term, what happens to it and the largest step that does not do it
+void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfARun& steps, const std::string& where, std::vector<std::string>& notices);
+
+/// Tells of rods whose bodies swing too fast for the step of a method that has a range. Not refused: what hangs straight does not swing, and a chain that moves has other tensions.
+void tell_of_unstable_rods(const World& world, const std::vector<double>& tensions, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices);
+
+/// Energy that nothing can have brought in.
+struct Runaway {
+  int body;                        // that has most of it
+  double energy, first_energy;     // of the world, now and where the run started [J]
+  double by_blows;                 // of the difference, what impacts have brought in [J]
+};
 
 /// Looks on while a world moves: energy that nothing can have brought in is the method's, or a wrong law's.
 class EnergyWatch {
  public:
-  /// @return what has run away, in words, with the body that has most of it; nothing while all is well, and for worlds that are driven
-  ///         (point forces, motors, moving walls)
-  std::optional<std::string> look(const World& world, const std::vector<RigidBodyState>& states);
+  /// An impact has taken place: its impulse has done the work j (u + u') / 2.
+  void note(const Event& event) {
+    if (event.kind == EventKind::kCollision) by_blows_ += 0.5 * event.impulse * (event.normal_velocity_before + event.normal_velocity_after);
+  }
+  /// @return nothing while all is well, and for worlds that are driven (point forces, motors, moving walls)
+  std::optional<Runaway> look(const World& world, const std::vector<RigidBodyState>& states);
 
  private:
-  double first_energy_ = kUnset, scale_ = 0.0, first_potential_ = 0.0, lowest_potential_ = 0.0;   // [J]
+  double first_energy_ = kUnset, scale_ = 0.0, first_potential_ = 0.0, lowest_potential_ = 0.0, by_blows_ = 0.0;   // [J]
 };
 
-/// What a run says that ends because of it. @param runaway  as the watch put it
-std::string told_runaway(double time, const std::string& runaway, const Laws& laws);
+/// What acts on bodies at an instant.
+struct ActingForces {
+  const std::vector<double>&springs, &rods, &joints;   // by the world's lists [N]
+  const std::vector<ContactPoint>& contacts;
+};
+
+/// What a run says that ends because of it: the body, the time, and the effect that most likely put the energy in: impacts where they have brought in
+/// half of it, else the spring, rod, joint or contact that pulls hardest at the body, else the integration.
+std::string told_runaway(double time, const World& world, const Runaway& runaway, const ActingForces& acting, const Laws& laws);
 
 }  // namespace tumble::engines

@@ -25,7 +25,7 @@ FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptio
     callback_keys_.push_back({callbacks_[k].time, static_cast<std::uint32_t>(k), EventClass::kCallback, callbacks_[k].bodies.front(), -1});
   }
   if (!world_.processes()) return;
-  refuse_unstable_springs(world_.world(), laws_, {step_, duration_}, scene.file.empty() ? scene.name : scene.file.string(), counters.notices);
+  refuse_unstable_steps(world_.world(), laws_, {step_, duration_}, scene.file.empty() ? scene.name : scene.file.string(), counters.notices);
   links_ = std::make_unique<LinkMeasures>(world_, laws_);
   switches_ = force_switches(world_.world(), duration_);
   for (const Event& event : world_.start_events()) sink_.event(event);
@@ -97,6 +97,16 @@ Meeting FlightRun::end_of_passage(const EventKey& key, const Flight& flight) con
   return finished(key, world_.processes()->sort(end->after), end->events);
 }
 
+void FlightRun::act_on(const Callback& callback, int body, RigidBodyState& state) const {
+  const auto who = [&] { return fmt::format("at t = {:.6f} s, body {}: the callback at {:.6g} s", callback.time, name(body), callback.time); };
+  try {
+    callback.act(body, state);
+  } catch (const std::exception& error) {
+    throw StoppedRun(who() + " failed: " + error.what());
+  }
+  if (!pack(state).allFinite()) throw StoppedRun(who() + " gave it a state that is not a number");
+}
+
 Meeting FlightRun::call(const EventKey& key, const FlightOf& flight_of) {
   const Callback& callback = callbacks_[key.generation];
   ++counters.callback_calls;
@@ -108,7 +118,7 @@ Meeting FlightRun::call(const EventKey& key, const FlightOf& flight_of) {
     const Flight& flight = flight_of(body);
     ProcessState state = processes.state_of(body, flight, flight.passage < 0 ? world_.state(body, flight, key.time) : RigidBodyState{}, key.time);
     for (std::size_t k = 0; k < state.members.size(); ++k)
-      if (std::binary_search(callback.bodies.begin(), callback.bodies.end(), state.members[k])) callback.act(state.members[k], state.states[k]);
+      if (std::binary_search(callback.bodies.begin(), callback.bodies.end(), state.members[k])) act_on(callback, state.members[k], state.states[k]);
     for (BegunFlight& next : processes.sort(state)) begun.push_back(std::move(next));
   }
   for (const int body : callback.bodies) events.push_back({key.time, EventKind::kControl, body, -1, world_.position(body, flight_of(body), key.time), Vector3d::UnitZ(), 0.0, 0.0});
@@ -137,7 +147,11 @@ void FlightRun::commit(const EventKey& key, const Event& first, const std::vecto
   pass(key);
   commit_switches(std::nextafter(key.time, 2 * key.time + 1));
   sink_.event(first);
-  for (const Event& event : more) sink_.event(event);
+  energy_watch_.note(first);
+  for (const Event& event : more) {
+    sink_.event(event);
+    energy_watch_.note(event);
+  }
 }
 
 void FlightRun::commit_frame(const FlightOf& flight_of) {
@@ -149,7 +163,8 @@ void FlightRun::commit_frame(const FlightOf& flight_of) {
   if (on_membership_) tell_membership(frame.time, flight_of);
   ++next_;
   if (!callbacks_.empty()) return;   // they bring energy in
-  if (const auto runaway = energy_watch_.look(world_.world(), states_)) throw StoppedRun(told_runaway(frame.time, *runaway, laws_));
+  if (const auto runaway = energy_watch_.look(world_.world(), states_))
+    throw StoppedRun(told_runaway(frame.time, world_.world(), *runaway, {frame.spring_forces, frame.rod_tensions, frame.joint_forces, frame.contacts}, laws_));
 }
 
 void FlightRun::tell_membership(double t, const FlightOf& flight_of) const {

@@ -1,0 +1,120 @@
+// The largest step that a method can take is told where a run starts: for drag, Baumgarte's term and light bodies on rods, against closed forms.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "framework/core/error.h"
+#include "framework/engines/stability.h"
+#include "framework/engines/truths/memory_scene.h"
+#include "tests/engines/reference_laws.h"
+
+namespace tumble::testing {
+namespace {
+
+// Ends of the ranges of y' = -l y and y'' = -w^2 y. Euler: l h = 2. RK4: the real root of 1 - z + z^2/2 - z^3/6 + z^4/24 = 1, and w h = sqrt(8).
+constexpr double kEulerDecay = 2.0, kRk4Decay = 2.785293563405282;
+const double kRk4Swing = std::sqrt(8.0);
+constexpr double kFound = 1e-6;   // of the step: a method counts as stable up to 1e-9 above 1, and its amplification rises by about h / 1 s there
+constexpr double kUnder = 0.99, kOver = 1.01;
+
+Laws euler() {
+  Laws laws = reference_laws();
+  laws.integrate_step = [](const OdeFunction& f, double t, const VectorXd& y, double h) -> VectorXd { return y + h * f(t, y); };
+  return laws;
+}
+
+/// By steps of `step` for 2000 of them. @return why it was refused, or what was told of it at the start
+std::string answer(scene::Scene scene, const Laws& laws, double step) {
+  scene.step_s = step;
+  scene.duration_s = 2000 * step;
+  TrajectoryRecorder recorder;
+  engines::RunOptions options;
+  options.frame_rate_hz = 1.0 / scene.duration_s;
+  try {
+    engines::run_scene(scene, laws, options, recorder);
+  } catch (const UserError& refusal) {
+    return std::string("refused: ") + refusal.what();
+  }
+  std::string told;
+  for (const std::string& notice : recorder.trajectory().counters.notices) told += notice + '\n';
+  return told;
+}
+
+bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// A body of 0.5 kg, moments 1, 2 and 3 kg m^2, in treacle.
+scene::Scene dragged(double linear, double angular) {
+  scene::BodySpec body = ball("spoon", 0.1, 0.5, Vector3d::Zero(), {1, 0, 0});
+  body.inertia_body_kg_m2 = Vector3d(1, 2, 3).asDiagonal();
+  body.omega_world_rad_s = {0.1, 0, 0};
+  scene::Scene scene = scene_of({body}, 1.0);
+  scene.drags.push_back({"spoon", linear, angular});
+  return scene;
+}
+
+void expect_limit(const scene::Scene& scene, const Laws& laws, double largest, const std::vector<std::string>& words) {
+  EXPECT_EQ(answer(scene, laws, kUnder * largest), "");
+  const std::string refusal = answer(scene, laws, kOver * largest);
+  EXPECT_TRUE(refusal.starts_with("refused: ")) << refusal;
+  for (const std::string& word : words) EXPECT_TRUE(holds(refusal, word)) << word << " in: " << refusal;
+  const auto limits = engines::judge_decays(build_world(scene), laws, kOver * largest);
+  ASSERT_EQ(limits.size(), 1u);
+  EXPECT_NEAR(limits[0].largest_step, largest, kFound * largest);
+}
+
+TEST(LargestStep, DragIsRefusedFromTheStepAtWhichItsDecayGrows) {
+  constexpr double kDrag = 50.0;   // N s/m over 0.5 kg: 100 1/s
+  expect_limit(dragged(kDrag, 0.0), euler(), kEulerDecay / 100.0, {"drag", "'spoon'", "velocity", "at most 0.02 s"});
+  expect_limit(dragged(kDrag, 0.0), reference_laws(), kRk4Decay / 100.0, {"drag", "'spoon'", "velocity", "at most 0.02785 s"});
+  expect_limit(dragged(0.0, kDrag), euler(), kEulerDecay / 50.0, {"drag", "'spoon'", "turning", "at most 0.04 s"});   // the least moment
+  expect_limit(dragged(0.0, kDrag), reference_laws(), kRk4Decay / 50.0, {"drag", "'spoon'", "turning", "at most 0.05571 s"});
+}
+
+// e'' = -e / T^2 - 2 e' / T dies away at the double rate 1 / T.
+TEST(LargestStep, BaumgartesTermIsRefusedFromTheStepAtWhichErrorsGrow) {
+  scene::Scene scene = truths::straight_chain({1.0}, 1.0, -Vector3d::UnitZ(), Vector3d(0, 0, -1.0));
+  scene.stabilisation->kind = scene::StabilisationKind::kBaumgarte;
+  scene.stabilisation->time_constant_s = 0.05;
+  expect_limit(scene, euler(), kEulerDecay * 0.05, {"Baumgarte", "0.05 s", "at most 0.1 s"});
+  expect_limit(scene, reference_laws(), kRk4Decay * 0.05, {"Baumgarte", "0.05 s", "at most 0.1393 s"});
+}
+
+TEST(LargestStep, ProjectionHasNoSuchStep) {
+  const scene::Scene scene = truths::straight_chain({1.0}, 1.0, -Vector3d::UnitZ(), Vector3d(0, 0, -1.0));
+  EXPECT_TRUE(engines::judge_decays(build_world(scene), reference_laws(), 1.0).empty());
+}
+
+// Two bobs of m and r m on rods of equal lengths: the faster swing has w^2 = (g/l) (1 + r + sqrt(r (1 + r))).
+TEST(LargestStep, ALightBodyAboveAHeavyOneIsToldOfWithTheLargestStep) {
+  const double g = 9.81, l = 0.7;
+  for (const double ratio : {100.0, 1e4, 1e6}) {
+    const scene::Scene scene = truths::straight_chain({1.0, ratio}, l, -Vector3d::UnitZ(), Vector3d(0, 0, -g));
+    const double largest = kRk4Swing / std::sqrt(g / l * (1 + ratio + std::sqrt(ratio * (1 + ratio))));
+    EXPECT_EQ(answer(scene, reference_laws(), kUnder * largest), "") << ratio;
+    const std::string told = answer(scene, reference_laws(), kOver * largest);
+    EXPECT_TRUE(holds(told, "across its rods") && holds(told, "'" + scene.bodies[0].name + "'")) << told;
+    const std::vector<double> tensions = {(1 + ratio) * g, ratio * g};
+    const auto limit = engines::judge_rods(build_world(scene), tensions, reference_laws(), kOver * largest);
+    ASSERT_TRUE(limit);
+    EXPECT_NEAR(limit->largest_step, largest, 1e-5 * largest) << ratio;   // a swing's amplification leaves 1 by (w h)^6 / 144 times what the step is over
+  }
+}
+
+// The bound is one for what moves: beyond it a chain pushed aside by a micrometre is torn out of its energy, below it swings.
+TEST(LargestStep, WhatIsToldOfIsWhatHappens) {
+  const double g = 9.81, l = 0.7, ratio = 1e4, largest = kRk4Swing / std::sqrt(g / l * (1 + ratio + std::sqrt(ratio * (1 + ratio))));
+  for (const double part : {kUnder, kOver}) {
+    scene::Scene scene = truths::straight_chain({1.0, ratio}, l, -Vector3d::UnitZ(), Vector3d(0, 0, -g));
+    scene.bodies[0].velocity_m_s = {1e-6, 0, 0};
+    scene.step_s = part * largest;
+    scene.duration_s = 2000 * scene.step_s;
+    const Trajectory result = run(scene, reference_laws(), 1.0 / scene.step_s);
+    double fastest = 0.0;
+    for (const Frame& frame : result.frames) fastest = std::max(fastest, frame.poses[0].velocity_world.norm());
+    if (part < 1) EXPECT_LE(fastest, 2e-6);
+    else EXPECT_GE(fastest, 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace tumble::testing
