@@ -29,7 +29,7 @@ class RetroactiveRun {
   RetroactiveRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink)
       : scene_(scene), laws_(guarded(laws)), sink_(sink), step_(options.step_s.value_or(scene.step_s)),
         duration_(options.duration_s.value_or(scene.duration_s)), moving_(build_world(scene), laws_, counters_), meetings_(moving_, laws_, counters_),
-        impacts_(laws_, {scene.rest_speed_m_s, step_ / 100}, counters_), recorder_(options.frame_rate_hz, duration_, sink) {
+        impacts_(laws_, {scene.rest_speed_m_s, step_ / 100}, counters_), callbacks_(options.callbacks), recorder_(options.frame_rate_hz, duration_, sink) {
     if (options.propagator == "auto") moving_.go_in_closed_form();
     if (!built::kContact || !moving_.world().contact) return;
     contacts_.emplace(moving_, laws_, *moving_.world().contact, scene.rest_speed_m_s, counters_, sink);
@@ -60,6 +60,7 @@ class RetroactiveRun {
   void run_to_the_end();
   double next_target() const;
   void switch_forces();
+  void run_callbacks();
   std::vector<std::pair<int, int>> pairs_in_step();
   void advance_to(double target);
   void resolve_at(const std::vector<std::pair<int, int>>& pairs, std::pair<int, int> trigger);
@@ -80,6 +81,8 @@ class RetroactiveRun {
   MovingWorld moving_;
   Meetings meetings_;
   SequentialImpacts impacts_;
+  const std::vector<Callback> callbacks_;
+  std::size_t called_ = 0;
   FrameRecorder recorder_;
   std::optional<LastingContacts> contacts_;   // where the scene asks for them
   std::optional<ContactModes> modes_;         // where contacts may have friction
@@ -98,6 +101,7 @@ double RetroactiveRun::next_target() const {
   target = std::min(target, next_look_);
   const auto next = switch_times_.upper_bound(moving_.time());
   if (next != switch_times_.end()) target = std::min(target, *next);
+  if (built::kCallback && called_ < callbacks_.size()) target = std::min(target, callbacks_[called_].time);
   return target;
 }
 
@@ -114,6 +118,22 @@ void RetroactiveRun::switch_forces() {
     const double size = forces[k].force_world.norm();
     sink_.event({moving_.time(), should_be_on ? EventKind::kForceOn : EventKind::kForceOff, forces[k].body, -1, forces[k].point_world,
                  size > 0 ? Vector3d(forces[k].force_world / size) : Vector3d::UnitZ(), 0.0, 0.0});
+  }
+}
+
+// Those whose time has come: the step ends there, and the next begins with what they have made of velocities.
+void RetroactiveRun::run_callbacks() {
+  if (!built::kCallback) return;
+  for (; called_ < callbacks_.size() && callbacks_[called_].time <= moving_.time(); ++called_) {
+    ++counters_.callback_calls;
+    for (const int body : callbacks_[called_].bodies) {
+      if (has_sleepers()) sleepers_->wake(body, -1);
+      if (moving_.resting(body)) moving_.wake(body);
+      RigidBodyState state = moving_.state(body);
+      callbacks_[called_].act(body, state);
+      moving_.set_state(body, state);
+      sink_.event({moving_.time(), EventKind::kControl, body, -1, state.com_world, Vector3d::UnitZ(), 0.0, 0.0});
+    }
   }
 }
 
@@ -325,6 +345,7 @@ void RetroactiveRun::run_to_the_end() {
       if (moving_.may_collide(i, j)) all.emplace_back(i, j);
   meetings_.separate(all);
   if (has_contacts()) contacts_->begin_where_touching(all);
+  run_callbacks();
   record([&] { recorder_.record_committed(moving_); });
   while (stopped_by_.empty() && moving_.time() < duration_) {
     next_look_ = moving_.look();
@@ -334,7 +355,9 @@ void RetroactiveRun::run_to_the_end() {
     if (!stopped_by_.empty()) break;
     if (target >= static_cast<double>(grid_index_ + 1) * step_) ++grid_index_;
     switch_forces();
-    if (const auto runaway = energy_watch_.look(moving_.world(), moving_.states())) stop_for(*runaway);
+    run_callbacks();
+    if (callbacks_.empty())   // they bring energy in
+      if (const auto runaway = energy_watch_.look(moving_.world(), moving_.states())) stop_for(*runaway);
     record([&] { recorder_.record_committed(moving_); });
     if (has_sleepers()) sleepers_->look(touching_);
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "framework/core/error.h"
 #include "framework/core/nearest_word.h"
 #include "framework/dynamics/world.h"
@@ -50,6 +52,15 @@ void check_laws(const scene::Scene& scene, const Laws& laws) {
   }
 }
 
+void check_callbacks(const std::vector<Callback>& callbacks, const scene::Scene& scene) {
+  for (std::size_t k = 0; k < callbacks.size(); ++k) {
+    const std::vector<int>& bodies = callbacks[k].bodies;
+    require(!bodies.empty() && std::is_sorted(bodies.begin(), bodies.end()) && (k == 0 || callbacks[k - 1].time <= callbacks[k].time), "callbacks come in order of time, each with its bodies in order");
+    for (const int body : bodies)
+      require(body >= 0 && body < static_cast<int>(scene.bodies.size()) && !scene.bodies[static_cast<std::size_t>(body)].immovable, fmt::format("a callback acts on movable bodies of the scene, and body {} is none", body));
+  }
+}
+
 Engine engine_of(const RunOptions& options, const Laws& laws) {
   if (options.engine == "rd") return run_retroactive;
   if (options.engine == "ca") return run_advancement;
@@ -88,7 +99,7 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& as
   if (!(step > 0) || !std::isfinite(step)) throw UserError(scene.name, "the step must be a positive time", "give \"step_s\" in seconds");
   if (!(duration >= 0) || !std::isfinite(duration)) throw UserError(scene.name, "the duration must not be negative", "give \"duration_s\" in seconds");
   if (!(options.frame_rate_hz > 0)) throw UserError("--frame-rate-hz", "must be positive", "60 suits most scenes");
-  if (!options.callbacks.empty() && options.engine == "rd") throw UserError("--engine rd", "callbacks are executed by the engines that go from event to event", "use ordered, ca or tw");
+  check_callbacks(options.callbacks, scene);
   check_laws(scene, laws);
 
   TrajectoryInfo info;

@@ -225,8 +225,74 @@ TEST(LateCallback, BelowAGroupsBirthDissolvesIt) {
   EXPECT_GT(run.counters.counts.at("undone_integrations"), 20U);
 }
 
-TEST(LateCallback, IsRefusedByTheWorldOfAllBodies) {
-  EXPECT_THROW(run_with_callbacks("rd", pendula_and_balls(1, 0.1), {{0.05, {0}, [](int, RigidBodyState&) {}}}), UserError);
+// A ball flies to 0.37 s, between two steps, is turned there, and turned again by two callbacks at the run's last instant, in their order.
+TEST(Callback, ActsAtItsInstantInEveryEngine) {
+  const Vector3d start(0, 0, 5), thrown(1.0, 0, 2.0), turned(-0.5, 0.25, 3.0);
+  scene::Scene scene = scene_of({ball("ball", 0.1, 2.0, start, thrown), ball("other", 0.1, 1.0, {5, 0, 9}, Vector3d::Zero())}, 0.8, kEarth);
+  const std::vector<engines::Callback> callbacks{{0.37, {0}, [&](int, RigidBodyState& state) { state.momentum_world = 2.0 * turned; }},
+                                                 {0.8, {0}, [](int, RigidBodyState& state) { state.momentum_world = Vector3d(1, 1, 1); }},
+                                                 {0.8, {0, 1}, [](int, RigidBodyState& state) { state.momentum_world *= 3.0; }}};
+  const Vector3d at_turn = start + 0.37 * thrown + 0.5 * 0.37 * 0.37 * kEarth, at_end = at_turn + 0.43 * turned + 0.5 * 0.43 * 0.43 * kEarth;
+  for (const char* engine : {"rd", "ordered", "ca", "tw"}) {
+    const Trajectory run = run_with_callbacks(engine, scene, callbacks);
+    ASSERT_EQ(run.events.size(), 4U) << engine;
+    const double times[] = {0.37, 0.8, 0.8, 0.8};
+    const int bodies[] = {0, 0, 0, 1};
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_EQ(run.events[k].kind, EventKind::kControl) << engine;
+      EXPECT_EQ(run.events[k].time, times[k]) << engine;
+      EXPECT_EQ(run.events[k].body_a, bodies[k]) << engine;
+    }
+    // 200 steps of parabolas, which every method of order 2 follows to roundings of 5 m.
+    EXPECT_LT((run.events[0].point_world - at_turn).norm(), 1e-12) << engine;
+    EXPECT_LT((run.frames.back().poses[0].com_world - at_end).norm(), 1e-12) << engine;
+    EXPECT_EQ(run.frames.back().time, 0.8) << engine;
+    EXPECT_LT((run.frames.back().poses[0].velocity_world - Vector3d(1.5, 1.5, 1.5)).norm(), 1e-15) << engine;   // of 2 kg
+    EXPECT_EQ(run.counters.counts.at("discontinuities"), 3U) << engine;   // ball 0 once at the end, ball 1 once
+  }
+}
+
+// Who rests, lies or sleeps gets up.
+TEST(Callback, SetsWhatLiesInMotionInTheWorldOfAllBodies) {
+  const auto kick = [](int, RigidBodyState& state) { state.momentum_world.z() = 2.0; };
+  scene::Scene resting = scene_of({plane("floor", {0, 0, 0}, {0, 0, 1}), ball("ball", 0.1, 1.0, {0, 0, 0.1}, Vector3d::Zero())}, 1.3, kEarth);
+  resting.bodies[1].restitution = 0.0;
+  scene::Scene lying = resting, asleep = resting;
+  lying.contact = scene::ContactSpec{};
+  asleep.contact = lying.contact;
+  asleep.contact->sleep = true;
+  for (const scene::Scene& scene : {resting, lying, asleep}) {
+    const Trajectory run = run_with_callbacks("rd", scene, {{1.0, {1}, kick}});
+    ASSERT_EQ(run.stopped_by, "");
+    // 1.3 s is 0.3 s after the kick: 0.1 + 2 * 0.3 - 9.81 * 0.09 / 2 = 0.25855 m. The floor gives way by a contact's shell at most.
+    EXPECT_NEAR(run.frames.back().poses[1].com_world.z(), 0.1 + 2.0 * 0.3 - 0.5 * 9.81 * 0.09, 1e-5);
+    EXPECT_EQ(scene.contact && scene.contact->sleep, run.counters.counts.at("bodies_put_to_sleep") > 0);
+  }
+}
+
+// Links, contacts, free flight: the same events in the same order, at the same times as far as steps allow.
+TEST(Callback, AgreesInEveryEngine) {
+  const scene::Scene scene = pendula_and_balls(4, 0.5);
+  const std::vector<engines::Callback> callbacks{{0.1234, {0, 1, 4}, [](int body, RigidBodyState& state) { state.momentum_world += Vector3d(0.02 * body, 0.3, 0); }},
+                                                 {0.1234, {2}, [](int, RigidBodyState& state) { state.momentum_world.x() -= 0.2; }},
+                                                 {0.25, {3, 5}, [](int, RigidBodyState& state) { state.momentum_world.z() += 0.2; }}};
+  const Trajectory reference = run_with_callbacks("ordered", scene, callbacks);
+  for (const char* engine : {"ca", "tw"}) EXPECT_EQ(difference(reference, run_with_callbacks(engine, scene, callbacks)), "") << engine;
+  const Trajectory rd = run_with_callbacks("rd", scene, callbacks);
+  ASSERT_EQ(rd.events.size(), reference.events.size());
+  ASSERT_GE(rd.events.size(), 10U);
+  for (std::size_t k = 0; k < rd.events.size(); ++k) {
+    EXPECT_EQ(rd.events[k].kind, reference.events[k].kind) << k;
+    EXPECT_EQ(rd.events[k].body_a, reference.events[k].body_a) << k;
+    EXPECT_EQ(rd.events[k].body_b, reference.events[k].body_b) << k;
+    EXPECT_NEAR(rd.events[k].time, reference.events[k].time, 1e-6) << k;   // s: as where no callback acts, below
+  }
+  for (std::size_t i = 0; i < rd.bodies.size(); ++i) EXPECT_LT((rd.frames.back().poses[i].com_world - reference.frames.back().poses[i].com_world).norm(), 1e-5) << rd.bodies[i].name;   // m
+}
+
+TEST(Callback, OnWhatCannotMoveIsRefused) {
+  const scene::Scene scene = scene_of({plane("floor", {0, 0, 0}, {0, 0, 1}), ball("ball", 0.1, 1.0, {0, 0, 1}, Vector3d::Zero())}, 0.1, kEarth);
+  for (const char* engine : {"rd", "tw"}) EXPECT_THROW(run_with_callbacks(engine, scene, {{0.05, {0}, [](int, RigidBodyState&) {}}}), PreconditionError) << engine;
 }
 
 // ---- As a world of all bodies does it --------------------------------------------------------------------------------------

@@ -19,11 +19,7 @@ FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptio
     : laws_(guarded(laws)), step_(options.step_s.value_or(scene.step_s)), duration_(options.duration_s.value_or(scene.duration_s)), rate_(options.frame_rate_hz),
       world_(scene, options.engine, laws_, {step_, scene.rest_speed_m_s}), impacts_(world_, laws_.find_impact_time, step_),
       meetings_(world_, laws_, {scene.rest_speed_m_s, kMicroInterval * step_}), sink_(sink), on_membership_(options.on_membership), callbacks_(options.callbacks) {
-  for (std::size_t k = 0; k < callbacks_.size(); ++k) {
-    require(!callbacks_[k].bodies.empty() && std::is_sorted(callbacks_[k].bodies.begin(), callbacks_[k].bodies.end()) && (k == 0 || callbacks_[k - 1].time <= callbacks_[k].time),
-            "callbacks come in order of time, each with its bodies in order");
-    callback_keys_.push_back({callbacks_[k].time, static_cast<std::uint32_t>(k), EventClass::kCallback, callbacks_[k].bodies.front(), -1});
-  }
+  for (std::size_t k = 0; k < callbacks_.size(); ++k) callback_keys_.push_back({callbacks_[k].time, static_cast<std::uint32_t>(k), EventClass::kCallback, callbacks_[k].bodies.front(), -1});
   if (!world_.processes()) return;
   refuse_unstable_steps(world_.world(), laws_, {step_, duration_}, scene.file.empty() ? scene.name : scene.file.string(), counters.notices);
   links_ = std::make_unique<LinkMeasures>(world_, laws_);

@@ -1,0 +1,91 @@
+// tumble grade and tumble audit of the scheduler's assignment, as people run them, on one submission and one known-wrong solution.
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "framework/grading/run_program.h"
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kSolutions = fs::path(TUMBLE_SOURCE_DIR) / "solutions_private/a4_timewarp";
+
+class GradingOfTimewarp : public ::testing::Test {
+ protected:
+  GradingOfTimewarp() {
+    std::string name = (fs::temp_directory_path() / "tumble-grade-a4-XXXXXX").string();
+    root = ::mkdtemp(name.data());
+    ::setenv("TUMBLE_ROOT", TUMBLE_SOURCE_DIR, 1);
+  }
+  ~GradingOfTimewarp() override {
+    std::error_code ignored;
+    fs::remove_all(root, ignored);
+  }
+  ProgramOutcome type(std::vector<std::string> words) const {
+    words.insert(words.begin(), std::string(TUMBLE_BINARY_DIR) + "/bin/tumble");
+    return run_program(words, Output::kCaptured, 200.0);
+  }
+  fs::path root;
+};
+
+// Half right: some points and not all; each lost one by a test whose story is kept.
+TEST_F(GradingOfTimewarp, AFlawedSubmissionGetsPartOfThePointsAndAStoryForEachItLoses) {
+  fs::create_directories(root / "in/flawed");
+  fs::copy_file(kSolutions / "flawed_submission/a4_timewarp.cpp", root / "in/flawed/a4_timewarp.cpp");
+  const ProgramOutcome outcome = type({"grade", "a4", (root / "in").string(), "--out", (root / "out").string(), "--no-media", "--jobs", "1"});
+  ASSERT_EQ(outcome.code, 0) << outcome.printed;
+  std::ifstream file(root / "out/flawed/results.json");
+  const nlohmann::json page = nlohmann::json::parse(file);
+  EXPECT_EQ(page.at("extra_data").at("state"), "judged");
+  double sum = 0.0, possible = 0.0;
+  for (const nlohmann::json& test : page.at("tests")) {
+    sum += test.at("score").get<double>();
+    possible += test.at("max_score").get<double>();
+    const bool is_right = test.at("extra_data").at("verdict") == "right";
+    EXPECT_EQ(is_right, test.at("score") == test.at("max_score")) << test.at("name");
+    EXPECT_TRUE(is_right || !test.at("output").get<std::string>().empty()) << test.at("name");
+  }
+  EXPECT_EQ(possible, 100.0);
+  EXPECT_EQ(page.at("score").get<double>(), sum);
+  EXPECT_GT(sum, 20.0);
+  EXPECT_LT(sum, 80.0);
+}
+
+// One slip is caught, by a story that names it; no right solution is accused.
+TEST_F(GradingOfTimewarp, AnAuditCatchesASlipByNameAndAccusesNobodyElse) {
+  fs::create_directories(root / "wrong");
+  std::vector<fs::path> slips;   // the first by name will do
+  for (const auto& entry : fs::directory_iterator(kSolutions / "mutants")) slips.push_back(entry.path());
+  ASSERT_FALSE(slips.empty());
+  const fs::path slip = *std::min_element(slips.begin(), slips.end());
+  fs::copy_file(slip, root / "wrong" / slip.filename());
+  const ProgramOutcome outcome = type({"audit", "a4", "--mutants", (root / "wrong").string(), "--json"});
+  ASSERT_EQ(outcome.code, 0) << outcome.printed;
+  const nlohmann::json page = nlohmann::json::parse(outcome.printed.substr(outcome.printed.find("[\n")));
+  int wrong = 0, right = 0;
+  for (const nlohmann::json& result : page) {
+    (result.at("right").get<bool>() ? right : wrong) += 1;
+    EXPECT_EQ(result.at("fault"), "") << result;
+    EXPECT_TRUE(result.at("as_it_should").get<bool>()) << result;
+    if (result.at("right").get<bool>()) {
+      EXPECT_EQ(result.at("score"), result.at("possible")) << result;
+      continue;
+    }
+    EXPECT_TRUE(result.at("named").get<bool>()) << result;
+    EXPECT_FALSE(result.at("caught_by").empty()) << result;
+    EXPECT_LT(result.at("score"), result.at("possible")) << result;
+  }
+  EXPECT_EQ(wrong, 1);
+  EXPECT_GE(right, 2);   // the reference, and one that goes about it otherwise
+}
+
+}  // namespace
+}  // namespace tumble::grading
