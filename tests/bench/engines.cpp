@@ -1,6 +1,6 @@
 // What each engine pays for the same scenes. Without words: all figures that timewarp is judged by, one table, one picture each,
 // out/bench/engines.html (engine_figures.cpp), and where each engine's time went (engine_profiles.cpp); some ten minutes.
-//   bench_engines --only "threads"   one chapter of it: one body and two, collisions, growth, threads, the paper's scenes
+//   bench_engines --only "threads"   one chapter of it: one body and two, collisions, growth, threads, the paper's scenes, the heap
 //   bench_engines --scene NAME [--n N,N,...] [--engines rd,ca,tw] [--duration-s T]
 // prints one row a size and engine; ratios are of times in this very run. rd_auto is rd in closed form, as the other two go. tw2 is timewarp
 // on two threads: then all times of the table are by the clock, on a machine that has nothing else to do.

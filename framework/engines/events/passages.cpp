@@ -10,14 +10,13 @@
 namespace tumble::engines {
 namespace {
 
-constexpr std::size_t kMachines = 512;   // small worlds that are kept for another time
 constexpr int kMostIdleSteps = 1000;     // in a row without progress of time
 constexpr double kNoStep = 1e-9;         // of the step: a shorter rest of it is taken with the next one
 
 }  // namespace
 
 Passages::Passages(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules)
-    : whole_(whole), shape_of_(std::move(shape_of)), laws_(laws), rules_(rules) {
+    : whole_(whole), entries_(whole), shape_of_(std::move(shape_of)), laws_(laws), rules_(rules) {
   if (!whole_.contact) return;
   for (int i = 0; i < static_cast<int>(whole_.bodies.size()); ++i)
     if (whole_.bodies[i].immovable() && whole_.bodies[i].collides) obstacles_.push_back(i);
@@ -32,17 +31,19 @@ Passages::Machine& Passages::machine_of(const std::vector<int>& members, int sti
     const std::lock_guard lock(mutex_);
     const auto known = machines_.find({members, still});
     if (known != machines_.end() && known->second.world) return known->second;
-    if (machines_.size() > kMachines && !is_shared_)
+    if (machines_.size() > clear_at_ && !is_shared_) {
       std::erase_if(machines_, [this](const auto& old) {
         if (old.second.users > 0) return false;
         past_.add(old.second.counters);
         return true;
       });
+      clear_at_ = std::max(kMachines, 2 * machines_.size());   // where most are in use, looking at all for each new one would take its square
+    }
     machine = &machines_[{members, still}];
   }
   std::vector<int> immovable = obstacles_;
   if (still >= 0) immovable.push_back(still);
-  machine->world = std::make_unique<ProcessWorld>(whole_, shape_of_, laws_, rules_, machine->counters, members, immovable);
+  machine->world = std::make_unique<ProcessWorld>(whole_, entries_, shape_of_, laws_, rules_, machine->counters, members, immovable);
   return *machine;
 }
 

@@ -114,7 +114,10 @@ class Passages {
   void take_step(Passage& passage);
   std::string names(const std::vector<int>& members) const;
 
+  static constexpr std::size_t kMachines = 512;   // small worlds that are kept for another time
+
   const World& whole_;
+  const EntriesByBody entries_;
   ShapeOf shape_of_;
   std::function<bool(const ProcessState&)> falls_apart_;
   const Laws& laws_;
@@ -122,6 +125,7 @@ class Passages {
   std::vector<int> obstacles_;              // immovable ones that lasting contacts may touch
   std::map<std::pair<std::vector<int>, int>, Machine> machines_;
   StableTable<std::unique_ptr<Passage>> passages_;
+  std::size_t clear_at_ = kMachines;        // of machines_: those that nobody uses are thrown away
   RunCounters past_;                        // of small worlds that are gone
   std::mutex mutex_;                        // of machines_, of numbers of passages, and of who holds them
   bool is_shared_ = false;

@@ -38,8 +38,8 @@ collision::MotionState ProcessStep::motion_at(std::size_t member, double t, cons
   return {{state.com_world, state.world_from_body}, inertia.inverse_mass * state.momentum_world, omega_of(state, inertia)};
 }
 
-ProcessWorld::ProcessWorld(const World& whole, const ShapeOf& shape_of, const Laws& laws, ProcessRules rules, RunCounters& counters, const std::vector<int>& members, const std::vector<int>& still)
-    : laws_(laws), rules_(rules), counters_(counters), members_(members), part_(part_of(whole, members, still)), moving_(part_.world, laws, counters, shapes_of(part_, shape_of)),
+ProcessWorld::ProcessWorld(const World& whole, const EntriesByBody& entries, const ShapeOf& shape_of, const Laws& laws, ProcessRules rules, RunCounters& counters, const std::vector<int>& members, const std::vector<int>& still)
+    : laws_(laws), rules_(rules), counters_(counters), members_(members), part_(part_of(whole, entries, members, still)), moving_(part_.world, laws, counters, shapes_of(part_, shape_of)),
       meetings_(moving_, laws, counters), impacts_(laws, {rules.rest_speed, kMicroInterval * rules.step}, counters) {
   if (!built::kContact || !moving_.world().contact) return;
   impacts_.use_contact_rules(rules.rest_speed, moving_.world().contact->impact_law);

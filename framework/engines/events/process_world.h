@@ -65,7 +65,7 @@ struct ProcessStep {
 class ProcessWorld {
  public:
   /// @param still  immovable bodies that members may touch here, besides those that links end at
-  ProcessWorld(const World& whole, const ShapeOf& shape_of, const Laws& laws, ProcessRules rules, RunCounters& counters, const std::vector<int>& members, const std::vector<int>& still);
+  ProcessWorld(const World& whole, const EntriesByBody& entries, const ShapeOf& shape_of, const Laws& laws, ProcessRules rules, RunCounters& counters, const std::vector<int>& members, const std::vector<int>& still);
   ProcessWorld(const ProcessWorld&) = delete;
   ProcessWorld& operator=(const ProcessWorld&) = delete;
 

@@ -16,65 +16,110 @@ WorldBody body_of(const WorldBody& whole) {
   return body;
 }
 
+void note(std::vector<std::vector<int>>& places, int body, std::size_t index) {
+  if (body < 0) return;
+  std::vector<int>& its = places[static_cast<std::size_t>(body)];
+  if (its.empty() || its.back() != static_cast<int>(index)) its.push_back(static_cast<int>(index));
+}
+
+// Of all members together, ascending: as the whole has them.
+std::vector<int> of_members(const std::vector<std::vector<int>>& places, const std::vector<int>& members) {
+  std::vector<int> indices;
+  for (const int body : members) indices.insert(indices.end(), places[static_cast<std::size_t>(body)].begin(), places[static_cast<std::size_t>(body)].end());
+  std::sort(indices.begin(), indices.end());
+  indices.erase(std::unique(indices.begin(), indices.end()), indices.end());
+  return indices;
+}
+
 template <class Link>
-void take_links(const std::vector<Link>& whole, const std::vector<int>& members, const std::vector<int>& bodies, std::vector<Link>& part, std::vector<int>* indices) {
-  for (std::size_t k = 0; k < whole.size(); ++k) {
-    if (place_of(members, whole[k].a.body) < 0 && place_of(members, whole[k].b.body) < 0) continue;
-    Link link = whole[k];
+void take_links(const std::vector<Link>& whole, const std::vector<int>& indices, const std::vector<int>& bodies, std::vector<Link>& part) {
+  for (const int k : indices) {
+    Link link = whole[static_cast<std::size_t>(k)];
     for (Anchor* end : {&link.a, &link.b})
       if (end->body >= 0) end->body = place_of(bodies, end->body);
     part.push_back(std::move(link));
-    if (indices) indices->push_back(static_cast<int>(k));
   }
-}
-
-std::vector<int> bodies_of_part(const World& whole, const std::vector<int>& members, const std::vector<int>& still) {
-  std::vector<int> bodies = members;
-  bodies.insert(bodies.end(), still.begin(), still.end());
-  const auto take_ends = [&](const auto& links) {
-    for (const auto& link : links)
-      for (const auto& [end, other] : {std::pair{link.a.body, link.b.body}, std::pair{link.b.body, link.a.body}})
-        if (place_of(members, end) >= 0 && other >= 0) bodies.push_back(other);
-  };
-  take_ends(whole.springs);
-  take_ends(whole.rods);
-  take_ends(whole.joints);
-  std::sort(bodies.begin(), bodies.end());
-  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-  return bodies;
 }
 
 }  // namespace
 
-WorldPart part_of(const World& whole, const std::vector<int>& members, const std::vector<int>& still) {
-  WorldPart part;
-  part.bodies = bodies_of_part(whole, members, still);
-  World& world = part.world;
-  for (const int body : part.bodies) world.bodies.push_back(body_of(whole.bodies[body]));
-  for (const int member : members) part.members.push_back(place_of(part.bodies, member));
-  world.gravity_world = whole.gravity_world;
-  world.contact = whole.contact;
-  world.stabilisation = whole.stabilisation;
-  std::vector<int> joints;
-  take_links(whole.springs, members, part.bodies, world.springs, nullptr);
-  take_links(whole.rods, members, part.bodies, world.rods, nullptr);
-  take_links(whole.joints, members, part.bodies, world.joints, &joints);
-  for (const Drag& drag : whole.drags)
-    if (const int body = place_of(members, drag.body); body >= 0) world.drags.push_back({part.members[body], drag.linear, drag.angular});
-  for (std::size_t k = 0; k < whole.motors.size(); ++k)
-    if (const int joint = place_of(joints, whole.motors[k].joint); joint >= 0) {
-      world.motors.push_back({joint, whole.motors[k].law});
-      part.motors.push_back(static_cast<int>(k));
-    }
-  for (std::size_t k = 0; k < whole.point_forces.size(); ++k)
-    if (const int body = place_of(members, whole.point_forces[k].body); body >= 0) {
-      world.point_forces.push_back(whole.point_forces[k]);
-      world.point_forces.back().body = part.members[body];
-      part.forces.push_back(static_cast<int>(k));
-    }
-  for (const auto& [a, b] : whole.apart)
-    if (const int i = place_of(part.bodies, a), j = place_of(part.bodies, b); i >= 0 && j >= 0) world.apart.emplace_back(i, j);
-  return part;
+EntriesByBody::EntriesByBody(const World& whole) {
+  for (Places* places : {&springs_, &rods_, &joints_, &drags_, &forces_, &apart_}) places->resize(whole.bodies.size());
+  motors_.resize(whole.joints.size());
+  const auto note_ends = [](const auto& links, Places& places) {
+    for (std::size_t k = 0; k < links.size(); ++k)
+      for (const int body : {links[k].a.body, links[k].b.body}) note(places, body, k);
+  };
+  note_ends(whole.springs, springs_);
+  note_ends(whole.rods, rods_);
+  note_ends(whole.joints, joints_);
+  for (std::size_t k = 0; k < whole.drags.size(); ++k) note(drags_, whole.drags[k].body, k);
+  for (std::size_t k = 0; k < whole.point_forces.size(); ++k) note(forces_, whole.point_forces[k].body, k);
+  for (std::size_t k = 0; k < whole.apart.size(); ++k)
+    for (const int body : {whole.apart[k].first, whole.apart[k].second}) note(apart_, body, k);
+  for (std::size_t k = 0; k < whole.motors.size(); ++k) note(motors_, whole.motors[k].joint, k);
 }
+
+struct PartMaker {
+  const World& whole;
+  const EntriesByBody& entries;
+  const std::vector<int>& members;
+
+  WorldPart make(const std::vector<int>& still) const {
+    WorldPart part;
+    World& world = part.world;
+    const std::vector<int> springs = of_members(entries.springs_, members), rods = of_members(entries.rods_, members), joints = of_members(entries.joints_, members);
+    part.bodies = members;
+    part.bodies.insert(part.bodies.end(), still.begin(), still.end());
+    add_ends(whole.springs, springs, part.bodies);
+    add_ends(whole.rods, rods, part.bodies);
+    add_ends(whole.joints, joints, part.bodies);
+    std::sort(part.bodies.begin(), part.bodies.end());
+    part.bodies.erase(std::unique(part.bodies.begin(), part.bodies.end()), part.bodies.end());
+    for (const int body : part.bodies) world.bodies.push_back(body_of(whole.bodies[static_cast<std::size_t>(body)]));
+    for (const int member : members) part.members.push_back(place_of(part.bodies, member));
+    world.gravity_world = whole.gravity_world;
+    world.contact = whole.contact;
+    world.stabilisation = whole.stabilisation;
+    take_links(whole.springs, springs, part.bodies, world.springs);
+    take_links(whole.rods, rods, part.bodies, world.rods);
+    take_links(whole.joints, joints, part.bodies, world.joints);
+    take_pushes(joints, part);
+    return part;
+  }
+
+ private:
+  template <class Link>
+  static void add_ends(const std::vector<Link>& links, const std::vector<int>& indices, std::vector<int>& bodies) {
+    for (const int k : indices)
+      for (const int body : {links[static_cast<std::size_t>(k)].a.body, links[static_cast<std::size_t>(k)].b.body})
+        if (body >= 0) bodies.push_back(body);
+  }
+
+  void take_pushes(const std::vector<int>& joints, WorldPart& part) const {
+    World& world = part.world;
+    const auto in_part = [&](int body) { return place_of(part.bodies, body); };
+    for (const int k : of_members(entries.drags_, members)) {
+      const Drag& drag = whole.drags[static_cast<std::size_t>(k)];
+      world.drags.push_back({in_part(drag.body), drag.linear, drag.angular});
+    }
+    part.motors = of_members(entries.motors_, joints);
+    for (const int k : part.motors) {
+      const auto& motor = whole.motors[static_cast<std::size_t>(k)];
+      world.motors.push_back({place_of(joints, motor.joint), motor.law});
+    }
+    part.forces = of_members(entries.forces_, members);
+    for (const int k : part.forces) {
+      world.point_forces.push_back(whole.point_forces[static_cast<std::size_t>(k)]);
+      world.point_forces.back().body = in_part(world.point_forces.back().body);
+    }
+    for (const int k : of_members(entries.apart_, members)) {
+      const auto& [a, b] = whole.apart[static_cast<std::size_t>(k)];
+      if (in_part(a) >= 0 && in_part(b) >= 0) world.apart.emplace_back(in_part(a), in_part(b));
+    }
+  }
+};
+
+WorldPart part_of(const World& whole, const EntriesByBody& entries, const std::vector<int>& members, const std::vector<int>& still) { return PartMaker{whole, entries, members}.make(still); }
 
 }  // namespace tumble::engines

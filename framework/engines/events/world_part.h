@@ -7,6 +7,18 @@
 
 namespace tumble::engines {
 
+/// Which entries of a world name a body: found once, so that each part costs what it holds and not what the world does.
+class EntriesByBody {
+ public:
+  explicit EntriesByBody(const World& whole);
+
+ private:
+  friend struct PartMaker;
+  using Places = std::vector<std::vector<int>>;   // by body: indices, ascending
+  Places springs_, rods_, joints_, drags_, forces_, apart_;
+  Places motors_;                                 // by joint
+};
+
 struct WorldPart {
   World world;
   std::vector<int> bodies;          // by body of the part: its index in the whole, ascending
@@ -14,9 +26,11 @@ struct WorldPart {
   std::vector<int> motors, forces;  // by motor and point force of the part: its index in the whole
 };
 
+/// @param entries  of this very world
 /// @param members  movable bodies, ascending, with everything that a link ties to them
 /// @param still    immovable bodies to take in besides those that links end at
+/// @post of the pairs that do not collide those with a member are there: two that are immovable never do
 /// @post solids of the part are points: whoever moves it has the whole's solids
-WorldPart part_of(const World& whole, const std::vector<int>& members, const std::vector<int>& still);
+WorldPart part_of(const World& whole, const EntriesByBody& entries, const std::vector<int>& members, const std::vector<int>& still);
 
 }  // namespace tumble::engines
