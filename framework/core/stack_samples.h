@@ -7,6 +7,7 @@
 /// What is looked at pays under a percent for it and knows nothing of it, so that short functions can be told apart, which no clock around
 /// them could. Functions that the compiler has put into their callers count as these. Intervals are the system's, 1 to 10 ms: a share p of N
 /// samples is known to sqrt(p (1 - p) / N).
+/// Meanwhile the system's clock of the process's CPU time goes by these ticks: a thread's own stays as fine as it is.
 /// Linux only: a timer of CPU time (setitimer), its signal, the functions' names from the program's own files (ELF).
 #pragma once
 
