@@ -20,18 +20,16 @@ Look look_of(Outcome outcome) {
   }
 }
 
-// With a sign of its own, for those who do not see the colour; not to be broken into lines.
+// With a sign of its own, for those who do not see the colour; the two stay on one line.
 std::string marked(Outcome outcome) {
-  std::string words;
+  std::string sign;
   switch (outcome) {
-    case Outcome::kHolds: words = "\u2713 "; break;
-    case Outcome::kFailsAsItMust: words = "\u2717 "; break;
-    case Outcome::kNotRun: words = "\u2013 "; break;
-    default: words = "\u25a0 ";
+    case Outcome::kHolds: sign = "\u2713"; break;
+    case Outcome::kFailsAsItMust: sign = "\u2717"; break;
+    case Outcome::kNotRun: sign = "\u2013"; break;
+    default: sign = "\u25a0";
   }
-  std::string whole;
-  for (const char c : words + word_of(outcome)) whole += c == ' ' ? std::string("\u00a0") : std::string(1, c);
-  return whole;
+  return sign + "\u00a0" + word_of(outcome);
 }
 
 std::string anchor_of(const BatteryRow& row) { return "case-" + std::to_string(row.row); }

@@ -12,7 +12,7 @@ constexpr const char* kPolicy =
     "base-uri 'none'; form-action 'none'";
 
 // A table of more columns stands closer, so that it fits the page and paper.
-constexpr std::size_t kManyColumns = 8;
+constexpr std::size_t kManyColumns = 7;
 
 // Colours pass 4.5:1 against their ground and differ in lightness, not in hue alone.
 constexpr const char* kStyle = R"(

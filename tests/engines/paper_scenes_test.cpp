@@ -131,6 +131,18 @@ TEST(FirstCollisions, OfARobotIsItsThrowWhichAgrees) {
   }
 }
 
+// rd steps both robots at once: where the block in one hand begins to slide, the other robot's step is cut too. How a held block slides is right to
+// the step only, so that this moves it: by no more than the step itself is wrong.
+TEST(FirstCollisions, OfTwoRobotsAgreeAsFarAsTheirStepIsRight) {
+  scene::Scene scene = sized("robots", 2, 0.35), finer = scene;
+  finer.step_s = scene.step_s / 8;   // a quarter changes nothing: contacts of links go by shorter steps of their own
+  const Trajectory tw = run_with("tw", scene);
+  const double of_the_step = farthest_apart(tw, run_with("tw", finer), scene.duration_s);
+  EXPECT_LT(of_the_step, 1e-3);   // m
+  EXPECT_EQ(difference(tw, run_with("ca", scene)), "");
+  EXPECT_LT(farthest_apart(tw, run_with("rd", scene), scene.duration_s), of_the_step);
+}
+
 Trajectory run_on(int threads, const scene::Scene& scene, const engines::TimewarpTrial& trial, const std::vector<engines::Callback>& callbacks = {}, const std::string& engine = "tw") {
   engines::RunOptions options;
   options.engine = engine;
