@@ -81,11 +81,11 @@ double MovingWorld::look() {
   return next;
 }
 
-bool MovingWorld::keep_constraints(const std::vector<Event>& impacts) {
+bool MovingWorld::keep_constraints(const std::vector<Event>& events) {
   bool any = false;
   for (LinkedBodies& group : linked_) {
     const auto ours = [&](int body) { return body >= 0 && group_of_[body] == static_cast<int>(&group - linked_.data()); };
-    if (!group.has_constraints() || std::none_of(impacts.begin(), impacts.end(), [&](const Event& e) { return ours(e.body_a) || ours(e.body_b); })) continue;
+    if (!group.has_constraints() || std::none_of(events.begin(), events.end(), [&](const Event& e) { return ours(e.body_a) || ours(e.body_b); })) continue;
     group.project_velocities(states_, time_);
     any = true;
   }

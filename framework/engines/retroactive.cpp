@@ -126,14 +126,17 @@ void RetroactiveRun::run_callbacks() {
   if (!built::kCallback) return;
   for (; called_ < callbacks_.size() && callbacks_[called_].time <= moving_.time(); ++called_) {
     ++counters_.callback_calls;
+    std::vector<Event> events;
     for (const int body : callbacks_[called_].bodies) {
       if (has_sleepers()) sleepers_->wake(body, -1);
       if (moving_.resting(body)) moving_.wake(body);
       RigidBodyState state = moving_.state(body);
       callbacks_[called_].act(body, state);
       moving_.set_state(body, state);
-      sink_.event({moving_.time(), EventKind::kControl, body, -1, state.com_world, Vector3d::UnitZ(), 0.0, 0.0});
+      events.push_back({moving_.time(), EventKind::kControl, body, -1, state.com_world, Vector3d::UnitZ(), 0.0, 0.0});
     }
+    moving_.keep_constraints(events);
+    for (const Event& event : events) sink_.event(event);
   }
 }
 

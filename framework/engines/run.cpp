@@ -5,11 +5,14 @@
 
 #include <fmt/format.h>
 
+#include <fmt/format.h>
+
 #include "framework/core/error.h"
 #include "framework/core/nearest_word.h"
 #include "framework/dynamics/world.h"
 #include "framework/engines/events/advancement.h"
 #include "framework/engines/events/ordered.h"
+#include "framework/engines/guarded_laws.h"
 #include "framework/engines/local_origin.h"
 #include "framework/engines/retroactive.h"
 #include "framework/engines/run_counters.h"
@@ -79,6 +82,26 @@ Engine engine_of(const RunOptions& options, const Laws& laws) {
   throw UserError("--engine " + options.engine, "there is no engine of that name." + did_you_mean(options.engine, words), "Use one of these: " + known + ".");
 }
 
+// What a callback sees and may do is the same in every engine: places of the world, of which none is moved; and what goes wrong names it and the body.
+std::vector<Callback> guarded(const std::vector<Callback>& callbacks, const scene::Scene& scene, const Vector3d& origin_world) {
+  std::vector<Callback> all = callbacks;
+  for (Callback& callback : all)
+    callback.act = [act = callback.act, time = callback.time, &scene, origin_world](int body, RigidBodyState& state) {
+      const auto who = [&] { return fmt::format("body '{}': the callback at {:.6g} s", scene.bodies[static_cast<std::size_t>(body)].name, time); };
+      RigidBodyState seen = state;
+      seen.com_world += origin_world;
+      try {
+        act(body, seen);
+      } catch (const std::exception& error) {
+        throw StoppedRun(who() + " failed: " + error.what());
+      }
+      state.momentum_world = seen.momentum_world;
+      state.angular_momentum_world = seen.angular_momentum_world;
+      if (!pack(state).allFinite()) throw StoppedRun(who() + " gave it a state that is not a number");
+    };
+  return all;
+}
+
 }  // namespace
 
 const std::vector<std::pair<std::string, std::string>>& engine_words() {
@@ -116,6 +139,7 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& as
   DiscontinuityCount counted(sink);
   counted.begin(info, bodies);
   const Vector3d origin_world = local_origin(scene);
+  options.callbacks = guarded(asked.callbacks, scene, origin_world);
   if (origin_world.isZero(0.0)) return engine(scene, laws, options, counted);
   const scene::Scene local = seen_from(origin_world, scene);
   double mass = 0.0;

@@ -43,10 +43,26 @@ double largest_stable_step(const Laws& laws, double frequency, double damping, d
   return largest_stable_step([&](double h) { return amplification(laws, frequency, damping, h); }, frequency, step);
 }
 
-// Of y' = -rate y, in a step.
+// Of v' = -rate v, in a step; with the place beside it, for methods that treat places and velocities differently.
 double amplification_of_decay(const Laws& laws, double rate, double step) {
-  const OdeFunction decay = [&](double, const VectorXd& y) { return VectorXd(-rate * y); };
-  return std::abs(laws.integrate_step(decay, 0.0, VectorXd::Ones(1), step)[0]);
+  const OdeFunction decay = [&](double, const VectorXd& y) {
+    VectorXd dy(2);
+    dy << y[1], -rate * y[1];
+    return dy;
+  };
+  VectorXd y = VectorXd::Zero(2);
+  y[1] = 1.0;
+  return std::abs(laws.integrate_step(decay, 0.0, y, step)[1]);
+}
+
+// What a joint holds cannot grow, and what it leaves free goes slower than the body alone: its rates say nothing.
+bool is_jointed(const World& world, int body) {
+  return std::any_of(world.joints.begin(), world.joints.end(), [&](const JointLink& joint) { return joint.a.body == body || joint.b.body == body; });
+}
+
+bool is_held_beside_its_centre(const World& world, int body) {
+  const auto beside = [&](const Anchor& anchor) { return anchor.body == body && !anchor.point_body.isZero(0.0); };
+  return std::any_of(world.rods.begin(), world.rods.end(), [&](const RodLink& rod) { return beside(rod.a) || beside(rod.b); });
 }
 
 /// Largest size of the two eigenvalues; they are real where `discriminant` is not negative, else a conjugate pair.
@@ -127,9 +143,10 @@ std::vector<StepLimit> judge_decays(const World& world, const Laws& laws, double
   std::vector<StepLimit> limits;
   for (const Drag& drag : world.drags) {
     const WorldBody& body = world.bodies[drag.body];
-    if (body.immovable()) continue;
+    if (body.immovable() || is_jointed(world, drag.body)) continue;
     const double least_moment = 1.0 / Eigen::SelfAdjointEigenSolver<Matrix3d>(body.inertia.inverse_inertia_body).eigenvalues().maxCoeff();
-    for (const auto& [rate, way] : {std::pair{drag.linear * body.inertia.inverse_mass, "velocity"}, std::pair{drag.angular / least_moment, "turning"}}) {
+    const double turning = is_held_beside_its_centre(world, drag.body) ? 0.0 : drag.angular / least_moment;
+    for (const auto& [rate, way] : {std::pair{drag.linear * body.inertia.inverse_mass, "velocity"}, std::pair{turning, "turning"}}) {
       const auto amplified = [&laws, rate = rate](double h) { return amplification_of_decay(laws, rate, h); };
       if (amplified(step) > 1.0 + kNotAtAll)
         limits.push_back({fmt::format("what the drag of body '{}' takes from its {} ({:.4g} 1/s)", body.name, way, rate), amplified(step), largest_stable_step(amplified, rate, step), "less drag"});
@@ -223,10 +240,12 @@ void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfAR
   // A law that fails here fails in the first step too, which says of whom.
 }
 
-void tell_of_unstable_rods(const World& world, const std::vector<double>& tensions, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices) {
+void tell_of_unstable_rods(const World& world, const std::vector<double>& tensions, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices) try {
   const auto limit = judge_rods(world, tensions, laws, steps.step);
   // A method that lengthens every swing is told of by what it does to energy.
   if (limit && limit->largest_step > 0 && growth_over(steps, limit->amplification) > std::log(kRuin)) notices.push_back(words_of(*limit, laws, steps.step) + smaller_steps(*limit));
+} catch (const StoppedRun&) {
+  // As above; and a law that takes whole bodies only can move them nevertheless.
 }
 
 std::optional<Runaway> EnergyWatch::look(const World& world, const std::vector<RigidBodyState>& states) {

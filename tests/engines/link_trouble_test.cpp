@@ -124,15 +124,16 @@ TEST(LinkTrouble, ACallbackThatLeavesNoNumbersOrThrowsIsNamed) {
   using Act = void (*)(int, RigidBodyState&);
   const std::pair<Act, const char*> wrongs[] = {{[](int, RigidBodyState& state) { state.momentum_world.x() = kNaN; }, "not a number"},
                                                 {[](int, RigidBodyState&) { throw std::runtime_error("no such valve"); }, "no such valve"}};
-  for (const char* engine : {"ordered", "ca"})
-    for (const auto& [act, word] : wrongs) {
-      engines::RunOptions options;
-      options.engine = engine;
-      options.callbacks.push_back({kHalf, {0}, act});
-      scene::Scene scene = bare();
-      scene.duration_s = 1.0;
-      expect_stopped(run_with(scene, reference_laws(), options), {"t = 0.5", "'a'", "callback", word}, 0.45, 0.55);
-    }
+  for (const char* engine : {"rd", "ordered", "ca"})
+    for (const auto& [act, word] : wrongs)
+      for (const double duration : {1.0, kHalf}) {   // and at the very end
+        engines::RunOptions options;
+        options.engine = engine;
+        options.callbacks.push_back({kHalf, {0}, act});
+        scene::Scene scene = bare();
+        scene.duration_s = duration;
+        expect_stopped(run_with(scene, reference_laws(), options), {"t = 0.5", "'a'", "callback", word}, 0.45, 0.55);
+      }
 }
 
 // ---- Energy from nowhere ----------------------------------------------------------------------------------------------------

@@ -9,6 +9,7 @@
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
 #include "framework/engines/events/flight_world.h"
+#include "framework/engines/truths/memory_scene.h"
 #include "tests/engines/event_process_scenes.h"
 #include "tests/engines/reference_laws.h"
 
@@ -289,6 +290,33 @@ TEST(Callback, AgreesInEveryEngine) {
     EXPECT_NEAR(rd.events[k].time, reference.events[k].time, 1e-6) << k;   // s: as where no callback acts, below
   }
   for (std::size_t i = 0; i < rd.bodies.size(); ++i) EXPECT_LT((rd.frames.back().poses[i].com_world - reference.frames.back().poses[i].com_world).norm(), 1e-5) << rd.bodies[i].name;   // m
+}
+
+// A pull along the rod changes nothing, whatever keeps the rod afterwards: as after an impact, velocities are those that links allow.
+TEST(Callback, LeavesLinksAsLongAsTheyAre) {
+  for (const scene::StabilisationKind kind : {scene::StabilisationKind::kNone, scene::StabilisationKind::kBaumgarte, scene::StabilisationKind::kProjection}) {
+    scene::Scene scene = truths::straight_chain({1.0}, 1.0, -Vector3d::UnitZ(), kEarth);
+    scene.stabilisation->kind = kind;
+    scene.duration_s = 1.0;
+    for (const char* engine : {"rd", "ordered", "ca", "tw"}) {
+      const Trajectory run = run_with_callbacks(engine, scene, {{0.5, {0}, [](int, RigidBodyState& state) { state.momentum_world = Vector3d(0, 0, -1); }}});
+      ASSERT_EQ(run.stopped_by, "") << engine;
+      EXPECT_NEAR(run.frames.back().poses[0].com_world.z(), -1.0, 1e-12) << engine;   // m: it hung there at rest
+    }
+  }
+}
+
+// Engines reckon from an origin nearby: who decides by places decides by those of the world. What it does to places is not taken.
+TEST(Callback, SeesPlacesOfTheWorldAndMovesNone) {
+  const Vector3d far(1e6, 0, 0);
+  const scene::Scene scene = scene_of({ball("ball", 0.1, 1.0, far, Vector3d::Zero())}, 0.2);
+  for (const char* engine : {"rd", "ordered", "ca", "tw"}) {
+    const Trajectory run = run_with_callbacks(engine, scene, {{0.1, {0}, [&](int, RigidBodyState& state) {
+                                                                 state.momentum_world = Vector3d(0, (state.com_world - far).norm() < 1e-9 ? 1.0 : -1.0, 0);
+                                                                 state.com_world.setZero();
+                                                               }}});
+    EXPECT_LT((run.frames.back().poses[0].com_world - far - Vector3d(0, 0.1, 0)).norm(), 1e-9) << engine;   // m: an ulp of 10^6 is 1e-10
+  }
 }
 
 TEST(Callback, OnWhatCannotMoveIsRefused) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
+#include "framework/dynamics/methods.h"
 #include "framework/engines/stability.h"
 #include "framework/engines/truths/memory_scene.h"
 #include "tests/engines/reference_laws.h"
@@ -68,6 +69,28 @@ TEST(LargestStep, DragIsRefusedFromTheStepAtWhichItsDecayGrows) {
   expect_limit(dragged(kDrag, 0.0), reference_laws(), kRk4Decay / 100.0, {"drag", "'spoon'", "velocity", "at most 0.02785 s"});
   expect_limit(dragged(0.0, kDrag), euler(), kEulerDecay / 50.0, {"drag", "'spoon'", "turning", "at most 0.04 s"});   // the least moment
   expect_limit(dragged(0.0, kDrag), reference_laws(), kRk4Decay / 50.0, {"drag", "'spoon'", "turning", "at most 0.05571 s"});
+}
+
+// A kick takes (1 - l h) of a velocity; two of half a step, the second by what the first has left, (1 - l h / 2)^2.
+TEST(LargestStep, DragIsRefusedForMethodsThatKickVelocities) {
+  for (const auto& [method, largest] : {std::pair{"symplectic", 2.0}, std::pair{"verlet", 4.0}}) {
+    Laws laws = reference_laws();
+    laws.integrate_step = step_of(method_named(method), 0.0);
+    expect_limit(dragged(50.0, 0.0), laws, largest / 100.0, {"drag", "'spoon'", "velocity"});
+  }
+}
+
+// A bar on a hinge cannot turn about itself, where drag would take its least moment's spin at 750 1/s: 2.7 times what RK4 can follow.
+TEST(LargestStep, OfATurningThatAJointHoldsIsNone) {
+  scene::BodySpec bar = ball("bar", 0.1, 1.0, {0.5, 0, 0}, Vector3d::Zero());
+  bar.inertia_body_kg_m2 = Vector3d(6.67e-5, 0.0833667, 0.0833667).asDiagonal();
+  bar.collides = false;
+  scene::Scene scene = scene_of({bar}, 1.0, Vector3d(0, 0, -9.81));
+  scene.joints.push_back({"pin", scene::JointKind::kHinge, "bar", "", Vector3d::Zero(), Vector3d::UnitY()});
+  scene.drags.push_back({"bar", 0.0, 0.05});
+  EXPECT_EQ(answer(scene, reference_laws(), 1.0 / 120), "");
+  scene.joints.clear();
+  EXPECT_TRUE(holds(answer(scene, reference_laws(), 1.0 / 120), "refused"));
 }
 
 // e'' = -e / T^2 - 2 e' / T dies away at the double rate 1 / T.

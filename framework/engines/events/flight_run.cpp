@@ -93,17 +93,7 @@ Meeting FlightRun::end_of_passage(const EventKey& key, const Flight& flight) con
   return finished(key, world_.processes()->sort(end->after), end->events);
 }
 
-void FlightRun::act_on(const Callback& callback, int body, RigidBodyState& state) const {
-  const auto who = [&] { return fmt::format("at t = {:.6f} s, body {}: the callback at {:.6g} s", callback.time, name(body), callback.time); };
-  try {
-    callback.act(body, state);
-  } catch (const std::exception& error) {
-    throw StoppedRun(who() + " failed: " + error.what());
-  }
-  if (!pack(state).allFinite()) throw StoppedRun(who() + " gave it a state that is not a number");
-}
-
-Meeting FlightRun::call(const EventKey& key, const FlightOf& flight_of) {
+Meeting FlightRun::call(const EventKey& key, const FlightOf& flight_of) try {
   const Callback& callback = callbacks_[key.generation];
   ++counters.callback_calls;
   Processes& processes = world_.all_processes();
@@ -114,12 +104,14 @@ Meeting FlightRun::call(const EventKey& key, const FlightOf& flight_of) {
     const Flight& flight = flight_of(body);
     ProcessState state = processes.state_of(body, flight, flight.passage < 0 ? world_.state(body, flight, key.time) : RigidBodyState{}, key.time);
     for (std::size_t k = 0; k < state.members.size(); ++k)
-      if (std::binary_search(callback.bodies.begin(), callback.bodies.end(), state.members[k])) act_on(callback, state.members[k], state.states[k]);
-    for (BegunFlight& next : processes.sort(state)) begun.push_back(std::move(next));
+      if (std::binary_search(callback.bodies.begin(), callback.bodies.end(), state.members[k])) callback.act(state.members[k], state.states[k]);
+    for (BegunFlight& next : processes.sort(processes.on_constraints(std::move(state)))) begun.push_back(std::move(next));
   }
   for (const int body : callback.bodies) events.push_back({key.time, EventKind::kControl, body, -1, world_.position(body, flight_of(body), key.time), Vector3d::UnitZ(), 0.0, 0.0});
   std::sort(begun.begin(), begun.end(), [](const BegunFlight& a, const BegunFlight& b) { return a.body < b.body; });
   return finished(key, std::move(begun), events);
+} catch (const StoppedRun& stop) {
+  throw StoppedRun(fmt::format("at t = {:.6f} s, {}", key.time, stop.what()));
 }
 
 // Forces are switched at times that stand fast: what is said of it has its place among what is committed, whoever runs.

@@ -46,7 +46,6 @@ class FlightRun {
   /// What a callback does. @param flight_of  the flights that its bodies are on when it acts
   Meeting call(const EventKey& callback, const FlightOf& flight_of);
   /// @throws StoppedRun naming body, time and callback where it fails or leaves no numbers
-  void act_on(const Callback& callback, int body, RigidBodyState& state) const;
 
   /// Commits an impact. @pre keys come in order
   void commit(const EventKey& key, const Event& first, const std::vector<Event>& more);

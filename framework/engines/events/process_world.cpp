@@ -152,6 +152,19 @@ ProcessState ProcessWorld::at_start(const std::vector<RigidBodyState>& states) {
   return save();
 }
 
+ProcessState ProcessWorld::on_constraints(const ProcessState& state) {
+  load(state);
+  for (LinkedBodies& group : moving_.linked_groups()) {
+    std::vector<RigidBodyState> all = moving_.states();
+    group.project_velocities(all, state.time);
+    moving_.stand_at(state.time, all);
+  }
+  ProcessState after = state;   // and all else as it was
+  after.states.clear();
+  for (const int member : part_.members) after.states.push_back(moving_.state(member));
+  return after;
+}
+
 std::vector<Event> ProcessWorld::take_events() {
   std::vector<Event> events = std::move(collector_.events);
   collector_.events.clear();

@@ -74,6 +74,9 @@ class ProcessWorld {
   /// States at the start of the run, on their constraints.
   ProcessState at_start(const std::vector<RigidBodyState>& states);
 
+  /// A state with the velocities that rods and joints allow.
+  ProcessState on_constraints(const ProcessState& state);
+
   /// What happens at one instant.
   struct Change {
     ProcessState after;

@@ -104,6 +104,11 @@ ProcessState Processes::together(const ProcessState& a, const ProcessState& b) {
   return both;
 }
 
+ProcessState Processes::on_constraints(ProcessState state) {
+  const bool is_linked = std::any_of(state.members.begin(), state.members.end(), [&](int body) { return linked_[static_cast<std::size_t>(body)] >= 0; });
+  return is_linked ? passages_.world_of(state.members).on_constraints(state) : state;
+}
+
 std::vector<BodyPair> Processes::ties_of(const ProcessState& state) const {
   std::set<BodyPair> ties;
   for (const int body : state.members)

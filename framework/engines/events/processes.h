@@ -37,6 +37,9 @@ class Processes {
   /// Two processes as one.
   static ProcessState together(const ProcessState& a, const ProcessState& b);
 
+  /// A state whose velocities somebody outside has changed: those that rods and joints allow, as after an impact.
+  ProcessState on_constraints(ProcessState state);
+
   /// What holds the members of a state together: pairs of them that links tie (each to the least of its kind), that touch, or that meet again
   /// within a step or two. Each once, in order.
   std::vector<BodyPair> ties_of(const ProcessState& state) const;

@@ -32,17 +32,6 @@ void ActivePairs::make_buckets(int held, double cell) {
   buckets_.resize(heads);
 }
 
-// Ascending. From the buckets: entries of others are another thread's affair.
-std::vector<int> ActivePairs::all_in_cells() const {
-  std::vector<int> bodies;
-  for (std::size_t head = 0; head <= mask_; ++head)
-    for (std::int32_t at = static_cast<std::int32_t>(head); at >= 0; at = buckets_[static_cast<std::size_t>(at)].next)
-      for (std::int32_t place = 0; place < buckets_[static_cast<std::size_t>(at)].count; ++place) bodies.push_back(buckets_[static_cast<std::size_t>(at)].slots[static_cast<std::size_t>(place)].body);
-  std::sort(bodies.begin(), bodies.end());
-  bodies.erase(std::unique(bodies.begin(), bodies.end()), bodies.end());
-  return bodies;
-}
-
 ActivePairs::SmallBox ActivePairs::small_of(const Box& box) {
   SmallBox small;
   constexpr float kEnd = std::numeric_limits<float>::infinity();

@@ -131,9 +131,14 @@ class ActivePairs {
   void for_each_overlapping(const Entry& own, int body, const Found& found) const {
     for (const int other : wide_)
       if (other != body && own.box.overlaps(entry(other).box)) found(other);
-    if (own.is_wide) {
-      for (const int other : all_in_cells())
-        if (other != body && own.box.overlaps(entry(other).box)) found(other);
+    if (own.is_wide) {   // everybody in cells, once: where its lowest cell is. From the buckets, for entries of others are another thread's affair
+      for (std::size_t head = 0; head <= mask_; ++head)
+        for (std::int32_t at = static_cast<std::int32_t>(head); at >= 0; at = buckets_[static_cast<std::size_t>(at)].next)
+          for (std::int32_t place = 0; place < buckets_[static_cast<std::size_t>(at)].count; ++place) {
+            const int other = buckets_[static_cast<std::size_t>(at)].slots[static_cast<std::size_t>(place)].body;
+            const Entry& its = entry(other);
+            if (other != body && head == bucket_of(its.low[0], its.low[1], its.low[2]) && own.box.overlaps(its.box)) found(other);
+          }
       return;
     }
     const SmallBox small = small_of(own.box);
@@ -162,7 +167,6 @@ class ActivePairs {
         for (std::int32_t k = entry.low[2]; k <= entry.high[2]; ++k) work(bucket_of(i, j, k));
   }
   void take_out(int body);
-  std::vector<int> all_in_cells() const;
   void make_buckets(int held, double cell);
 
   double cell_;

@@ -27,6 +27,7 @@ constexpr double kWidest = 2.0, kNarrowest = 1.0 / 64;   // of the first window
 constexpr double kWindowSteps = 2.0;           // of several threads, the first window: of the time in which a process goes its way at once
 constexpr double kWindowAlone = 2.0;           // of one thread, which is unbounded until too much is undone: of that window
 constexpr double kRound = 0.25;                // of the window is a round: at its end processes have gone their ways, not been cut short
+constexpr double kMostInARound = 2.0;          // integrations a body
 constexpr double kRoundAlone = 0.125;          // of one thread with several territories: longer rounds find more pairs, shorter ones look at each territory more often
 
 }  // namespace
@@ -264,7 +265,7 @@ void Conductor::work_alone_at(Due due) {
 // ---- How far ahead -------------------------------------------------------------------------------------------------------------
 
 void Conductor::adapt_window() {
-  if (all_.threads == 1 && all_.territories > 1 && !all_.world().processes()) return;   // nobody is cut short by it: it only measures rounds
+  if (all_.threads == 1 && all_.territories > 1 && !all_.world().processes()) return adapt_rounds();   // nobody is cut short by it: it only measures rounds
   if (all_.trial.late_callbacks) return;   // what waits for the late one would wait for the window too
   std::uint64_t done = 0, undone = 0;
   for (const auto& worker : workers_) {
@@ -278,6 +279,15 @@ void Conductor::adapt_window() {
   const double first = all_.territories > 1 ? first_window_ : kWindowAlone * first_window_;
   if (share > kTooMuchUndone) all_.window = std::max(kNarrowest * first, kNarrow * (all_.window < kInfinity ? all_.window : first));
   else if (share < kTooLittleUndone) all_.window = all_.territories > 1 ? std::min(kWidest * first, kWiden * all_.window) : all_.window > first ? kInfinity : kWiden * all_.window;
+}
+
+// Of one thread: states are kept until a round's end, so that in none there may be many more than bodies, however fast they have become.
+void Conductor::adapt_rounds() {
+  std::uint64_t done = 0;
+  for (const auto& worker : workers_) done += worker->counters.integrations;
+  const double a_body = static_cast<double>(done - std::exchange(done_before_, done)) / static_cast<double>(all_.world().movers().size());
+  if (a_body > kMostInARound) all_.window *= std::max(0.1, kMostInARound / a_body);
+  else if (a_body < 0.25 * kMostInARound) all_.window = std::min(kWidest * first_window_, kWiden * all_.window);
 }
 
 // ---- The end -------------------------------------------------------------------------------------------------------------------

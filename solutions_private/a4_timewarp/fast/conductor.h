@@ -41,6 +41,7 @@ class Conductor {
   Domain* next_domain();
   double next_time();
   void adapt_window();
+  void adapt_rounds();
   double first_window() const;
   void check_nothing_leaked();
   void end(const std::string& stopped_by);
