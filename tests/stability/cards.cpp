@@ -124,11 +124,12 @@ void card_house(const Given& given, Findings& findings, int levels) {
   const Trajectory stands = run_by_steps(card_house(0.4, 1.1 * card.foot / card.high, levels, folder.path()), given.laws, duration, 1.0 / 240, 100);
   findings.at_most(name + fmt::format("mu = 1.1 foot / height, {:g} s: creep", duration), way(stands), 1e-3, "m", given.is_long ? "static under any load: 1e-3 of a card's length in 10 s" : "static under any load: 1e-3 of a card's length");
   findings.at_least(name + "smallest gap", smallest_gap(stands), 0.0, "m", "nothing interpenetrates");
+  const double fall_s = levels < 4 ? 0.3 : 0.1;   // 20 cards and 3 planks that slide on and under each other take minutes later on
   for (const int rate : {240, 333}) {   // blows of many cards at once come in another order at every step
-    const Trajectory falls = run_by_steps(card_house(0.4, 0.9 * card.limit(), levels, folder.path()), given.laws, 0.3, 1.0 / rate, 100);
-    const std::string fall = name + fmt::format("mu = 0.9 of the limit of a free tent, 0.3 s at 1/{} s: ", rate);
+    const Trajectory falls = run_by_steps(card_house(0.4, 0.9 * card.limit(), levels, folder.path()), given.laws, fall_s, 1.0 / rate, 100);
+    const std::string fall = name + fmt::format("mu = 0.9 of the limit of a free tent, {:g} s at 1/{} s: ", fall_s, rate);
     findings.must_fail(fall + "stands", way(falls), 1e-3, "m", "friction too small for the lightest load");
-    findings.at_most(fall + "way of any card", way(falls), 0.5 * kG * 0.3 * 0.3, "m", "g t^2 / 2: none is thrown farther than it could fall");
+    findings.at_most(fall + "way of any card", way(falls), 0.5 * kG * fall_s * fall_s, "m", "g t^2 / 2: none is thrown farther than it could fall");
     findings.at_most(fall + "rise of the energy", energy_rise(falls), 1e-6, "", "friction and plastic impacts only take");
   }
 }
