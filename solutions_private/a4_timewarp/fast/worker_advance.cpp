@@ -279,8 +279,10 @@ void Worker::check(int body, const Flight& flight, double from, double to, int o
   while (first > 0 && flights[first].begin == from) --first;   // all that it flew at this instant: an earlier blow may have to come before a later one
   for (std::size_t k = first; k < flights.size() && flights[k].begin <= until; ++k) {
     const Flight& its = flights[k];
-    const double time = all_.run.impacts().first_impact(body, flight, other, its, std::max(from, its.begin), until, cost);
-    if (time >= from && time <= until) offer(body, flight, other, its, time, k + 1 < flights.size() ? &flights[k + 1] : nullptr);
+    // A flight that ended at this instant is no motion beyond it: it would lead into what stopped it, where searching is dear.
+    const double last = k + 1 < flights.size() && flights[k + 1].begin == from ? from : until;
+    const double time = all_.run.impacts().first_impact(body, flight, other, its, std::max(from, its.begin), last, cost);
+    if (time >= from && time <= last) offer(body, flight, other, its, time, k + 1 < flights.size() ? &flights[k + 1] : nullptr);
   }
 }
 
