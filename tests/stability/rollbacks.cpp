@@ -76,15 +76,20 @@ class Watch final : public TrajectorySink {
   double warm_, middle_, before_ = 0.0;
 };
 
-/// From a sixth of the run on, to its middle, is compared with the rest of it.
-Watch watch(const scene::Scene& scene, const Laws& laws, int threads = 1, int most_states = 0) {
-  Watch watch(scene.duration_s / 6.0, scene.duration_s / 2.0);
+engines::RunOptions timewarp_on(int threads) {
   engines::RunOptions options;
   options.engine = "tw";
   options.timewarp = engines::fast_timewarp();
   options.threads = threads;
-  options.most_states = most_states;
   options.frame_rate_hz = 1.0;
+  return options;
+}
+
+/// From a sixth of the run on, to its middle, is compared with the rest of it.
+Watch watch(const scene::Scene& scene, const Laws& laws, int threads = 1, int most_states = 0) {
+  Watch watch(scene.duration_s / 6.0, scene.duration_s / 2.0);
+  engines::RunOptions options = timewarp_on(threads);
+  options.most_states = most_states;
   engines::run_scene(scene, laws, options, watch);
   return watch;
 }
@@ -197,12 +202,8 @@ class Conserved final : public TrajectorySink {
 
 Conserved conserved(int n, double duration, int threads, const Laws& laws) {
   Conserved seen;
-  engines::RunOptions options;
-  options.engine = "tw";
-  options.timewarp = engines::fast_timewarp();
-  options.threads = threads;
+  engines::RunOptions options = timewarp_on(threads);
   options.duration_s = duration;
-  options.frame_rate_hz = 1.0;
   engines::run_scene(scene::make_sized_scene("gas", n), laws, options, seen);
   return seen;
 }
