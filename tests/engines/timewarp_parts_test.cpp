@@ -61,6 +61,39 @@ TEST(FlightHistories, AreTheSameBytesAfterOneToFiftyFlightsAndARollback) {
   }
 }
 
+// However many flights a body once had, it soon holds memory for no more than it needs; those it has stay what they were, wherever they lie.
+TEST(FlightHistories, GiveBackTheMemoryOfFlightsThatAreGone) {
+  Random random(7);
+  engines::FlightHistories histories(1);
+  std::deque<Flight> expected;
+  double t = 0.0;
+  const auto push = [&](int flights) {
+    for (int k = 0; k < flights; ++k) {
+      expected.push_back(flight_at(t += 0.1 + random.unit(), static_cast<std::uint32_t>(k), random));
+      histories.push(0, expected.back());
+    }
+  };
+  const auto keep = [&](std::size_t flights) {
+    while (expected.size() > flights) expected.pop_front();
+    histories.purge(0, expected.front().begin + 1e-9);
+    ASSERT_EQ(histories[0].size(), flights);
+    for (std::size_t k = 0; k < flights; ++k) EXPECT_TRUE(same_bytes(histories[0][k], expected[k])) << "of " << flights << ", flight " << k;
+  };
+  const std::size_t first = histories[0].held();
+  push(1000);
+  EXPECT_GE(histories[0].held(), 1000U);
+  for (int k = 0; k < 20; ++k) {
+    keep(3);
+    push(1);
+  }
+  EXPECT_LE(histories[0].held(), 4U * 4U);
+  for (int k = 0; k < 20; ++k) {
+    keep(1);
+    push(1);
+  }
+  EXPECT_EQ(histories[0].held(), first);
+}
+
 // Ten events wait at any time, a tenth of a bin apart, over two turns of the bins: what is held is for some tens, not for each bin that ever held one.
 TEST(EventQueue, HoldsNoMoreMemoryHoweverLongItGoesOn) {
   struct Item {

@@ -14,7 +14,10 @@ namespace tumble::engines {
 /// One body's flights. The first is the one that global virtual time lies in, the last the one that its local virtual time lies in.
 class FlightHistory {
  public:
+  std::size_t slots() const { return mask_ + 1; }
   std::size_t size() const { return count_; }
+  /// Flights that memory is held for.
+  std::size_t held() const { return mask_ + 1; }
   const Flight& operator[](std::size_t k) const { return slots_[(first_ + k) & mask_]; }
   const Flight& back() const { return (*this)[count_ - 1]; }
   /// Place of the flight with this serial; size() where it is gone.
@@ -57,7 +60,7 @@ class FlightHistories {
 
   void push(int body, const Flight& flight) {
     FlightHistory& history = histories_[static_cast<std::size_t>(body)];
-    if (history.count_ == history.mask_ + 1) grow(static_cast<std::size_t>(body));
+    if (history.count_ == history.mask_ + 1) resize(static_cast<std::size_t>(body), 2 * (history.mask_ + 1));
     history.slots_[(history.first_ + history.count_++) & history.mask_] = flight;
   }
   /// Drops the last flight: a rollback.
@@ -75,18 +78,24 @@ class FlightHistories {
       history.first_ = (history.first_ + 1) & history.mask_;
       --history.count_;
     }
+    // A quarter full: who once flew much in a short time need not hold the memory for good.
+    if (history.mask_ + 1 > kFirstSlots && 4 * history.count_ <= history.mask_ + 1) resize(static_cast<std::size_t>(body), std::max(kFirstSlots, (history.mask_ + 1) / 2));
   }
 
  private:
   static constexpr std::size_t kFirstSlots = 2;   // a power of two
 
-  void grow(std::size_t body) {
+  void resize(std::size_t body, std::size_t slots) {
     FlightHistory& history = histories_[body];
-    const std::size_t slots = 2 * (history.mask_ + 1);
-    auto larger = std::make_unique<Flight[]>(slots);
-    for (std::size_t k = 0; k < history.count_; ++k) larger[k] = history[k];
-    grown_[body] = std::move(larger);
-    history.slots_ = grown_[body].get();
+    std::unique_ptr<Flight[]> own;
+    Flight* place = &slab_[body * kFirstSlots];
+    if (slots > kFirstSlots) {
+      own = std::make_unique_for_overwrite<Flight[]>(slots);
+      place = own.get();
+    }
+    for (std::size_t k = 0; k < history.count_; ++k) place[k] = history[k];
+    grown_[body] = std::move(own);
+    history.slots_ = place;
     history.first_ = 0;
     history.mask_ = slots - 1;
   }
