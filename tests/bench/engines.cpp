@@ -1,10 +1,6 @@
-// What each engine pays for the same scenes. Without words: all figures that timewarp is judged by, one table, one picture each,
-// out/bench/engines.html (engine_figures.cpp), and where each engine's time went (engine_profiles.cpp); some ten minutes.
-//   bench_engines --only "threads"   one chapter of it: one body and two, collisions, growth, threads, the paper's scenes, the heap
-//   bench_engines --scene NAME [--n N,N,...] [--engines rd,ca,tw] [--duration-s T]
-// prints one row a size and engine; ratios are of times in this very run. rd_auto is rd in closed form, as the other two go. tw2 is timewarp
-// on two threads: then all times of the table are by the clock, on a machine that has nothing else to do.
-// "energy" as the scene: that of a gas over a million elastic collisions.
+// What each engine pays for the same scenes: its words are in kUsage. Without words: all figures that timewarp is judged by, one table, one
+// picture each (engine_figures.cpp), and where each engine's time went (engine_profiles.cpp). Ratios are of times in this very run. rd_auto is
+// rd in closed form, as the other two go. With tw2 or tw4 all times of the table are by the clock, on a machine that has nothing else to do.
 #include <cstdio>
 #include <cstdlib>
 
@@ -61,6 +57,13 @@ void energy_over_a_million() {
   std::printf("gas of 300: %llu collisions, energy off by %.1e of itself at most (allowed 1e-10)\n", static_cast<unsigned long long>(tally.collisions), tally.energy_error);
 }
 
+constexpr const char* kUsage =
+    "bench_engines                       all figures that timewarp is judged by: a table here, a page in out/bench/engines.html; some four minutes\n"
+    "bench_engines --only \"threads\"      one chapter: one body and two, collisions, growth, threads, the paper's scenes, the heap\n"
+    "bench_engines --scene NAME [--n N,N,...] [--engines rd,rd_auto,ca,tw,tw2] [--duration-s T]\n"
+    "                                    a row for each size and engine; tw2: on two threads, then by the clock\n"
+    "bench_engines --scene energy        that of a gas over a million elastic collisions\n";
+
 std::vector<std::string> parts(const std::string& text) {
   std::vector<std::string> found(1);
   for (const char c : text) {
@@ -78,14 +81,16 @@ int main(int argc, char** argv) {
   tumble::keep_freed_memory();
   std::string scene, only, sizes = "300", engines = "rd,rd_auto,ca,tw";
   double duration = 2.0;
-  for (int i = 1; i + 1 < argc; i += 2) {
+  for (int i = 1; i < argc; i += 2) {
     const std::string flag = argv[i];
+    if (flag == "--help" || flag == "-h") return std::fputs(kUsage, stdout), 0;
+    if (i + 1 == argc) return std::fprintf(stderr, "bench_engines: %s is no flag, or has no value\n%s", argv[i], kUsage), 2;
     if (flag == "--scene") scene = argv[i + 1];
     else if (flag == "--n") sizes = argv[i + 1];
     else if (flag == "--engines") engines = argv[i + 1];
     else if (flag == "--duration-s") duration = std::atof(argv[i + 1]);
     else if (flag == "--only") only = argv[i + 1];
-    else return std::fprintf(stderr, "bench_engines: %s is no flag of mine\n", argv[i]), 2;
+    else return std::fprintf(stderr, "bench_engines: %s is no flag\n%s", argv[i], kUsage), 2;
   }
   if (scene.empty()) return measure_figures("out/bench/engines.html", only) ? 0 : 1;
   if (scene == "energy") return energy_over_a_million(), 0;
