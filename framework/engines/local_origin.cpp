@@ -1,6 +1,10 @@
 #include "framework/engines/local_origin.h"
 
+#include <array>
+#include <charconv>
 #include <cmath>
+#include <limits>
+#include <string>
 
 namespace tumble::engines {
 namespace {
@@ -19,6 +23,21 @@ void for_each_place(Scene& scene, const Visit& visit) {
     for (auto* anchor : {&rod.a, &rod.b})
       if (anchor->body.empty()) visit(anchor->point_m);
   for (auto& joint : scene.joints) visit(joint.point_m);
+}
+
+// Whoever writes 1000000.1 means a tenth more than 10^6, not the nearest number that a double can hold, which is 2e-11 less: a box would
+// start in its floor. So what is before the point and what is behind it are taken apart, where a decimal says the place that every double
+// can tell from its neighbours (15 digits); a place of more digits was worked out, and is what it is.
+double difference_as_written(double place, double origin) {
+  std::array<char, 400> digits{};   // longer than any double without an exponent
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), std::abs(place), std::chars_format::fixed).ptr;
+  const std::string text(digits.data(), end);
+  const std::size_t point = text.find('.');
+  if (point == std::string::npos || text.size() - text.find_first_not_of("0.") > std::numeric_limits<double>::digits10 + 1) return place - origin;
+  double fraction = 0.0;
+  const std::string behind = "0" + text.substr(point);
+  std::from_chars(behind.data(), behind.data() + behind.size(), fraction);
+  return (std::trunc(place) - origin) + std::copysign(fraction, place);
 }
 
 }  // namespace
@@ -40,8 +59,11 @@ Vector3d local_origin(const scene::Scene& scene) {
 }
 
 scene::Scene seen_from(const Vector3d& origin_world, scene::Scene scene) {
-  for_each_place(scene, [&](Vector3d& place) { place -= origin_world; });
-  for (scene::PointForceSpec& force : scene.point_forces) force.point_m -= origin_world;
+  const auto see = [&](Vector3d& place) {
+    for (int axis = 0; axis < 3; ++axis) place[axis] = difference_as_written(place[axis], origin_world[axis]);
+  };
+  for_each_place(scene, see);
+  for (scene::PointForceSpec& force : scene.point_forces) see(force.point_m);
   return scene;
 }
 
