@@ -44,18 +44,20 @@ Edges edges_between(const PlacedPolytope& piece, const Indices& corners) {
   return edges;
 }
 
-// Side by side, nearer than `near` all along, over a stretch that both cover.
-bool lie_along(const Edge& a, const Edge& b, double near) {
+// Side by side, nearer than `near` all along, over a stretch that both cover: whose ends go to `shared`.
+bool lie_along(const Edge& a, const Edge& b, double near, EdgeOnEdge& shared) {
   const double length = a.along.squaredNorm();
   const auto place = [&](const Vector3d& point) { return a.along.dot(point - a.start) / length; };
   const double first = place(b.start), second = place(b.start + b.along);
   const double low = std::max(0.0, std::min(first, second)), high = std::min(1.0, std::max(first, second));
   if (!((high - low) * std::sqrt(length) > near)) return false;
-  const auto apart = [&](double t) {   // where `a` is at t
-    const double s = (t - first) / (second - first);
-    return (a.start + t * a.along - b.start - s * b.along).norm();
-  };
-  return apart(low) <= near && apart(high) <= near;
+  for (const std::size_t end : {0, 1}) {
+    const double t = end == 0 ? low : high, u = (t - first) / (second - first);
+    shared.on_a[end] = a.start + t * a.along;
+    shared.on_b[end] = b.start + u * b.along;
+    if (!((shared.on_a[end] - shared.on_b[end]).norm() <= near)) return false;
+  }
+  return true;
 }
 
 double angle_about(const Vector3d& edge, const Vector3d& from, const Vector3d& to) { return std::atan2(edge.dot(from.cross(to)), from.dot(to)); }
@@ -96,17 +98,20 @@ std::optional<Vector3d> middle_of_both(const Cone& a, const Cone& b, const Vecto
 
 }  // namespace
 
-std::optional<Vector3d> normal_of_edge_on_edge(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& n, double size) {
+std::optional<EdgeOnEdge> edge_on_edge(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& n, double size) {
   const double near = kNear * size;
   const Indices of_a = foremost(a, n, near), of_b = foremost(b, -n, near);
   if (of_a.size() < 2 || of_b.size() < 2 || (of_a.size() > 2 && of_b.size() > 2)) return std::nullopt;   // a corner, or face on face
   const Edges edges_a = edges_between(a, of_a), edges_b = edges_between(b, of_b);
   for (const Edge& edge_a : edges_a)
     for (const Edge& edge_b : edges_b) {
-      if (!lie_along(edge_a, edge_b, near)) continue;
+      EdgeOnEdge shared;
+      if (!lie_along(edge_a, edge_b, near, shared)) continue;
       const Vector3d along = edge_a.along.normalized();
       const auto normal = middle_of_both(cone_of(a, edge_a, -1.0, along, size), cone_of(b, edge_b, 1.0, along, size), along);
-      if (normal && separation_along(a, b, *normal) >= -2 * near) return normal;
+      if (!normal || separation_along(a, b, *normal) < -2 * near) continue;
+      shared.normal_b_to_a = *normal;
+      return shared;
     }
   return std::nullopt;
 }

@@ -7,17 +7,23 @@
 ///   n in cone(B's edge), -n in cone(A's edge):  angles about the edge in [low, high];  normal at (low + high) / 2
 #pragma once
 
+#include <array>
 #include <optional>
 
 #include "framework/collision/polytope.h"
 
 namespace tumble::collision {
 
-/// The middle of the normals of two edges that lie along each other, nearer than a millionth of `size`.
+struct EdgeOnEdge {
+  Vector3d normal_b_to_a;                    // unit
+  std::array<Vector3d, 2> on_a, on_b;        // where the stretch that both cover begins and ends, on either edge
+};
+
+/// Two edges that lie along each other, nearer than a millionth of `size`: the middle of their normals, and the ends of what they share.
 /// @param n      a normal of theirs, unit, from B to A: within 90 degrees of the one returned
 /// @param size   how far the points lie from the origin of the query [m]
-/// @return unit, from B to A; nothing where no two edges do, or where they have one normal only (as flush boxes that lie face on face)
+/// @return in the query's frame; nothing where no two edges do, or where they have one normal only (as flush boxes that lie face on face)
 /// Cost: all vertices of both once, and more only where each faces the other with an edge.
-std::optional<Vector3d> normal_of_edge_on_edge(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& n, double size);
+std::optional<EdgeOnEdge> edge_on_edge(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& n, double size);
 
 }  // namespace tumble::collision

@@ -155,19 +155,23 @@ void append_corners(const Region& region, double size, std::vector<NearPoint>& p
   for (const int corner : lower_corners(all, gaps, region.normal, kSameHeight * size)) points.push_back(region.points[corner]);
 }
 
-// The ends of what two edges share, and what else is within reach. The gap there is that of the edges: the faces beside them fall off.
-std::vector<NearPoint> along_edges(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& n, double reach, double size, const Vector3d& com_b_world) {
-  const double gap = separation_along(a, b, n), near = kInTouch * size;
+// The ends of what two edges share, each with a gap of its own, and what else is within reach. The gap there is that of the edges: the faces
+// beside them fall off.
+std::vector<NearPoint> along_edges(const PlacedPolytope& a, const PlacedPolytope& b, const EdgeOnEdge& shared, double reach, double size, const Vector3d& com_b_world) {
+  const Vector3d& n = shared.normal_b_to_a;
+  const double near = kInTouch * size;
   Region region{n, {}};
-  const Corners ends = facing_region(a, b, n, near);
-  for (const Vector3d& end : ends) region.points.push_back({com_b_world + end, com_b_world + end - gap * n, n, gap});
-  const Vector3d along = (ends[ends.size() - 1] - ends[0]).normalized(), start = com_b_world + ends[0];
+  for (const std::size_t end : {0, 1}) {
+    const double gap = n.dot(shared.on_a[end] - shared.on_b[end]);
+    if (gap <= reach) region.points.push_back({com_b_world + shared.on_a[end], com_b_world + shared.on_a[end] - gap * n, n, gap});
+  }
+  const Vector3d along = (shared.on_a[1] - shared.on_a[0]).normalized(), start = com_b_world + shared.on_a[0];
   Region others{n, {}};
   if (reach > near) add_points(a, b, n, reach, com_b_world, others);
   for (const NearPoint& p : others.points)
     if ((p.point_a_world - start).cross(along).norm() > 2 * near) region.points.push_back(p);
   std::vector<NearPoint> points;
-  append_corners(region, size, points);
+  if (region.points.size() > 0) append_corners(region, size, points);
   return points;
 }
 
@@ -176,7 +180,7 @@ std::vector<NearPoint> between_convex(const Query& query, const Vector3d& com_b_
   const PolytopeGap found = convex_gap(query, reach, cache, Points::kWanted);
   if (found.beyond || found.distance > reach) return {};
   if (found.distance <= kInTouch * query.size)
-    if (const auto n = normal_of_edge_on_edge(placed_a, placed_b, found.normal_b_to_a, query.size)) return along_edges(placed_a, placed_b, *n, reach, query.size, com_b_world);
+    if (const auto edges = edge_on_edge(placed_a, placed_b, found.normal_b_to_a, query.size)) return along_edges(placed_a, placed_b, *edges, reach, query.size, com_b_world);
   Region region{found.normal_b_to_a, {}};
   add_points(placed_a, placed_b, region.normal, reach, com_b_world, region);
   region.points.push_back({com_b_world + found.point_a, com_b_world + found.point_b, region.normal, found.distance});   // where edges cross

@@ -22,6 +22,8 @@ constexpr int kMostShifts = 10;           // rounds of taking back overlaps
 constexpr int kHeldRounds = 5;            // of these, in which points that push are drawn to their shells too
 constexpr double kHeldReach = 1e-3;       // of the smaller body: what turning may leave between points that push
 constexpr double kShiftReach = 4.0;       // shifts: how far apart points may be to matter
+constexpr double kMissed = 1e-6, kMissedAtMost = 1e-3;   // shifts: of what is missing a round may leave, and what it is taken with where it does not get so far
+constexpr double kRounding = 1e-13;       // relative, of a solver's answer
 constexpr double kNotYet = 1e3;           // shells: a point farther away at the start has come down in the step
 constexpr double kMoving = 10.0;          // rest speeds
 constexpr int kMostOfStudents = 64;       // contacts of a group that the laws' contact_forces is asked for: it is given a dense matrix
@@ -485,9 +487,13 @@ bool LastingContacts::keep_apart(const Group& group, const std::vector<Pair>& pa
     const bool open = problem.row_targets.size() > 0 && problem.row_targets.cwiseAbs().maxCoeff() > 1e-13 * size;
     if (wrong == 0.0 && !open) return true;
     ++counters_.nudges;
-    ContactOptions options;
-    options.tolerance = 1e-6;   // of what is missing: the next round takes the rest
-    options.enough = 1e-3;
+    double missing = wrong, largest = 0.0;   // the latter is what the solver measures its answers by: of points far apart, which need not move
+    if (problem.row_targets.size() > 0) largest = problem.row_targets.cwiseAbs().maxCoeff();
+    missing = std::max(missing, largest);
+    for (const PushingContact& contact : problem.contacts) largest = std::max(largest, std::abs(contact.target));
+    ContactOptions options;   // the next round takes the rest
+    options.tolerance = std::max(kRounding, kMissed * missing / largest);
+    options.enough = std::max(kRounding, kMissedAtMost * missing / largest);
     const ContactSolution shift = solve_contacts(problem, options);
     for (std::size_t k = 0; k < group.bodies.size(); ++k) apply_shift(group.bodies[k], shift.velocities[k], states);
   }

@@ -46,6 +46,21 @@ TEST(EdgeOnEdge, TheNormalIsTheMiddleOneWhereverTheEdgesLieWithinTheirShell) {
     }
 }
 
+// One card turned a little about the vertical: one end of its edge may be in the other card while the other end is away from it.
+TEST(EdgeOnEdge, EachEndHasItsOwnGap) {
+  const CollisionShape shape{Box{kHalf}};
+  for (const double turn : {-8e-7, -1e-8, 3e-7, 8e-7})   // rad
+    for (const double apart : {-1e-7, 1e-10, 1e-7}) {    // m, half way
+      Pose right = card(1, Vector3d(apart, 0, 3e-8));
+      const Quaterniond about_z(Eigen::AngleAxisd(turn, Vector3d::UnitZ()));
+      right = {about_z * right.com_world, about_z * right.world_from_body};
+      const std::vector<NearPoint> points = collision::near_points(shape, right, shape, card(-1, Vector3d::Zero()), kReach);
+      ASSERT_EQ(points.size(), 2u) << turn << " rad, " << apart << " m";
+      EXPECT_LT(points[0].point_a_world.y() * points[1].point_a_world.y(), 0.0);
+      for (const NearPoint& p : points) EXPECT_NEAR(p.gap, apart - turn * p.point_a_world.y(), 1e-12) << "turn times lengths of 1e-7: " << turn << " rad, " << apart << " m";
+    }
+}
+
 TEST(EdgeOnEdge, CardsThatLeanDifferentlyPushAlongTheMiddleOfWhatBothAllow) {
   // The left card's edge allows normals from -0.4 to pi/2 - 0.4 about y, the right one's from 0.1 - pi/2 to 0.1: both from -0.4 to 0.1.
   const std::vector<NearPoint> points = points_of_tent({1e-10, 0, 0}, 0.1);
