@@ -487,13 +487,17 @@ bool LastingContacts::keep_apart(const Group& group, const std::vector<Pair>& pa
     const bool open = problem.row_targets.size() > 0 && problem.row_targets.cwiseAbs().maxCoeff() > 1e-13 * size;
     if (wrong == 0.0 && !open) return true;
     ++counters_.nudges;
-    double missing = wrong, largest = 0.0;   // the latter is what the solver measures its answers by: of points far apart, which need not move
-    if (problem.row_targets.size() > 0) largest = problem.row_targets.cwiseAbs().maxCoeff();
-    missing = std::max(missing, largest);
-    for (const PushingContact& contact : problem.contacts) largest = std::max(largest, std::abs(contact.target));
+    // The solver measures its answers by the farthest point, which need not move at all. Rods and joints are open by roundings of another size.
+    double part = 1.0;
+    if (group.linked.empty()) {
+      const double missing = std::max(wrong, problem.rows.empty() ? 0.0 : problem.row_targets.cwiseAbs().maxCoeff());
+      double largest = missing;
+      for (const PushingContact& contact : problem.contacts) largest = std::max(largest, std::abs(contact.target));
+      part = missing / largest;
+    }
     ContactOptions options;   // the next round takes the rest
-    options.tolerance = std::max(kRounding, kMissed * missing / largest);
-    options.enough = std::max(kRounding, kMissedAtMost * missing / largest);
+    options.tolerance = std::max(kRounding, kMissed * part);
+    options.enough = std::max(kRounding, kMissedAtMost * part);
     const ContactSolution shift = solve_contacts(problem, options);
     for (std::size_t k = 0; k < group.bodies.size(); ++k) apply_shift(group.bodies[k], shift.velocities[k], states);
   }
