@@ -14,14 +14,10 @@
 namespace tumble::engines {
 namespace {
 
-// What rounding leaves of an amplification of exactly 1.
-constexpr double kNotAtAll = 1e-9;
 constexpr double kRuin = 1e3;            // factor over a run by which a method may lengthen a swing: more is refused
 constexpr double kSeen = 1.1;            // more is told
 constexpr double kRunaway = 10.0;        // times all the energy there was to begin with: more has run away
 constexpr double kRoundingOfRest = 1e-6; // of the energy a world at rest has by its height: what steps may leave of it
-// More springs than this are judged by the largest row sum (Gershgorin), an upper bound at most some times too large.
-constexpr Eigen::Index kMostSprings = 400;
 
 // Up to `step`, of what goes at this rate [1/s]. @param amplified  by a step of a given length
 double largest_stable_step(const std::function<double(double)>& amplified, double rate, double step) {
@@ -37,10 +33,6 @@ double largest_stable_step(const std::function<double(double)>& amplified, doubl
     (amplified(middle) <= 1.0 + kNotAtAll ? stable : unstable) = middle;
   }
   return stable;
-}
-
-double largest_stable_step(const Laws& laws, double frequency, double damping, double step) {
-  return largest_stable_step([&](double h) { return amplification(laws, frequency, damping, h); }, frequency, step);
 }
 
 // Of v' = -rate v, in a step; with the place beside it, for methods that treat places and velocities differently.
@@ -81,62 +73,20 @@ double amplification(const Laws& laws, double frequency, double damping, double 
     dy << y[1], -frequency * frequency * y[0] - damping * y[1];
     return dy;
   };
+  const double rate = std::max(frequency, damping);
   Eigen::Matrix2d matrix;
   for (int column = 0; column < 2; ++column) {
     VectorXd y = VectorXd::Zero(2);
-    y[column] = column == 0 ? 1.0 : frequency;   // in the units of the swing
+    y[column] = column == 0 ? 1.0 : rate;   // in the units of the swing, or of the decay
     const VectorXd after = laws.integrate_step(swing, 0.0, y, step);
     matrix(0, column) = after[0];
-    matrix(1, column) = after[1] / frequency;
+    matrix(1, column) = after[1] / rate;
   }
   return spectral_radius(matrix);
 }
 
-std::optional<SpringStability> judge_springs(const World& world, const Laws& laws, double step) {
-  const Eigen::Index n = static_cast<Eigen::Index>(world.springs.size());
-  if (n == 0) return std::nullopt;
-  // J M^-1/2 of each spring as one row over all bodies: what two springs share is what they have in common of it.
-  struct Row {
-    int body;
-    Vector6d scaled;
-  };
-  std::vector<std::vector<Row>> rows(world.springs.size());
-  std::vector<RigidBodyState> states;
-  for (const WorldBody& body : world.bodies) states.push_back(body.state);
-  for (std::size_t k = 0; k < world.springs.size(); ++k) {
-    const SpringLink& link = world.springs[k];
-    const Vector3d a = anchor_point(link.a, states), b = anchor_point(link.b, states);
-    const double length = (a - b).norm();
-    const Vector3d along = length > 0 ? Vector3d((a - b) / length) : Vector3d(Vector3d::UnitZ());
-    for (const auto& [anchor, point, sign] : {std::tuple{&link.a, a, 1.0}, std::tuple{&link.b, b, -1.0}}) {
-      if (anchor->body < 0 || world.bodies[anchor->body].immovable()) continue;
-      const WorldBody& body = world.bodies[anchor->body];
-      const Matrix3d R = body.state.world_from_body.toRotationMatrix();
-      const Matrix3d root = Eigen::SelfAdjointEigenSolver<Matrix3d>(body.inertia.inverse_inertia_body).operatorSqrt();
-      Vector6d scaled;
-      scaled << sign * std::sqrt(body.inertia.inverse_mass) * along, sign * (root * (R.transpose() * (point - body.state.com_world).cross(along)));
-      rows[k].push_back({anchor->body, std::sqrt(link.spring.stiffness) * scaled});
-    }
-  }
-  MatrixXd shared = MatrixXd::Zero(n, n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j <= i; ++j)
-      for (const Row& p : rows[i])
-        for (const Row& q : rows[j])
-          if (p.body == q.body) shared(i, j) = shared(j, i) = shared(i, j) + p.scaled.dot(q.scaled);
-  Eigen::Index most = 0;
-  double squared = 0.0;
-  if (n <= kMostSprings) {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(shared);
-    squared = solver.eigenvalues()[n - 1];
-    solver.eigenvectors().col(n - 1).cwiseAbs().maxCoeff(&most);
-  } else {
-    squared = shared.cwiseAbs().rowwise().sum().maxCoeff(&most);
-  }
-  if (!(squared > 0)) return std::nullopt;
-  const Spring& spring = world.springs[most].spring;
-  const double frequency = std::sqrt(squared), damping = spring.stiffness > 0 ? squared * spring.damping / spring.stiffness : 0.0;
-  return SpringStability{world.springs[most].name, frequency, amplification(laws, frequency, damping, step), largest_stable_step(laws, frequency, damping, step)};
+double largest_stable_step(const Laws& laws, double frequency, double damping, double step) {
+  return largest_stable_step([&](double h) { return amplification(laws, frequency, damping, h); }, std::max(frequency, damping), step);
 }
 
 std::vector<StepLimit> judge_decays(const World& world, const Laws& laws, double step) {
@@ -231,7 +181,9 @@ void refuse_or_tell(const StepLimit& limit, const Laws& laws, const StepsOfARun&
 }  // namespace
 
 void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfARun& steps, const std::string& where, std::vector<std::string>& notices) try {
-  if (const auto springs = judge_springs(world, laws, steps.step); springs && springs->amplification > 1.0)
+  if (const auto dampers = judge_dampers(world, laws, steps.step)) refuse_or_tell(*dampers, laws, steps, where, notices);
+  const auto springs = judge_springs(world, laws, steps.step);
+  if (springs && springs->amplification > 1.0 && !springs->is_overdamped())
     refuse_or_tell({fmt::format("the swing of spring '{}' ({:.4g} rad/s where the run starts)", springs->spring, springs->angular_frequency), springs->amplification, springs->largest_step,
                     springs->largest_step > 0 ? "a softer spring or more damping" : "damp the spring"},
                    laws, steps, where, notices);
