@@ -102,5 +102,29 @@ TEST(Trouble, ARootFinderOfNonsenseChangesNothing) {
   }
 }
 
+// Refused before it begins: nobody waits for 1e9 steps to learn that they were a slip, and frames are kept in memory.
+TEST(Trouble, ARunOfTooManyStepsOrFramesIsRefused) {
+  const auto refused = [](double step, double duration, double rate) -> std::string {
+    scene::Scene scene = head_on();
+    scene.step_s = step;
+    scene.duration_s = duration;
+    TrajectoryRecorder recorder;
+    engines::RunOptions options;
+    options.frame_rate_hz = rate;
+    try {
+      engines::run_scene(scene, test_laws(), options, recorder);
+    } catch (const UserError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string steps = refused(1e-9, 1.0, 60.0), frames = refused(1.0, 1e6, 60.0);
+  EXPECT_NE(steps.find("1e+09 steps"), std::string::npos) << steps;
+  EXPECT_NE(steps.find("\"step_s\""), std::string::npos) << steps;
+  EXPECT_NE(frames.find("6e+07 frames"), std::string::npos) << frames;
+  EXPECT_NE(frames.find("\"duration_s\""), std::string::npos) << frames;
+  EXPECT_EQ(refused(0.01, 1.0, 60.0), "");
+}
+
 }  // namespace
 }  // namespace tumble::testing
