@@ -3,6 +3,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "framework/core/error.h"
 #include "framework/core/not_implemented.h"
 #include "tests/engines/scenes.h"
 #include "tests/support/story.h"
