@@ -1,6 +1,7 @@
 // The largest step that a method can take is told where a run starts: for drag, Baumgarte's term and light bodies on rods, against closed forms.
 #include <cmath>
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
@@ -188,6 +189,29 @@ TEST(LargestStep, ALightBodyAboveAHeavyOneIsToldOfWithTheLargestStep) {
     const auto limit = engines::judge_rods(build_world(scene), tensions, reference_laws(), kOver * largest);
     ASSERT_TRUE(limit);
     EXPECT_NEAR(limit->largest_step, largest, 1e-5 * largest) << ratio;   // a swing's amplification leaves 1 by (w h)^6 / 144 times what the step is over
+  }
+}
+
+// A chain's swings across are the eigenvalues of a matrix with three numbers a row: rod i of n carries n - i + 1 links.
+TEST(LargestStep, OfAChainOfAnyLengthIsToldOf) {
+  const double g = 9.81, l = 0.05;
+  for (const int n : {20, 300, 1000}) {
+    const scene::Scene scene = truths::straight_chain(std::vector<double>(static_cast<std::size_t>(n), 0.1), l, -Vector3d::UnitZ(), Vector3d(0, 0, -g));
+    VectorXd diagonal(n), beside(n - 1);
+    std::vector<double> tensions;
+    for (int i = 0; i < n; ++i) {
+      tensions.push_back((n - i) * 0.1 * g);
+      diagonal[i] = g / l * (2 * (n - i) - 1);
+      if (i + 1 < n) beside[i] = -g / l * (n - i - 1);
+    }
+    Eigen::SelfAdjointEigenSolver<MatrixXd> swings;
+    swings.computeFromTridiagonal(diagonal, beside, Eigen::EigenvaluesOnly);
+    const double largest = kRk4Swing / std::sqrt(swings.eigenvalues()[n - 1]);
+    const auto limit = engines::judge_rods(build_world(scene), tensions, reference_laws(), 1.02 * largest);
+    ASSERT_TRUE(limit) << n;
+    EXPECT_LE(limit->largest_step, (1 + 1e-5) * largest) << n;   // what it promises is true, and not much less than what is
+    EXPECT_GE(limit->largest_step, (n > 100 ? 0.95 : 1 - 1e-5) * largest) << n;
+    EXPECT_FALSE(engines::judge_rods(build_world(scene), tensions, reference_laws(), kUnder * largest)) << n;
   }
 }
 
