@@ -103,6 +103,28 @@ TEST(Trouble, ARootFinderOfNonsenseChangesNothing) {
   }
 }
 
+// In free flight, too, where a path is known exactly: a search for its collisions looks at each radian.
+TEST(Trouble, ABodyThatTurnsTooOftenAStepForItsCollisionsIsNamed) {
+  for (const double rate : {1e4, 1e9}) {
+    scene::BodySpec top = ball("top", 0.1, 1.0, {0, 0, 1}, Vector3d::Zero());
+    top.shape = scene::BoxSpec{Vector3d(0.1, 0.1, 0.1)};
+    top.omega_world_rad_s = {rate, 0, 0};
+    scene::BodySpec floor = top;
+    floor.name = "floor";
+    floor.shape = scene::BoxSpec{Vector3d(1, 1, 0.1)};
+    floor.immovable = true;
+    floor.mass_kg.reset();
+    floor.omega_world_rad_s.setZero();
+    floor.position_m = {0, 0, 0.7};
+    scene::Scene scene = scene_of({top, floor}, 0.02);
+    scene.step_s = 0.01;
+    const Trajectory result = run(scene, test_laws(), 100.0);
+    const std::string& stopped = result.stopped_by;
+    if (rate > 1e5) EXPECT_TRUE(stopped.find("'top' turns 1e+07 rad a step") != std::string::npos && stopped.find("step_s") != std::string::npos) << stopped;
+    else EXPECT_EQ(stopped, "");
+  }
+}
+
 // Refused before it begins: nobody waits for 1e9 steps to learn that they were a slip, and frames are kept in memory.
 TEST(Trouble, ARunOfTooManyStepsOrFramesIsRefused) {
   const auto refused = [](double step, double duration, double rate) -> std::string {
