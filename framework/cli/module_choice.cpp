@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "framework/cli/sandboxed_module.h"
+#include "framework/core/nearest_word.h"
 #include "framework/core/not_implemented.h"
 #include "framework/modules/load.h"
 
@@ -217,8 +218,25 @@ void add_module(const Context& context, const scene::Scene& scene, const ModuleK
 
 }  // namespace
 
+namespace {
+
+void refuse_unknown_needs(const scene::Scene& scene, const std::vector<const ModuleKind*>& kinds) {
+  std::vector<std::string> ids;
+  std::string known;
+  for (const ModuleKind* kind : kinds) {
+    ids.push_back(kind->id);
+    known += (known.empty() ? "" : ", ") + kind->id;
+  }
+  for (std::size_t i = 0; i < scene.needs.size(); ++i)
+    if (std::find(ids.begin(), ids.end(), scene.needs[i]) == ids.end())
+      throw UserError(place_of(scene, "/needs/" + std::to_string(i)), "there is no assignment '" + scene.needs[i] + "'." + did_you_mean(scene.needs[i], ids), "Known: " + known + ".");
+}
+
+}  // namespace
+
 ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words) {
   const auto kinds = context.registry.all();
+  refuse_unknown_needs(scene, kinds);
   const bool has_home = std::any_of(kinds.begin(), kinds.end(), [&](const ModuleKind* kind) { return is_own(scene, *kind); });
   std::map<std::string, std::string> chosen;   // by id
   std::map<std::string, fs::path> files;

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
-#include <boost/numeric/odeint/integrate/integrate_adaptive.hpp>
 #include <boost/numeric/odeint/stepper/bulirsch_stoer.hpp>
+#include <boost/numeric/odeint/stepper/controlled_step_result.hpp>
 #include <boost/numeric/odeint/stepper/euler.hpp>
 #include <boost/numeric/odeint/stepper/generation.hpp>
 #include <boost/numeric/odeint/stepper/rosenbrock4.hpp>
@@ -14,9 +15,11 @@
 #include <boost/numeric/odeint/stepper/runge_kutta4.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_fehlberg78.hpp>
+#include <boost/numeric/odeint/util/detail/less_with_sign.hpp>
 
 #include "framework/core/error.h"
 #include "framework/core/nearest_word.h"
+#include "framework/core/not_implemented.h"
 
 namespace tumble {
 namespace {
@@ -29,6 +32,7 @@ using UblasMatrix = ublas::matrix<double>;
 
 constexpr int kFirstMomentum = 7;           // of the 13 numbers of a body
 constexpr long kMostParts = 1000000;        // of one step, by a controlled method
+constexpr double kShortestPart = 1e-12;     // of one step: shorter ones do not end within kMostParts, nor do they move its time much beyond rounding
 
 template <class Container>
 VectorXd vector_of(const Container& state) { return Eigen::Map<const VectorXd>(&state[0], static_cast<Eigen::Index>(state.size())); }
@@ -80,11 +84,64 @@ VectorXd verlet(const OdeFunction& f, double t, const VectorXd& y, double h) {
   return next;
 }
 
-// Ends a run that would never end: what has blown up asks for ever shorter steps.
-auto counted_parts(long& parts) {
-  return [&parts](const auto&, double time) {
-    if (++parts > kMostParts) throw std::runtime_error("a tolerance too small to be reached: more than a million steps inside one, at t = " + std::to_string(time) + " s");
+constexpr const char* kNotANumber = "a slope, or where it leads, is not a number";
+
+// The largest of several errors does not tell of one that is not a number: a slope that is none ends its trial.
+OdeFunction with_finite_slopes(const OdeFunction& f) {
+  return [&f](double t, const VectorXd& y) {
+    VectorXd slope = f(t, y);
+    if (!slope.allFinite()) throw std::runtime_error(kNotANumber);
+    return slope;
   };
+}
+
+// Where a trial leads to is wrong: a stage left what the equations can bear. Slips of a person are none of the step's.
+template <class Trial>
+std::string what_went_wrong(const Trial& trial) {
+  try {
+    return trial() ? "" : kNotANumber;
+  } catch (const NotImplemented&) {
+    throw;
+  } catch (const UserError&) {
+    throw;
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
+template <class Container>
+bool is_finite(const Container& state) { return std::all_of(state.begin(), state.end(), [](double value) { return std::isfinite(value); }); }
+
+/// Steps as long as the control allows, from t to t + h. A trial that goes wrong is one that was too long: it is taken back, and a quarter of it tried.
+/// @throws std::runtime_error where no step will do, and what blows up and asks for ever shorter steps would never end
+template <class Controlled, class System, class Container>
+void advance(const Controlled& fresh, const System& system, Container& state, double t, double h, double first) {
+  std::optional<Controlled> stepper(fresh);
+  const double end = t + h;
+  double part = first;
+  long parts = 0;
+  for (double time = t; odeint::detail::less_with_sign(time, end, part);) {
+    if (++parts > kMostParts) throw std::runtime_error("a tolerance too small to be reached: more than a million steps inside one, at t = " + std::to_string(time) + " s");
+    if (odeint::detail::less_with_sign(end, time + part, part)) part = end - time;
+    for (bool taken = false; !taken;) {
+      if (std::abs(part) < kShortestPart * std::abs(h)) throw std::runtime_error("no step is short enough for the tolerance at t = " + std::to_string(time) + " s");
+      Container next = state;
+      double next_time = time, next_part = part;
+      const std::string wrong = what_went_wrong([&] {
+        taken = stepper->try_step(system, next, next_time, next_part) == odeint::success;
+        return !taken || is_finite(next);
+      });
+      if (wrong.empty()) {
+        part = next_part;
+        if (taken) state = next, time = next_time;
+        continue;
+      }
+      taken = false;
+      stepper.emplace(fresh);   // what it remembers of the trial is as wrong
+      part *= 0.25;
+      if (std::abs(part) < kShortestPart * std::abs(h)) throw std::runtime_error("no step is short enough at t = " + std::to_string(time) + " s: " + wrong);
+    }
+  }
 }
 
 // What a controlled method tries first: small enough that y and its slope hardly change in it. A trial over all of h may leave what the
@@ -96,16 +153,18 @@ double first_part(const OdeFunction& f, double t, const VectorXd& y, double h) {
   const double speed = size(slope), most = std::abs(h);
   if (!(speed > 0.0)) return h;
   const double first = std::min(most, 0.01 / speed);
-  const double bend = size(f(t + std::copysign(first, h), y + std::copysign(first, h) * slope) - slope) / first;
+  VectorXd beyond;
+  if (!what_went_wrong([&] { return (beyond = f(t + std::copysign(first, h), y + std::copysign(first, h) * slope)).allFinite(); }).empty()) return std::copysign(0.25 * first, h);
+  const double bend = size(beyond - slope) / first;
   return std::copysign(std::min({most, 100.0 * first, std::sqrt(0.02 / std::max(bend, 0.02 / (most * most)))}), h);
 }
 
 template <class Controlled>
-VectorXd adaptive(Controlled stepper, const OdeFunction& f, double t, const VectorXd& y, double h) {
+VectorXd adaptive(const Controlled& stepper, const OdeFunction& any, double t, const VectorXd& y, double h) {
   if (h == 0.0) return y;
+  const OdeFunction f = with_finite_slopes(any);
   State state(y.data(), y.data() + y.size());
-  long parts = 0;
-  odeint::integrate_adaptive(stepper, system_of(f), state, t, t + h, first_part(f, t, y, h), counted_parts(parts));
+  advance(stepper, system_of(f), state, t, h, first_part(f, t, y, h));
   return vector_of(state);
 }
 
@@ -133,17 +192,17 @@ class DifferencedJacobian {
   const OdeFunction& f_;
 };
 
-VectorXd rosenbrock(const OdeFunction& f, double t, const VectorXd& y, double h, double tolerance) {
+VectorXd rosenbrock(const OdeFunction& any, double t, const VectorXd& y, double h, double tolerance) {
   if (h == 0.0) return y;
+  const OdeFunction f = with_finite_slopes(any);
   UblasVector state(static_cast<std::size_t>(y.size()));
   std::copy(y.data(), y.data() + y.size(), state.begin());
   const auto system = [&f](const UblasVector& at, UblasVector& derivative, double time) {
     const VectorXd dy = f(time, vector_of(at));
     std::copy(dy.data(), dy.data() + dy.size(), derivative.begin());
   };
-  long parts = 0;
-  odeint::integrate_adaptive(odeint::rosenbrock4_controller<odeint::rosenbrock4<double>>(tolerance, tolerance), std::make_pair(system, DifferencedJacobian(f)), state, t, t + h, h,
-                             counted_parts(parts));
+  const auto with_jacobian = std::make_pair(system, DifferencedJacobian(f));
+  advance(odeint::rosenbrock4_controller<odeint::rosenbrock4<double>>(tolerance, tolerance), with_jacobian, state, t, h, h);
   return vector_of(state);
 }
 

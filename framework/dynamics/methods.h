@@ -31,7 +31,8 @@ const Method& method_named(const std::string& word);
 
 /// The method as a step.
 /// @param tolerance  of a controlled method: error a step it allows itself, absolute and relative, > 0; not looked at by others
-/// The step of a controlled method throws std::runtime_error where it would need more than 1e6 steps inside one.
+/// A controlled method takes back a trial in which f throws (but UserError and NotImplemented), or which ends in a value that is not a number, and tries
+/// a quarter of it. It throws std::runtime_error where no step will do (none of 1e-12 of h), or it would need more than 1e6 steps inside one.
 /// Source: E. Hairer, S. P. Norsett, G. Wanner, "Solving ODEs I", II.4-II.9; "II", IV.7; implementations: Boost.Odeint.
 StepFunction step_of(const Method& method, double tolerance);
 

@@ -123,19 +123,26 @@ bool MovingWorld::shorten_step(const std::vector<std::pair<int, int>>& pairs, co
     const Need need = in_step && in_step(pair) ? Need::kTurning : Need::kPath;
     for (const int body : {pair.first, pair.second}) needs[body] = std::max(needs[body], need);
   }
+  constexpr const char* kTooFar = ", too far to find its collisions: make the step (\"step_s\") shorter or the body slower";
   const double asked = target_ - time_;
+  const auto turning_of = [&](int body, double step) {
+    return fmt::format("body '{}' turns {:.3g} rad a step of {:.3g} s", world_.bodies[body].name, omega_of(states_[body], world_.bodies[body].inertia).norm() * step, step);
+  };
   double duration = asked;
   int fastest = -1;
   for (int body = 0; body < size(); ++body) {
-    if (needs[body] == Need::kNothing || !can_move(body) || shapes_[body]->is_ball() || paths_[body].smooth) continue;   // however a ball turns, it looks the same; a smooth path's bounds are exact
+    if (needs[body] == Need::kNothing || !can_move(body) || shapes_[body]->is_ball()) continue;   // however a ball turns, it looks the same
+    if (paths_[body].smooth) {   // its bounds are exact at any length, but a search goes by them a radian at a time
+      if (omega_of(states_[body], world_.bodies[body].inertia).norm() * asked > kMostParts * kMostTurning) throw StoppedRun(turning_of(body, asked) + kTooFar);
+      continue;
+    }
     const double resolved = resolved_duration(body, duration, needs[body] == Need::kPath);
     if (resolved < duration) fastest = body;
     duration = resolved;
   }
   if (fastest < 0) return false;
-  const std::string turns = fmt::format("body '{}' turns {:.3g} rad a step of {:.3g} s", world_.bodies[fastest].name,
-                                        omega_of(states_[fastest], world_.bodies[fastest].inertia).norm() * asked, asked);
-  if (asked > kMostParts * duration) throw StoppedRun(turns + ", too far to find its collisions: make the step (\"step_s\") shorter or the body slower");
+  const std::string turns = turning_of(fastest, asked);
+  if (asked > kMostParts * duration) throw StoppedRun(turns + kTooFar);
   if (!told_of_shortening_[fastest]) {
     told_of_shortening_[fastest] = true;
     counters_.notices.push_back(fmt::format("step shortened: {}; where it may meet another body it gets steps of {:.2g} s, so that no collision is missed", turns, duration));

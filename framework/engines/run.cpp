@@ -55,6 +55,19 @@ void check_laws(const scene::Scene& scene, const Laws& laws) {
   }
 }
 
+// A step of the smallest world takes a microsecond; a frame takes some hundred bytes a body, and all are kept.
+constexpr double kMostSteps = 1e8, kMostFrames = 1e7;
+
+void refuse_endless(const scene::Scene& scene, double step, double duration, double frame_rate_hz) {
+  const std::string where = scene.file.empty() ? scene.name : scene.file.string();
+  if (duration / step > kMostSteps)
+    throw UserError(where, fmt::format("{:.3g} s in steps of {:.3g} s are {:.2g} steps, which would take too long", duration, step, duration / step),
+                    fmt::format("Take a longer step (\"step_s\") or a shorter run (\"duration_s\"): at most {:.0e} steps.", kMostSteps));
+  if (duration * frame_rate_hz > kMostFrames)
+    throw UserError(where, fmt::format("{:.3g} s at {:g} frames a second are {:.2g} frames, which memory would not hold", duration, frame_rate_hz, duration * frame_rate_hz),
+                    fmt::format("Take a shorter run (\"duration_s\"): at most {:.0e} frames.", kMostFrames));
+}
+
 void check_callbacks(const std::vector<Callback>& callbacks, const scene::Scene& scene) {
   for (std::size_t k = 0; k < callbacks.size(); ++k) {
     const std::vector<int>& bodies = callbacks[k].bodies;
@@ -121,6 +134,7 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& as
   const double step = options.step_s.value_or(scene.step_s), duration = options.duration_s.value_or(scene.duration_s);
   if (!(step > 0) || !std::isfinite(step)) throw UserError(scene.name, "the step must be a positive time", "give \"step_s\" in seconds");
   if (!(duration >= 0) || !std::isfinite(duration)) throw UserError(scene.name, "the duration must not be negative", "give \"duration_s\" in seconds");
+  refuse_endless(scene, step, duration, options.frame_rate_hz);
   if (!(options.frame_rate_hz > 0)) throw UserError("--frame-rate-hz", "must be positive", "60 suits most scenes");
   check_callbacks(options.callbacks, scene);
   check_laws(scene, laws);

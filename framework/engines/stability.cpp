@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numeric>
 
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
@@ -14,14 +15,10 @@
 namespace tumble::engines {
 namespace {
 
-// What rounding leaves of an amplification of exactly 1.
-constexpr double kNotAtAll = 1e-9;
 constexpr double kRuin = 1e3;            // factor over a run by which a method may lengthen a swing: more is refused
 constexpr double kSeen = 1.1;            // more is told
 constexpr double kRunaway = 10.0;        // times all the energy there was to begin with: more has run away
 constexpr double kRoundingOfRest = 1e-6; // of the energy a world at rest has by its height: what steps may leave of it
-// More springs than this are judged by the largest row sum (Gershgorin), an upper bound at most some times too large.
-constexpr Eigen::Index kMostSprings = 400;
 
 // Up to `step`, of what goes at this rate [1/s]. @param amplified  by a step of a given length
 double largest_stable_step(const std::function<double(double)>& amplified, double rate, double step) {
@@ -37,10 +34,6 @@ double largest_stable_step(const std::function<double(double)>& amplified, doubl
     (amplified(middle) <= 1.0 + kNotAtAll ? stable : unstable) = middle;
   }
   return stable;
-}
-
-double largest_stable_step(const Laws& laws, double frequency, double damping, double step) {
-  return largest_stable_step([&](double h) { return amplification(laws, frequency, damping, h); }, frequency, step);
 }
 
 // Of v' = -rate v, in a step; with the place beside it, for methods that treat places and velocities differently.
@@ -81,62 +74,20 @@ double amplification(const Laws& laws, double frequency, double damping, double 
     dy << y[1], -frequency * frequency * y[0] - damping * y[1];
     return dy;
   };
+  const double rate = std::max(frequency, damping);
   Eigen::Matrix2d matrix;
   for (int column = 0; column < 2; ++column) {
     VectorXd y = VectorXd::Zero(2);
-    y[column] = column == 0 ? 1.0 : frequency;   // in the units of the swing
+    y[column] = column == 0 ? 1.0 : rate;   // in the units of the swing, or of the decay
     const VectorXd after = laws.integrate_step(swing, 0.0, y, step);
     matrix(0, column) = after[0];
-    matrix(1, column) = after[1] / frequency;
+    matrix(1, column) = after[1] / rate;
   }
   return spectral_radius(matrix);
 }
 
-std::optional<SpringStability> judge_springs(const World& world, const Laws& laws, double step) {
-  const Eigen::Index n = static_cast<Eigen::Index>(world.springs.size());
-  if (n == 0) return std::nullopt;
-  // J M^-1/2 of each spring as one row over all bodies: what two springs share is what they have in common of it.
-  struct Row {
-    int body;
-    Vector6d scaled;
-  };
-  std::vector<std::vector<Row>> rows(world.springs.size());
-  std::vector<RigidBodyState> states;
-  for (const WorldBody& body : world.bodies) states.push_back(body.state);
-  for (std::size_t k = 0; k < world.springs.size(); ++k) {
-    const SpringLink& link = world.springs[k];
-    const Vector3d a = anchor_point(link.a, states), b = anchor_point(link.b, states);
-    const double length = (a - b).norm();
-    const Vector3d along = length > 0 ? Vector3d((a - b) / length) : Vector3d(Vector3d::UnitZ());
-    for (const auto& [anchor, point, sign] : {std::tuple{&link.a, a, 1.0}, std::tuple{&link.b, b, -1.0}}) {
-      if (anchor->body < 0 || world.bodies[anchor->body].immovable()) continue;
-      const WorldBody& body = world.bodies[anchor->body];
-      const Matrix3d R = body.state.world_from_body.toRotationMatrix();
-      const Matrix3d root = Eigen::SelfAdjointEigenSolver<Matrix3d>(body.inertia.inverse_inertia_body).operatorSqrt();
-      Vector6d scaled;
-      scaled << sign * std::sqrt(body.inertia.inverse_mass) * along, sign * (root * (R.transpose() * (point - body.state.com_world).cross(along)));
-      rows[k].push_back({anchor->body, std::sqrt(link.spring.stiffness) * scaled});
-    }
-  }
-  MatrixXd shared = MatrixXd::Zero(n, n);
-  for (Eigen::Index i = 0; i < n; ++i)
-    for (Eigen::Index j = 0; j <= i; ++j)
-      for (const Row& p : rows[i])
-        for (const Row& q : rows[j])
-          if (p.body == q.body) shared(i, j) = shared(j, i) = shared(i, j) + p.scaled.dot(q.scaled);
-  Eigen::Index most = 0;
-  double squared = 0.0;
-  if (n <= kMostSprings) {
-    const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(shared);
-    squared = solver.eigenvalues()[n - 1];
-    solver.eigenvectors().col(n - 1).cwiseAbs().maxCoeff(&most);
-  } else {
-    squared = shared.cwiseAbs().rowwise().sum().maxCoeff(&most);
-  }
-  if (!(squared > 0)) return std::nullopt;
-  const Spring& spring = world.springs[most].spring;
-  const double frequency = std::sqrt(squared), damping = spring.stiffness > 0 ? squared * spring.damping / spring.stiffness : 0.0;
-  return SpringStability{world.springs[most].name, frequency, amplification(laws, frequency, damping, step), largest_stable_step(laws, frequency, damping, step)};
+double largest_stable_step(const Laws& laws, double frequency, double damping, double step) {
+  return largest_stable_step([&](double h) { return amplification(laws, frequency, damping, h); }, std::max(frequency, damping), step);
 }
 
 std::vector<StepLimit> judge_decays(const World& world, const Laws& laws, double step) {
@@ -164,27 +115,43 @@ std::vector<StepLimit> judge_decays(const World& world, const Laws& laws, double
 }
 
 std::optional<StepLimit> judge_rods(const World& world, const std::vector<double>& tensions, const Laws& laws, double step) {
-  constexpr std::size_t kMostRods = 100;   // a dense eigenvalue problem of three times that
+  constexpr std::size_t kMostBodies = 100;   // a dense eigenvalue problem of three times that
   const auto beside_centre = [](const Anchor& anchor) { return anchor.body >= 0 && !anchor.point_body.isZero(0.0); };
   const auto is_beside = [&](const RodLink& rod) { return beside_centre(rod.a) || beside_centre(rod.b); };
-  if (world.rods.empty() || world.rods.size() > kMostRods || !world.joints.empty() || std::any_of(world.rods.begin(), world.rods.end(), is_beside)) return std::nullopt;
+  if (world.rods.empty() || !world.joints.empty() || std::any_of(world.rods.begin(), world.rods.end(), is_beside)) return std::nullopt;
   std::vector<RigidBodyState> states;
   std::vector<Eigen::Index> place(world.bodies.size(), -1);
   Eigen::Index n = 0;
   for (const WorldBody& body : world.bodies) states.push_back(body.state);
-  const auto end_of = [&](const Anchor& anchor) -> Eigen::Index {
-    if (anchor.body < 0 || world.bodies[anchor.body].immovable()) return -1;
-    if (place[anchor.body] < 0) place[anchor.body] = 3 * n++;
-    return place[anchor.body];
-  };
-  for (const RodLink& rod : world.rods) end_of(rod.a), end_of(rod.b);
+  // How hard rods hold each body, by blocks of K (Gershgorin): the most bounds the swings without rods, which are faster than those with them. Mostly that will do.
+  std::vector<double> held(world.bodies.size(), 0.0);
+  const auto lightness = [&](const Anchor& anchor) { return anchor.body < 0 ? 0.0 : std::sqrt(world.bodies[anchor.body].inertia.inverse_mass); };
+  for (std::size_t k = 0; k < world.rods.size(); ++k) {
+    const RodLink& rod = world.rods[k];
+    const double stiffness = std::abs(tensions[k]) / rod.length, both = lightness(rod.a) + lightness(rod.b);
+    if (rod.a.body >= 0) held[rod.a.body] += stiffness * lightness(rod.a) * both;
+    if (rod.b.body >= 0) held[rod.b.body] += stiffness * lightness(rod.b) * both;
+  }
+  const double bound = *std::max_element(held.begin(), held.end());
+  if (!(bound > 0) || amplification(laws, std::sqrt(bound), 0.0, step) <= 1.0 + kNotAtAll) return std::nullopt;
+  // Of many bodies, those that are held hardest, the others kept still: what they do alone is no faster than what all can do.
+  std::vector<std::size_t> chosen(world.bodies.size());
+  std::iota(chosen.begin(), chosen.end(), std::size_t{0});
+  std::stable_sort(chosen.begin(), chosen.end(), [&](std::size_t a, std::size_t b) { return held[a] > held[b]; });
+  const bool all = chosen.size() <= kMostBodies || held[chosen[kMostBodies]] == 0.0;
+  if (!all) chosen.resize(kMostBodies);
+  for (const std::size_t body : chosen)
+    if (held[body] > 0.0) place[body] = 3 * n++;
+  const auto end_of = [&](const Anchor& anchor) -> Eigen::Index { return anchor.body < 0 ? -1 : place[anchor.body]; };
   // In places times sqrt(m): A = M^-1/2 K M^-1/2, the rods' rows J M^-1/2.
-  const Eigen::Index rods = static_cast<Eigen::Index>(world.rods.size());
-  MatrixXd A = MatrixXd::Zero(3 * n, 3 * n), J = MatrixXd::Zero(rods, 3 * n);
-  for (Eigen::Index k = 0; k < rods; ++k) {
-    const RodLink& rod = world.rods[static_cast<std::size_t>(k)];
+  std::vector<std::size_t> rods;
+  for (std::size_t k = 0; k < world.rods.size(); ++k)
+    if (end_of(world.rods[k].a) >= 0 || end_of(world.rods[k].b) >= 0) rods.push_back(k);
+  MatrixXd A = MatrixXd::Zero(3 * n, 3 * n), J = MatrixXd::Zero(static_cast<Eigen::Index>(rods.size()), 3 * n);
+  for (Eigen::Index k = 0; k < J.rows(); ++k) {
+    const RodLink& rod = world.rods[rods[static_cast<std::size_t>(k)]];
     const Vector3d along = (anchor_point(rod.a, states) - anchor_point(rod.b, states)).normalized();
-    const Matrix3d across = tensions[static_cast<std::size_t>(k)] / rod.length * (Matrix3d::Identity() - along * along.transpose());
+    const Matrix3d across = tensions[rods[static_cast<std::size_t>(k)]] / rod.length * (Matrix3d::Identity() - along * along.transpose());
     const auto root = [&](const Anchor& anchor) { return std::sqrt(world.bodies[anchor.body].inertia.inverse_mass); };
     const Eigen::Index a = end_of(rod.a), b = end_of(rod.b);
     if (a >= 0) A.block<3, 3>(a, a) += root(rod.a) * root(rod.a) * across, J.block<1, 3>(k, a) = root(rod.a) * along.transpose();
@@ -193,9 +160,6 @@ std::optional<StepLimit> judge_rods(const World& world, const std::vector<double
     A.block<3, 3>(a, b) -= root(rod.a) * root(rod.b) * across;
     A.block<3, 3>(b, a) -= root(rod.a) * root(rod.b) * across;
   }
-  // A row sum bounds the swings without rods, which are faster than those with them: mostly that will do.
-  const double bound = A.cwiseAbs().rowwise().sum().maxCoeff();
-  if (!(bound > 0) || amplification(laws, std::sqrt(bound), 0.0, step) <= 1.0 + kNotAtAll) return std::nullopt;
   const MatrixXd keep = MatrixXd::Identity(3 * n, 3 * n) - J.completeOrthogonalDecomposition().pseudoInverse() * J;
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(keep * A * keep);
   const double squared = solver.eigenvalues()[3 * n - 1];
@@ -206,7 +170,7 @@ std::optional<StepLimit> judge_rods(const World& world, const std::vector<double
   solver.eigenvectors().col(3 * n - 1).cwiseAbs().maxCoeff(&most);
   const auto body = std::find(place.begin(), place.end(), most - most % 3) - place.begin();
   return StepLimit{fmt::format("the swing of body '{}' across its rods ({:.4g} rad/s where the run starts)", world.bodies[static_cast<std::size_t>(body)].name, frequency), amplified,
-                   largest_stable_step(laws, frequency, 0.0, step), "masses that differ less"};
+                   largest_stable_step(laws, all ? frequency : std::sqrt(bound), 0.0, step), "masses that differ less"};
 }
 
 namespace {
@@ -231,7 +195,9 @@ void refuse_or_tell(const StepLimit& limit, const Laws& laws, const StepsOfARun&
 }  // namespace
 
 void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfARun& steps, const std::string& where, std::vector<std::string>& notices) try {
-  if (const auto springs = judge_springs(world, laws, steps.step); springs && springs->amplification > 1.0)
+  if (const auto dampers = judge_dampers(world, laws, steps.step)) refuse_or_tell(*dampers, laws, steps, where, notices);
+  const auto springs = judge_springs(world, laws, steps.step);
+  if (springs && springs->amplification > 1.0 && !springs->is_overdamped())
     refuse_or_tell({fmt::format("the swing of spring '{}' ({:.4g} rad/s where the run starts)", springs->spring, springs->angular_frequency), springs->amplification, springs->largest_step,
                     springs->largest_step > 0 ? "a softer spring or more damping" : "damp the spring"},
                    laws, steps, where, notices);

@@ -15,15 +15,26 @@ namespace tumble::engines {
 /// found by asking the method itself. Source: E. Hairer, G. Wanner, "Solving ODEs II", IV.2.
 double amplification(const Laws& laws, double angular_frequency, double damping, double step);
 
+/// What rounding leaves of an amplification of exactly 1.
+inline constexpr double kNotAtAll = 1e-9;
+
+/// Largest step up to `step` that does not lengthen the same swing; 0 where none does not, down to a thousandth of its faster rate. [s]
+double largest_stable_step(const Laws& laws, double angular_frequency, double damping, double step);
+
 struct SpringStability {
   std::string spring;              // the one that takes most part in the fastest swing
   double angular_frequency;        // of that swing where the run starts [rad/s]
+  double damping;                  // c of  y'' = -w^2 y - c y'  for it [1/s]
   double amplification;            // a step
   double largest_step;             // that does not lengthen it [s]; 0 where none does not
+
+  bool is_overdamped() const { return damping > 2.0 * angular_frequency; }   // no swing: its damper's matter
 };
 
-/// The fastest swing of the springs of a world where it starts (along the springs; the eigenvalues of J M^-1 J^T K).
-/// @return nothing for a world without springs
+/// The fastest swing of the springs of a world where it starts, along the springs, with what rods and joints hold kept still: the eigenvalues of
+/// J N J^T K, where N is M^-1 without the directions that rods and joints do not allow.
+/// @return nothing for a world without springs that can stretch. Where more than 60 bodies are linked, springs on bodies that joints, or rods beside
+///         their centres, hold are not judged
 std::optional<SpringStability> judge_springs(const World& world, const Laws& laws, double step);
 
 /// Of anything else that limits a step.
@@ -34,6 +45,11 @@ struct StepLimit {
   std::string remedy;              // beside a shorter step
 };
 
+/// The way of moving from which the dampers of the world's springs take most (the largest eigenvalue of J N J^T C), with what the springs do
+/// to it. Where it swings, `judge_springs` speaks of it.
+/// @return nothing where the method follows it; the same are not judged
+std::optional<StepLimit> judge_dampers(const World& world, const Laws& laws, double step);
+
 /// What drag takes from a body's velocities, y' = -c/m y and -c/I y (the least moment), and what Baumgarte's term takes from errors of rods and
 /// joints, e'' = -k e - c e' with the laws' own gains. Those that the method lengthens at this step.
 std::vector<StepLimit> judge_decays(const World& world, const Laws& laws, double step);
@@ -41,8 +57,9 @@ std::vector<StepLimit> judge_decays(const World& world, const Laws& laws, double
 /// The fastest swing of bodies across rods that pull: M x'' = -K x, K = sum of (tension / length) (1 - n n^T), where the rods keep their lengths.
 /// A light body between a ceiling and a heavy one has the highest: about sqrt(M g (1/l1 + 1/l2) / m).
 /// @param tensions  of the world's rods where the run starts [N]
-/// @return nothing where the method does not lengthen it, and where rods end beside centres of mass, joints are there too, or there are more than
-///         a hundred rods: such worlds are not judged
+/// Of more than a hundred bodies the hundred that are held hardest are looked at, the others kept still: a lower bound of the fastest swing. The largest
+/// step comes from an upper bound then.
+/// @return nothing where the method does not lengthen it, and where rods end beside centres of mass or joints are there too: such worlds are not judged
 std::optional<StepLimit> judge_rods(const World& world, const std::vector<double>& tensions, const Laws& laws, double step);
 
 struct StepsOfARun {

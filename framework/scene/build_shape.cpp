@@ -1,5 +1,6 @@
 #include "framework/scene/build_shape.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -7,6 +8,7 @@
 #include <tuple>
 
 #include "framework/core/error.h"
+#include "framework/core/nearest_word.h"
 #include "framework/geometry/solid.h"
 
 namespace tumble::scene {
@@ -56,6 +58,15 @@ std::filesystem::path find_model(const std::string& file, const std::filesystem:
   return (root.empty() ? find_root(scene_file) : root) / "models" / file;
 }
 
+std::vector<std::string> models_in(const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  if (std::filesystem::is_directory(folder))
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      if (entry.path().extension() == ".3ds") names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 /// The models of a scene, each read once.
 class Models {
  public:
@@ -71,8 +82,11 @@ class Models {
   using Key = std::tuple<std::string, std::string, double>;
 
   UnitSolid read(const ModelSpec& spec, const std::string& body) const {
+    const std::filesystem::path file = find_model(spec.file, scene_file_, root_);
+    if (!std::filesystem::exists(file))
+      throw UserError("body '" + body + "': " + spec.file, "no such file." + did_you_mean(spec.file, models_in(file.parent_path())), "It is looked for beside the scene, then in " + file.parent_path().string() + ".");
     try {
-      SolidModel model = load_solid(find_model(spec.file, scene_file_, root_), spec.object, spec.metres_per_unit);
+      SolidModel model = load_solid(file, spec.object, spec.metres_per_unit);
       return {std::move(model.solid), model.volume, model.inertia_per_density_body / model.volume};
     } catch (const UserError& error) {
       throw UserError("body '" + body + "': " + error.where(), error.problem(), error.remedy());
@@ -110,7 +124,13 @@ Solid build_solid(const BodySpec& body, const std::filesystem::path& scene_file,
 std::vector<Solid> build_solids(const Scene& scene, const std::filesystem::path& root) {
   Models models(scene.file, root);
   std::vector<Solid> solids;
-  for (const auto& body : scene.bodies) solids.push_back(with_mass(body, unit_solid(body, models)));
+  for (const auto& body : scene.bodies) {
+    try {
+      solids.push_back(with_mass(body, unit_solid(body, models)));
+    } catch (const UserError& error) {
+      throw UserError(place_of(scene, body.pointer + "/shape/model") + ": " + error.where(), error.problem(), error.remedy());
+    }
+  }
   return solids;
 }
 

@@ -1,6 +1,7 @@
 #include "framework/scene/document.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <set>
 
@@ -173,7 +174,21 @@ bool has_type(const json& value, const std::string& type) {
   }
   if (value.is_array() && rule.value("type", "") == "array" && value.size() != rule.value("minItems", value.size()))
     document.refuse(pointer, "found a list of " + std::to_string(value.size()) + ", expected " + expected);
-  document.refuse(pointer, "found " + show(value) + ", expected " + expected);
+  document.refuse(pointer, "found " + show(value) + ", expected " + (pointer.empty() ? "an object, { ... }: what a scene says" : expected));
+}
+
+// Squares and cubes of what a scene says must stay within doubles, and so must products of three of them (2^-1074 to 2^1023).
+constexpr double kLargest = 1e60, kSmallest = 1e-60;
+
+void refuse_extreme_numbers(const Document& document, const json& value, const std::string& pointer) {
+  if (value.is_object())
+    for (const auto& [key, member] : value.items()) refuse_extreme_numbers(document, member, pointer + '/' + escaped(key));
+  if (value.is_array())
+    for (std::size_t i = 0; i < value.size(); ++i) refuse_extreme_numbers(document, value[i], pointer + '/' + std::to_string(i));
+  if (!value.is_number()) return;
+  const double size = std::abs(value.get<double>());
+  if (size > kLargest) document.refuse(pointer, "found " + show(value) + ", too large to reckon with", "Numbers may be up to 1e60: check its digits and its unit.");
+  if (size > 0.0 && size < kSmallest) document.refuse(pointer, "found " + show(value) + ", too small to reckon with", "Numbers are 0 or at least 1e-60 in size: write 0, or check its unit.");
 }
 
 }  // namespace
@@ -197,10 +212,11 @@ Document parse_document(const std::string& text, const std::filesystem::path& fi
     throw UserError(file.string() + ':' + line_and_column(text, error.byte), "this is not JSON: " + essence(error.what()),
                     "JSON wants double quotes, a comma between entries and none after the last, and no NaN or infinity.");
   } catch (const json::exception& error) {   // a number beyond a double
-    throw UserError(file.string() + ':' + line_and_column(text, static_cast<std::size_t>(seen - text.data())), essence(error.what()));
+    throw UserError(file.string() + ':' + line_and_column(text, static_cast<std::size_t>(seen - text.data())), essence(error.what()), "Write a number that a double can hold: check its digits.");
   }
   document.lines = std::move(notes.lines);
   if (notes.twice) document.refuse(*notes.twice, "this key stands twice in the same object", "Delete one of the two.");
+  refuse_extreme_numbers(document, document.json, "");
   return document;
 }
 

@@ -10,13 +10,6 @@ namespace {
 std::string ending(const std::string& body) { return body.empty() ? "the world" : body; }
 std::string between(const AnchorSpec& a, const AnchorSpec& b) { return ending(a.body) + " to " + ending(b.body); }
 
-// An entry without a line of its own (a friction that is left out) stands in its parent.
-int line_of(const Scene& scene, std::string pointer) {
-  while (!scene.lines.contains(pointer) && !pointer.empty()) pointer.erase(pointer.rfind('/'));
-  const auto found = scene.lines.find(pointer);
-  return found == scene.lines.end() || pointer.empty() ? 0 : found->second;
-}
-
 Effect gravity(const Scene& scene) {
   Effect effect{"gravity", "integration", "gravity_calls", {}, ""};
   if (!scene.gravity_m_s2) return effect;

@@ -193,4 +193,11 @@ struct Scene {
   std::vector<std::string> needs;   // module ids whose laws the scene is about, e.g. {"a1"}
 };
 
+/// The line of the scene's file where an entry begins, or what holds it where it has none of its own; 0 for a scene made in memory.
+/// @param pointer  JSON pointer, such as "/bodies/1/friction"
+int line_of(const Scene& scene, std::string pointer);
+
+/// The same in words: "FILE:LINE: /bodies/1/friction", or the scene's name for one made in memory.
+std::string place_of(const Scene& scene, const std::string& pointer);
+
 }  // namespace tumble::scene

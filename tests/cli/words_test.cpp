@@ -33,6 +33,14 @@ TEST_F(CommandLine, AnUnknownFlagIsAnsweredWithTheNearest) {
   EXPECT_NE(said.err.find("--no-meda: grade has no such flag. Did you mean '--no-media'? Known: "), std::string::npos) << said.err;
 }
 
+TEST_F(CommandLine, ASceneThatNeedsAnAssignmentThatThereIsNotIsRefusedAtItsLine) {
+  std::ofstream(folder_ / "s.json") << "{ \"title\": \"t\", \"duration_s\": 1,\n  \"needs\": [\"a1\", \"a33\"],\n"
+                                       "  \"bodies\": [{ \"name\": \"b\", \"shape\": { \"sphere\": { \"radius_m\": 1 } }, \"mass_kg\": 1 }] }\n";
+  const Said said = type("run s.json");
+  EXPECT_EQ(said.code, 2);
+  for (const std::string word : {"s.json:2", "/needs/1", "'a33'", "Did you mean 'a3'"}) EXPECT_NE(said.err.find(word), std::string::npos) << word << " in: " << said.err;
+}
+
 TEST_F(CommandLine, HelpListsEveryVerb) {
   const Said said = type("--help");
   EXPECT_EQ(said.code, 0);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
+#include "framework/core/not_implemented.h"
 #include "framework/dynamics/methods.h"
 
 namespace tumble::testing {
@@ -51,6 +52,56 @@ TEST(Methods, ImplicitOneTakesStepsThatStabilityForbidsOthers) {
   const VectorXd end = step_of(method_named("rosenbrock4"), 1e-6)(stiff, 0.0, VectorXd::Constant(1, 1.0), 1.0);
   EXPECT_NEAR(end[0], std::cos(1.0), 1e-5);   // ten times the tolerance; the solution lags by 1e-6 sin t
   EXPECT_LT(calls, 20000);                    // at least 1e6 / 3 steps of more than one call for an explicit method
+}
+
+// y' = -1000 ln y from t = 1/2 on, nothing before: y falls from 2 to 1 and is positive all the way. A trial across the edge, as long as stillness lets it
+// be, leads below 0, where there is no logarithm.
+VectorXd fall_to_one(double t, const VectorXd& y) { return VectorXd::Constant(1, t < 0.5 ? 0.0 : -1000.0 * std::log(y[0])); }
+
+TEST(Methods, ThatControlTheirErrorTakeBackATrialThatGoesWrong) {
+  constexpr double kTolerance = 1e-6;
+  for (const Method& method : methods()) {
+    if (!method.controlled) continue;
+    for (const bool throws : {false, true}) {
+      int wrong = 0;
+      const OdeFunction f = [&](double t, const VectorXd& y) -> VectorXd {
+        VectorXd slope = fall_to_one(t, y);
+        if (!slope.allFinite()) ++wrong;
+        if (throws && !slope.allFinite()) throw std::runtime_error("no logarithm");
+        return slope;
+      };
+      // At the end explicit methods go to and fro about 1 by what the tolerance lets them.
+      EXPECT_NEAR(step_of(method, kTolerance)(f, 0.0, VectorXd::Constant(1, 2.0), 1.0)[0], 1.0, 100 * kTolerance) << method.name;
+      EXPECT_GT(wrong, 0) << method.name << ": the case does not try what it is about";
+    }
+  }
+}
+
+TEST(Methods, WhereNoStepWillDoSayWhenAndWhy) {
+  for (const Method& method : methods()) {
+    if (!method.controlled) continue;
+    for (const bool throws : {false, true}) {
+      const OdeFunction broken = [&](double t, const VectorXd& y) -> VectorXd {
+        if (t > 0.5 && throws) throw std::runtime_error("the rope is torn");
+        return t > 0.5 ? VectorXd::Constant(1, kUnset) : VectorXd(-y);
+      };
+      try {
+        step_of(method, 1e-6)(broken, 0.0, VectorXd::Constant(1, 1.0), 1.0);
+        ADD_FAILURE() << method.name << " went on";
+      } catch (const std::runtime_error& error) {
+        const std::string words = error.what();
+        const std::size_t at = words.find("no step is short enough at t = ");
+        ASSERT_NE(at, std::string::npos) << method.name << ": " << words;
+        EXPECT_NEAR(std::stod(words.substr(at + 31)), 0.5, 2e-5) << method.name;   // differences for an implicit method's Jacobian look 6e-6 s ahead
+        EXPECT_NE(words.find(throws ? "the rope is torn" : "not a number"), std::string::npos) << method.name << ": " << words;
+      }
+    }
+  }
+}
+
+TEST(Methods, WhatIsNotWrittenYetIsNoMatterOfTheStep) {
+  const OdeFunction stub = [](double, const VectorXd&) -> VectorXd { throw NotImplemented("state_derivative", "handouts/a2_integration.md"); };
+  for (const Method& method : methods()) EXPECT_THROW(step_of(method, 1e-6)(stub, 0.0, VectorXd::Constant(1, 1.0), 1.0), NotImplemented) << method.name;
 }
 
 TEST(Methods, UnknownNameIsRefusedWithTheNearest) {

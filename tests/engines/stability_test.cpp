@@ -1,6 +1,7 @@
 // The largest step that a method can take is told where a run starts: for drag, Baumgarte's term and light bodies on rods, against closed forms.
 #include <cmath>
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
@@ -93,6 +94,74 @@ TEST(LargestStep, OfATurningThatAJointHoldsIsNone) {
   EXPECT_TRUE(holds(answer(scene, reference_laws(), 1.0 / 120), "refused"));
 }
 
+// ---- Springs and their dampers --------------------------------------------------------------------------------------
+
+/// A ball of 0.5 kg on a spring of no length to the world, pulled 1 m along it.
+scene::Scene on_springs(const std::vector<std::pair<double, double>>& stiffness_and_damping) {
+  scene::Scene scene = scene_of({ball("weight", 0.1, 0.5, Vector3d::UnitX(), Vector3d::Zero())}, 1.0);
+  for (const auto& [k, c] : stiffness_and_damping) scene.springs.push_back({"spring " + std::to_string(scene.springs.size() + 1), {"", Vector3d::Zero()}, {"weight", Vector3d::Zero()}, k, c, 0.0});
+  return scene;
+}
+
+/// Of two roots of r^2 - d r + w^2 = 0 that are real, the faster one [1/s].
+double faster_root(double k, double c, double m) { return 0.5 * (c / m + std::sqrt(c * c / (m * m) - 4.0 * k / m)); }
+
+void expect_damper_limit(const scene::Scene& scene, const Laws& laws, double largest, const std::string& spring) {
+  EXPECT_EQ(answer(scene, laws, kUnder * largest), "");
+  const std::string refusal = answer(scene, laws, kOver * largest);
+  EXPECT_TRUE(refusal.starts_with("refused: ") && holds(refusal, "damper of spring '" + spring + "'") && holds(refusal, "less damping")) << refusal;
+  const auto limit = engines::judge_dampers(build_world(scene), laws, kOver * largest);
+  ASSERT_TRUE(limit);
+  EXPECT_NEAR(limit->largest_step, largest, kFound * largest);
+}
+
+// What overshoots nothing still has a rate; stiffness 0 is a damper alone, and of two springs side by side constants add.
+TEST(LargestStep, OfWhatADamperTakesIsItsFasterRoot) {
+  for (const auto& [k, c] : {std::pair{0.0, 50.0}, std::pair{10.0, 50.0}, std::pair{1000.0, 50.0}, std::pair{1.0, 1e6}}) {
+    const double rate = faster_root(k, c, 0.5);
+    expect_damper_limit(on_springs({{k, c}}), reference_laws(), kRk4Decay / rate, "spring 1");
+    expect_damper_limit(on_springs({{k, c}}), euler(), kEulerDecay / rate, "spring 1");
+  }
+  expect_damper_limit(on_springs({{500.0, 0.0}, {0.0, 50.0}}), reference_laws(), kRk4Decay / faster_root(500.0, 50.0, 0.5), "spring 2");
+}
+
+// A door's spring beside its hinge: w^2 = k d^2 / I there, though the door alone would swing on it with k (1/m + r^2 / I_com), 1e6 times that.
+TEST(LargestStep, OfASpringOnAHingedBodyIsThatOfTheSwingItsHingeAllows) {
+  const double m = 2.0, r = 0.5, d = 1e-3, k = 1e7, moment = 0.2, frequency = std::sqrt(k * d * d / (moment + m * r * r));
+  for (const scene::JointKind kind : {scene::JointKind::kHinge, scene::JointKind::kBall}) {
+    scene::BodySpec door = ball("door", 0.1, m, {r, 0, 0}, Vector3d::Zero());
+    door.inertia_body_kg_m2 = moment * Matrix3d::Identity();
+    door.collides = false;
+    scene::Scene scene = scene_of({door}, 1.0);
+    scene.joints.push_back({"pin", kind, "door", "", Vector3d::Zero(), Vector3d::UnitY()});
+    scene.springs.push_back({"closer", {"", Vector3d(d, 0, 1.0)}, {"door", Vector3d(d - r, 0, 0)}, k, 0.0, 1.0});
+    const auto judged = engines::judge_springs(build_world(scene), reference_laws(), 0.1);
+    ASSERT_TRUE(judged);
+    EXPECT_NEAR(judged->angular_frequency, frequency, 1e-6 * frequency);   // rounding of 1e-6 of what the hinge holds
+    EXPECT_EQ(answer(scene, reference_laws(), kUnder * kRk4Swing / frequency), "");
+    EXPECT_TRUE(holds(answer(scene, reference_laws(), kOver * kRk4Swing / frequency), "refused"));
+    scene.joints.clear();
+    EXPECT_TRUE(holds(answer(scene, reference_laws(), kUnder * kRk4Swing / frequency), "refused"));
+  }
+}
+
+// A net of more bodies than are factorised together is judged too, spring by spring: n equal springs in a row have 2 sqrt(k / m) sin(pi n / (2 n + 2)).
+TEST(LargestStep, OfManySpringsIsThatOfTheRow) {
+  for (const int n : {5, 100, 600}) {
+    scene::Scene scene = scene_of({}, 1.0);
+    for (int i = 0; i < n; ++i) {
+      scene.bodies.push_back(ball("bead" + std::to_string(i), 0.01, 0.5, Vector3d(i + 1, 0, 0), Vector3d::Zero()));
+      scene.springs.push_back({"spring" + std::to_string(i), {i == 0 ? "" : scene.bodies[static_cast<std::size_t>(i) - 1].name, Vector3d::Zero()}, {scene.bodies.back().name, Vector3d::Zero()}, 200.0, 0.0, 1.0});
+    }
+    scene.springs.push_back({"last", {scene.bodies.back().name, Vector3d::Zero()}, {"", Vector3d(n + 1, 0, 0)}, 200.0, 0.0, 1.0});
+    const auto judged = engines::judge_springs(build_world(scene), reference_laws(), 0.1);
+    ASSERT_TRUE(judged);
+    const double exact = 40.0 * std::sin(M_PI * n / (2.0 * n + 2.0));
+    EXPECT_NEAR(judged->angular_frequency, exact, n > 400 ? 1e-4 * exact : 1e-10 * exact) << n;   // row sums are a bound, met by a long row
+    EXPECT_FALSE(engines::judge_dampers(build_world(scene), reference_laws(), 0.1));
+  }
+}
+
 // e'' = -e / T^2 - 2 e' / T dies away at the double rate 1 / T.
 TEST(LargestStep, BaumgartesTermIsRefusedFromTheStepAtWhichErrorsGrow) {
   scene::Scene scene = truths::straight_chain({1.0}, 1.0, -Vector3d::UnitZ(), Vector3d(0, 0, -1.0));
@@ -120,6 +189,29 @@ TEST(LargestStep, ALightBodyAboveAHeavyOneIsToldOfWithTheLargestStep) {
     const auto limit = engines::judge_rods(build_world(scene), tensions, reference_laws(), kOver * largest);
     ASSERT_TRUE(limit);
     EXPECT_NEAR(limit->largest_step, largest, 1e-5 * largest) << ratio;   // a swing's amplification leaves 1 by (w h)^6 / 144 times what the step is over
+  }
+}
+
+// A chain's swings across are the eigenvalues of a matrix with three numbers a row: rod i of n carries n - i + 1 links.
+TEST(LargestStep, OfAChainOfAnyLengthIsToldOf) {
+  const double g = 9.81, l = 0.05;
+  for (const int n : {20, 300, 1000}) {
+    const scene::Scene scene = truths::straight_chain(std::vector<double>(static_cast<std::size_t>(n), 0.1), l, -Vector3d::UnitZ(), Vector3d(0, 0, -g));
+    VectorXd diagonal(n), beside(n - 1);
+    std::vector<double> tensions;
+    for (int i = 0; i < n; ++i) {
+      tensions.push_back((n - i) * 0.1 * g);
+      diagonal[i] = g / l * (2 * (n - i) - 1);
+      if (i + 1 < n) beside[i] = -g / l * (n - i - 1);
+    }
+    Eigen::SelfAdjointEigenSolver<MatrixXd> swings;
+    swings.computeFromTridiagonal(diagonal, beside, Eigen::EigenvaluesOnly);
+    const double largest = kRk4Swing / std::sqrt(swings.eigenvalues()[n - 1]);
+    const auto limit = engines::judge_rods(build_world(scene), tensions, reference_laws(), 1.02 * largest);
+    ASSERT_TRUE(limit) << n;
+    EXPECT_LE(limit->largest_step, (1 + 1e-5) * largest) << n;   // what it promises is true, and not much less than what is
+    EXPECT_GE(limit->largest_step, (n > 100 ? 0.95 : 1 - 1e-5) * largest) << n;
+    EXPECT_FALSE(engines::judge_rods(build_world(scene), tensions, reference_laws(), kUnder * largest)) << n;
   }
 }
 

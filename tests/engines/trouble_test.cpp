@@ -3,6 +3,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "framework/core/error.h"
 #include "framework/core/not_implemented.h"
 #include "tests/engines/scenes.h"
 #include "tests/support/story.h"
@@ -100,6 +101,52 @@ TEST(Trouble, ARootFinderOfNonsenseChangesNothing) {
     ASSERT_EQ(collision_times(result).size(), 1u);
     EXPECT_NEAR(collision_times(result)[0], 0.9, 1e-14);
   }
+}
+
+// In free flight, too, where a path is known exactly: a search for its collisions looks at each radian.
+TEST(Trouble, ABodyThatTurnsTooOftenAStepForItsCollisionsIsNamed) {
+  for (const double rate : {1e4, 1e9}) {
+    scene::BodySpec top = ball("top", 0.1, 1.0, {0, 0, 1}, Vector3d::Zero());
+    top.shape = scene::BoxSpec{Vector3d(0.1, 0.1, 0.1)};
+    top.omega_world_rad_s = {rate, 0, 0};
+    scene::BodySpec floor = top;
+    floor.name = "floor";
+    floor.shape = scene::BoxSpec{Vector3d(1, 1, 0.1)};
+    floor.immovable = true;
+    floor.mass_kg.reset();
+    floor.omega_world_rad_s.setZero();
+    floor.position_m = {0, 0, 0.7};
+    scene::Scene scene = scene_of({top, floor}, 0.02);
+    scene.step_s = 0.01;
+    const Trajectory result = run(scene, test_laws(), 100.0);
+    const std::string& stopped = result.stopped_by;
+    if (rate > 1e5) EXPECT_TRUE(stopped.find("'top' turns 1e+07 rad a step") != std::string::npos && stopped.find("step_s") != std::string::npos) << stopped;
+    else EXPECT_EQ(stopped, "");
+  }
+}
+
+// Refused before it begins: nobody waits for 1e9 steps to learn that they were a slip, and frames are kept in memory.
+TEST(Trouble, ARunOfTooManyStepsOrFramesIsRefused) {
+  const auto refused = [](double step, double duration, double rate) -> std::string {
+    scene::Scene scene = head_on();
+    scene.step_s = step;
+    scene.duration_s = duration;
+    TrajectoryRecorder recorder;
+    engines::RunOptions options;
+    options.frame_rate_hz = rate;
+    try {
+      engines::run_scene(scene, test_laws(), options, recorder);
+    } catch (const UserError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const std::string steps = refused(1e-9, 1.0, 60.0), frames = refused(1.0, 1e6, 60.0);
+  EXPECT_NE(steps.find("1e+09 steps"), std::string::npos) << steps;
+  EXPECT_NE(steps.find("\"step_s\""), std::string::npos) << steps;
+  EXPECT_NE(frames.find("6e+07 frames"), std::string::npos) << frames;
+  EXPECT_NE(frames.find("\"duration_s\""), std::string::npos) << frames;
+  EXPECT_EQ(refused(0.01, 1.0, 60.0), "");
 }
 
 }  // namespace

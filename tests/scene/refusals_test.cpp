@@ -60,7 +60,7 @@ TEST(SceneRefusals, AVectorOfTwoNumbersIsCounted) {
 }
 
 TEST(SceneRefusals, AMissingModelNamesTheFile) {
-  expect_words(refusal(scene_with(R"({ "name": "pawn", "shape": { "model": { "file": "chess_prawn.3ds" } }, "mass_kg": 1 })")), {"pawn", "chess_prawn.3ds"});
+  expect_words(refusal(scene_with(R"({ "name": "pawn", "shape": { "model": { "file": "chess_prawn.3ds" } }, "mass_kg": 1 })")), {"s.json:5: /bodies/0/shape/model", "pawn", "chess_prawn.3ds", "Did you mean 'chess_pawn.3ds'"});
 }
 
 TEST(SceneRefusals, AnUnknownBodyInACheckListsTheBodies) {
@@ -95,6 +95,26 @@ TEST(SceneRefusals, AnEllipsoidBesideItsCentreOfMassNeedsMomentsOfItsOwn) {
   };
   expect_words(refusal(egg(R"("mass_kg": 1)")), {"/bodies/0/shape/ellipsoid/center_m", "not of one density", "inertia_body_kg_m2"});
   EXPECT_EQ(refusal(egg(R"("mass_kg": 1, "inertia_body_kg_m2": [[2e-4, -2e-5, 0], [-2e-5, 16e-4, 0], [0, 0, 17e-4]])")), "");
+}
+
+TEST(SceneRefusals, WhatIsNoObjectSaysThatASceneIs) { expect_words(refusal("[]"), {"s.json:1", "found the list []", "expected an object"}); }
+
+TEST(SceneRefusals, ADurationOrStepThatIsNotAboveZeroSaysSo) {
+  for (const std::string key : {"step_s", "duration_s"})
+    for (const std::string value : {"0", "-1"}) {
+      std::string text = scene_with(kBall, key == "step_s" ? ", \"step_s\": " + value : "");
+      if (key == "duration_s") text.replace(text.find("\"duration_s\": 1"), 15, "\"duration_s\": " + value);
+      expect_words(refusal(text), {"/" + key, "found " + value, "a number above 0"});
+    }
+}
+
+// 1e-320 kg has no inverse in doubles, and (1e200 m/s)^2 no value: nothing that follows from them would be named after its cause.
+TEST(SceneRefusals, NumbersThatDoublesCannotSquareAreNamed) {
+  for (const std::string mass : {"1e-320", "1e-61", "1e300", "1e61"}) expect_words(refusal(scene_with(body_with("\"mass_kg\": " + mass))), {"s.json:5", "/bodies/0/mass_kg", "found", "reckon"});
+  expect_words(refusal(scene_with(body_with(R"("mass_kg": 1, "velocity_m_s": [0, -1e200, 0])"))), {"/bodies/0/velocity_m_s/1", "too large"});
+  expect_words(refusal(scene_with(body_with("\"mass_kg\": 1e999"))), {"s.json:5", "1e999", "a double can hold"});
+  for (const std::string mass : {"1e-60", "1e60"}) EXPECT_EQ(refusal(scene_with(body_with("\"mass_kg\": " + mass))), "");
+  EXPECT_EQ(refusal(scene_with(body_with(R"("mass_kg": 1, "velocity_m_s": [0, -0.0, 1e-60])"))), "");
 }
 
 TEST(SceneRefusals, ATrailingCommaIsNotJson) { expect_words(refusal(scene_with(kBall + ",")), {"not JSON", "none after the last"}); }

@@ -79,6 +79,22 @@ TEST(LinkVariations, ChainAtRestCarriesWhatHangsOnIt) {
   expect_right(made, "hanging chain");
 }
 
+// A straight row let go from rest at an angle: rod i carries what is below it along itself, and where a light bob stands between, the matrix of the rods
+// has a condition of four times the ratio of masses.
+TEST(LinkVariations, TensionsOfARowThatIsLetGo) {
+  for (const double ratio : {1.0, 1e2, 1e4, 1e6}) {
+    const double angle = 0.5, pull = kGravity * std::cos(angle);
+    const std::vector<double> masses{1.0 / ratio, 1.0}, lengths{1.0, 0.7}, angles{angle, angle}, tensions{(1.0 + 1.0 / ratio) * pull, pull};
+    for (const double part : {0.0, 1e-6}) {   // of the tension: a wrong one must be seen
+      MadeCase made("double_pendulum");
+      made.input("masses", list_of(masses)).input("lengths", list_of(lengths)).input("g", kGravity).input("theta0", list_of(angles)).input("omega0", list_of({0.0, 0.0})).input("times", truths::Value::List{});
+      made.output("energy", -kGravity * std::cos(angle) * (masses[0] * 1.0 + 1.7), 1e-14).output("rod_tensions_t0", list_of({tensions[0], tensions[1] * (1.0 + part)}), 2 * kUlp * tensions[0]);
+      static const Reference reference;
+      EXPECT_EQ(truths::verdict_of(reference.compare(made.truth())), part == 0.0 ? Verdict::kRight : Verdict::kWrong) << ratio << ' ' << part;
+    }
+  }
+}
+
 // All mass in one point: a rod instead of a hinge. T = 4 K(sin(theta0 / 2)) / w0.
 TEST(LinkVariations, PointPendulumOfAnyAngle) {
   for (const double angle : {-2.0, 0.3, 1.2}) {
