@@ -291,7 +291,10 @@ ProcessWorld::Change ProcessWorld::collide(BodyPair pair, const ProcessState& st
   const BodyPair trigger = local(pair);
   const std::vector<BodyPair> pairs = near_pairs(trigger);
   meetings_.separate(pairs);
-  resolve(pairs, trigger);
+  // A blow that is dealt with in the step it falls into is dealt with in the one that begins here, by all that the two then touch, friction
+  // among it: so a world of all bodies does it, and of a blow struck alone and without friction something else would come.
+  if (has_contacts() && contacts_->deals_in_step(trigger)) contacts_->begin(trigger, meetings_.gap(trigger));
+  else resolve(pairs, trigger);
   require_numbers();
   if (collector_.events.empty()) {   // they met without coming nearer
     const collision::Gap gap = meetings_.gap(trigger);
