@@ -1,5 +1,6 @@
 // Timewarp on several threads commits what the reference commits, to the last bit, whatever the threads' timing; and it keeps its bounds.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
 
@@ -7,6 +8,7 @@
 
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
+#include "framework/engines/guarded_laws.h"
 #include "tests/engines/event_scenes.h"
 
 namespace tumble::testing {
@@ -155,10 +157,50 @@ TEST(Threads, StopWhereTheReferenceStops) {
   }
 }
 
+// Said once, to whoever asks just then: a thread that took it for a consequence of its own guesses would go on to the end.
+TEST(Threads, StopWhenTimeIsUpWhereverTheyAre) {
+  const scene::Scene scene = sized("gas", 200, 2.0);
+  const Trajectory reference = run_by("ordered", scene, {}, 30.0);
+  for (const int threads : {1, 2})
+    for (const int last : {100, 300, 700}) {
+      std::atomic<int> asked = 0;
+      Laws laws = test_laws();
+      laws.relative_normal_velocity = [&asked, last, law = laws.relative_normal_velocity](const Contact& contact, const Body& a, const Body& b) {
+        if (++asked == last) throw engines::OutOfTime("it takes more than 1 s");
+        return law(contact, a, b);
+      };
+      TrajectoryRecorder recorder;
+      engines::RunOptions options;
+      options.engine = "tw";
+      options.timewarp = engines::fast_timewarp();
+      options.threads = threads;
+      options.trial.territories = 4;
+      options.frame_rate_hz = 30.0;
+      engines::run_scene(scene, laws, options, recorder);
+      const Trajectory& run = recorder.trajectory();
+      EXPECT_EQ(run.stopped_by.find("it takes more than 1 s"), 0U) << threads << " threads, " << last << ": " << run.stopped_by;
+      EXPECT_LT(asked, last + 200) << threads << " threads";   // the other thread comes to the end of its round
+      ASSERT_LT(run.events.size(), reference.events.size());
+      for (std::size_t k = 0; k < run.events.size(); ++k) ASSERT_EQ(run.events[k].time, reference.events[k].time) << threads << " threads, event " << k;   // what is told was certain
+    }
+}
+
 TEST(Threads, AreRefusedInWordsWhereTheirNumberMakesNoSense) {
   EXPECT_THROW(run_on({0}, sized("gas", 4, 0.1)), UserError);
   EXPECT_THROW(run_on({1000}, sized("gas", 4, 0.1)), UserError);
   EXPECT_THROW(run_on({1, {}, 3}, sized("gas", 4, 0.1)), UserError);
+  engines::TimewarpTrial trial;
+  for (const int territories : {-1, 256, 1000}) {   // 256 in a byte is the border
+    trial.territories = territories;
+    try {
+      run_on({1, trial}, sized("gas", 4, 0.1));
+      FAIL() << territories;
+    } catch (const PreconditionError& error) {
+      EXPECT_NE(std::string(error.what()).find("TimewarpTrial::territories"), std::string::npos) << error.what();
+    }
+  }
+  trial.territories = 255;
+  EXPECT_EQ(run_on({1, trial}, sized("gas", 40, 0.1)).stopped_by, "");
 }
 
 // ---- Bounds ----------------------------------------------------------------------------------------------------------------

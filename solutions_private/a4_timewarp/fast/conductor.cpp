@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <thread>
 
 #include <fmt/format.h>
@@ -18,6 +19,7 @@ namespace {
 constexpr std::size_t kCommitAfter = 512;      // events worked at before global virtual time is looked at again
 constexpr std::size_t kForgetAfter = 1;        // going on of each body, likewise: what passages keep should stay in the nearer caches
 constexpr int kMostThreads = 64;
+constexpr int kMostTerritories = std::numeric_limits<std::uint8_t>::max();   // Shared::home; the border is one more
 constexpr int kFewestStates = 8;               // a passage keeps two steps behind what is certain, and one that is looked at
 
 // Bounded optimism: the window grows and shrinks so that 5 to 15 % of the integrations are undone.
@@ -212,6 +214,8 @@ void Conductor::go_round(double& end_of_round, std::barrier<>& meet) {
   work_as(0, end_of_round);
   meet.arrive_and_wait();
   all_.run.share(false);
+  for (const auto& worker : workers_)
+    if (worker->left.out_of_time) std::rethrow_exception(worker->left.out_of_time);
   std::vector<double> of_threads(static_cast<std::size_t>(all_.threads), 0.0);
   for (std::size_t k = 1; k < workers_.size(); ++k) of_threads[(k - 1) % of_threads.size()] += std::exchange(workers_[k]->cpu_seconds, 0.0);
   const double busiest = *std::max_element(of_threads.begin(), of_threads.end());
@@ -324,6 +328,7 @@ void run_fast_timewarp(const scene::Scene& scene, const Laws& laws, const engine
     throw UserError("--most-states " + std::to_string(options.most_states), fmt::format("a process in contact needs {}", kFewestStates), fmt::format("Give {} or more, or 0: as many as it takes.", kFewestStates));
   if (options.threads < 1 || options.threads > kMostThreads)
     throw UserError("--threads " + std::to_string(options.threads), fmt::format("expected a number from 1 to {}", kMostThreads), "As many as the machine has cores is most that helps.");
+  require(options.trial.territories >= 0 && options.trial.territories <= kMostTerritories, fmt::format("TimewarpTrial::territories is from 0 to {}, and not {}: homes of bodies are numbered in a byte", kMostTerritories, options.trial.territories));
   Conductor(scene, laws, options, sink, record, watch).run();
 }
 

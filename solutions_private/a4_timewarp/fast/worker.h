@@ -6,6 +6,7 @@
 /// whatever there is.
 #pragma once
 
+#include <exception>
 #include <utility>
 #include <vector>
 
@@ -47,6 +48,7 @@ class alignas(64) Worker {
     std::vector<Due> due;
     std::vector<std::pair<int, std::uint32_t>> anti_messages;   // body, and serial of its flight that must be dropped
     std::vector<EventKey> recalls;                              // callbacks that must be called again
+    std::exception_ptr out_of_time;                             // it has stopped, and so must all
   };
   Left left;
   std::vector<Executed> executed;

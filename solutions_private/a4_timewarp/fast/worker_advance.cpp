@@ -6,6 +6,7 @@
 #include <span>
 
 #include "framework/engines/timewarp/fast_timewarp.h"
+#include "framework/engines/guarded_laws.h"
 #include "solutions_private/a4_timewarp/fast/territories.h"
 
 namespace tumble::a4 {
@@ -126,6 +127,8 @@ void Worker::advance_or_leave(int body) {
   if (is_alone()) return advance(body);
   try {
     advance(body);
+  } catch (const engines::OutOfTime&) {
+    throw;
   } catch (...) {
     look_again(body, kBorder);
   }

@@ -8,6 +8,7 @@
 
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
+#include "framework/engines/guarded_laws.h"
 
 namespace tumble::a4 {
 
@@ -220,7 +221,7 @@ void Worker::work_at(const Due& due) {
   now = kInfinity;
 }
 
-// What goes wrong here may be a consequence of what will be taken back: it is left, and goes wrong again if it stands.
+// What goes wrong here may be a consequence of what will be taken back: it is left, and goes wrong again if it stands. Time that is up is not.
 void Worker::work_before(double end) {
   const double began = thread_seconds();
   const double last = all_.run.duration();
@@ -239,6 +240,9 @@ void Worker::work_before(double end) {
       ++worked_at;
       try {
         work_at(due);
+      } catch (const engines::OutOfTime&) {
+        left.out_of_time = std::current_exception();
+        break;
       } catch (...) {
         leave(due);
       }
