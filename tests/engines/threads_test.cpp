@@ -70,6 +70,29 @@ TEST(Threads, WithSeveralTerritoriesEachCommitTheReferencesTrace) {
   }
 }
 
+// From 12,000 bodies on one thread, too, goes by territories, and nobody asks it to. The reference would look at 7 * 10^7 pairs: conservative advancement
+// stands for it, which knows no territories and commits what the reference does (timewarp_test); over a longer time the same run in one territory.
+TEST(Threads, OneGoesByTerritoriesByItselfWhereBodiesAreMany) {
+  constexpr int kBodies = 12'600;
+  const scene::Scene brief = sized("gas", kBodies, 0.2);
+  const Trajectory advanced = run_by("ca", brief, {}, 10.0);
+  ASSERT_GT(advanced.events.size(), 3000U);
+  const Trajectory by_itself = run_on({1}, brief, 10.0);
+  EXPECT_EQ(difference(advanced, by_itself), "");
+  EXPECT_GE(by_itself.counters.counts.at("rounds_of_threads"), 5U);
+
+  const scene::Scene longer = sized("gas", kBodies, 0.8);
+  engines::TimewarpTrial one_territory;
+  one_territory.territories = 1;
+  const Trajectory in_order = run_on({1, one_territory}, longer, 10.0);
+  EXPECT_EQ(in_order.counters.counts.at("rounds_of_threads"), 0U);
+  for (const int threads : {1, 2}) {
+    const Trajectory run = run_on({threads}, longer, 10.0);
+    EXPECT_EQ(difference(in_order, run), "") << threads << " threads";
+    EXPECT_GT(run.counters.counts.at("anti_messages"), 0U) << threads << " threads";   // across borders somebody was wrong, and it was taken back
+  }
+}
+
 // 200 seeds: which legal event a thread takes, and when it is held up.
 TEST(Threads, InAdversarialOrderAndDelayedLeaveTheTraceAsItIs) {
   const scene::Scene scene = sized("gas", 60, 1.0);
