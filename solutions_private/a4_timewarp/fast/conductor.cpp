@@ -44,8 +44,8 @@ Conductor::Conductor(const scene::Scene& scene, const Laws& laws, const engines:
   for (std::size_t k = 0; k < domains; ++k) {
     all_.domains.emplace_back(all_.boxes, static_cast<int>(k), k == kBorder ? all_bodies : a_territory, all_.lengths, k == kBorder ? bin : bin * all_.territories);
     workers_.push_back(std::make_unique<Worker>(all_, k));
-    if (domains > 1) workers_.back()->burdens.assign(static_cast<std::size_t>(world.size()), 0.0);
   }
+  if (domains > 1) all_.burdens.assign(static_cast<std::size_t>(world.size()), 0.0);
   all_.is_recorded = record_ != nullptr;
   for (const int i : world.movers()) {
     if (record_) record_->processes.push_back(world.world().bodies[i].name);
@@ -101,7 +101,7 @@ void Conductor::begin() {
   alone().now = kInfinity;
   // What going on for the first time has cost is what the time that it covers costs.
   if (all_.territories > 1)
-    for (const int body : order) alone().burdens[static_cast<std::size_t>(body)] *= first_window_ / std::max(all_.processes[static_cast<std::size_t>(body)].horizon, 1e-3 * first_window_);
+    for (const int body : order) all_.burdens[static_cast<std::size_t>(body)] *= first_window_ / std::max(all_.processes[static_cast<std::size_t>(body)].horizon, 1e-3 * first_window_);
 }
 
 // ---- One thread --------------------------------------------------------------------------------------------------------------

@@ -56,7 +56,6 @@ class alignas(64) Worker {
   engines::RunCounters counters;
   engines::CheckCost cost;
   std::int64_t kept = 0, most_kept = 0;   // flights; of one worker the difference that it made
-  std::vector<double> burdens;            // by body, what its going on has cost; empty: nobody wants to know
   double burden = 0.0;                    // of all together, since territories were cut
   double cpu_seconds = 0.0;               // of work_before
   std::uint64_t worked_at = 0;            // events, in work_before

@@ -142,13 +142,13 @@ void Worker::push(const Due& due, std::size_t home) {
 void Worker::advance_member(int body, const Flight& flight, double from, double to, const Box& box) {
   ++counters.steps;
   ++counters.integrations;
-  const std::uint64_t before = burdens.empty() ? 0 : cost.pair_checks + kGapChecks * cost.narrow.gap_evaluations;
+  const std::uint64_t before = all_.burdens.empty() ? 0 : cost.pair_checks + kGapChecks * cost.narrow.gap_evaluations;
   enter_box(body, box);
   find_obstacles(body, flight, from, to);
   for_each_partner(body, box, [&](int other) { check(body, flight, from, to, other); });
-  if (burdens.empty()) return;
+  if (all_.burdens.empty()) return;
   const double checks = static_cast<double>(cost.pair_checks + kGapChecks * cost.narrow.gap_evaluations - before) + (flight.passage < 0 ? kStepChecks : kPassageChecks);
-  burdens[static_cast<std::size_t>(body)] += checks;
+  all_.burdens[static_cast<std::size_t>(body)] += checks;
   burden += checks;
 }
 
