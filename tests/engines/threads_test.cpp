@@ -20,17 +20,14 @@ struct Threads {
   int most_states = 0;
 };
 
-Trajectory run_on(const Threads& threads, const scene::Scene& scene, double frame_rate_hz = 60.0) {
-  TrajectoryRecorder recorder;
+Trajectory run_on(const Threads& threads, const scene::Scene& scene, double frame_rate_hz = 60.0, const Laws& laws = test_laws()) {
   engines::RunOptions options;
   options.engine = "tw";
-  options.timewarp = engines::fast_timewarp();
   options.trial = threads.trial;
   options.threads = threads.count;
   options.most_states = threads.most_states;
   options.frame_rate_hz = frame_rate_hz;
-  engines::run_scene(scene, test_laws(), options, recorder);
-  return recorder.trajectory();
+  return run_as_told(std::move(options), scene, laws);
 }
 
 engines::TimewarpTrial delayed(std::uint64_t seed, double delay_s, double disorder_s = 0.0) {
@@ -169,15 +166,7 @@ TEST(Threads, StopWhereTheReferenceStops) {
   const scene::Scene scene = sized("gas", 100, 2.0);
   const Trajectory reference = run_by("ordered", scene, {}, 60.0, laws);
   ASSERT_NE(reference.stopped_by, "");
-  for (const int threads : {1, 2, 4}) {
-    TrajectoryRecorder recorder;
-    engines::RunOptions options;
-    options.engine = "tw";
-    options.timewarp = engines::fast_timewarp();
-    options.threads = threads;
-    engines::run_scene(scene, laws, options, recorder);
-    EXPECT_EQ(difference(reference, recorder.trajectory()), "") << threads << " threads";
-  }
+  for (const int threads : {1, 2, 4}) EXPECT_EQ(difference(reference, run_on({threads}, scene, 60.0, laws)), "") << threads << " threads";
 }
 
 // Said once, to whoever asks just then: a thread that took it for a consequence of its own guesses would go on to the end.
@@ -192,15 +181,9 @@ TEST(Threads, StopWhenTimeIsUpWhereverTheyAre) {
         if (++asked == last) throw engines::OutOfTime("it takes more than 1 s");
         return law(contact, a, b);
       };
-      TrajectoryRecorder recorder;
-      engines::RunOptions options;
-      options.engine = "tw";
-      options.timewarp = engines::fast_timewarp();
-      options.threads = threads;
-      options.trial.territories = 4;
-      options.frame_rate_hz = 30.0;
-      engines::run_scene(scene, laws, options, recorder);
-      const Trajectory& run = recorder.trajectory();
+      engines::TimewarpTrial trial;
+      trial.territories = 4;
+      const Trajectory run = run_on({threads, trial}, scene, 30.0, laws);
       EXPECT_EQ(run.stopped_by.find("it takes more than 1 s"), 0U) << threads << " threads, " << last << ": " << run.stopped_by;
       EXPECT_LT(asked, last + 200) << threads << " threads";   // the other thread comes to the end of its round
       ASSERT_LT(run.events.size(), reference.events.size());
@@ -261,17 +244,14 @@ Trajectory taken_back_row(int n, double duration = kUnset) {
   std::vector<scene::BodySpec> bodies;
   for (int i = 0; i < n; ++i) bodies.push_back(ball("ball" + std::to_string(i), 0.1, 1.0, {0.25 * i, 0, 0}, Vector3d::Zero()));
   bodies[0].velocity_m_s.x() = 1.0;
-  TrajectoryRecorder recorder;
   engines::RunOptions options;
   options.engine = "tw";
-  options.timewarp = engines::fast_timewarp();
   options.trial.late_callbacks = true;
   options.frame_rate_hz = 1e-6;
   options.callbacks = {{0.01, {0}, [](int, RigidBodyState& state) { state.momentum_world.x() = -1.0; }}};
   if (std::isnan(duration)) duration = 0.05 * n + 0.1;
   if (duration < options.callbacks.front().time) options.callbacks.clear();
-  engines::run_scene(scene_of(std::move(bodies), duration), test_laws(), options, recorder);
-  return recorder.trajectory();
+  return run_as_told(std::move(options), scene_of(std::move(bodies), duration), test_laws());
 }
 
 TEST(LateEvent, AtTheFirstOfARowRollsEachBackOnceInTimeLinearInTheirNumber) {
