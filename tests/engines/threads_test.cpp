@@ -236,6 +236,31 @@ TEST(Memory, OfAGasStaysFlat) {
   }
 }
 
+// One ball to and fro between two blocks, 10,000 times a second, and 12,600 others that hardly move: on one thread, which goes by territories here, a
+// round ends before anybody has done very much in it, so that no more is kept however long it goes on.
+TEST(Memory, OfABusyBodyAmongVeryManyStaysFlat) {
+  constexpr int kBodies = 12'600;
+  for (const double duration : {0.5, 1.0}) {
+    scene::Scene scene = sized("gas", kBodies, duration);
+    std::erase_if(scene.bodies, [](const scene::BodySpec& body) { return body.immovable || !body.name.starts_with("ball_"); });   // without walls
+    for (scene::BodySpec& body : scene.bodies) body.velocity_m_s *= 1e-3;
+    for (const double x : {-0.7, 0.7}) {
+      scene.bodies.push_back(box(x < 0 ? "left" : "right", {0.5, 1, 1}, 1.0, {x, 500, 500}, Vector3d::Zero()));
+      scene.bodies.back().immovable = true;
+      scene.bodies.back().mass_kg.reset();
+    }
+    scene.bodies.push_back(ball("busy", 0.1, 1.0, {0, 500, 500}, {2000, 0, 0}));
+    const Trajectory run = run_on({1}, scene, 1.0);
+    ASSERT_EQ(run.events.size(), static_cast<std::size_t>(10'000 * duration));
+    EXPECT_GT(run.counters.counts.at("rounds_of_threads"), 10U);
+    EXPECT_LE(run.counters.counts.at("most_states_of_a_body"), 300U) << duration << " s";
+    EXPECT_LE(run.counters.counts.at("states_kept"), kBodies + 300U) << duration << " s";   // without: a quarter of the events of the run
+    engines::TimewarpTrial one_territory;
+    one_territory.territories = 1;
+    EXPECT_EQ(difference(run_on({1, one_territory}, scene, 1.0), run), "") << duration << " s";
+  }
+}
+
 // ---- A late event at the first of a row ----------------------------------------------------------------------------------
 
 // A ball hits the next one, that one the next, and so on; when the last has been hit, the first turns out to have been turned back before

@@ -199,8 +199,10 @@ void Conductor::go_in_rounds() {
 }
 
 // Territories go from thread to thread in turn. One after the other to the end of the round: what each looks at stays in the caches meanwhile.
-void Conductor::work_as(int thread, double end) {
-  for (std::size_t k = 1 + static_cast<std::size_t>(thread); k < workers_.size(); k += static_cast<std::size_t>(all_.threads)) workers_[k]->work_before(end);
+// @return how far all of them have come: who went farther is ahead
+double Conductor::work_as(int thread, double end) {
+  for (std::size_t k = 1 + static_cast<std::size_t>(thread); k < workers_.size(); k += static_cast<std::size_t>(all_.threads)) end = workers_[k]->work_before(end);
+  return end;
 }
 
 void Conductor::go_round(double& end_of_round, std::barrier<>& meet) {
@@ -211,7 +213,7 @@ void Conductor::go_round(double& end_of_round, std::barrier<>& meet) {
   const double settled = thread_seconds();
   all_.run.share(all_.threads > 1);
   meet.arrive_and_wait();
-  work_as(0, end_of_round);
+  const double reached = work_as(0, end_of_round);   // of several threads: the end of the round
   meet.arrive_and_wait();
   all_.run.share(false);
   for (const auto& worker : workers_)
@@ -221,7 +223,7 @@ void Conductor::go_round(double& end_of_round, std::barrier<>& meet) {
   const double busiest = *std::max_element(of_threads.begin(), of_threads.end());
   const double worked = thread_seconds();
   collect_what_is_left();
-  work_alone_before(end_of_round);
+  work_alone_before(reached);
   ++alone().counters.rounds;
   alone().counters.together_seconds += busiest;
   alone().counters.alone_seconds += settled - began + thread_seconds() - worked;
