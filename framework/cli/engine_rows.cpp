@@ -1,6 +1,7 @@
 #include "framework/cli/engine_rows.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -114,9 +115,10 @@ class Deadline {
   explicit Deadline(double most_s) : most_s_(most_s), until_(cpu_seconds() + most_s) {}
   bool is_over() const { return is_over_; }
   void look() {
-    if (++looks_ % kLooksAClock != 0 || !(cpu_seconds() > until_)) return;
+    thread_local std::uint64_t looks = 0;   // one of all threads would go to and fro between their caches
+    if (++looks % kLooksAClock != 0 || !(cpu_seconds() > until_)) return;
     is_over_ = true;
-    throw engines::StoppedRun(fmt::format("it takes more than {:.0f} s", most_s_));
+    throw engines::OutOfTime(fmt::format("it takes more than {:.0f} s", most_s_));
   }
   Laws watched(const Laws& laws) {
     Laws watched = laws;
@@ -137,8 +139,7 @@ class Deadline {
  private:
   static constexpr std::uint64_t kLooksAClock = 64;
   double most_s_, until_;   // [s] of CPU
-  std::uint64_t looks_ = 0;
-  bool is_over_ = false;
+  std::atomic<bool> is_over_ = false;
 };
 
 /// CPU time, or time by the clock, of a run without pictures [s]. What comes before the first step (models, shapes, overlaps) is the same for all engines and is

@@ -238,11 +238,13 @@ ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const 
   const auto kinds = context.registry.all();
   refuse_unknown_needs(scene, kinds);
   const bool has_home = std::any_of(kinds.begin(), kinds.end(), [&](const ModuleKind* kind) { return is_own(scene, *kind); });
+  // Who names a scheduler is at work on it, whatever the scene: earlier assignments that are not done are not in its way.
+  const bool is_for_scheduler = std::any_of(kinds.begin(), kinds.end(), [&](const ModuleKind* kind) { return kind->is_scheduler && words.contains(kind->id); });
   std::map<std::string, std::string> chosen;   // by id
   std::map<std::string, fs::path> files;
   for (const ModuleKind* kind : kinds) {
     const auto told = words.contains(kind->id) ? words.find(kind->id) : words.find("");
-    const std::string otherwise = default_word(context, scene, *kind, has_home);
+    const std::string otherwise = default_word(context, scene, *kind, has_home || is_for_scheduler);
     chosen[kind->id] = told != words.end() ? told->second : otherwise;
     // One word for all modules is meant for those that the scene is about and those there are: "reference" where a later
     // assignment has none yet.

@@ -15,6 +15,13 @@ class StoppedRun : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The run has used up what it may take. Whatever is taken back, that stays so: an engine that works ahead stops for it at once, where another
+/// StoppedRun may be a consequence of what will be undone.
+class OutOfTime : public StoppedRun {
+ public:
+  using StoppedRun::StoppedRun;
+};
+
 /// The same laws; each throws StoppedRun where it fails, naming itself and who wrote it. `NotImplemented` and `UserError` pass
 /// through: a law that nobody has written is no failure of a run. A time of impact that is nonsense passes too: it is only a hint.
 Laws guarded(const Laws& laws);
@@ -24,6 +31,8 @@ template <class Work>
 auto naming(const std::string& subject, Work&& work) {
   try {
     return std::forward<Work>(work)();
+  } catch (const OutOfTime&) {
+    throw;   // happened to nobody
   } catch (const StoppedRun& stop) {
     throw StoppedRun(subject + ": " + stop.what());
   }

@@ -46,6 +46,8 @@ template <class Work>
 auto of_link(const char* kind, const std::string& name, Work&& work) {
   try {
     return work();
+  } catch (const OutOfTime&) {
+    throw;
   } catch (const StoppedRun& stop) {
     throw StoppedRun(fmt::format("{} '{}': {}", kind, name, stop.what()));
   }
@@ -360,6 +362,8 @@ void LinkedBodies::project_local(std::vector<RigidBodyState>& local, double t, b
     local[i].momentum_world += bodies[i].inertia.mass * change.segment<3>(at);
     local[i].angular_momentum_world += angular_momentum_of(change.segment<3>(at + 3), local[i].world_from_body, bodies[i].inertia);
   }
+} catch (const OutOfTime&) {
+  throw;
 } catch (const StoppedRun& stop) {
   throw StoppedRun(whose() + ": " + stop.what());
 }
@@ -397,6 +401,8 @@ void LinkedBodies::measure(const std::vector<RigidBodyState>& states, double t, 
       measured.joints[link.index] = multipliers.segment<3>(at).norm();
       at += row_count(world_.joints[link.index].kind);
     }
+} catch (const OutOfTime&) {
+  throw;
 } catch (const StoppedRun& stop) {
   throw StoppedRun(whose() + ": " + stop.what());
 }

@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include <fmt/format.h>
-
 #include "framework/core/error.h"
 #include "framework/core/nearest_word.h"
 #include "framework/dynamics/world.h"

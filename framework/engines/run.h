@@ -23,7 +23,7 @@ struct TimewarpTrial {
   double rollback_s = 0.0;       // by up to this
   bool late_callbacks = false;   // with one thread: callbacks are taken after all that others could do without them
   double delay_s = 0.0;          // threads are held up, now and then, by up to this
-  int territories = 0;           // room is cut into so many, however few bodies there are; 0: as it pays
+  int territories = 0;           // room is cut into so many, at most 255, however few bodies there are; 0: as it pays
 };
 
 /// What a program does to bodies while they move: at `time` it is handed the state of each of `bodies`, and may change velocities (not

@@ -12,6 +12,9 @@ TEST(AntiMessages, UnsendWhatCameAfter) {
   const std::vector<Effect> effects{effect(0.25, A, B), effect(0.75, A, C), effect(1.0, A, D)};
   expect_rollbacks(a4_module().anti_messages(effects, back(A, kHit)), {back(C, impact(0.75, A, C)), back(D, impact(1.0, A, D))},
                    {.scene = "A hit B at 0.25 s, C at 0.75 s, D at 1 s, and goes back to 0.5 s", .slip = "what A did before 0.5 s stands; what it did later never happened, and its partners forget it from where it began", .handout = equation(7)});
+  const Stamp split{0.75, 0, WorkKind::kGroup, A, -1}, called{1.0, 0, WorkKind::kCallback, A, -1};
+  expect_rollbacks(a4_module().anti_messages({{split, {A, B, C}}, {called, {A, D}}}, back(A, kHit)), {back(B, split), back(C, split), back(D, called)},
+                   {.scene = "a group of A, B and C came apart at 0.75 s, a callback at 1 s was received by A and D; A goes back to 0.5 s", .slip = "impacts are not all that is unsent: a group's change and a callback are effects like others, whatever kind their stamp is of", .handout = equation(7)});
 }
 
 TEST(AntiMessages, UnsendWhatHappenedAtTheVeryStamp) {

@@ -300,6 +300,15 @@ TEST_F(CommandLine, AnEngineAndASizeThatThereAreNotAreRefusedWithWhatThereIs) {
   EXPECT_EQ(scene.code, 2);
   EXPECT_TRUE(holds(scene.err, "sleep") && holds(scene.err, "use --engine rd")) << scene.err;
 }
+
+// Whose a2 and a3 are not done tries a scheduler on scenes that need them nevertheless: where there are right ones, these.
+TEST_F(CommandLine, ASchedulerIsTriedOnScenesOfOtherAssignments) {
+  for (const char* id : {"a3", "a4"})
+    if (!std::ifstream(std::string(TUMBLE_BINARY_DIR "/modules/") + id + "_reference.so")) GTEST_SKIP() << "this tree has no " << id << " but the student's";
+  const Said said = type("run dominoes_row --n 2 --duration-s 0.1 --engine tw --modules a4=reference");
+  EXPECT_EQ(said.code, 0) << said.out << said.err;
+  EXPECT_TRUE(holds(said.out, "rollbacks")) << said.out;
+}
 #endif
 
 // What students get: the stub, which is not attempted and no error of anybody.

@@ -100,7 +100,7 @@ TEST(RollbackRestore, LeavesNoByteOfTumblingSolidsChanged) { expect_as_if_it_had
 
 // Towers fuse and split between the two times: groups, and what the events that changed them began, are as they were.
 TEST(RollbackRestore, LeavesNoByteOfGroupsInContactChanged) {
-  expect_as_if_it_had_never_been(tower_and_projectile(5.0), 15, 10);
+  expect_as_if_it_had_never_been(tower_and_projectile(5.0), 12, 10);
   expect_as_if_it_had_never_been(sized("avalanche", 12, 0.5), 100, 5);
 }
 

@@ -1,5 +1,6 @@
 // Timewarp on several threads commits what the reference commits, to the last bit, whatever the threads' timing; and it keeps its bounds.
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <map>
 
@@ -7,6 +8,7 @@
 
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
+#include "framework/engines/guarded_laws.h"
 #include "tests/engines/event_scenes.h"
 
 namespace tumble::testing {
@@ -18,17 +20,14 @@ struct Threads {
   int most_states = 0;
 };
 
-Trajectory run_on(const Threads& threads, const scene::Scene& scene, double frame_rate_hz = 60.0) {
-  TrajectoryRecorder recorder;
+Trajectory run_on(const Threads& threads, const scene::Scene& scene, double frame_rate_hz = 60.0, const Laws& laws = test_laws()) {
   engines::RunOptions options;
   options.engine = "tw";
-  options.timewarp = engines::fast_timewarp();
   options.trial = threads.trial;
   options.threads = threads.count;
   options.most_states = threads.most_states;
   options.frame_rate_hz = frame_rate_hz;
-  engines::run_scene(scene, test_laws(), options, recorder);
-  return recorder.trajectory();
+  return run_as_told(std::move(options), scene, laws);
 }
 
 engines::TimewarpTrial delayed(std::uint64_t seed, double delay_s, double disorder_s = 0.0) {
@@ -65,6 +64,29 @@ TEST(Threads, WithSeveralTerritoriesEachCommitTheReferencesTrace) {
       EXPECT_GE(run.counters.counts.at("rounds_of_threads"), 10U) << scene;
       EXPECT_LE(100 * run.counters.counts.at("undone_integrations"), 15 * run.counters.counts.at("integrations")) << scene << ", " << threads << " threads";
     }
+  }
+}
+
+// From 12,000 bodies on one thread, too, goes by territories, and nobody asks it to. The reference would look at 7 * 10^7 pairs: conservative advancement
+// stands for it, which knows no territories and commits what the reference does (timewarp_test); over a longer time the same run in one territory.
+TEST(Threads, OneGoesByTerritoriesByItselfWhereBodiesAreMany) {
+  constexpr int kBodies = 12'600;
+  const scene::Scene brief = sized("gas", kBodies, 0.2);
+  const Trajectory advanced = run_by("ca", brief, {}, 10.0);
+  ASSERT_GT(advanced.events.size(), 3000U);
+  const Trajectory by_itself = run_on({1}, brief, 10.0);
+  EXPECT_EQ(difference(advanced, by_itself), "");
+  EXPECT_GE(by_itself.counters.counts.at("rounds_of_threads"), 5U);
+
+  const scene::Scene longer = sized("gas", kBodies, 0.8);
+  engines::TimewarpTrial one_territory;
+  one_territory.territories = 1;
+  const Trajectory in_order = run_on({1, one_territory}, longer, 10.0);
+  EXPECT_EQ(in_order.counters.counts.at("rounds_of_threads"), 0U);
+  for (const int threads : {1, 2}) {
+    const Trajectory run = run_on({threads}, longer, 10.0);
+    EXPECT_EQ(difference(in_order, run), "") << threads << " threads";
+    EXPECT_GT(run.counters.counts.at("anti_messages"), 0U) << threads << " threads";   // across borders somebody was wrong, and it was taken back
   }
 }
 
@@ -144,21 +166,47 @@ TEST(Threads, StopWhereTheReferenceStops) {
   const scene::Scene scene = sized("gas", 100, 2.0);
   const Trajectory reference = run_by("ordered", scene, {}, 60.0, laws);
   ASSERT_NE(reference.stopped_by, "");
-  for (const int threads : {1, 2, 4}) {
-    TrajectoryRecorder recorder;
-    engines::RunOptions options;
-    options.engine = "tw";
-    options.timewarp = engines::fast_timewarp();
-    options.threads = threads;
-    engines::run_scene(scene, laws, options, recorder);
-    EXPECT_EQ(difference(reference, recorder.trajectory()), "") << threads << " threads";
-  }
+  for (const int threads : {1, 2, 4}) EXPECT_EQ(difference(reference, run_on({threads}, scene, 60.0, laws)), "") << threads << " threads";
+}
+
+// Said once, to whoever asks just then: a thread that took it for a consequence of its own guesses would go on to the end.
+TEST(Threads, StopWhenTimeIsUpWhereverTheyAre) {
+  const scene::Scene scene = sized("gas", 200, 2.0);
+  const Trajectory reference = run_by("ordered", scene, {}, 30.0);
+  for (const int threads : {1, 2})
+    for (const int last : {100, 300, 700}) {
+      std::atomic<int> asked = 0;
+      Laws laws = test_laws();
+      laws.relative_normal_velocity = [&asked, last, law = laws.relative_normal_velocity](const Contact& contact, const Body& a, const Body& b) {
+        if (++asked == last) throw engines::OutOfTime("it takes more than 1 s");
+        return law(contact, a, b);
+      };
+      engines::TimewarpTrial trial;
+      trial.territories = 4;
+      const Trajectory run = run_on({threads, trial}, scene, 30.0, laws);
+      EXPECT_EQ(run.stopped_by.find("it takes more than 1 s"), 0U) << threads << " threads, " << last << ": " << run.stopped_by;
+      EXPECT_LT(asked, last + 200) << threads << " threads";   // the other thread comes to the end of its round
+      ASSERT_LT(run.events.size(), reference.events.size());
+      for (std::size_t k = 0; k < run.events.size(); ++k) ASSERT_EQ(run.events[k].time, reference.events[k].time) << threads << " threads, event " << k;   // what is told was certain
+    }
 }
 
 TEST(Threads, AreRefusedInWordsWhereTheirNumberMakesNoSense) {
   EXPECT_THROW(run_on({0}, sized("gas", 4, 0.1)), UserError);
   EXPECT_THROW(run_on({1000}, sized("gas", 4, 0.1)), UserError);
   EXPECT_THROW(run_on({1, {}, 3}, sized("gas", 4, 0.1)), UserError);
+  engines::TimewarpTrial trial;
+  for (const int territories : {-1, 256, 1000}) {   // 256 in a byte is the border
+    trial.territories = territories;
+    try {
+      run_on({1, trial}, sized("gas", 4, 0.1));
+      FAIL() << territories;
+    } catch (const PreconditionError& error) {
+      EXPECT_NE(std::string(error.what()).find("TimewarpTrial::territories"), std::string::npos) << error.what();
+    }
+  }
+  trial.territories = 255;
+  EXPECT_EQ(run_on({1, trial}, sized("gas", 40, 0.1)).stopped_by, "");
 }
 
 // ---- Bounds ----------------------------------------------------------------------------------------------------------------
@@ -188,6 +236,31 @@ TEST(Memory, OfAGasStaysFlat) {
   }
 }
 
+// One ball to and fro between two blocks, 10,000 times a second, and 12,600 others that hardly move: on one thread, which goes by territories here, a
+// round ends before anybody has done very much in it, so that no more is kept however long it goes on.
+TEST(Memory, OfABusyBodyAmongVeryManyStaysFlat) {
+  constexpr int kBodies = 12'600;
+  for (const double duration : {0.5, 1.0}) {
+    scene::Scene scene = sized("gas", kBodies, duration);
+    std::erase_if(scene.bodies, [](const scene::BodySpec& body) { return body.immovable || !body.name.starts_with("ball_"); });   // without walls
+    for (scene::BodySpec& body : scene.bodies) body.velocity_m_s *= 1e-3;
+    for (const double x : {-0.7, 0.7}) {
+      scene.bodies.push_back(box(x < 0 ? "left" : "right", {0.5, 1, 1}, 1.0, {x, 500, 500}, Vector3d::Zero()));
+      scene.bodies.back().immovable = true;
+      scene.bodies.back().mass_kg.reset();
+    }
+    scene.bodies.push_back(ball("busy", 0.1, 1.0, {0, 500, 500}, {2000, 0, 0}));
+    const Trajectory run = run_on({1}, scene, 1.0);
+    ASSERT_EQ(run.events.size(), static_cast<std::size_t>(10'000 * duration));
+    EXPECT_GT(run.counters.counts.at("rounds_of_threads"), 10U);
+    EXPECT_LE(run.counters.counts.at("most_states_of_a_body"), 300U) << duration << " s";
+    EXPECT_LE(run.counters.counts.at("states_kept"), kBodies + 300U) << duration << " s";   // without: a quarter of the events of the run
+    engines::TimewarpTrial one_territory;
+    one_territory.territories = 1;
+    EXPECT_EQ(difference(run_on({1, one_territory}, scene, 1.0), run), "") << duration << " s";
+  }
+}
+
 // ---- A late event at the first of a row ----------------------------------------------------------------------------------
 
 // A ball hits the next one, that one the next, and so on; when the last has been hit, the first turns out to have been turned back before
@@ -196,17 +269,14 @@ Trajectory taken_back_row(int n, double duration = kUnset) {
   std::vector<scene::BodySpec> bodies;
   for (int i = 0; i < n; ++i) bodies.push_back(ball("ball" + std::to_string(i), 0.1, 1.0, {0.25 * i, 0, 0}, Vector3d::Zero()));
   bodies[0].velocity_m_s.x() = 1.0;
-  TrajectoryRecorder recorder;
   engines::RunOptions options;
   options.engine = "tw";
-  options.timewarp = engines::fast_timewarp();
   options.trial.late_callbacks = true;
   options.frame_rate_hz = 1e-6;
   options.callbacks = {{0.01, {0}, [](int, RigidBodyState& state) { state.momentum_world.x() = -1.0; }}};
   if (std::isnan(duration)) duration = 0.05 * n + 0.1;
   if (duration < options.callbacks.front().time) options.callbacks.clear();
-  engines::run_scene(scene_of(std::move(bodies), duration), test_laws(), options, recorder);
-  return recorder.trajectory();
+  return run_as_told(std::move(options), scene_of(std::move(bodies), duration), test_laws());
 }
 
 TEST(LateEvent, AtTheFirstOfARowRollsEachBackOnceInTimeLinearInTheirNumber) {

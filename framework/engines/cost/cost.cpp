@@ -134,7 +134,7 @@ StepFunction until_too_long(const StepFunction& step, double most_s, bool contro
   constexpr int kEach = 64;
   const auto calls = std::make_shared<int>(0);
   const auto look = [until = cpu_seconds() + most_s, most_s, calls] {
-    if (++*calls % kEach == 0 && cpu_seconds() > until) throw StoppedRun(too_long(most_s));
+    if (++*calls % kEach == 0 && cpu_seconds() > until) throw OutOfTime(too_long(most_s));
   };
   if (!controlled)
     return [step, look](const OdeFunction& f, double t, const VectorXd& y, double h) {

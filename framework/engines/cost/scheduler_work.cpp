@@ -32,7 +32,7 @@ RunOptions options_of(const SchedulerTrial& trial, const scene::Scene& scene) {
 void stop_when_too_long(double most_s, Laws& laws) {
   if (!laws.scheduling || !std::isfinite(most_s)) return;
   laws.scheduling.on_collision_check = [inner = laws.scheduling.on_collision_check, until = cpu_seconds() + most_s, most_s](const ScheduledEvent& event, const CheckFinding& finding, double step) {
-    if (cpu_seconds() > until) throw StoppedRun(fmt::format("it takes more than {:.0f} s", most_s));
+    if (cpu_seconds() > until) throw OutOfTime(fmt::format("it takes more than {:.0f} s", most_s));
     return inner(event, finding, step);
   };
 }

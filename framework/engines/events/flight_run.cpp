@@ -38,6 +38,8 @@ Meeting FlightRun::meet(const EventKey& key, const Flight& f, const Flight& g, R
     counters.impulses += meeting.impulse > 0 ? 1 + meeting.more.size() : 0;
     counters.integrations += (world_.can_move(key.body_a) ? 1 : 0) + (world_.can_move(key.body_b) ? 1 : 0);
     return meeting;
+  } catch (const OutOfTime&) {
+    throw;
   } catch (const StoppedRun& stop) {
     throw StoppedRun(fmt::format("at t = {:.6f} s, {}: {}", key.time, subject(), stop.what()));
   }
@@ -110,6 +112,8 @@ Meeting FlightRun::call(const EventKey& key, const FlightOf& flight_of) try {
   for (const int body : callback.bodies) events.push_back({key.time, EventKind::kControl, body, -1, world_.position(body, flight_of(body), key.time), Vector3d::UnitZ(), 0.0, 0.0});
   std::sort(begun.begin(), begun.end(), [](const BegunFlight& a, const BegunFlight& b) { return a.body < b.body; });
   return finished(key, std::move(begun), events);
+} catch (const OutOfTime&) {
+  throw;
 } catch (const StoppedRun& stop) {
   throw StoppedRun(fmt::format("at t = {:.6f} s, {}", key.time, stop.what()));
 }

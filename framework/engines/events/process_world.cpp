@@ -222,7 +222,7 @@ ProcessWorld::Outcome ProcessWorld::step(ProcessState& start, double due) {
   if (has_contacts()) {
     if (!pairs.empty() && !meetings_.apart_at_target()) meetings_.separate(pairs);
     if (!contacts_->commit()) meetings_.separate(near);
-    if (earliest) resolve(near.empty() ? pairs : near, pairs[earliest->pair]);
+    if (earliest) resolve(near.empty() ? pairs : near, pairs[earliest->pair], true);
   }
   ProcessState after = save();
   return {std::move(step), std::move(after), take_events()};
@@ -291,7 +291,10 @@ ProcessWorld::Change ProcessWorld::collide(BodyPair pair, const ProcessState& st
   const BodyPair trigger = local(pair);
   const std::vector<BodyPair> pairs = near_pairs(trigger);
   meetings_.separate(pairs);
-  resolve(pairs, trigger);
+  // A blow that is dealt with in the step it falls into is dealt with in the one that begins here, by all that the two then touch, friction
+  // among it: so a world of all bodies does it, and of a blow struck alone and without friction something else would come.
+  if (has_contacts() && contacts_->deals_in_step(trigger)) contacts_->begin(trigger, meetings_.gap(trigger));
+  else resolve(pairs, trigger, false);
   require_numbers();
   if (collector_.events.empty()) {   // they met without coming nearer
     const collision::Gap gap = meetings_.gap(trigger);
@@ -302,13 +305,14 @@ ProcessWorld::Change ProcessWorld::collide(BodyPair pair, const ProcessState& st
 }
 
 // As a world of all bodies does it (retroactive.cpp): everything that touches, then what rods and joints pass on, until neither changes anything.
-void ProcessWorld::resolve(const std::vector<BodyPair>& pairs, BodyPair trigger) {
+// What lies on something touches it: within a step that says which pairs were kept apart, at an instant all lasting contacts.
+void ProcessWorld::resolve(const std::vector<BodyPair>& pairs, BodyPair trigger, bool is_in_step) {
   const StageTimer timer(counters_.impact_seconds);
   std::vector<TouchingPair> touching;
   std::size_t trigger_index = 0;
   for (const BodyPair& pair : pairs) {
     const collision::Gap gap = meetings_.gap(pair);
-    const bool lasting = has_contacts() && contacts_->lasts(pair) && contacts_->keeps(pair);
+    const bool lasting = has_contacts() && contacts_->lasts(pair) && (!is_in_step || contacts_->keeps(pair));
     if (pair != trigger && !lasting && !(gap.distance <= meetings_.touching_distance(pair))) continue;
     if (pair == trigger) trigger_index = touching.size();
     touching.push_back({pair.first, pair.second, gap, meetings_.touching_points(pair, gap)});

@@ -117,7 +117,7 @@ class ProcessWorld {
   bool has_contacts() const { return contacts_.has_value(); }
   bool keep_contacts(std::vector<BodyPair>& pairs);
   std::vector<ContactPoint> forces() const;
-  void resolve(const std::vector<BodyPair>& pairs, BodyPair trigger);
+  void resolve(const std::vector<BodyPair>& pairs, BodyPair trigger, bool is_in_step);
   std::vector<BodyPair> near_pairs(std::optional<BodyPair> trigger) const;
   std::vector<Event> take_events();
   int whole(int body) const { return body < 0 ? body : part_.bodies[static_cast<std::size_t>(body)]; }

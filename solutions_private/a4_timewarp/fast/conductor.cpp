@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <thread>
 
 #include <fmt/format.h>
@@ -18,6 +19,7 @@ namespace {
 constexpr std::size_t kCommitAfter = 512;      // events worked at before global virtual time is looked at again
 constexpr std::size_t kForgetAfter = 1;        // going on of each body, likewise: what passages keep should stay in the nearer caches
 constexpr int kMostThreads = 64;
+constexpr int kMostTerritories = std::numeric_limits<std::uint8_t>::max();   // Shared::home; the border is one more
 constexpr int kFewestStates = 8;               // a passage keeps two steps behind what is certain, and one that is looked at
 
 // Bounded optimism: the window grows and shrinks so that 5 to 15 % of the integrations are undone.
@@ -42,8 +44,8 @@ Conductor::Conductor(const scene::Scene& scene, const Laws& laws, const engines:
   for (std::size_t k = 0; k < domains; ++k) {
     all_.domains.emplace_back(all_.boxes, static_cast<int>(k), k == kBorder ? all_bodies : a_territory, all_.lengths, k == kBorder ? bin : bin * all_.territories);
     workers_.push_back(std::make_unique<Worker>(all_, k));
-    if (domains > 1) workers_.back()->burdens.assign(static_cast<std::size_t>(world.size()), 0.0);
   }
+  if (domains > 1) all_.burdens.assign(static_cast<std::size_t>(world.size()), 0.0);
   all_.is_recorded = record_ != nullptr;
   for (const int i : world.movers()) {
     if (record_) record_->processes.push_back(world.world().bodies[i].name);
@@ -99,7 +101,7 @@ void Conductor::begin() {
   alone().now = kInfinity;
   // What going on for the first time has cost is what the time that it covers costs.
   if (all_.territories > 1)
-    for (const int body : order) alone().burdens[static_cast<std::size_t>(body)] *= first_window_ / std::max(all_.processes[static_cast<std::size_t>(body)].horizon, 1e-3 * first_window_);
+    for (const int body : order) all_.burdens[static_cast<std::size_t>(body)] *= first_window_ / std::max(all_.processes[static_cast<std::size_t>(body)].horizon, 1e-3 * first_window_);
 }
 
 // ---- One thread --------------------------------------------------------------------------------------------------------------
@@ -197,8 +199,10 @@ void Conductor::go_in_rounds() {
 }
 
 // Territories go from thread to thread in turn. One after the other to the end of the round: what each looks at stays in the caches meanwhile.
-void Conductor::work_as(int thread, double end) {
-  for (std::size_t k = 1 + static_cast<std::size_t>(thread); k < workers_.size(); k += static_cast<std::size_t>(all_.threads)) workers_[k]->work_before(end);
+// @return how far all of them have come: who went farther is ahead
+double Conductor::work_as(int thread, double end) {
+  for (std::size_t k = 1 + static_cast<std::size_t>(thread); k < workers_.size(); k += static_cast<std::size_t>(all_.threads)) end = workers_[k]->work_before(end);
+  return end;
 }
 
 void Conductor::go_round(double& end_of_round, std::barrier<>& meet) {
@@ -209,15 +213,17 @@ void Conductor::go_round(double& end_of_round, std::barrier<>& meet) {
   const double settled = thread_seconds();
   all_.run.share(all_.threads > 1);
   meet.arrive_and_wait();
-  work_as(0, end_of_round);
+  const double reached = work_as(0, end_of_round);   // of several threads: the end of the round
   meet.arrive_and_wait();
   all_.run.share(false);
+  for (const auto& worker : workers_)
+    if (worker->left.out_of_time) std::rethrow_exception(worker->left.out_of_time);
   std::vector<double> of_threads(static_cast<std::size_t>(all_.threads), 0.0);
   for (std::size_t k = 1; k < workers_.size(); ++k) of_threads[(k - 1) % of_threads.size()] += std::exchange(workers_[k]->cpu_seconds, 0.0);
   const double busiest = *std::max_element(of_threads.begin(), of_threads.end());
   const double worked = thread_seconds();
   collect_what_is_left();
-  work_alone_before(end_of_round);
+  work_alone_before(reached);
   ++alone().counters.rounds;
   alone().counters.together_seconds += busiest;
   alone().counters.alone_seconds += settled - began + thread_seconds() - worked;
@@ -324,6 +330,7 @@ void run_fast_timewarp(const scene::Scene& scene, const Laws& laws, const engine
     throw UserError("--most-states " + std::to_string(options.most_states), fmt::format("a process in contact needs {}", kFewestStates), fmt::format("Give {} or more, or 0: as many as it takes.", kFewestStates));
   if (options.threads < 1 || options.threads > kMostThreads)
     throw UserError("--threads " + std::to_string(options.threads), fmt::format("expected a number from 1 to {}", kMostThreads), "As many as the machine has cores is most that helps.");
+  require(options.trial.territories >= 0 && options.trial.territories <= kMostTerritories, fmt::format("TimewarpTrial::territories is from 0 to {}, and not {}: homes of bodies are numbered in a byte", kMostTerritories, options.trial.territories));
   Conductor(scene, laws, options, sink, record, watch).run();
 }
 

@@ -33,7 +33,7 @@ class Conductor {
   void go_alone();
   Due in_place_of(const Due& callback);
   void go_in_rounds();
-  void work_as(int thread, double end);
+  double work_as(int thread, double end);
   void go_round(double& end_of_round, std::barrier<>& meet);
   void work_alone_before(double end);
   void work_alone_at(Due due);

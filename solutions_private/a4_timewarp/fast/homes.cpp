@@ -49,12 +49,9 @@ void Conductor::cut_territories() {
   std::vector<Burden> burdens;
   for (const int body : all_.world().movers()) {
     const Box& box = all_.domains[all_.home[static_cast<std::size_t>(body)]].pairs.box(body);
-    double work = 1.0;
-    for (const auto& worker : workers_) {
-      work += worker->burdens[static_cast<std::size_t>(body)];
-      worker->burdens[static_cast<std::size_t>(body)] *= kFading;
-    }
-    if (box.low.allFinite() && box.high.allFinite()) burdens.push_back({0.5 * (box.low + box.high), work});
+    double& burden = all_.burdens[static_cast<std::size_t>(body)];
+    if (box.low.allFinite() && box.high.allFinite()) burdens.push_back({0.5 * (box.low + box.high), 1.0 + burden});
+    burden *= kFading;
   }
   const std::vector<Box> territories = cut_into_territories(std::move(burdens), all_.territories);
   for (std::size_t k = 1; k < all_.domains.size(); ++k) {

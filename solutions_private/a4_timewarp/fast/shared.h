@@ -85,6 +85,7 @@ struct Shared {
   std::vector<Process, LargePages<Process>> processes;   // by body
   std::vector<std::uint8_t> home;      // by body: place in domains
   std::vector<std::uint8_t> last_territory;   // by body: the last home that was no border; the border: none yet. With several threads
+  std::vector<double> burdens;         // by body: what its going on has cost of late, written by whoever takes it on; empty: nobody wants to know
   ActivePairs::Entries boxes;          // by body: whatever its home is
   const Lengths lengths;
   std::vector<Domain> domains;         // the border first

@@ -6,6 +6,7 @@
 /// whatever there is.
 #pragma once
 
+#include <exception>
 #include <utility>
 #include <vector>
 
@@ -19,7 +20,8 @@ class alignas(64) Worker {
   Worker(Shared& all, std::size_t home) : all_(all), home_(home), random_(all.trial.seed + home) {}
 
   /// What happens before `end`, in order, in this worker's territory.
-  void work_before(double end);
+  /// @return `end`; of one thread less where a body has done very much since: to there it has worked, and the round may end
+  double work_before(double end);
   /// One event, taken from a queue. @throws StoppedRun
   void work_at(const Due& due);
   /// Whether nobody whom the event concerns would then have more states than are allowed.
@@ -47,14 +49,15 @@ class alignas(64) Worker {
     std::vector<Due> due;
     std::vector<std::pair<int, std::uint32_t>> anti_messages;   // body, and serial of its flight that must be dropped
     std::vector<EventKey> recalls;                              // callbacks that must be called again
+    std::exception_ptr out_of_time;                             // it has stopped, and so must all
   };
   Left left;
   std::vector<Executed> executed;
   std::vector<VirtualTimes::Move> moves;
   engines::RunCounters counters;
   engines::CheckCost cost;
+  std::size_t longest = 0;                // history of a body since work_before began: states
   std::int64_t kept = 0, most_kept = 0;   // flights; of one worker the difference that it made
-  std::vector<double> burdens;            // by body, what its going on has cost; empty: nobody wants to know
   double burden = 0.0;                    // of all together, since territories were cut
   double cpu_seconds = 0.0;               // of work_before
   std::uint64_t worked_at = 0;            // events, in work_before

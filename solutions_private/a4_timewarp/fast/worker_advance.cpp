@@ -6,6 +6,7 @@
 #include <span>
 
 #include "framework/engines/timewarp/fast_timewarp.h"
+#include "framework/engines/guarded_laws.h"
 #include "solutions_private/a4_timewarp/fast/territories.h"
 
 namespace tumble::a4 {
@@ -126,6 +127,8 @@ void Worker::advance_or_leave(int body) {
   if (is_alone()) return advance(body);
   try {
     advance(body);
+  } catch (const engines::OutOfTime&) {
+    throw;
   } catch (...) {
     look_again(body, kBorder);
   }
@@ -139,13 +142,13 @@ void Worker::push(const Due& due, std::size_t home) {
 void Worker::advance_member(int body, const Flight& flight, double from, double to, const Box& box) {
   ++counters.steps;
   ++counters.integrations;
-  const std::uint64_t before = burdens.empty() ? 0 : cost.pair_checks + kGapChecks * cost.narrow.gap_evaluations;
+  const std::uint64_t before = all_.burdens.empty() ? 0 : cost.pair_checks + kGapChecks * cost.narrow.gap_evaluations;
   enter_box(body, box);
   find_obstacles(body, flight, from, to);
   for_each_partner(body, box, [&](int other) { check(body, flight, from, to, other); });
-  if (burdens.empty()) return;
+  if (all_.burdens.empty()) return;
   const double checks = static_cast<double>(cost.pair_checks + kGapChecks * cost.narrow.gap_evaluations - before) + (flight.passage < 0 ? kStepChecks : kPassageChecks);
-  burdens[static_cast<std::size_t>(body)] += checks;
+  all_.burdens[static_cast<std::size_t>(body)] += checks;
   burden += checks;
 }
 

@@ -8,8 +8,14 @@
 
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
+#include "framework/engines/guarded_laws.h"
 
 namespace tumble::a4 {
+namespace {
+
+constexpr std::size_t kMostOfABody = 256;   // states: looking back over a round costs as many each time, and they are kept to its end
+
+}  // namespace
 
 // ---- An impact ---------------------------------------------------------------------------------------------------------
 
@@ -117,7 +123,8 @@ void Worker::begin_flight(int body, Flight flight, std::uint32_t serial) {
   purge(body);
   all_.histories.push(body, flight);
   most_kept = std::max(most_kept, ++kept);
-  counters.most_states = std::max<std::uint64_t>(counters.most_states, history(body).size());
+  longest = std::max(longest, history(body).size());
+  counters.most_states = std::max<std::uint64_t>(counters.most_states, longest);
   move(body, flight.begin);
 }
 
@@ -220,12 +227,15 @@ void Worker::work_at(const Due& due) {
   now = kInfinity;
 }
 
-// What goes wrong here may be a consequence of what will be taken back: it is left, and goes wrong again if it stands.
-void Worker::work_before(double end) {
+// What goes wrong here may be a consequence of what will be taken back: it is left, and goes wrong again if it stands. Time that is up is not.
+double Worker::work_before(double end) {
   const double began = thread_seconds();
   const double last = all_.run.duration();
   engines::EventQueue<Due>& queue = all_.domains[home_].queue;
-  while (!queue.empty() && queue.front().key.time < end && queue.front().key.time <= last) {
+  const auto is_to_do = [&] { return !queue.empty() && queue.front().key.time < end && queue.front().key.time <= last; };
+  longest = 0;
+  while (is_to_do()) {
+    if (all_.threads == 1 && longest > kMostOfABody) break;
     if (all_.trial.delay_s > 0) delay();
     if (all_.trial.rollback_every > 0) disturb();
     const Due due = all_.trial.disorder_s > 0 ? next_legal(std::min(last, std::nextafter(end, 0.0))) : queue.pop();
@@ -239,6 +249,9 @@ void Worker::work_before(double end) {
       ++worked_at;
       try {
         work_at(due);
+      } catch (const engines::OutOfTime&) {
+        left.out_of_time = std::current_exception();
+        break;
       } catch (...) {
         leave(due);
       }
@@ -246,6 +259,7 @@ void Worker::work_before(double end) {
   }
   now = kInfinity;
   cpu_seconds += thread_seconds() - began;
+  return is_to_do() ? queue.front().key.time : end;
 }
 
 // Who waits for an impact does not go on before it: it would find the same impact again and again.

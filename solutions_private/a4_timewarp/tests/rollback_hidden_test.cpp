@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <map>
+#include <set>
 #include <tuple>
 
 #include "framework/core/random.h"
@@ -16,14 +17,20 @@ struct History {
   std::vector<Rollback> first;
 };
 
-// Impacts at a few times, so that there are ties, among few bodies, so that there are loops; some on walls.
+// Impacts at a few times, so that there are ties, among few bodies, so that there are loops; some on walls. One in eight is a callback of two bodies
+// instead, one in eight the change of a group of three or fewer.
 History random_history(Random& random, std::int32_t bodies, int impacts) {
   History history;
   for (int i = 0; i < impacts; ++i) {
     const double time = 0.125 * static_cast<double>(random.below(20));
     const std::int32_t a = static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(bodies))), b = static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(bodies)));
     const std::uint32_t generation = static_cast<std::uint32_t>(random.below(2));
-    if (a == b) history.effects.push_back({impact(time, a, 99, generation), {a}});
+    const std::uint64_t kind = random.below(8);
+    if (kind < 2) {
+      std::set<std::int32_t> processes{a, b};
+      if (kind == 0) processes.insert(static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(bodies))));
+      history.effects.push_back({{time, generation, kind == 0 ? WorkKind::kGroup : WorkKind::kCallback, *processes.begin(), -1}, {processes.begin(), processes.end()}});
+    } else if (a == b) history.effects.push_back({impact(time, a, 99, generation), {a}});
     else history.effects.push_back({impact(time, std::min(a, b), std::max(a, b), generation), {std::min(a, b), std::max(a, b)}});
   }
   for (int i = 0; i < 2; ++i) {
@@ -62,7 +69,7 @@ TEST(PlanRollback, IsComplete) {
   for (int i = 0; i < 150; ++i) {
     const History history = random_history(random, 3 + i % 6, 2 + i % 17);
     expect_rollbacks(a4_module().plan_rollback(history.effects, history.first), by_fixed_point(history),
-                     {.scene = std::to_string(history.effects.size()) + " impacts drawn by lot among " + std::to_string(3 + i % 6) + " bodies, two of which go back: " + show(history.first),
+                     {.scene = std::to_string(history.effects.size()) + " effects drawn by lot among " + std::to_string(3 + i % 6) + " bodies, two of which go back: " + show(history.first),
                       .slip = "after it, no body that stays may know of an impact that another has forgotten; and no one goes back without need", .handout = equation(8)});
   }
 }
@@ -88,7 +95,7 @@ TEST(AntiMessages, KeepTheOrderOfEffects) {
       for (const std::int32_t p : effect.processes)
         if (p != rollback.body) expected.push_back({p, effect.stamp});
     }
-    expect_rollbacks(a4_module().anti_messages(history.effects, rollback), expected, {.scene = "12 impacts drawn by lot among 4 bodies and walls; " + show({rollback}), .slip = "one message an impact from the rollback on, to the other process, in the order of the effects", .handout = equation(7)});
+    expect_rollbacks(a4_module().anti_messages(history.effects, rollback), expected, {.scene = "12 effects drawn by lot among 4 bodies and walls; " + show({rollback}), .slip = "one message an effect and other process from the rollback on, in the order of the effects", .handout = equation(7)});
   }
 }
 
