@@ -487,13 +487,13 @@ bool LastingContacts::keep_apart(const Group& group, const std::vector<Pair>& pa
     const bool open = problem.row_targets.size() > 0 && problem.row_targets.cwiseAbs().maxCoeff() > 1e-13 * size;
     if (wrong == 0.0 && !open) return true;
     ++counters_.nudges;
-    // The solver measures its answers by the farthest point, which need not move at all. Rods and joints are open by roundings of another size.
+    // The solver measures its answers by the farthest point, which need not move at all. Held points, rods and joints are drawn together by what
+    // is of another size.
     double part = 1.0;
-    if (group.linked.empty()) {
-      const double missing = std::max(wrong, problem.rows.empty() ? 0.0 : problem.row_targets.cwiseAbs().maxCoeff());
-      double largest = missing;
+    if (problem.rows.empty()) {
+      double largest = wrong;
       for (const PushingContact& contact : problem.contacts) largest = std::max(largest, std::abs(contact.target));
-      part = missing / largest;
+      part = wrong / largest;
     }
     ContactOptions options;   // the next round takes the rest
     options.tolerance = std::max(kRounding, kMissed * part);
