@@ -28,6 +28,12 @@ class PreconditionError : public std::logic_error {
   using std::logic_error::logic_error;
 };
 
+/// Beside an exception: what it tells of stays so however often it is tried again, and with whatever step (time is up, a module is gone).
+class Final {
+ public:
+  virtual ~Final() = default;
+};
+
 /// Always-on check of a stated precondition.
 /// @throws PreconditionError with `message` when `holds` is false
 inline void require(bool holds, const char* message) {

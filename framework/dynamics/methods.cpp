@@ -95,16 +95,18 @@ OdeFunction with_finite_slopes(const OdeFunction& f) {
   };
 }
 
-// Where a trial leads to is wrong: a stage left what the equations can bear. Slips of a person are none of the step's.
+// Where a trial leads to is wrong: a stage left what the equations can bear. Slips of a person are none of the step's, nor is what stays so.
 template <class Trial>
-std::string what_went_wrong(const Trial& trial) {
+std::optional<std::string> what_went_wrong(const Trial& trial) {
   try {
-    return trial() ? "" : kNotANumber;
+    if (trial()) return std::nullopt;
+    return kNotANumber;
   } catch (const NotImplemented&) {
     throw;
   } catch (const UserError&) {
     throw;
   } catch (const std::exception& error) {
+    if (dynamic_cast<const Final*>(&error)) throw;
     return error.what();
   }
 }
@@ -124,22 +126,24 @@ void advance(const Controlled& fresh, const System& system, Container& state, do
     if (++parts > kMostParts) throw std::runtime_error("a tolerance too small to be reached: more than a million steps inside one, at t = " + std::to_string(time) + " s");
     if (odeint::detail::less_with_sign(end, time + part, part)) part = end - time;
     for (bool taken = false; !taken;) {
-      if (std::abs(part) < kShortestPart * std::abs(h)) throw std::runtime_error("no step is short enough for the tolerance at t = " + std::to_string(time) + " s");
       Container next = state;
       double next_time = time, next_part = part;
-      const std::string wrong = what_went_wrong([&] {
+      const auto wrong = what_went_wrong([&] {
         taken = stepper->try_step(system, next, next_time, next_part) == odeint::success;
         return !taken || is_finite(next);
       });
-      if (wrong.empty()) {
+      if (wrong) {
+        taken = false;
+        stepper.emplace(fresh);   // what it remembers of the trial is as wrong
+        part *= 0.25;
+      } else {
         part = next_part;
         if (taken) state = next, time = next_time;
-        continue;
       }
-      taken = false;
-      stepper.emplace(fresh);   // what it remembers of the trial is as wrong
-      part *= 0.25;
-      if (std::abs(part) < kShortestPart * std::abs(h)) throw std::runtime_error("no step is short enough at t = " + std::to_string(time) + " s: " + wrong);
+      // What is taken may be shorter: a cautious beginning, or what rounding has left of the step.
+      if (taken || std::abs(part) >= kShortestPart * std::abs(h)) continue;
+      const std::string at = " at t = " + std::to_string(time) + " s";
+      throw std::runtime_error(wrong ? "no step is short enough" + at + ": " + *wrong : "no step is short enough for the tolerance" + at);
     }
   }
 }
@@ -154,7 +158,7 @@ double first_part(const OdeFunction& f, double t, const VectorXd& y, double h) {
   if (!(speed > 0.0)) return h;
   const double first = std::min(most, 0.01 / speed);
   VectorXd beyond;
-  if (!what_went_wrong([&] { return (beyond = f(t + std::copysign(first, h), y + std::copysign(first, h) * slope)).allFinite(); }).empty()) return std::copysign(0.25 * first, h);
+  if (what_went_wrong([&] { return (beyond = f(t + std::copysign(first, h), y + std::copysign(first, h) * slope)).allFinite(); })) return std::copysign(0.25 * first, h);
   const double bend = size(beyond - slope) / first;
   return std::copysign(std::min({most, 100.0 * first, std::sqrt(0.02 / std::max(bend, 0.02 / (most * most)))}), h);
 }

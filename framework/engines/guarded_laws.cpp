@@ -26,7 +26,9 @@ struct Guard {
     } catch (const UserError&) {
       throw;
     } catch (const std::exception& error) {
-      throw StoppedRun(fmt::format("{} failed: {}", subject(), error.what()));
+      const std::string words = fmt::format("{} failed: {}", subject(), error.what());
+      if (dynamic_cast<const Final*>(&error)) throw StoppedForGood(words);
+      throw StoppedRun(words);
     }
   }
   void need(bool fine, const char* what) const {

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "framework/core/error.h"
 #include "framework/dynamics/laws.h"
 
 namespace tumble::engines {
@@ -15,11 +16,16 @@ class StoppedRun : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// The run has used up what it may take. Whatever is taken back, that stays so: an engine that works ahead stops for it at once, where another
-/// StoppedRun may be a consequence of what will be undone.
-class OutOfTime : public StoppedRun {
+/// Whatever is taken back or tried with a shorter step, it stays so, where another StoppedRun may be a consequence of what will be undone.
+class StoppedForGood : public StoppedRun, public Final {
  public:
   using StoppedRun::StoppedRun;
+};
+
+/// The run has used up what it may take: an engine that works ahead stops for it at once.
+class OutOfTime : public StoppedForGood {
+ public:
+  using StoppedForGood::StoppedForGood;
 };
 
 /// The same laws; each throws StoppedRun where it fails, naming itself and who wrote it. `NotImplemented` and `UserError` pass
@@ -33,6 +39,8 @@ auto naming(const std::string& subject, Work&& work) {
     return std::forward<Work>(work)();
   } catch (const OutOfTime&) {
     throw;   // happened to nobody
+  } catch (const StoppedForGood& stop) {
+    throw StoppedForGood(subject + ": " + stop.what());
   } catch (const StoppedRun& stop) {
     throw StoppedRun(subject + ": " + stop.what());
   }

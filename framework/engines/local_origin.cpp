@@ -59,8 +59,10 @@ Vector3d local_origin(const scene::Scene& scene) {
 }
 
 scene::Scene seen_from(const Vector3d& origin_world, scene::Scene scene) {
+  // Lengths and points of bodies that a file leaves to be measured were measured between the doubles.
+  const bool as_written = scene.springs.empty() && scene.rods.empty();
   const auto see = [&](Vector3d& place) {
-    for (int axis = 0; axis < 3; ++axis) place[axis] = difference_as_written(place[axis], origin_world[axis]);
+    for (int axis = 0; axis < 3; ++axis) place[axis] = as_written ? difference_as_written(place[axis], origin_world[axis]) : place[axis] - origin_world[axis];
   };
   for_each_place(scene, see);
   for (scene::PointForceSpec& force : scene.point_forces) see(force.point_m);

@@ -13,7 +13,7 @@ namespace tumble::engines {
 /// world's origin. [m]
 Vector3d local_origin(const scene::Scene& scene);
 
-/// The same scene, seen from there; a place of up to 15 decimal digits means that decimal, and not the nearest double.
+/// The same scene, seen from there; a place of up to 15 decimal digits means that decimal, and not the nearest double, where no spring and no rod spans from one to another.
 scene::Scene seen_from(const Vector3d& origin_world, scene::Scene scene);
 
 /// Passes a run that was made in local coordinates on in those of the world.

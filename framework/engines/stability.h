@@ -33,8 +33,8 @@ struct SpringStability {
 
 /// The fastest swing of the springs of a world where it starts, along the springs, with what rods and joints hold kept still: the eigenvalues of
 /// J N J^T K, where N is M^-1 without the directions that rods and joints do not allow.
-/// @return nothing for a world without springs that can stretch. Where more than 60 bodies are linked, springs on bodies that joints, or rods beside
-///         their centres, hold are not judged
+/// @return nothing for a world without springs that can stretch. Where more than 60 bodies are linked, springs on bodies that rods or joints
+///         hold are not judged
 std::optional<SpringStability> judge_springs(const World& world, const Laws& laws, double step);
 
 /// Of anything else that limits a step.

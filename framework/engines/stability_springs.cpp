@@ -101,12 +101,11 @@ Sparse ways_of_springs(const World& world) {
   const LinkedCoordinates linked(world);
   const bool holds = !world.rods.empty() || !world.joints.empty(), is_small = linked.size() <= 6 * kMostHeldBodies;
   std::vector<bool> is_held(world.bodies.size(), false);
-  const auto note = [&](const Anchor& anchor, bool holds_turning) {
-    if (anchor.body >= 0 && holds_turning) is_held[static_cast<std::size_t>(anchor.body)] = true;
+  const auto note = [&](const Anchor& anchor) {
+    if (anchor.body >= 0) is_held[static_cast<std::size_t>(anchor.body)] = true;
   };
-  for (const RodLink& rod : world.rods)
-    for (const Anchor* anchor : {&rod.a, &rod.b}) note(*anchor, !anchor->point_body.isZero(0.0));
-  for (const JointLink& joint : world.joints) note(joint.a, true), note(joint.b, true);
+  for (const RodLink& rod : world.rods) note(rod.a), note(rod.b);
+  for (const JointLink& joint : world.joints) note(joint.a), note(joint.b);
 
   Sparse ways(linked.size(), static_cast<Eigen::Index>(world.springs.size()));
   VectorXd way = VectorXd::Zero(linked.size());

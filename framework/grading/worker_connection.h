@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/core/error.h"
 #include "framework/grading/sandbox.h"
 #include "framework/grading/verdict.h"
 #include "framework/modules/proxy.h"
@@ -34,7 +35,7 @@ struct WorkerOptions {
 };
 
 /// Thrown out of a call that has no answer. The verdict is in call_log() already.
-class CallEnded : public std::runtime_error {
+class CallEnded : public std::runtime_error, public Final {
  public:
   using std::runtime_error::runtime_error;
 };

@@ -178,13 +178,15 @@ bool has_type(const json& value, const std::string& type) {
 }
 
 // Squares and cubes of what a scene says must stay within doubles, and so must products of three of them (2^-1074 to 2^1023).
+constexpr int kDeepest = 100;
 constexpr double kLargest = 1e60, kSmallest = 1e-60;
 
-void refuse_extreme_numbers(const Document& document, const json& value, const std::string& pointer) {
+void refuse_extreme_numbers(const Document& document, const json& value, const std::string& pointer, int depth = 0) {
+  if (depth > kDeepest) document.refuse(pointer.substr(0, pointer.find('/', 1)), "found lists within lists, deeper than any scene needs", "Check its brackets.");
   if (value.is_object())
-    for (const auto& [key, member] : value.items()) refuse_extreme_numbers(document, member, pointer + '/' + escaped(key));
+    for (const auto& [key, member] : value.items()) refuse_extreme_numbers(document, member, pointer + '/' + escaped(key), depth + 1);
   if (value.is_array())
-    for (std::size_t i = 0; i < value.size(); ++i) refuse_extreme_numbers(document, value[i], pointer + '/' + std::to_string(i));
+    for (std::size_t i = 0; i < value.size(); ++i) refuse_extreme_numbers(document, value[i], pointer + '/' + std::to_string(i), depth + 1);
   if (!value.is_number()) return;
   const double size = std::abs(value.get<double>());
   if (size > kLargest) document.refuse(pointer, "found " + show(value) + ", too large to reckon with", "Numbers may be up to 1e60: check its digits and its unit.");

@@ -99,6 +99,47 @@ TEST(Methods, WhereNoStepWillDoSayWhenAndWhy) {
   }
 }
 
+// Parts of a step end where the step does but for a rounding of t, and what is left is a part too.
+TEST(Methods, GoOnFarFromTheBeginningOfTime) {
+  const OdeFunction swing = [](double, const VectorXd& y) -> VectorXd { return Vector2d(y[1], -50.0 * y[0]); };
+  for (const Method& method : methods()) {
+    if (!method.controlled) continue;
+    for (const double tolerance : {1e-8, 3e-11, 1e-11, 3e-12}) {
+      if (method.word == std::string("rosenbrock4") && tolerance < 1e-8) continue;   // of fourth order, with differences: some thousand parts a step
+      VectorXd y = Vector2d(0.0, 1.0);
+      for (int k = 0; k < 60; ++k) ASSERT_NO_THROW(y = step_of(method, tolerance)(swing, 4.0 + k / 60.0, y, 1.0 / 60.0)) << method.name << ", tolerance " << tolerance << ", step " << k;
+      EXPECT_NEAR(y[1], std::cos(std::sqrt(50.0)), 1e4 * tolerance) << method.name;   // some hundred parts, each to the tolerance of what sums to 60 of them
+    }
+  }
+}
+
+// The first part that is tried is the shorter the greater the slope: no reason to refuse it.
+TEST(Methods, BearSlopesOfAnySize) {
+  const OdeFunction weight = [](double, const VectorXd& y) -> VectorXd { return VectorXd::Constant(1, -6e25 + 0.0 * y[0]); };
+  for (const Method& method : methods())
+    if (method.controlled) EXPECT_NEAR(step_of(method, 1e-9)(weight, 0.0, VectorXd::Zero(1), 0.01)[0] / -6e23, 1.0, 1e-12) << method.name;
+}
+
+// A time limit that is hit within a trial is no trial too long; nor is a module whose process has died.
+TEST(Methods, WhatStaysSoEndsAStepAtOnce) {
+  struct TimeIsUp : std::runtime_error, Final {
+    TimeIsUp() : std::runtime_error("time is up") {}
+  };
+  for (const Method& method : methods())
+    for (const int at : {1, 2, 5, 9}) {
+      int calls = 0;
+      const OdeFunction limited = [&](double, const VectorXd& y) -> VectorXd {
+        if (++calls == at) throw TimeIsUp();
+        return -y;
+      };
+      const auto a_second = [&] {
+        for (int k = 0; k < 10; ++k) step_of(method, 1e-6)(limited, 0.1 * k, VectorXd::Constant(1, 1.0), 0.1);
+      };
+      EXPECT_THROW(a_second(), TimeIsUp) << method.name;
+      EXPECT_EQ(calls, at) << method.name;
+    }
+}
+
 TEST(Methods, WhatIsNotWrittenYetIsNoMatterOfTheStep) {
   const OdeFunction stub = [](double, const VectorXd&) -> VectorXd { throw NotImplemented("state_derivative", "handouts/a2_integration.md"); };
   for (const Method& method : methods()) EXPECT_THROW(step_of(method, 1e-6)(stub, 0.0, VectorXd::Constant(1, 1.0), 1.0), NotImplemented) << method.name;

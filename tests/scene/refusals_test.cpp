@@ -117,6 +117,10 @@ TEST(SceneRefusals, NumbersThatDoublesCannotSquareAreNamed) {
   EXPECT_EQ(refusal(scene_with(body_with(R"("mass_kg": 1, "velocity_m_s": [0, -0.0, 1e-60])"))), "");
 }
 
+TEST(SceneRefusals, ListsWithinListsAreFollowedToSomeDepth) {
+  EXPECT_NE(refusal("{ \"bodies\": " + std::string(2000, '[') + std::string(2000, ']') + " }").find("brackets"), std::string::npos);
+}
+
 TEST(SceneRefusals, ATrailingCommaIsNotJson) { expect_words(refusal(scene_with(kBall + ",")), {"not JSON", "none after the last"}); }
 
 }  // namespace

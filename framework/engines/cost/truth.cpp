@@ -98,7 +98,7 @@ FinerRun run_finely(const scene::Scene& scene, const Laws& laws, const Window& w
   Laws timed = laws;
   timed.integrate_step = [step = laws.integrate_step, until = watched.until(), calls = 0](const OdeFunction& f, double t, const VectorXd& y, double h) mutable {
     const OdeFunction counted = [&](double at, const VectorXd& state) -> VectorXd {   // a step may take many
-      if (++calls % kLookEach == 0 && cpu_seconds() > until) throw StoppedRun(kTooLong);
+      if (++calls % kLookEach == 0 && cpu_seconds() > until) throw OutOfTime(kTooLong);
       return f(at, state);
     };
     return step(counted, t, y, h);

@@ -4,13 +4,18 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "framework/collision/time_bound.h"
+#include "framework/engines/guarded_laws.h"
 
 namespace tumble::engines {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSlack = 1e-9;   // of lengths: pairs this much out of reach are still searched, whatever rounding does
+
+constexpr double kMostTurning = 1e5;   // rad in one search, which looks at each of them: beyond, a run would take hours and look like a hang
 
 // A root in closed form is off by roundings: it is taken back until the gap is not negative, first by one spacing of the time, then
 // by twice as much each round.
@@ -135,6 +140,13 @@ bool ImpactsOfFlights::may_meet_on_passage(int a, const Flight& f, int b, const 
   return apart.norm() <= (world_.radius(a) + world_.radius(b)) * (1 + kSlack);
 }
 
+void ImpactsOfFlights::require_searchable(int body, const Flight& flight, double duration) const {
+  if (flight.passage >= 0 || world_.is_ball(body)) return;
+  const double turn = flight.omega_body.norm() * duration;
+  if (!(turn > kMostTurning)) return;
+  throw StoppedRun(fmt::format("body '{}' turns {:.3g} rad a step of {:.3g} s, too far to find its collisions: make the step (\"step_s\") shorter or the body slower", world_.world().bodies[static_cast<std::size_t>(body)].name, turn, duration));
+}
+
 // Windows stand fast; within one, what is of one piece is searched at once. All of it depends on the two flights alone.
 double ImpactsOfFlights::in_windows(int a, const Flight& f, int b, const Flight& g, double from, double to, CheckCost& cost) const {
   if (a > b) return in_windows(b, g, a, f, from, to, cost);   // one order, so that the answer has one rounding
@@ -162,6 +174,8 @@ double ImpactsOfFlights::in_windows(int a, const Flight& f, int b, const Flight&
           motion_a = world_.motion_from(a, f, low);
           motion_b = world_.motion_from(b, g, low);
         }
+        require_searchable(a, f, end - low);
+        require_searchable(b, g, end - low);
         const auto impact = collision::first_impact(world_.shape(a), *motion_a, world_.shape(b), *motion_b, low, end, options, &cost.narrow);
         if (impact) return impact->time;
       }

@@ -46,6 +46,7 @@ class ImpactsOfFlights {
   double of_balls(int a, const Flight& f, int b, const Flight& g) const;
   double of_ball_and_plane(int ball, const Flight& f, const Flight& plane) const;
   double in_windows(int a, const Flight& f, int b, const Flight& g, double from, double to, CheckCost& cost) const;
+  void require_searchable(int body, const Flight& flight, double duration) const;
 
   const FlightWorld& world_;
   collision::RootFinder root_finder_;

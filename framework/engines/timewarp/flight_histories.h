@@ -14,7 +14,6 @@ namespace tumble::engines {
 /// One body's flights. The first is the one that global virtual time lies in, the last the one that its local virtual time lies in.
 class FlightHistory {
  public:
-  std::size_t slots() const { return mask_ + 1; }
   std::size_t size() const { return count_; }
   /// Flights that memory is held for.
   std::size_t held() const { return mask_ + 1; }
