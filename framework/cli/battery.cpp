@@ -121,7 +121,7 @@ void run_battery(Context& context, const Options& options) {
 void add_battery(CLI::App& app, Context& context) {
   auto options = std::make_shared<Options>();
   Verb verb(app, "battery", "Run the cases that are known to break simulations, against thresholds derived beforehand");
-  verb.flag("--long", options->is_long, "Whole lengths: stacks of 60 s, a million steps (a quarter of an hour)");
+  verb.flag("--long", options->is_long, "Whole lengths: stacks of 60 s, a million steps, an hour of timewarp (half an hour, most of it houses of cards that fall)");
   verb.option("--only", options->only, "Cases by number, or by a word of the name");
   verb.flag("--each", options->each, "Show every measure, not only the one closest to its threshold");
   verb.option("--out", options->out, "Folder of the page battery.html").shows_default();
