@@ -19,6 +19,7 @@
 #include "framework/core/not_implemented.h"
 #include "framework/dynamics/body.h"
 #include "framework/dynamics/ode.h"
+#include "framework/modules/answer_sizes.h"
 #include "framework/modules/module.h"
 
 namespace tumble::a2 {
@@ -161,3 +162,14 @@ RootResult impact_time_newton(const ScalarFunction& gap, const ScalarFunction& g
 
 TUMBLE_MODULE(a2, euler_step, rk4_step, inertia_in_world, rigid_body_derivative, renormalize, orthonormalize,
               rotation_from_euler_angles, euler_angles_from_rotation, impact_time_bisection, impact_time_newton);
+
+namespace tumble::a2 {
+
+/// How many numbers each answer has: held against what your functions return, before anything is done with it.
+inline void describe(modules::AnswerSizes<Module>& sizes) {
+  sizes.add(&Module::euler_step, [](const OdeFunction&, double, const VectorXd& y, double) { return y.size(); });
+  sizes.add(&Module::rk4_step, [](const OdeFunction&, double, const VectorXd& y, double) { return y.size(); });
+  sizes.add(&Module::rigid_body_derivative, [](const RigidBodyState&, const Inertia&, const Wrench&) { return kStateSize; });
+}
+
+}  // namespace tumble::a2

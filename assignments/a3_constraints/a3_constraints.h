@@ -22,6 +22,7 @@
 #include "framework/core/not_implemented.h"
 #include "framework/dynamics/body.h"
 #include "framework/dynamics/constraint.h"
+#include "framework/modules/answer_sizes.h"
 #include "framework/modules/module.h"
 
 namespace tumble::a3 {
@@ -144,3 +145,16 @@ bool ends_in_contact(double approach_speed, double restitution, double rest_spee
 
 TUMBLE_MODULE(a3, anchor_position, anchor_velocity, spring_force, rod_row, baumgarte_acceleration, constraint_multipliers,
               constraint_correction, contact_forces, ends_in_contact);
+
+namespace tumble::a3 {
+
+/// How many numbers each answer has: held against what your functions return, before anything is done with it.
+inline void describe(modules::AnswerSizes<Module>& sizes) {
+  using Rows = std::vector<Constraint>;
+  using Bodies = std::vector<ConstrainedBody>;
+  sizes.add(&Module::constraint_multipliers, [](const Rows& rows, const Bodies&, const VectorXd&) { return static_cast<Eigen::Index>(rows.size()); });
+  sizes.add(&Module::constraint_correction, [](const Rows&, const Bodies& bodies, const VectorXd&) { return 6 * static_cast<Eigen::Index>(bodies.size()); });
+  sizes.add(&Module::contact_forces, [](const MatrixXd&, const VectorXd& b) { return b.size(); });
+}
+
+}  // namespace tumble::a3

@@ -9,6 +9,7 @@
 
 #include "framework/core/not_implemented.h"
 #include "framework/grading/verdict.h"
+#include "framework/modules/answer_sizes.h"
 
 namespace tumble::grading {
 
@@ -21,6 +22,7 @@ struct CallLog {
   bool in_call = false;
   bool noted = false;
   double timed_out_s = 0.0;   // the limit that a call ran into
+  double own_s = 0.0;         // own time of the worker in this test, where there is one
   Verdict verdict = Verdict::kGraderFault;
 
   void begin(const char* function);
@@ -34,20 +36,29 @@ CallLog& call_log();
 
 namespace detail {
 
-template <class R, class... A>
-std::function<R(A...)> observe(const char* name, std::function<R(A...)> function) {
-  return [name, function](A... arguments) -> R {
+// A vector of the wrong size ends the call: what would come of it is an assertion somewhere else.
+[[noreturn]] inline void end_by_size(const std::string& story) {
+  call_log().note(Verdict::kWrong, story);
+  throw modules::WrongSize(story);
+}
+
+// Functions that are passed to the module are held to be asked with the right sizes; other arguments stay what they are.
+template <class T, class... A>
+decltype(auto) guarded(T& argument, const char* name, const A&... call) {
+  if constexpr (modules::is_function<std::decay_t<T>>::value) return modules::asked_rightly(argument, name, end_by_size, call...);
+  else return (argument);
+}
+
+template <class Module, class R, class... A>
+std::function<R(A...)> observe(std::size_t index, const char* name, std::function<R(A...)> function) {
+  return [index, name, function](A... arguments) -> R {
     CallLog& log = call_log();
     log.begin(name);
     try {
-      if constexpr (std::is_void_v<R>) {
-        function(std::forward<A>(arguments)...);
-        log.end();
-      } else {
-        R result = function(std::forward<A>(arguments)...);
-        log.end();
-        return result;
-      }
+      R result = function(guarded(arguments, name, arguments...)...);
+      if (const std::string problem = modules::answer_sizes<Module>().problem(index, name, result, arguments...); !problem.empty()) end_by_size(problem);
+      log.end();
+      return result;
     } catch (const NotImplemented& missing) {
       log.note(Verdict::kNotAttempted, missing.what());
       throw;
@@ -69,7 +80,8 @@ std::function<R(A...)> observe(const char* name, std::function<R(A...)> function
 /// The same table, each call noted in the log before it runs.
 template <class Module>
 Module observed(Module module) {
-  Module::visit(module, [](const char* name, auto& field) { field = detail::observe(name, field); });
+  std::size_t index = 0;
+  Module::visit(module, [&](const char* name, auto& field) { field = detail::observe<Module>(index++, name, field); });
   return module;
 }
 

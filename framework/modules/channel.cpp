@@ -24,8 +24,9 @@ void Channel::wait(int fd, short events, Clock::time_point deadline) {
   for (;;) {
     int timeout_ms = -1;
     if (deadline != Clock::time_point::max()) {
+      if (extension_ && deadline <= Clock::now()) deadline = extension_(deadline);
       const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
-      if (left <= 0) throw ChannelTimeout("no answer before the deadline");
+      if (left <= 0 && deadline <= Clock::now()) throw ChannelTimeout("no answer before the deadline");
       timeout_ms = static_cast<int>(std::min<long long>(left + 1, 1 << 30));
     }
     pollfd waiting{fd, events, 0};
@@ -36,6 +37,8 @@ void Channel::wait(int fd, short events, Clock::time_point deadline) {
 }
 
 void Channel::send(MessageKind kind, const Bytes& payload, Clock::time_point deadline) {
+  if (payload.size() > kMaxPayload)
+    throw WireError("an argument or answer of " + std::to_string(payload.size()) + " bytes, where at most " + std::to_string(kMaxPayload) + " pass (a size that was never set?)");
   Bytes frame(sizeof(Header) + payload.size());
   const Header header{static_cast<std::uint32_t>(payload.size()), static_cast<std::uint8_t>(kind), {0, 0, 0}};
   std::memcpy(frame.data(), &header, sizeof header);

@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <stdexcept>
 
 #include "framework/modules/wire.h"
@@ -43,7 +44,11 @@ class Channel {
   /// Does not own the descriptors. Either may be a socket or a pipe.
   Channel(int read_fd, int write_fd) : read_fd_(read_fd), write_fd_(write_fd) {}
 
-  /// @throws ChannelClosed, ChannelTimeout
+  /// Asked when a deadline has passed: gives a later one, or the same to let it end the wait.
+  using Extension = std::function<Clock::time_point(Clock::time_point passed)>;
+  void extend_by(Extension extension) { extension_ = std::move(extension); }
+
+  /// @throws ChannelClosed, ChannelTimeout, WireError (payload above kMaxPayload: nothing is sent)
   void send(MessageKind kind, const Bytes& payload, Clock::time_point deadline = Clock::time_point::max());
   /// @throws ChannelClosed, ChannelTimeout, WireError (size above kMaxPayload)
   Message receive(Clock::time_point deadline = Clock::time_point::max());
@@ -54,6 +59,7 @@ class Channel {
   void fill(Clock::time_point deadline);
 
   int read_fd_, write_fd_;
+  Extension extension_;
   std::array<std::uint8_t, 1 << 14> ahead_;   // read, not yet asked for: from at_ to end_
   std::size_t at_ = 0, end_ = 0;
 };

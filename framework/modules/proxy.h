@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "framework/core/not_implemented.h"
+#include "framework/modules/answer_sizes.h"
 #include "framework/modules/channel.h"
 #include "framework/modules/wire.h"
 
@@ -27,12 +28,19 @@ class Connection {
   virtual void abandon_call() {}
   /// Each callback served, before it runs. May throw to end the call (a budget of evaluations is spent).
   virtual void count_callback() = 0;
+  /// A callback has run and its answer is sent next: the worker goes on with the call.
+  virtual void resume_call() {}
   virtual Channel::Clock::time_point deadline() const = 0;
   /// The worker's answer cannot be had: turn the transport error into a verdict. Must throw; the call is over.
   [[noreturn]] virtual void fail(const char* function, std::exception_ptr transport_error) = 0;
   /// The worker answered with an exception of its own, or with bytes that are no answer.
   [[noreturn]] virtual void refuse(const char* function, const std::string& what) = 0;
   [[noreturn]] virtual void not_implemented(const char* function, const std::string& handout) = 0;
+  /// The worker answered, or called back, with a vector of the wrong size; the call is over. `story` says which and what is needed.
+  [[noreturn]] virtual void wrong_size(const char* function, const std::string& story) {
+    refuse(function, story);
+    throw WrongSize(story);   // unreachable: refuse throws
+  }
 };
 
 namespace detail {
@@ -47,7 +55,7 @@ Bytes run_callback(const std::function<R(A...)>& f, Reader& reader) {
   return std::move(writer.bytes);
 }
 
-template <class R, class... A>
+template <class Module, class R, class... A>
 R call(Connection& connection, std::uint32_t index, const char* name, const A&... arguments) {
   std::vector<std::function<Bytes(Reader&)>> callbacks;
   Writer writer;
@@ -56,7 +64,8 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
     using T = std::decay_t<decltype(a)>;
     if constexpr (is_function<T>::value) {
       writer.value(static_cast<std::uint32_t>(callbacks.size()));
-      callbacks.push_back([&a](Reader& reader) { return run_callback(a, reader); });
+      const auto refuse = [](const std::string& story) { throw WrongSize(story); };
+      callbacks.push_back([f = asked_rightly(a, name, refuse, arguments...)](Reader& reader) { return run_callback(f, reader); });
     } else {
       writer.value(a);
     }
@@ -87,6 +96,7 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
           R result;
           reader.value(result);
           reader.expect_end();
+          if (const std::string problem = answer_sizes<Module>().problem(index, name, result, arguments...); !problem.empty()) connection.wrong_size(name, problem);
           connection.end_call();
           return result;
         });
@@ -100,11 +110,14 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
             return callbacks[which](reader);
           } catch (const WireError&) {
             throw;
+          } catch (const WrongSize& wrong) {
+            connection.wrong_size(name, wrong.what());
           } catch (...) {
             connection.abandon_call();
             throw;
           }
         });
+        connection.resume_call();
         transport([&] { channel.send(MessageKind::kCallbackReturn, answer, deadline); return 0; });
         break;
       }
@@ -124,9 +137,9 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
   }
 }
 
-template <class R, class... A>
+template <class Module, class R, class... A>
 std::function<R(A...)> proxy_function(Connection& connection, std::uint32_t index, const char* name, const std::function<R(A...)>*) {
-  return [&connection, index, name](A... arguments) -> R { return call<R>(connection, index, name, arguments...); };
+  return [&connection, index, name](A... arguments) -> R { return call<Module, R>(connection, index, name, arguments...); };
 }
 
 }  // namespace detail
@@ -137,7 +150,7 @@ Module make_proxy(Connection& connection) {
   Module module;
   std::uint32_t index = 0;
   Module::visit(module, [&](const char* name, auto& field) {
-    field = detail::proxy_function(connection, index++, name, &field);
+    field = detail::proxy_function<Module>(connection, index++, name, &field);
   });
   return module;
 }

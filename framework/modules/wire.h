@@ -16,6 +16,7 @@
 #include <boost/pfr/core.hpp>
 
 #include "framework/core/math.h"
+#include "framework/modules/answer_sizes.h"
 
 namespace tumble::modules {
 
@@ -27,8 +28,6 @@ class WireError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-template <class T> struct is_function : std::false_type {};
-template <class R, class... A> struct is_function<std::function<R(A...)>> : std::true_type {};
 template <class T> struct is_optional : std::false_type {};
 template <class T> struct is_optional<std::optional<T>> : std::true_type {};
 template <class T> struct is_vector : std::false_type {};

@@ -8,6 +8,7 @@
 
 #include "framework/core/math.h"
 #include "framework/core/not_implemented.h"
+#include "framework/modules/answer_sizes.h"
 #include "framework/modules/module.h"
 
 namespace tumble::waist {
@@ -36,9 +37,19 @@ Everything echo(const Everything& value);
 double call_back(const std::function<double(double)>& f, int calls);
 /// Does something evil, named by `what`, and says how far it came.
 std::string attack(const std::string& what);
+/// A step of a method, as `what` says: "right" asks f with y and answers with as many numbers, "ask 0" and "answer 3" do not.
+VectorXd step(const std::function<VectorXd(double, const VectorXd&)>& f, const VectorXd& y, const std::string& what);
 /// Never written.
 double missing(double x);
 
 }  // namespace tumble::waist
 
-TUMBLE_MODULE(waist, twice, echo, call_back, attack, missing);
+TUMBLE_MODULE(waist, twice, echo, call_back, attack, missing, step);
+
+namespace tumble::waist {
+
+inline void describe(modules::AnswerSizes<Module>& sizes) {
+  sizes.add(&Module::step, [](const std::function<VectorXd(double, const VectorXd&)>&, const VectorXd& y, const std::string&) { return y.size(); });
+}
+
+}  // namespace tumble::waist

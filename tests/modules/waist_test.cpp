@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <limits>
+#include <map>
 #include <random>
 #include <thread>
 
@@ -146,6 +147,48 @@ TEST(Proxy, StubStaysAStubAcrossTheBoundaryAndTheLineStaysOpen) {
   const auto module = modules::make_proxy<waist::Module>(loop);
   EXPECT_THROW(module.missing(1.0), NotImplemented);
   EXPECT_EQ(module.twice(4.0), 8.0);
+}
+
+std::string refusal_of(const waist::Module& module, const std::string& what) {
+  try {
+    module.step([](double, const VectorXd& y) { return VectorXd(-y); }, VectorXd::Ones(13), what);
+    return "";
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
+TEST(Proxy, WrongSizesAreRefusedWithWhatIsNeeded) {
+  for (const auto& [what, words] : std::map<std::string, std::string>{
+           {"ask 0", "step step: the derivative was asked with 0 numbers, 13 are needed (a vector that was never set has none)"},
+           {"ask 14", "step step: the derivative was asked with 14 numbers, 13 are needed"},
+           {"answer 0", "step step answered with 0 numbers, 13 are needed"},
+           {"answer 100000", "step step answered with 100000 numbers, 13 are needed"}}) {
+    Loop loop;
+    EXPECT_EQ(refusal_of(modules::make_proxy<waist::Module>(loop), what), words);
+  }
+  Loop loop;
+  EXPECT_EQ(refusal_of(modules::make_proxy<waist::Module>(loop), "right"), "");
+}
+
+TEST(Proxy, SizesThatNoMessageHoldsAreRefusedByTheSender) {
+  for (const std::string what : {"ask 10000000", "answer 10000000"}) {
+    Loop loop;
+    const std::string words = refusal_of(modules::make_proxy<waist::Module>(loop), what);
+    EXPECT_NE(words.find("an argument or answer of 80000"), std::string::npos) << words;
+  }
+}
+
+TEST(Channel, ADeadlineCanBeExtendedAndThenEnds) {
+  int ends[2];
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
+  Channel channel(ends[0], ends[0]);
+  int asked = 0;
+  channel.extend_by([&](Channel::Clock::time_point passed) { return ++asked < 3 ? Channel::Clock::now() + std::chrono::milliseconds(5) : passed; });
+  EXPECT_THROW(channel.receive(Channel::Clock::now()), modules::ChannelTimeout);
+  EXPECT_EQ(asked, 3);
+  ::close(ends[0]);
+  ::close(ends[1]);
 }
 
 TEST(Channel, SilenceEndsAtTheDeadline) {
