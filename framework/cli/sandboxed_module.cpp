@@ -1,8 +1,8 @@
 #include "framework/cli/sandboxed_module.h"
 
 #include <cstdio>
-#include <stdlib.h>
 
+#include "framework/core/files.h"
 #include "framework/grading/build_submission.h"
 #include "framework/grading/call_log.h"
 #include "framework/grading/worker_connection.h"
@@ -11,26 +11,6 @@ namespace tumble::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A folder that is gone at the end of the scope.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "tumble-submission-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw UserError(name, "this folder cannot be made", "Free some space, or set TMPDIR.");
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 void compile(const Context& context, const modules::ModuleKind& kind, const fs::path& source, const fs::path& object) {
   using Outcome = grading::BuiltSubmission::Outcome;
@@ -45,11 +25,11 @@ void compile(const Context& context, const modules::ModuleKind& kind, const fs::
 }  // namespace
 
 SandboxedModule load_sandboxed(const Context& context, const modules::ModuleKind& kind, const fs::path& file) {
-  const TemporaryFolder folder;
+  const PrivateFolder folder;
   grading::WorkerOptions options;
   options.id = kind.id;
   options.module = file;
-  options.session_wall_s = 600.0;            // of a whole scene, watched by the person who started it
+  options.session_own_s = 600.0;            // of a whole scene, watched by the person who started it
   options.callback_budget = 1'000'000'000;   // the wall limit comes first
   if (file.extension() == ".cpp") {
     options.module = folder.path() / (kind.id + ".so");

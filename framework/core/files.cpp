@@ -1,8 +1,12 @@
 #include "framework/core/files.h"
 
+#include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <fstream>
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include "framework/core/error.h"
@@ -45,16 +49,45 @@ void write_whole(const std::filesystem::path& file, std::string_view bytes) {
   });
 }
 
+int hold_folder(const std::filesystem::path& folder) {
+  const int alive = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+  if (alive >= 0) ::flock(alive, LOCK_SH | LOCK_NB);
+  return alive;
+}
+
+void sweep_folders_of_the_dead(const std::filesystem::path& where, const std::string& name) {
+  namespace fs = std::filesystem;
+  std::error_code failed;
+  for (fs::directory_iterator it(where, failed), end; !failed && it != end; it.increment(failed)) {
+    const std::string folder = it->path().filename().string();
+    if (!folder.starts_with(name)) continue;
+    char* rest = nullptr;
+    const long maker = std::strtol(folder.c_str() + name.size(), &rest, 10);
+    if (maker <= 0 || *rest != '-' || ::kill(static_cast<pid_t>(maker), 0) == 0 || errno != ESRCH) continue;
+    // Not a link, and held by nobody: a maker in another container has a number that is nobody's here, and its lock.
+    const int fd = ::open(it->path().c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (fd < 0) continue;
+    std::error_code ignored;   // another user's stays
+    if (::flock(fd, LOCK_EX | LOCK_NB) == 0) fs::remove_all(it->path(), ignored);
+    ::close(fd);
+  }
+}
+
 PrivateFolder::PrivateFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "tumble-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr)
-    throw UserError(std::filesystem::temp_directory_path().string(), "no folder can be made there", "Free some space, or name another place in TMPDIR.");
+  constexpr const char* kName = "tumble-own-";
+  const std::filesystem::path where = std::filesystem::temp_directory_path();
+  static const bool swept = (sweep_folders_of_the_dead(where, kName), true);
+  (void)swept;
+  std::string name = (where / (kName + std::to_string(::getpid()) + "-XXXXXX")).string();
+  if (::mkdtemp(name.data()) == nullptr) throw UserError(where.string(), "no folder can be made there", "Free some space, or name another place in TMPDIR.");
   path_ = name;
+  alive_ = hold_folder(path_);
 }
 
 PrivateFolder::~PrivateFolder() {
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
+  if (alive_ >= 0) ::close(alive_);
 }
 
 }  // namespace tumble

@@ -18,7 +18,8 @@ void make_whole(const std::filesystem::path& file, const std::function<void(cons
 void write_whole(const std::filesystem::path& file, std::string_view bytes);
 
 /// A folder that only this user can enter (mode 0700, a name nobody can foresee), gone with this object. For whatever passes
-/// between two of our processes: in a shared /tmp, a file under a name that can be guessed is anybody's to write.
+/// between two of our processes: in a shared /tmp, a file under a name that can be guessed is anybody's to write. What a killed process
+/// left behind is removed when a later one makes its first.
 class PrivateFolder {
  public:
   /// @throws UserError when it cannot be made
@@ -30,6 +31,14 @@ class PrivateFolder {
 
  private:
   std::filesystem::path path_;
+  int alive_ = -1;   // a lock on the folder, which the kernel lets go of when the last process that shares it ends
 };
+
+/// Marks a folder of this process's, so that sweep_folders_of_the_dead leaves it alone. @return a descriptor to close when it may go
+int hold_folder(const std::filesystem::path& folder);
+
+/// Removes the folders NAME<process id>-... in `where` whose process is gone without having removed them: those of this user, which
+/// nobody holds. A process id that somebody else has by now keeps a folder; a folder is never taken from a process that lives.
+void sweep_folders_of_the_dead(const std::filesystem::path& where, const std::string& name);
 
 }  // namespace tumble

@@ -76,15 +76,15 @@ void collect_headers(const fs::path& root, const std::string& text, std::set<std
 }
 
 // The precompiled header of this build; without it the compiler reads the same text, which takes longer.
-void stage_precompiled(Stage& headers) {
-  const fs::path folder = TUMBLE_SUBMISSION_SDK;
+void stage_precompiled(Stage& headers, const fs::path& build) {
+  const fs::path folder = build.empty() ? fs::path(TUMBLE_SUBMISSION_SDK) : build / fs::path(TUMBLE_SUBMISSION_SDK).filename();
   headers.add_text(text_of(folder / kPrecompiled), kPrecompiled);
   const std::string binary = std::string(kPrecompiled) + ".gch";
   if (fs::exists(folder / binary)) headers.add_file(folder / binary, binary);
 }
 
-fs::path init_program() {
-  const fs::path init = fs::canonical("/proc/self/exe").parent_path() / "sandbox_init";
+fs::path init_program(const fs::path& build) {
+  const fs::path init = (build.empty() ? fs::canonical("/proc/self/exe").parent_path() : build / "bin") / "sandbox_init";
   if (!fs::exists(init)) throw UserError(init.string(), "is not built", "Build the target sandbox_init.");
   return init;
 }
@@ -102,6 +102,14 @@ std::string drain(int fd) {
   return bytes;
 }
 
+// Compilers read bytes; an editor of Windows may write two of them a letter. Empty where the text is what a compiler reads.
+std::string why_no_text(const std::string& text) {
+  const bool is_utf16 = text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
+  if (is_utf16) return "is written in UTF-16, which no C++ compiler reads. Save it as UTF-8 (in Visual Studio: Save As, Save with Encoding; in Notepad: Encoding UTF-8)";
+  if (text.find('\0') != std::string::npos) return "holds bytes that are no text (a NUL at byte " + std::to_string(text.find('\0')) + "). Save it as UTF-8 text; a compiled file or an archive is no source";
+  return "";
+}
+
 bool says(const std::string& text, std::initializer_list<const char*> words) {
   for (const char* word : words)
     if (text.find(word) != std::string::npos) return true;
@@ -113,7 +121,8 @@ Compiled judge(const SandboxOutcome& outcome, const std::string& object, const C
   switch (outcome.ending) {
     case Ending::kNotStarted:
     case Ending::kStopped: return {Outcome::kGraderFault, "the sandbox did not start: " + said};
-    case Ending::kWallLimit: return {Outcome::kOutOfResources, "the compiler was not done after " + std::to_string(static_cast<int>(limits.wall_s)) + " s"};
+    case Ending::kWallLimit: return {Outcome::kGraderFault, "the machine was too busy: the compiler was not done after " + std::to_string(static_cast<int>(limits.wall_s)) + " s, and had computed for less than " + std::to_string(limits.cpu_s) + " s. Run it again when less else runs"};
+    case Ending::kStalled: return {Outcome::kOutOfResources, "the compiler stood still: it waits for something, such as an #include of what is no file"};
     case Ending::kOutputLimit: return {Outcome::kOutOfResources, "the compiler's messages had no end; the first were:\n" + said.substr(0, 2000)};
     case Ending::kSignal: return {Outcome::kOutOfResources, "the compiler was ended by a limit\n" + said};
     case Ending::kExited: break;
@@ -130,6 +139,7 @@ SandboxJob sandbox_job(const CompileLimits& limits, const fs::path& init) {
   SandboxJob job;
   job.limits.wall_s = limits.wall_s;
   job.limits.cpu_s = limits.cpu_s;
+  job.limits.stall_s = limits.stall_s;
   job.limits.memory_bytes = limits.memory_bytes;
   job.limits.tmp_bytes = 128ull << 20;
   job.limits.processes = 16;
@@ -147,6 +157,7 @@ Compiled compile_submission(const CompileJob& job) {
   std::string why;
   const auto source = plain_file(job.source, job.limits.source_bytes, why);
   if (!source) return {Outcome::kRefused, name + ": " + why};
+  if (const std::string no_text = why_no_text(*source); !no_text.empty()) return {Outcome::kRefused, name + ":1:1: error: the file " + no_text};
 
   const SandboxUser user = SandboxUser::lease();
   Stage headers(&user), submission(&user), tools(&user);
@@ -154,12 +165,12 @@ Compiled compile_submission(const CompileJob& job) {
   collect_headers(job.root, text_of(job.root / job.header), needed);
   collect_headers(job.root, *source, needed);
   for (const std::string& header : needed) headers.add_file(job.root / header, header);
-  stage_precompiled(headers);
+  stage_precompiled(headers, job.build);
   submission.add_text(*source, name);
 
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) return {Outcome::kGraderFault, "no descriptor left for a compiler"};
-  SandboxJob inside = sandbox_job(job.limits, tools.add_file(init_program(), "init", true));
+  SandboxJob inside = sandbox_job(job.limits, tools.add_file(init_program(job.build), "init", true));
   inside.binds = {{headers.path(), kHeadersInside}, {submission.path(), kSourceInside}};
   // A name such as "-o" or "@file" is no option.
   const bool plain_name = std::isalnum(static_cast<unsigned char>(name[0])) != 0 || name[0] == '_';

@@ -126,8 +126,9 @@ CostSection measure_cost(const Course& course, const std::string& id, const fs::
   WorkerOptions worker;
   worker.id = kind.id;
   worker.module = submission;
-  worker.call_wall_s = options.call_wall_s;
-  worker.session_wall_s = options.session_wall_s;
+  worker.programs = course.build / "bin";
+  worker.call_own_s = options.call_wall_s;
+  worker.session_own_s = options.session_wall_s;
   worker.callback_budget = 100'000'000;   // the wall limit comes first
   call_log() = CallLog{};
   WorkerConnection connection(worker);

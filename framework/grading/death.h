@@ -10,6 +10,9 @@ namespace tumble::grading {
 /// @param in_call    it had not returned
 std::string signal_story(int signal, const std::string& last_call, bool in_call);
 std::string exit_story(int code, const std::string& last_call, bool in_call);
-std::string timeout_story(double wall_s, const std::string& last_call, bool in_call);
+/// @param limit_s  of own time (own_time.h)
+std::string timeout_story(double limit_s, const std::string& last_call, bool in_call);
+/// Of a test that says nothing because the machine had no time for it.
+std::string busy_story(const std::string& last_call);
 
 }  // namespace tumble::grading

@@ -18,9 +18,14 @@
 namespace tumble::grading {
 namespace {
 
+// s, of what a test of ours computes itself: tests take at most a few, so past this the judge itself hangs. Its wall clock ends after
+// kPatience times as much, later than that of its worker.
+constexpr double kJudgesOwn = 60.0;
+
 struct Words {
   WorkerOptions worker;
   std::string json, filter;
+  bool list = false;
   Rubric rubric;
   TimeRules time;
 };
@@ -37,29 +42,34 @@ Words read_words(const char* id, int argc, char** argv) {
     if (word == "--submission") words.worker.module = value();
     else if (word == "--json") words.json = value();
     else if (word == "--budget-s") words.time.budget_s = number_word(word, value());
+    else if (word == "--list") words.list = true;
     else if (word == "--plain") words.worker.sandboxed = false;
     else if (word == "--rubric") {
       const Rubric more = read_rubric(value());
       words.rubric.items.insert(words.rubric.items.end(), more.items.begin(), more.items.end());
     } else if (word.starts_with("-")) {
-      throw UserError(word, "is not known here", "Known: --submission FILE.so, --json FILE, --rubric FILE, --budget-s S, --plain, and patterns of test names.");
+      throw UserError(word, "is not known here", "Known: --submission FILE.so, --json FILE, --rubric FILE, --budget-s S, --plain, --list, and patterns of test names.");
     } else {
       words.filter += (words.filter.empty() ? "" : ":") + word;
     }
   }
-  if (words.worker.module.empty()) throw UserError("--submission", "is missing", "Give the shared object of a compiled submission.");
+  if (words.worker.module.empty() && !words.list) throw UserError("--submission", "is missing", "Give the shared object of a compiled submission.");
   return words;
 }
 
 int run(const char* id, const std::function<void(modules::Connection&)>& attach, int argc, char** argv) {
   ::testing::InitGoogleTest(&argc, argv);
   const Words words = read_words(id, argc, argv);
+  if (words.list) {
+    for (const std::string& test : chosen_tests(linked_tests(), words.filter)) std::cout << test << '\n';
+    return static_cast<int>(ExitCode::kFine);
+  }
   // Keepers of sandboxes whose test has ended come to us, so that we leave only when all of them are gone.
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   WorkerConnection connection(words.worker);
   attach(connection);
   TestLimits limits;
-  limits.wall_s = words.worker.session_wall_s + 10.0;  // the connection's own deadlines come first: past this the judge itself hangs
+  limits.own_s = kJudgesOwn;
   limits.memory_bytes = 4ull << 30;
   TimeBudget budget(words.time);
   std::vector<TestResult> results;

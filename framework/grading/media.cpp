@@ -44,7 +44,8 @@ Run run_submission(const Course& course, const ModuleKind& kind, const fs::path&
   WorkerOptions worker;
   worker.id = kind.id;
   worker.module = submission;
-  worker.session_wall_s = options.wall_s;
+  worker.programs = course.build / "bin";
+  worker.session_own_s = options.wall_s;
   worker.callback_budget = 100'000'000;  // a scene is thousands of steps; the wall limit comes first
   call_log() = CallLog{};
   WorkerConnection connection(worker);

@@ -15,10 +15,12 @@
 #include <algorithm>
 #include <cerrno>
 #include <chrono>
+#include <cmath>
 #include <cstring>
 #include <stdexcept>
 
 #include "framework/grading/bubblewrap.h"
+#include "framework/grading/own_time.h"
 #include "framework/grading/sandbox_wire.h"
 #include "framework/grading/seccomp_filter.h"
 
@@ -111,13 +113,23 @@ class Keeper {
     for (;;) {
       const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
       if (left < 0) return void(forced_ = Ending::kWallLimit);
-      ::poll(waiting, 4, static_cast<int>(left) + 1);
+      constexpr long long kLook = 1000;   // ms between two looks at what goes on inside
+      ::poll(waiting, 4, static_cast<int>(job_.limits.stall_s > 0.0 ? std::min<long long>(left + 1, kLook) : left + 1));
+      if (has_stalled()) return void(forced_ = Ending::kStalled);
       if (waiting[0].revents != 0) return void(forced_ = Ending::kStopped);
       if (waiting[2].revents != 0 && !read_printed(printed)) waiting[2].fd = -1;
       if (waiting[3].revents != 0 && !read_status(status)) waiting[3].fd = -1;
       if (outcome_.printed.size() > job_.limits.output_bytes) return void(forced_ = Ending::kOutputLimit);
       if (waiting[1].revents != 0) return;
     }
+  }
+
+  bool has_stalled() {
+    if (job_.limits.stall_s <= 0.0 || !shows_children()) return false;
+    constexpr double kTick = 0.01;   // s: the kernel's own grain of CPU time
+    const double activity = activity_below(child_);
+    if (std::abs(activity - activity_) > kTick) activity_ = activity, active_ = Clock::now();
+    return Clock::now() - active_ > std::chrono::duration<double>(job_.limits.stall_s);
   }
 
   bool read_printed(int fd) {
@@ -185,6 +197,8 @@ class Keeper {
   int hang_up_, result_;
   pid_t child_ = -1;
   bool started_ = false, has_ended_ = false;
+  double activity_ = 0.0;                     // s, of all inside, when it last grew
+  Clock::time_point active_ = Clock::now();
   InitReport ended_{};
   Ending forced_ = Ending::kNotStarted;
   SandboxOutcome outcome_;
@@ -241,6 +255,9 @@ Sandbox::Sandbox(Sandbox&& other) noexcept : keeper_(other.keeper_), hang_up_(ot
 Sandbox::~Sandbox() {
   if (keeper_ > 0) stop();
 }
+
+// Below the keeper stand bubblewrap, process 1 of its namespace, and that one's first child.
+pid_t Sandbox::program() const { return first_descendant(keeper_, 3); }
 
 SandboxOutcome Sandbox::wait() {
   std::string message;

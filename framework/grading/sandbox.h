@@ -51,6 +51,7 @@ class Stage {
   void hand_over(const std::filesystem::path& file, unsigned mode) const;
 
   std::filesystem::path path_;
+  int alive_ = -1;   // hold_folder
   std::optional<uid_t> owner_;
 };
 
@@ -59,6 +60,7 @@ void sweep_stages_of_the_dead();
 
 struct SandboxLimits {
   double wall_s = 10.0;
+  double stall_s = 0.0;                          // of wall time in which nothing inside computes or waits for a core; 0: not limited
   std::uint64_t cpu_s = 10;                      // per process; the wall limit bounds the sum
   std::uint64_t memory_bytes = 1ull << 30;       // of address space, per process
   std::uint64_t file_bytes = 64ull << 20;        // per file
@@ -88,6 +90,7 @@ struct SandboxOutcome {
     kExited,        // code: of exit
     kSignal,        // code: the signal; the limit on CPU time shows as SIGXCPU or SIGKILL
     kWallLimit,
+    kStalled,       // slept past the limit
     kOutputLimit,
     kStopped,       // its owner asked for it
     kNotStarted,    // a fault of ours; `printed` says why
@@ -108,6 +111,8 @@ class Sandbox {
   Sandbox& operator=(Sandbox&& other) = delete;
   ~Sandbox();
 
+  /// The program inside, as the machine numbers it; -1 while it has not begun. Cost: some 30 us
+  pid_t program() const;
   /// Waits for the end.
   SandboxOutcome wait();
   /// Gives it `grace_s` to end by itself, then ends it.

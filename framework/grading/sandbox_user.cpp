@@ -12,6 +12,7 @@
 #include <fstream>
 
 #include "framework/core/error.h"
+#include "framework/core/files.h"
 #include "framework/grading/sandbox.h"
 
 namespace tumble::grading {
@@ -28,19 +29,7 @@ constexpr const char* kStageName = "tumble-stage-";
 
 }  // namespace
 
-void sweep_stages_of_the_dead() {
-  namespace fs = std::filesystem;
-  std::error_code ignored;
-  for (fs::directory_iterator it(kStageFolder, ignored), end; !ignored && it != end; it.increment(ignored)) {
-    const std::string name = it->path().filename().string();
-    if (!name.starts_with(kStageName)) continue;
-    char* rest = nullptr;
-    const long maker = std::strtol(name.c_str() + std::strlen(kStageName), &rest, 10);
-    std::error_code failed;   // another user's stays
-    if (maker > 0 && *rest == '-' && ::kill(static_cast<pid_t>(maker), 0) != 0 && errno == ESRCH && fs::is_directory(it->symlink_status(failed)))
-      fs::remove_all(it->path(), failed);
-  }
-}
+void sweep_stages_of_the_dead() { sweep_folders_of_the_dead(kStageFolder, kStageName); }
 
 SandboxUser SandboxUser::lease() {
   SandboxUser user;
@@ -74,6 +63,7 @@ Stage::Stage(const SandboxUser* user) {
   std::string name = std::string(kStageFolder) + '/' + kStageName + std::to_string(::getpid()) + "-XXXXXX";
   if (::mkdtemp(name.data()) == nullptr) throw UserError(kStageFolder, "no folder can be made in it");
   path_ = name;
+  alive_ = hold_folder(path_);
   if (user != nullptr) owner_ = user->uid();
   hand_over(path_, user != nullptr ? 0700 : 0755);
 }
@@ -81,6 +71,7 @@ Stage::Stage(const SandboxUser* user) {
 Stage::~Stage() {
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
+  if (alive_ >= 0) ::close(alive_);
 }
 
 void Stage::hand_over(const std::filesystem::path& file, unsigned mode) const {

@@ -162,8 +162,9 @@ CostSection measure_scheduler(const Course& course, const ModuleKind& kind, cons
   WorkerOptions worker;
   worker.id = kind.id;
   worker.module = submission;
-  worker.call_wall_s = options.call_wall_s;
-  worker.session_wall_s = options.session_wall_s;
+  worker.programs = course.build / "bin";
+  worker.call_own_s = options.call_wall_s;
+  worker.session_own_s = options.session_wall_s;
   call_log() = CallLog{};
   WorkerConnection connection(worker);
   std::vector<SchedulerCurve> curves{{"your scheduler", false, {}, {}}};

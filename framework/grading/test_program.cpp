@@ -17,15 +17,15 @@ namespace tumble::grading {
 namespace {
 
 // Whoever waits for the answer has a loop without end within seconds: a test of a module takes milliseconds.
-constexpr double kTestWall = 2.0;      // s
-constexpr double kSuspectWall = 0.2;   // s, of a call to a function that has just timed out
+constexpr double kTestOwn = 2.0;      // s, of own time (own_time.h), as all here
+constexpr double kSuspectOwn = 0.2;   // s, of a call to a function that has just timed out
 constexpr double kBudget = 4.0;        // s, of all tests together
 
 struct Words {
   std::string json, rubric;
   bool debug = false;
-  TestLimits limits{.wall_s = kTestWall};
-  TimeRules time{.budget_s = kBudget, .full_timeouts = 1, .suspect_wall_s = kSuspectWall};
+  TestLimits limits{.own_s = kTestOwn};
+  TimeRules time{.budget_s = kBudget, .full_timeouts = 1, .suspect_own_s = kSuspectOwn};
   std::string filter;   // GoogleTest's, patterns joined by ':'
 };
 
@@ -39,7 +39,7 @@ Words read_words(int argc, char** argv) {
     };
     if (word == "--json") words.json = value();
     else if (word == "--rubric") words.rubric = value();
-    else if (word == "--wall-s") words.limits.wall_s = number_word(word, value());
+    else if (word == "--wall-s") words.limits.own_s = number_word(word, value());
     else if (word == "--budget-s") words.time.budget_s = number_word(word, value());
     else if (word == "--debug") words.debug = true;
     else if (word.starts_with("--gtest_")) continue;  // GoogleTest has read it
@@ -60,7 +60,7 @@ int run(int argc, char** argv) {
   TimeBudget budget(words.time);
   std::vector<TestResult> results;
   for (const std::string& test : chosen_tests(linked_tests(), words.filter)) {
-    limits.call_wall_s = budget.suspects();
+    limits.call_own_s = budget.suspects();
     results.push_back(budget.is_used_up() ? budget.not_run(test) : run_isolated(test, limits, Process::kStudents));
     if (!results.back().not_run) budget.charge(results.back());
   }

@@ -9,7 +9,7 @@ namespace tumble::grading {
 
 /// Words of a check program:
 ///   check_a1 [--json FILE] [--rubric FILE] [--wall-s S] [--budget-s S] [--debug] [PATTERN...]
-/// --wall-s bounds each test, --budget-s all of them together (TimeBudget): an endless loop must not bore its author.
+/// --wall-s bounds each test's own time (own_time.h), --budget-s all of them together (TimeBudget): an endless loop must not bore its author.
 /// PATTERNs are GoogleTest filters ("CollisionImpulse.*"). --debug runs GoogleTest plainly in this one process, for gdb.
 /// @return an exit code: 0 all right, 1 something is wrong, 2 wrong words, 4 the rest is right but not all is attempted
 int run_check_program(int argc, char** argv);

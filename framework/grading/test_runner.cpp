@@ -21,6 +21,7 @@
 
 #include "framework/grading/call_log.h"
 #include "framework/grading/death.h"
+#include "framework/grading/own_time.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define TUMBLE_SANITIZED 1   // reserves terabytes of address space: no limit on it can be set
@@ -36,6 +37,7 @@ using Clock = std::chrono::steady_clock;
 CallLog* shared_log = nullptr;
 
 constexpr std::size_t kPrinted = 4000;     // bytes kept of what a test's process printed
+constexpr std::size_t kStory = 16'000;     // bytes of a failure's words, and of all of them: a huge answer is not written out
 constexpr rlim_t kPrintedFile = 1u << 20;  // bytes it may print at all
 
 // What the test's process tells its parent when it ends in an orderly way: one byte of outcome, then the failures.
@@ -55,7 +57,8 @@ class FailureCollector : public ::testing::EmptyTestEventListener {
     if (bare && part.file_name() != nullptr) message += std::string("\n(") + part.file_name() + ":" + std::to_string(part.line_number()) + ")";
     constexpr const char* kFailed = "Failed\n";
     if (message.starts_with(kFailed)) message.erase(0, std::strlen(kFailed));
-    text += (text.empty() ? "" : "\n") + message;
+    if (message.size() > kStory) message = message.substr(0, kStory) + "\n[cut here]";
+    if (text.size() <= kStory) text += (text.empty() ? "" : "\n") + message;
   }
 };
 
@@ -95,50 +98,65 @@ void write_all(int fd, const std::string& text) {
 struct Answer {
   std::string text;
   double timed_out_s = 0.0;   // the limit that was passed
+  bool is_hopeless = false;   // no limit was passed, and yet it did not end: the machine is too busy
+  ProcessTimes times;         // of the test's process, in the end
 };
 
-// Sees from outside how long the call lasts that a test is in, for functions whose calls have a limit of their own.
-class CallWatch {
+// Sees from outside how long a test's process takes, and the call that it is in where that has a limit of its own.
+class TestWatch {
  public:
-  CallWatch(const CallLog& log, const TestLimits& limits) : log_(log), limits_(limits) {}
+  TestWatch(pid_t child, Process owner, const CallLog& log, const TestLimits& limits) : child_(child), owner_(owner), log_(log), limits_(limits) {}
 
-  /// The limit that the present call has passed; 0: none.
-  double passed(Clock::time_point now) {
-    const long call = log_.in_call ? log_.calls : 0;
-    if (call != call_) call_ = call, since_ = now;
-    if (call == 0) return 0.0;
-    const auto limit = limits_.call_wall_s.find(log_.last_call);
-    return limit != limits_.call_wall_s.end() && now - since_ > std::chrono::duration<double>(limit->second) ? limit->second : 0.0;
+  /// Looks at the clocks. @return the test must end
+  bool is_over(Answer& answer) {
+    const auto now = Clock::now();
+    const ProcessTimes times = process_times(child_);
+    answer.timed_out_s = passed(now, times);
+    answer.is_hopeless = answer.timed_out_s == 0.0 && seconds(now - start_) > kPatience * limits_.own_s;
+    return answer.timed_out_s > 0.0 || answer.is_hopeless;
   }
 
  private:
+  static double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
+
+  double passed(Clock::time_point now, const ProcessTimes& times) {
+    // A judge waits for its worker, which has limits of its own: only what it computes counts.
+    const double own_s = owner_ == Process::kGraders && times.is_known ? times.cpu_s : own_time({}, times, seconds(now - start_));
+    if (own_s > limits_.own_s) return limits_.own_s;
+    const long call = log_.in_call ? log_.calls : 0;
+    if (call != call_) call_ = call, since_ = now, at_start_ = times;
+    const auto limit = limits_.call_own_s.find(log_.last_call);
+    if (call == 0 || owner_ == Process::kGraders || limit == limits_.call_own_s.end()) return 0.0;
+    return own_time(at_start_, times, seconds(now - since_)) > limit->second ? limit->second : 0.0;
+  }
+
+  const pid_t child_;
+  const Process owner_;
   const CallLog& log_;
   const TestLimits& limits_;
+  const Clock::time_point start_ = Clock::now();
   long call_ = 0;
   Clock::time_point since_;
+  ProcessTimes at_start_;
 };
 
-Answer read_answer(int fd, const CallLog& log, const TestLimits& limits) {
-  constexpr std::size_t kCap = 1u << 20;  // bytes of failures: more helps nobody
-  constexpr int kLook = 20;               // ms between two looks at a watched call
-  const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(limits.wall_s));
-  CallWatch watch(log, limits);
+Answer read_answer(int fd, pid_t child, Process owner, const CallLog& log, const TestLimits& limits) {
+  constexpr int kLook = 20;   // ms between two looks
+  TestWatch watch(child, owner, log, limits);
   Answer answer;
   char buffer[4096];
-  while (answer.text.size() < kCap) {
-    const auto now = Clock::now();
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - now).count();
-    if (left <= 0) answer.timed_out_s = limits.wall_s;
-    else if (!limits.call_wall_s.empty()) answer.timed_out_s = watch.passed(now);
-    if (answer.timed_out_s > 0.0) return answer;
+  for (;;) {
     pollfd waiting{fd, POLLIN, 0};
-    const int wait = static_cast<int>(left) + 1;
-    if (::poll(&waiting, 1, limits.call_wall_s.empty() ? wait : std::min(wait, kLook)) <= 0) continue;
+    if (::poll(&waiting, 1, kLook) <= 0) {
+      if (watch.is_over(answer)) return answer;
+      continue;
+    }
     const ssize_t n = ::read(fd, buffer, sizeof buffer);
     if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) return answer;
+    if (n <= 0) break;
     answer.text.append(buffer, static_cast<std::size_t>(n));
   }
+  answer.times = process_times(child);   // ended, but not yet reaped
   return answer;
 }
 
@@ -164,13 +182,16 @@ std::string read_printed(int fd) {
 }
 
 // What happened to a test's process that gave no orderly answer.
-void judge_death(TestResult& result, const CallLog& log, int status, double timed_out_s) {
+void judge_death(TestResult& result, const CallLog& log, int status, const Answer& answer) {
   if (log.noted) {
     result.verdict = log.verdict;
     result.story = log.story;
-  } else if (timed_out_s > 0.0) {
+  } else if (answer.timed_out_s > 0.0) {
     result.verdict = Verdict::kOutOfResources;
-    result.story = timeout_story(timed_out_s, log.last_call, log.in_call);
+    result.story = timeout_story(answer.timed_out_s, log.last_call, log.in_call);
+  } else if (answer.is_hopeless) {
+    result.verdict = Verdict::kMachineBusy;
+    result.story = busy_story(log.last_call);
   } else {
     result.verdict = Verdict::kCrashed;
     result.story = WIFSIGNALED(status) ? signal_story(WTERMSIG(status), log.last_call, log.in_call)
@@ -247,14 +268,17 @@ TestResult run_isolated(const std::string& test, const TestLimits& limits, Proce
   if (child < 0) {
     result.story = "no process could be started";
   } else {
-    const Answer answer = read_answer(answer_pipe[0], log, limits);
-    const bool in_time = answer.timed_out_s == 0.0;
+    const Answer answer = read_answer(answer_pipe[0], child, owner, log, limits);
+    const bool in_time = answer.timed_out_s == 0.0 && !answer.is_hopeless;
     if (!in_time) ::kill(child, SIGKILL);
     const int status = reap(child);
     if (in_time && !answer.text.empty() && WIFEXITED(status) && WEXITSTATUS(status) == 0) judge_answer(result, log, answer.text);
-    else judge_death(result, log, status, answer.timed_out_s);
+    else judge_death(result, log, status, answer);
     result.timed_out_s = log.noted ? log.timed_out_s : answer.timed_out_s;
-    if (owner == Process::kGraders && !log.noted && result.verdict != Verdict::kRight && result.verdict != Verdict::kWrong) {
+    const double wall_s = std::chrono::duration<double>(Clock::now() - start).count();
+    result.charged_s = owner == Process::kGraders ? log.own_s : own_time({}, answer.times, wall_s);
+    const bool is_judged = result.verdict == Verdict::kRight || result.verdict == Verdict::kWrong || result.verdict == Verdict::kMachineBusy;
+    if (owner == Process::kGraders && !log.noted && !is_judged) {
       result.verdict = Verdict::kGraderFault;
       result.story = "the judge's own test process ended without a verdict: " + result.story;
     }

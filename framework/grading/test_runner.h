@@ -11,9 +11,9 @@
 namespace tumble::grading {
 
 struct TestLimits {
-  double wall_s = 5.0;                       // a test of a module takes milliseconds; an endless loop must not bore its author
+  double own_s = 5.0;                        // own time (own_time.h): a test of a module takes milliseconds; an endless loop must not bore its author
   std::uint64_t memory_bytes = 2ull << 30;   // of address space; a module's test needs a few MB
-  std::map<std::string, double> call_wall_s = {};  // [s] of one call to these functions, where it is shorter (see TimeBudget)
+  std::map<std::string, double> call_own_s = {};   // [s] of one call to these functions, where it is shorter (see TimeBudget)
 };
 
 /// Who owns the code that runs in the test's process, hence whose fault a crash of that process is.

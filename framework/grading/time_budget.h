@@ -1,7 +1,8 @@
 /// How long a whole submission may take: loops without end must not cost a night.
 ///
-/// What a test that timed out is charged is its limit, and what an answered one is charged counts in whole seconds only: the
-/// same endless loops use up the same budget after the same test, on an idle machine and on a loaded one.
+/// All times are own time (own_time.h). What a test that timed out is charged is its limit, and what an answered one is charged counts in
+/// whole tenths of a second only: the same endless loops use up the same budget after the same test, on an idle machine and on a
+/// loaded one, and a solution that sleeps a little in each test pays for it.
 #pragma once
 
 #include <map>
@@ -14,7 +15,7 @@ namespace tumble::grading {
 struct TimeRules {
   double budget_s = 60.0;     // of all tests together: right submissions take a few
   int full_timeouts = 2;      // in one function; a third loop of the same function is known sooner
-  double suspect_wall_s = 1.0;   // of a call to a function that has had them: right calls take microseconds
+  double suspect_own_s = 1.0;   // of a call to a function that has had them: right calls take microseconds
 };
 
 /// The account of one submission.

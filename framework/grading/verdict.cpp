@@ -8,7 +8,7 @@
 namespace tumble::grading {
 namespace {
 
-constexpr std::array kWords = {"right", "wrong", "not attempted", "crashed", "out of time or memory", "fault of the grader"};
+constexpr std::array kWords = {"right", "wrong", "not attempted", "crashed", "out of time or memory", "fault of the grader", "machine too busy"};
 
 }  // namespace
 
@@ -23,7 +23,7 @@ std::optional<Verdict> verdict_from_words(const std::string& text) {
 ExitCode exit_code(const std::vector<TestResult>& results) {
   bool wrong = false, missing = false;
   for (const TestResult& result : results) {
-    if (result.verdict == Verdict::kGraderFault) return ExitCode::kOurBug;
+    if (!is_final_verdict(result.verdict)) return ExitCode::kOurBug;
     if (result.verdict == Verdict::kNotAttempted) missing = true;
     else if (result.verdict != Verdict::kRight) wrong = true;
   }
@@ -34,7 +34,7 @@ void write_results(const std::string& file, const std::vector<TestResult>& resul
   nlohmann::ordered_json tests = nlohmann::ordered_json::array();
   for (const TestResult& r : results)
     tests.push_back({{"test", r.test}, {"verdict", words(r.verdict)}, {"story", r.story}, {"last_call", r.last_call},
-                     {"calls", r.calls}, {"printed", r.printed}, {"timed_out_s", r.timed_out_s}, {"not_run", r.not_run}, {"wall_s", r.wall_s}});
+                     {"calls", r.calls}, {"printed", r.printed}, {"timed_out_s", r.timed_out_s}, {"not_run", r.not_run}, {"charged_s", r.charged_s}, {"wall_s", r.wall_s}});
   std::ofstream out(file);
   // Students' code may print any bytes: what is not UTF-8 is replaced, not refused.
   out << nlohmann::ordered_json{{"tests", tests}}.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
@@ -59,6 +59,7 @@ std::vector<TestResult> read_results(const std::string& file) {
       r.printed = item.at("printed");
       r.timed_out_s = item.at("timed_out_s");
       r.not_run = item.at("not_run");
+      r.charged_s = item.at("charged_s");
       r.wall_s = item.at("wall_s");
       results.push_back(std::move(r));
     }

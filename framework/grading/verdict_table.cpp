@@ -15,7 +15,8 @@ const char* colour(Verdict verdict) {
   switch (verdict) {
     case Verdict::kRight: return "\033[32m";
     case Verdict::kNotAttempted: return "\033[90m";
-    case Verdict::kGraderFault: return "\033[35m";
+    case Verdict::kGraderFault:
+    case Verdict::kMachineBusy: return "\033[35m";
     default: return "\033[31m";
   }
 }
@@ -69,7 +70,7 @@ void print_story(std::ostream& out, const Line& line, bool colours) {
 }
 
 void print_count(std::ostream& out, const std::vector<TestResult>& results, const Rubric& rubric) {
-  constexpr std::array kAll = {Verdict::kRight, Verdict::kWrong, Verdict::kNotAttempted, Verdict::kCrashed, Verdict::kOutOfResources, Verdict::kGraderFault};
+  constexpr std::array kAll = {Verdict::kRight, Verdict::kWrong, Verdict::kNotAttempted, Verdict::kCrashed, Verdict::kOutOfResources, Verdict::kGraderFault, Verdict::kMachineBusy};
   out << '\n' << results.size() << (results.size() == 1 ? " test: " : " tests: ");
   bool first = true;
   for (const Verdict verdict : kAll) {

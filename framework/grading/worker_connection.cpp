@@ -8,7 +8,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
 
 #include "framework/grading/call_log.h"
@@ -23,6 +25,10 @@ using Ending = SandboxOutcome::Ending;
 
 constexpr const char* kModuleInside = "/module.so";
 constexpr const char* kWorkerInside = "/worker";
+
+constexpr auto kFresh = std::chrono::milliseconds(50);   // an account of the worker's time is not older where it matters
+
+double seconds_of(Channel::Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
 Channel::Clock::duration seconds(double s) { return std::chrono::duration_cast<Channel::Clock::duration>(std::chrono::duration<double>(s)); }
 
@@ -62,8 +68,8 @@ SandboxOutcome stop_plain(pid_t child, double grace_s) {
 
 }  // namespace
 
-WorkerPrograms worker_programs(const std::string& id) {
-  const auto bin = std::filesystem::canonical("/proc/self/exe").parent_path();
+WorkerPrograms worker_programs(const std::string& id, const std::filesystem::path& folder) {
+  const auto bin = folder.empty() ? std::filesystem::canonical("/proc/self/exe").parent_path() : folder;
   WorkerPrograms programs{bin / ("worker_" + id), bin / "sandbox_init"};
   for (const auto& program : {programs.worker, programs.init})
     if (!std::filesystem::exists(program)) throw UserError(program.string(), "is not built", "Build the targets worker_" + id + " and sandbox_init.");
@@ -71,15 +77,15 @@ WorkerPrograms worker_programs(const std::string& id) {
 }
 
 WorkerConnection::WorkerConnection(WorkerOptions options) : options_(std::move(options)), user_(SandboxUser::lease()), stage_(&user_) {
-  const WorkerPrograms programs = worker_programs(options_.id);
+  const WorkerPrograms programs = worker_programs(options_.id, options_.programs);
   options_.module = std::filesystem::absolute(options_.module);
   if (!options_.sandboxed) return;
   job_.init = stage_.add_file(programs.init, "init", true);
   job_.binds = {{stage_.add_file(programs.worker, "worker", true), kWorkerInside}, {stage_.add_file(options_.module, "module.so", true), kModuleInside}};
   job_.command = {kWorkerInside, kModuleInside};
   job_.uid = user_.uid();
-  job_.limits.wall_s = options_.session_wall_s + 5.0;  // the deadlines of calls come first; this one is for a judge that died
-  job_.limits.cpu_s = static_cast<std::uint64_t>(options_.session_wall_s);
+  job_.limits.wall_s = kPatience * options_.session_own_s + 5.0;  // the deadlines of calls come first; this one is for a judge that died
+  job_.limits.cpu_s = static_cast<std::uint64_t>(std::ceil(options_.session_own_s));
   job_.limits.memory_bytes = options_.memory_bytes;
   // Process 1, the worker, and two that it may make: memory is limited for each of them, so that few bound the sum.
   job_.limits.processes = 4;
@@ -99,15 +105,24 @@ void WorkerConnection::start() {
     job_.channel = pair[1];
     sandbox_.emplace(Sandbox::start(job_));
   } else {
-    plain_ = start_plain(worker_programs(options_.id).worker, options_, pair[1]);
+    plain_ = start_plain(worker_programs(options_.id, options_.programs).worker, options_, pair[1]);
   }
   ::close(pair[1]);
   channel_ = std::make_unique<Channel>(socket_, socket_);
-  session_end_ = Channel::Clock::now() + seconds(options_.session_wall_s);
+  channel_->extend_by([this](TimePoint passed) { return look_at_time(passed); });
   callbacks_ = 0;
+  worker_ = plain_;
+  past_turns_s_ = 0.0;
+  turn_.reset();
+  session_ = {};
+  session_.when = Channel::Clock::now();
+  session_.judge = process_times(::getpid());
+  last_ = session_;
 }
 
 SandboxOutcome WorkerConnection::stop(double grace_s) {
+  end_turn();
+  own_before_s_ += own_s(session_, account());
   channel_.reset();
   ::close(socket_);
   socket_ = -1;
@@ -128,33 +143,96 @@ Channel& WorkerConnection::begin_call(const char* function) {
   if (log.noted) throw CallEnded("the test has its verdict already");
   log.begin(function);
   if (socket_ < 0) start();
-  calls_.push_back(function);
-  deadline_ = std::min(session_end_, Channel::Clock::now() + seconds(call_limit(function)));
+  // Reading the kernel's numbers costs as much as a call, so an account that is younger than this is good enough to start from.
+  if (calls_.empty() && Channel::Clock::now() - last_.when > kFresh) last_ = account();
+  Call call{function, Channel::Clock::now() + seconds(call_limit(function)), last_};
+  call.start.turns_s = turns_s();
+  call.start.when = Channel::Clock::now();
+  calls_.push_back(std::move(call));
+  begin_turn();
   return *channel_;
 }
 
 void WorkerConnection::end_call() {
+  end_turn();
   calls_.pop_back();
   CallLog& log = call_log();
   log.end();
-  if (calls_.empty()) return;
-  log.begin(calls_.back().c_str());  // the one around it goes on; it was counted when it began
+  if (calls_.empty()) {
+    if (turns_s() - last_.turns_s > seconds_of(kFresh)) last_ = account();
+    return;
+  }
+  log.begin(calls_.back().function.c_str());  // the one around it goes on; it was counted when it began
   --log.calls;
 }
 
 void WorkerConnection::count_callback() {
-  if (++callbacks_ <= options_.callback_budget) return;
-  const std::string function = calls_.back();
-  stop(0.0);
-  end(Verdict::kOutOfResources, function + " evaluated the functions it was given more than " + std::to_string(options_.callback_budget) + " times");
+  end_turn();
+  if (++callbacks_ > options_.callback_budget) {
+    const std::string function = calls_.back().function;
+    stop(0.0);
+    end(Verdict::kOutOfResources, function + " evaluated the functions it was given more than " + std::to_string(options_.callback_budget) + " times");
+  }
+  // A worker that never lets the judge wait is looked at here.
+  Call& call = calls_.back();
+  if (const auto now = Channel::Clock::now(); now >= call.look && look_at_time(call.look) <= now) {
+    const std::string function = call.function;
+    stop(0.0);
+    end_out_of_time(function.c_str());
+  }
+}
+
+void WorkerConnection::resume_call() { begin_turn(); }
+
+void WorkerConnection::end_turn() {
+  if (turn_) past_turns_s_ += seconds_of(Channel::Clock::now() - *turn_);
+  turn_.reset();
+}
+
+double WorkerConnection::turns_s() const { return past_turns_s_ + (turn_ ? seconds_of(Channel::Clock::now() - *turn_) : 0.0); }
+
+pid_t WorkerConnection::worker() {
+  if (worker_ < 0 && sandbox_) worker_ = sandbox_->program();
+  return worker_;
+}
+
+WorkerConnection::Account WorkerConnection::account() {
+  Account now{process_times(worker()), process_times(::getpid()), turns_s(), Channel::Clock::now()};
+  // For the test's budget: what all calls of it have taken, seen from outside when this process is gone.
+  call_log().own_s = own_before_s_ + own_s(session_, now);
+  return now;
+}
+
+// While the worker has the word the judge waits; when it is woken late, that is no time of the worker's either.
+double WorkerConnection::own_s(const Account& from, const Account& to) const {
+  if (sandbox_ && !to.worker.is_known && shows_children()) return 0.0;   // its sandbox is being made
+  return own_time(from.worker, to.worker, to.turns_s - from.turns_s - (to.judge.delay_s - from.judge.delay_s));
+}
+
+WorkerConnection::TimePoint WorkerConnection::look_at_time(TimePoint passed) {
+  Call& call = calls_.back();
+  last_ = account();
+  const double call_left_s = call_limit(call.function) - own_s(call.start, last_), session_left_s = options_.session_own_s - own_s(session_, last_);
+  const double left_s = std::min(call_left_s, session_left_s);
+  timed_out_s_ = left_s > 0.0 ? 0.0 : call_left_s <= session_left_s ? call_limit(call.function) : options_.session_own_s;
+  const bool is_hopeless = seconds_of(last_.when - call.start.when) > kPatience * call_limit(call.function) || seconds_of(last_.when - session_.when) > kPatience * options_.session_own_s;
+  if (left_s <= 0.0 || is_hopeless) return passed;
+  constexpr double kLeast = 1e-3, kMost = 1.0;   // s until the next look
+  return call.look = last_.when + seconds(std::clamp(left_s, kLeast, kMost));
 }
 
 double WorkerConnection::call_limit(const std::string& function) const {
   const auto own = options_.suspects.find(function);
-  return own == options_.suspects.end() ? options_.call_wall_s : std::min(own->second, options_.call_wall_s);
+  return own == options_.suspects.end() ? options_.call_own_s : std::min(own->second, options_.call_own_s);
 }
 
-void WorkerConnection::end_out_of_time(const char* function, double limit_s) {
+// By the look that has just ended the wait: a limit on own time, or no time left to wait.
+void WorkerConnection::end_out_of_time(const char* function) {
+  if (timed_out_s_ > 0.0) end_at_limit(function, timed_out_s_);
+  end(Verdict::kMachineBusy, busy_story(function));
+}
+
+void WorkerConnection::end_at_limit(const char* function, double limit_s) {
   call_log().timed_out_s = limit_s;
   end(Verdict::kOutOfResources, timeout_story(limit_s, function, true));
 }
@@ -169,15 +247,16 @@ void WorkerConnection::explain_death(const char* function) {
   const SandboxOutcome outcome = stop(kGrace);
   switch (outcome.ending) {
     case Ending::kSignal:
-      if (outcome.code == SIGXCPU || (outcome.code == SIGKILL && outcome.cpu_s >= options_.session_wall_s - 1.0))
-        end_out_of_time(function, options_.session_wall_s);
+      if (outcome.code == SIGXCPU || (outcome.code == SIGKILL && outcome.cpu_s >= options_.session_own_s - 1.0))
+        end_at_limit(function, options_.session_own_s);
       end(Verdict::kCrashed, signal_story(outcome.code, function, true));
     case Ending::kExited: {
       const std::string said = outcome.printed.empty() ? "" : "; it printed: " + outcome.printed.substr(0, 400);
       end(Verdict::kCrashed, exit_story(outcome.code, function, true) + said);
     }
+    case Ending::kStalled:
     case Ending::kWallLimit:
-      end_out_of_time(function, options_.session_wall_s);
+      end(Verdict::kMachineBusy, busy_story(function));
     case Ending::kOutputLimit:
       end(Verdict::kOutOfResources, "printed more than " + std::to_string(job_.limits.output_bytes / 1024) + " KiB, in " + function);
     case Ending::kStopped:
@@ -192,7 +271,7 @@ void WorkerConnection::fail(const char* function, std::exception_ptr transport_e
     std::rethrow_exception(transport_error);
   } catch (const modules::ChannelTimeout&) {
     stop(0.0);
-    end_out_of_time(function, deadline_ == session_end_ ? options_.session_wall_s : call_limit(function));
+    end_out_of_time(function);
   } catch (const std::exception&) {
     explain_death(function);
   }
@@ -203,6 +282,11 @@ void WorkerConnection::refuse(const char* function, const std::string& what) {
   if (what.find("std::bad_alloc") != std::string::npos)
     end(Verdict::kOutOfResources, std::string(function) + " asked for more memory than it may have");
   end(Verdict::kCrashed, std::string(function) + ' ' + what);
+}
+
+void WorkerConnection::wrong_size(const char*, const std::string& story) {
+  stop(0.0);   // it may wait inside the call
+  end(Verdict::kWrong, story);
 }
 
 void WorkerConnection::not_implemented(const char* function, const std::string& handout) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "framework/core/error.h"
+#include "framework/grading/own_time.h"
 #include "framework/grading/sandbox.h"
 #include "framework/grading/verdict.h"
 #include "framework/modules/proxy.h"
@@ -20,16 +21,19 @@ struct WorkerPrograms {
   std::filesystem::path worker;   // worker_a1, made from worker_program.h
   std::filesystem::path init;     // sandbox_init
 };
-/// Those beside the running program. @throws UserError when they are not built
-WorkerPrograms worker_programs(const std::string& id);
+/// @param folder  where they lie; empty: beside the running program
+/// @throws UserError when they are not built
+WorkerPrograms worker_programs(const std::string& id, const std::filesystem::path& folder = {});
 
 struct WorkerOptions {
   std::string id;                       // of the module, "a1"
   std::filesystem::path module;         // the shared object
   bool sandboxed = true;                // false: a plain process, for code that is our own (known-wrong solutions)
-  double call_wall_s = 5.0;             // a call that takes longer is a loop without end; correct ones take microseconds
+  std::filesystem::path programs;       // folder of worker_ID and sandbox_init; empty: that of this program
+  // Own time of the worker (own_time.h): what it computes and sleeps, without what it waits for a core or for a callback's answer.
+  double call_own_s = 5.0;              // a call that takes longer is a loop without end; correct ones take microseconds
   std::map<std::string, double> suspects;   // functions whose calls may take less [s]: see TimeBudget
-  double session_wall_s = 10.0;         // of all calls until reset()
+  double session_own_s = 10.0;          // of all calls until reset()
   long callback_budget = 2'000'000;     // in a session: beyond what any module needs by a factor of hundreds
   std::uint64_t memory_bytes = 1ull << 30;
 };
@@ -55,17 +59,41 @@ class WorkerConnection : public modules::Connection {
   void end_call() override;
   void abandon_call() override { reset(); }
   void count_callback() override;
-  modules::Channel::Clock::time_point deadline() const override { return deadline_; }
+  void resume_call() override;
+  modules::Channel::Clock::time_point deadline() const override { return calls_.back().look; }
   [[noreturn]] void fail(const char* function, std::exception_ptr transport_error) override;
   [[noreturn]] void refuse(const char* function, const std::string& what) override;
   [[noreturn]] void not_implemented(const char* function, const std::string& handout) override;
+  [[noreturn]] void wrong_size(const char* function, const std::string& story) override;
 
  private:
+  using TimePoint = modules::Channel::Clock::time_point;
+
+  // Where the worker's account stands: the kernel's numbers of both processes, and the wall time of its turns until then.
+  struct Account {
+    ProcessTimes worker, judge;
+    double turns_s = 0.0;
+    TimePoint when{};
+  };
+  struct Call {
+    std::string function;
+    TimePoint look{};           // when its own time is looked at next
+    Account start;
+  };
+
+  void begin_turn() { turn_ = modules::Channel::Clock::now(); }
+  void end_turn();
+  double turns_s() const;
+  pid_t worker();
+  Account account();
+  double own_s(const Account& from, const Account& to) const;
+  TimePoint look_at_time(TimePoint passed);
   void start();
   SandboxOutcome stop(double grace_s);
   [[noreturn]] void explain_death(const char* function);
   [[noreturn]] void end(Verdict verdict, const std::string& story);
-  [[noreturn]] void end_out_of_time(const char* function, double limit_s);
+  [[noreturn]] void end_out_of_time(const char* function);
+  [[noreturn]] void end_at_limit(const char* function, double limit_s);
   double call_limit(const std::string& function) const;
 
   WorkerOptions options_;
@@ -76,8 +104,13 @@ class WorkerConnection : public modules::Connection {
   pid_t plain_ = -1;
   int socket_ = -1;
   std::unique_ptr<modules::Channel> channel_;
-  modules::Channel::Clock::time_point session_end_, deadline_;
-  std::vector<std::string> calls_;   // that have begun and not ended, the outermost first
+  std::vector<Call> calls_;             // that have begun and not ended, the outermost first
+  Account session_, last_;              // at the worker's start, and when it was looked at last
+  std::optional<TimePoint> turn_;       // since when the worker has the word; nothing: the judge has it
+  double past_turns_s_ = 0.0;
+  double own_before_s_ = 0.0;           // of workers before this one in this test
+  double timed_out_s_ = 0.0;            // the limit that the last look found passed; 0: none
+  pid_t worker_ = -1;
   long callbacks_ = 0;
 };
 

@@ -36,8 +36,8 @@ int main() {
   grading::WorkerOptions options;
   options.id = "waist";
   options.module = TUMBLE_BINARY_DIR "/modules/waist_right.so";
-  options.session_wall_s = 60.0;
-  options.call_wall_s = 60.0;
+  options.session_own_s = 60.0;
+  options.call_own_s = 60.0;
   for (const bool sandboxed : {false, true}) {
     options.sandboxed = sandboxed;
     grading::WorkerConnection connection(options);

@@ -40,8 +40,8 @@ WorkerOptions options_for(const fs::path& object) {
   WorkerOptions options;
   options.id = "waist";
   options.module = object;
-  options.call_wall_s = 1.5;
-  options.session_wall_s = 6.0;
+  options.call_own_s = 1.5;
+  options.session_own_s = 6.0;
   options.callback_budget = 1000;
   options.memory_bytes = 512ull << 20;
   return options;

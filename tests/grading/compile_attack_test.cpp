@@ -34,6 +34,7 @@ Everything echo(const Everything& value) { return value; }
 double call_back(const std::function<double(double)>&, int) { return 0.0; }
 std::string attack(const std::string& what) { return what; }
 double missing(double) { return 0.0; }
+VectorXd step(const std::function<VectorXd(double, const VectorXd&)>&, const VectorXd& y, const std::string&) { return y; }
 }
 )";
 
@@ -116,12 +117,34 @@ TEST_F(CompileAttack, BombsCostTheirLimitsOnly) {
 
 TEST_F(CompileAttack, TimeSpentShowsAsTime) {
   CompileLimits limits;
-  limits.wall_s = 1.0;
+  limits.cpu_s = 1;
   // Two to the thirtieth of lines: more than a second on any machine.
   std::string text = "#define A0 int;\n";
   for (int i = 1; i <= 30; ++i) text += "#define A" + std::to_string(i) + " A" + std::to_string(i - 1) + " A" + std::to_string(i - 1) + "\n";
   const Compiled compiled = compile(text + "A30\n", limits);
   EXPECT_EQ(compiled.outcome, Outcome::kOutOfResources) << compiled.said;
+  // The wall clock alone says nothing of the file: it is to be compiled again.
+  limits.cpu_s = 100;
+  limits.wall_s = 1.0;
+  const Compiled busy = compile(text + "A30\n", limits);
+  EXPECT_EQ(busy.outcome, Outcome::kGraderFault) << busy.said;
+  EXPECT_NE(busy.said.find("machine was too busy"), std::string::npos) << busy.said;
+}
+
+TEST_F(CompileAttack, ACompilerThatWaitsForNothingIsOutOfTime) {
+  CompileLimits limits;
+  limits.stall_s = 2.0;
+  const Compiled compiled = compile(std::string("#include \"/dev/stdout\"\n") + kModule, limits);   // the pipe that the compiler itself holds open
+  EXPECT_TRUE(compiled.outcome == Outcome::kRefused || compiled.outcome == Outcome::kOutOfResources) << compiled.said;
+}
+
+TEST_F(CompileAttack, BytesThatAreNoTextAreNamedWithWhatToDo) {
+  std::string wide = "\xff\xfe";
+  for (const char c : std::string("int x;\n")) wide += c, wide += '\0';
+  const Compiled compiled = compile(wide);
+  EXPECT_EQ(compiled.outcome, Outcome::kRefused);
+  EXPECT_NE(compiled.said.find("UTF-16"), std::string::npos) << compiled.said;
+  EXPECT_NE(compiled.said.find("Save it as UTF-8"), std::string::npos) << compiled.said;
 }
 
 }  // namespace

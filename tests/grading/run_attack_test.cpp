@@ -1,4 +1,6 @@
 // Attacks while a submission is judged: none gains a point, none outlives its call, each gets its verdict and its story.
+#include <unistd.h>
+
 #include "tests/grading/attack_fixture.h"
 
 namespace tumble::grading {
@@ -156,6 +158,39 @@ TEST_F(RunAttack, CallbacksWithoutEndAreStopped) {
   EXPECT_THROW(victim.module().call_back([](double x) { return x; }, -1), CallEnded);
   EXPECT_EQ(victim.verdict(), Verdict::kOutOfResources);
   EXPECT_TRUE(holds(victim.story(), "more than 1000 times")) << victim.story();
+}
+
+TEST_F(RunAttack, WrongSizesAreWrongAnswersAndTheJudgeLives) {
+  for (const std::string what : {"ask 0", "ask 14", "answer 0", "answer 100000"}) {
+    Victim victim = in_call();
+    EXPECT_THROW(victim.module().step([](double, const VectorXd& y) { return VectorXd(-y); }, VectorXd::Ones(13), what), CallEnded) << what;
+    EXPECT_EQ(victim.verdict(), Verdict::kWrong) << victim.story();
+    EXPECT_TRUE(holds(victim.story(), what.substr(what.find(' ') + 1) + " numbers, 13 are needed")) << victim.story();
+    call_log() = CallLog{};
+    EXPECT_EQ(victim.module().twice(21.0), 42.0) << "the next test gets a fresh worker";
+  }
+}
+
+TEST_F(RunAttack, SizesThatWouldFillMemoryAreRefused) {
+  for (const std::string what : {"ask 10000000", "answer 10000000", "ask 10000000000", "answer -1"}) {
+    Victim victim = in_call();
+    EXPECT_THROW(victim.module().step([](double, const VectorXd& y) { return VectorXd(-y); }, VectorXd::Ones(13), what), CallEnded) << what;
+    EXPECT_TRUE(victim.verdict() == Verdict::kCrashed || victim.verdict() == Verdict::kOutOfResources) << victim.story();
+  }
+}
+
+TEST_F(RunAttack, OwnTimeOfTheWorkerIsKnown) {
+  Victim victim(attack_object("in_call.cpp"));
+  EXPECT_EQ(victim.attack("nap"), "0.4 s");
+  EXPECT_GT(call_log().own_s, 0.3) << "sleep is charged";
+  EXPECT_LT(call_log().own_s, 2.0);
+}
+
+TEST_F(RunAttack, CallsInCallbacksAreNotChargedToTheWorker) {
+  Victim victim = in_call();
+  // 2 s of the judge's own time, within a limit of 1.5 s for a call.
+  EXPECT_EQ(victim.module().call_back([](double) { ::usleep(500'000); return 1.0; }, 4), 4.0);
+  EXPECT_LT(call_log().own_s, 1.0);
 }
 
 TEST_F(RunAttack, ExitFromAStaticInitialiserIsACrash) {

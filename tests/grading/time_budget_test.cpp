@@ -13,7 +13,7 @@ TestResult timed_out(const std::string& function, double limit_s) {
   result.verdict = Verdict::kOutOfResources;
   result.last_call = function;
   result.timed_out_s = limit_s;
-  result.wall_s = limit_s + 0.7;   // as measured on a loaded machine
+  result.charged_s = limit_s + 0.7;   // as measured on a loaded machine
   return result;
 }
 
@@ -31,16 +31,34 @@ TEST(TimeBudget, QuickAnswersCostNothingAndSlowOnesDo) {
   TimeBudget budget({.budget_s = 4.0});
   TestResult answered;
   answered.verdict = Verdict::kRight;
-  answered.wall_s = 0.9;
+  answered.charged_s = 0.09;
   for (int i = 0; i < 1000; ++i) budget.charge(answered);
   EXPECT_FALSE(budget.is_used_up());
-  answered.wall_s = 4.2;
+  answered.charged_s = 4.2;
   budget.charge(answered);
   EXPECT_TRUE(budget.is_used_up());
 }
 
+TEST(TimeBudget, ALittleSleepInEachTestAddsUp) {
+  TimeBudget budget({.budget_s = 60.0});
+  TestResult answered;
+  answered.verdict = Verdict::kRight;
+  answered.charged_s = 0.9;
+  for (int i = 0; i < 81; ++i) budget.charge(answered);
+  EXPECT_TRUE(budget.is_used_up());
+}
+
+TEST(TimeBudget, AMachineTooBusyCostsNothing) {
+  TimeBudget budget({.budget_s = 4.0});
+  TestResult busy = timed_out("f", 0.0);
+  busy.verdict = Verdict::kMachineBusy;
+  busy.charged_s = 100.0;
+  budget.charge(busy);
+  EXPECT_FALSE(budget.is_used_up());
+}
+
 TEST(TimeBudget, AFunctionThatTimedOutTwiceGetsLess) {
-  TimeBudget budget({.budget_s = 60.0, .full_timeouts = 2, .suspect_wall_s = 1.0});
+  TimeBudget budget({.budget_s = 60.0, .full_timeouts = 2, .suspect_own_s = 1.0});
   budget.charge(timed_out("f", 5.0));
   budget.charge(timed_out("g", 5.0));
   EXPECT_TRUE(budget.suspects().empty());

@@ -164,6 +164,7 @@ const std::map<std::string, Attack>& attacks() {
       {"pipe by name", [] { return outcome(::mkfifo("/tmp/x", 0600)); }},
       {"more processes", [] { return outcome(raised_processes()); }},
       {"long answer", [] { return std::string(64u << 20, 'x'); }},
+      {"nap", [] { ::usleep(400'000); return std::string("0.4 s"); }},
       {"environment", environment},
       {"descriptors", descriptors},
       {"processes", processes},
@@ -182,6 +183,10 @@ double call_back(const std::function<double(double)>& f, int calls) {
   return sum;
 }
 double missing(double) { forge("answer"); return 0.0; }
+VectorXd step(const std::function<VectorXd(double, const VectorXd&)>& f, const VectorXd& y, const std::string& what) {
+  const VectorXd slope = what.starts_with("ask ") ? f(0.0, VectorXd::Zero(std::stol(what.substr(4)))) : f(0.0, y);
+  return what.starts_with("answer ") ? VectorXd(VectorXd::Zero(std::stol(what.substr(7)))) : VectorXd(y + slope);
+}
 
 std::string attack(const std::string& what) {
   if (what.starts_with("open:")) return open_file(what.substr(5));
