@@ -46,7 +46,10 @@ void print_table(const std::vector<grading::Grade>& grades) {
     if (!grade.change.empty() && !grade.taken_over) fmt::print("  ({})", grade.change);
     for (const auto& note : grade.notes) fmt::print("  note: {}", grading::plain_text(note));
     if (grade.state == grading::GradeState::kNothingToCompile) fmt::print(": {}", grading::plain_text(grade.story));
+    for (const auto& remark : grade.remarks) fmt::print("  remark: {}", remark);
     fmt::print("\n");
+    if (grade.taken_over) continue;
+    for (const auto& c : grade.changes) fmt::print("{:<{}}    {}: {} -> {} ({})\n", "", widest, c.test, c.before, c.after, c.reason);
   }
 }
 
@@ -54,19 +57,23 @@ void grade(Context& context, const Words& words) {
   const modules::ModuleKind& kind = context.registry.find(words.id);
   const grading::Course course{context.root, context.build, &context.registry, context.command_line};
   grading::judge_of(course, words.id);  // refused before anything is looked at
-  const auto submissions = grading::find_submissions(words.folder, kind);
+  const auto found = grading::find_submissions(words.folder, kind);
   grading::GradeOptions options;
   options.jobs = words.jobs;
   options.budget_s = words.budget_s;
   options.media = !words.no_media;
   options.progress = tell;
   const fs::path out = words.out.empty() ? fs::path("out") / ("grade_" + words.id) : fs::path(words.out);
-  fmt::print(stderr, "{} submission{} of {}, {} at a time, into {}\n", submissions.size(), submissions.size() == 1 ? "" : "s", words.id, words.jobs, out.string());
-  const auto grades = grading::grade_submissions(course, words.id, submissions, fs::absolute(out), options);
+  options.notice = [](const std::string& sentence) { fmt::print(stderr, "{}\n", grading::plain_text(sentence)); };
+  for (const std::string& name : found.passed_over) fmt::print(stderr, "passed over: {}\n", grading::plain_name(name));
+  fmt::print(stderr, "{} submission{} of {}, {} at a time, into {}\n", found.all.size(), found.all.size() == 1 ? "" : "s", words.id, words.jobs, out.string());
+  const auto grades = grading::grade_submissions(course, words.id, found, fs::absolute(out), options);
   print_table(grades);
   fmt::print("wrote {} and {}\n", (out / "index.html").string(), (out / "gradebook.csv").string());
-  for (const auto& grade : grades)
+  for (const auto& grade : grades) {
     if (!grade.is_final()) context.exit = ExitCode::kOurBug;
+    else if (!grade.has_score() && context.exit == ExitCode::kFine) context.exit = ExitCode::kCheckFailed;
+  }
 }
 
 }  // namespace
@@ -76,11 +83,13 @@ void add_grade(CLI::App& app, Context& context) {
   Verb verb(app, "grade", "Grade a folder of submissions: scores, stories, pictures, a gradebook");
   verb.option("assignment", words->id, "Which, e.g. a1").required().type_name("ID");
   verb.option("folder", words->folder, "One submission a sub-folder").required().type_name("FOLDER");
-  verb.option("--out", words->out, "Where results go; default out/grade_ID. A run that was ended goes on from there").type_name("FOLDER");
+  verb.option("--out", words->out, "Where results go, a folder of their own; default out/grade_ID. A run that was ended goes on from there").type_name("FOLDER");
   verb.option("--jobs", words->jobs, "Submissions at a time").between(1, 256).shows_default();
   verb.option("--budget-s", words->budget_s, "Time for all tests of one submission together; tests after it are out of time, not run").positive().shows_default();
   verb.flag("--no-media", words->no_media, "Without pictures, videos and pages that play: seconds instead of minutes a submission");
-  verb.footer("Exit: 0 all graded, 2 something to repair, 3 the grader failed somewhere (those scores are blank; run it again).");
+  verb.footer("Exit: 0 all graded, 1 no file was found for somebody (that score is blank, the reason is told), 2 something to repair, "
+              "3 the grader failed or the machine was too busy somewhere (those scores are blank; run it again).\n"
+              "Earlier results count where they are signed by this machine's key ($TUMBLE_GRADER_KEY, else ~/.local/state/tumble/grader.key, made on first use).");
   verb.runs([&context, words] { grade(context, *words); });
 }
 

@@ -8,6 +8,7 @@
 
 #include "framework/core/files.h"
 #include "framework/grading/build_submission.h"
+#include "framework/grading/digest.h"
 #include "framework/grading/grade_key.h"
 #include "framework/grading/processes.h"
 #include "framework/grading/scoring.h"
@@ -47,13 +48,15 @@ bool is_caught(const TestResult& result) {
   return result.verdict == Verdict::kWrong || result.verdict == Verdict::kCrashed || result.verdict == Verdict::kOutOfResources;
 }
 
+constexpr std::size_t kNameDigits = 32;   // of a digest, in a file's name: 128 bits
+
 // Where the results of an audit lie that need not be run again.
 struct Kept {
   fs::path results, refused;
 };
 
 Kept kept_for(const Course& course, const std::string& id, const std::string& grader, const Candidate& candidate) {
-  const fs::path base = course.build / "audit" / id / (candidate.file.stem().string() + "-" + digest(grader + digest_of_file(candidate.file)));
+  const fs::path base = course.build / "audit" / id / (candidate.file.stem().string() + "-" + digest(grader + digest_of_file(candidate.file)).substr(0, kNameDigits));
   return {base.string() + ".json", base.string() + ".refused.txt"};
 }
 

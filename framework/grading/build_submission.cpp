@@ -3,7 +3,6 @@
 #include <sstream>
 
 #include "framework/grading/compile.h"
-#include "framework/grading/compile.h"
 
 namespace tumble::grading {
 namespace {
@@ -12,11 +11,22 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kSaidLines = 40;  // of the compiler: the first errors are those that matter
 
+// What to do about errors that a student cannot read off the line.
+std::string advice_on(const std::string& said) {
+  const auto has = [&](const char* words) { return said.find(words) != std::string::npos; };
+  if (has("internal compiler error"))
+    return "The compiler itself failed at that line: your code may be right. Write the line in another way (shorter expressions, a variable for a part); "
+           "if that does not help, show it to your instructor.\n";
+  if (has("No such file or directory"))
+    return "Only this one file is compiled, with the course's own headers. Include those as the starter does (\"assignments/...\"), and put into the file what you have in headers of your own.\n";
+  return "";
+}
+
 }  // namespace
 
 BuiltSubmission build_submission(const Course& course, const std::string& id, const fs::path& source, const fs::path& object) {
   const std::string folder = course.registry->find(id).folder;
-  const Compiled compiled = compile_submission({course.root, fs::path("assignments") / folder / (folder + ".h"), source, object, {}});
+  const Compiled compiled = compile_submission({course.root, fs::path("assignments") / folder / (folder + ".h"), source, object, {}, course.build});
   switch (compiled.outcome) {
     case Compiled::Outcome::kBuilt: return {BuiltSubmission::Outcome::kBuilt, compiled.said};
     case Compiled::Outcome::kRefused: return {BuiltSubmission::Outcome::kRefused, compiled.said};
@@ -43,7 +53,7 @@ std::string compiler_story(const std::string& said, const fs::path& source) {
     story += line + "\n";
     ++lines;
   }
-  return story.empty() ? all.substr(0, 4000) : story;
+  return (story.empty() ? all.substr(0, 4000) : story) + advice_on(said);
 }
 
 }  // namespace tumble::grading

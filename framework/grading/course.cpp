@@ -1,15 +1,22 @@
 #include "framework/grading/course.h"
 
 #include <algorithm>
-#include <cstdint>
-#include <cstdio>
-#include <fstream>
+#include <sstream>
 
 #include "framework/core/error.h"
+#include "framework/core/nearest_word.h"
+#include "framework/grading/run_program.h"
 
 namespace tumble::grading {
 
 namespace fs = std::filesystem;
+
+namespace {
+
+constexpr double kListWall = 600.0;             // s: a list takes milliseconds; the machine may be loaded
+constexpr const char* kSdk = "submission_sdk";  // what compile.cpp finds precompiled
+
+}  // namespace
 
 fs::path judge_of(const Course& course, const std::string& id) {
   const fs::path judge = course.build / "bin" / ("judge_" + id);
@@ -39,19 +46,48 @@ std::vector<fs::path> scenes_of(const Course& course, const std::string& id) {
   return files;
 }
 
-std::string digest(std::string_view bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325ull;  // FNV-1a: offset and prime of its 64-bit form
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  return text;
+std::vector<std::string> tests_of_judge(const Course& course, const std::string& id) {
+  const ProgramOutcome outcome = run_program({judge_of(course, id).string(), "--list"}, Output::kCaptured, kListWall);
+  std::vector<std::string> tests;
+  std::istringstream lines(outcome.printed);
+  for (std::string line; std::getline(lines, line);) tests.push_back(line);
+  if (outcome.code != 0 || tests.empty())
+    throw UserError("judge_" + id, "does not list its tests: " + outcome.printed, "Build it again (ninja judge_" + id + "), and grade when the build has ended.");
+  return tests;
 }
 
-std::string digest_of_file(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return "missing";
-  const std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-  return digest(bytes);
+void require_rubric_of_judge(const Course& course, const std::string& id) {
+  const std::string folder = course.registry->find(id).folder;
+  const fs::path open = course.root / "assignments" / folder / "rubric.json", hidden = course.root / "solutions_private" / folder / "rubric_hidden.json";
+  const Rubric rubric = rubric_of(course, id);
+  const std::vector<std::string> tests = tests_of_judge(course, id);
+  std::vector<std::string> named;
+  for (const RubricItem& item : rubric.items) {
+    named.push_back(item.test);
+    if (std::find(tests.begin(), tests.end(), item.test) != tests.end()) continue;
+    throw UserError((item.hidden ? hidden : open).string(), "names test '" + item.test + "', which judge_" + id + " does not have",
+                    "Correct the name, or build judge_" + id + " with the test." + did_you_mean(item.test, tests));
+  }
+  for (const std::string& test : tests)
+    if (rubric.find(test) == nullptr)
+      throw UserError(open.string(), "has no entry for test '" + test + "' of judge_" + id + ", and neither has " + hidden.string() + ": it would be worth nothing",
+                      "Give the test an entry (0 points where it shall earn none)." + did_you_mean(test, named));
+}
+
+CourseSnapshot::CourseSnapshot(const Course& course, const std::string& id) : course_(course) {
+  course_.build = folder_.path();
+  const auto copy = [&](const fs::path& file) {
+    std::error_code failed;
+    fs::create_directories((course_.build / file).parent_path());
+    fs::copy_file(course.build / file, course_.build / file, failed);
+    if (failed) throw UserError((course.build / file).string(), "cannot be copied: " + failed.message(), "Build it (ninja " + file.stem().string() + "), and grade when the build has ended.");
+  };
+  judge_of(course, id);
+  for (const std::string& program : {"judge_" + id, "worker_" + id, std::string("sandbox_init")}) copy(fs::path("bin") / program);
+  for (const modules::ModuleKind* kind : course.registry->all())
+    if (const fs::path file = built_module(course, kind->id, "reference"); fs::exists(file)) copy(file.lexically_relative(course.build));
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(course.build / kSdk, ignored)) copy(fs::path(kSdk) / entry.path().filename());
 }
 
 }  // namespace tumble::grading

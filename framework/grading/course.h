@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/core/files.h"
 #include "framework/grading/rubric.h"
 #include "framework/modules/registry.h"
 
@@ -26,10 +27,24 @@ Rubric rubric_of(const Course& course, const std::string& id);
 /// The demo scenes of an assignment, by name.
 std::vector<std::filesystem::path> scenes_of(const Course& course, const std::string& id);
 
-/// 16 hex digits that differ where the bytes do. For noticing change, not against forgery: nothing is gained by a collision,
-/// since a record is compared with that of the same submission's own past.
-std::string digest(std::string_view bytes);
-/// Of a file's bytes; of "missing" where it cannot be read.
-std::string digest_of_file(const std::filesystem::path& file);
+/// "Suite.Name" of every test that the judge runs, in its order.
+/// @throws UserError when the judge does not say: it is half built, or of another time than this program
+std::vector<std::string> tests_of_judge(const Course& course, const std::string& id);
+/// Every entry of the rubric has a test in the judge, and every test an entry.
+/// @throws UserError that names the first that has none, and the nearest name
+void require_rubric_of_judge(const Course& course, const std::string& id);
+
+/// Copies of the programs and modules that a grading runs: a build that goes on beside it, or is broken, changes nothing.
+class CourseSnapshot {
+ public:
+  /// @throws UserError when one is not built or cannot be copied
+  CourseSnapshot(const Course& course, const std::string& id);
+  /// The same course; `build` is the copies'.
+  const Course& course() const { return course_; }
+
+ private:
+  PrivateFolder folder_;
+  Course course_;
+};
 
 }  // namespace tumble::grading

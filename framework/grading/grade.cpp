@@ -53,41 +53,44 @@ void judge(const Course& course, const std::string& id, const Submission& submis
   }
 }
 
-std::string record_of(const GradeKey& key) {
-  return fmt::format("Submission {} · grader {}{} · Tumble", key.submission, key.grader, key.pictures.empty() ? "" : " · pictures " + key.pictures);
-}
-
 }  // namespace
 
 bool Grade::is_final() const {
-  return state != GradeState::kGraderFault &&
-         std::none_of(tests.begin(), tests.end(), [](const ScoredTest& t) { return t.result.verdict == Verdict::kGraderFault; });
+  return state != GradeState::kGraderFault && std::none_of(tests.begin(), tests.end(), [](const ScoredTest& t) { return !is_final_verdict(t.result.verdict); });
 }
 
 Grade grade_submission(const Course& course, const std::string& id, const Submission& submission, const fs::path& folder, const GradeOptions& options) {
-  const modules::ModuleKind& kind = course.registry->find(id);
   const Rubric rubric = rubric_of(course, id);
-  fs::remove_all(folder);
   fs::create_directories(folder);
 
   Grade grade;
   grade.name = submission.name;
   grade.folder = folder.filename().string();
   grade.notes = submission.notes;
-  const ObjectFile object{folder / ("." + kind.id + ".so")};
+  const ObjectFile object{folder / ("." + id + ".so")};
   judge(course, id, submission, rubric, object, options.budget_s, grade);
   add_up(grade);
   if (options.media && grade.state == GradeState::kJudged)
     grade.media = make_media(course, id, options.scenes.empty() ? scenes_of(course, id) : options.scenes, object.path, folder / "media", options.media_options);
 
   if (grade.state == GradeState::kJudged) grade.cost = measure_cost(course, id, object.path);
-
-  const GradeKey key{submission_digest(submission), grader_digest(course, id, options.budget_s), pictures_digest(course, id, options)};
-  const std::string results = gradescope_json(grade);
-  write_whole(folder / "results.json", results);
-  submission_page(kind, grade, record_of(key)).write(folder / "index.html");
-  write_whole(folder / "record.json", record_json(grade, key, digest(results)));
   return grade;
+}
+
+std::optional<Grade> graded_by(const Rubric& rubric, Grade earlier) {
+  if (earlier.state == GradeState::kJudged) {
+    Judgement judgement;
+    for (const ScoredTest& test : earlier.tests) judgement.results.push_back(test.result);
+    for (const RubricItem& item : rubric.items)
+      if (std::none_of(judgement.results.begin(), judgement.results.end(), [&](const TestResult& r) { return r.test == item.test; })) return std::nullopt;
+    earlier.tests = score_tests(rubric, judgement);
+  } else {
+    if (earlier.tests.empty()) return std::nullopt;
+    const TestResult all = earlier.tests.front().result;   // for one reason, all of them
+    earlier.tests = score_nothing(rubric, all.verdict, all.story);
+  }
+  add_up(earlier);
+  return earlier;
 }
 
 }  // namespace tumble::grading

@@ -7,13 +7,20 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "framework/core/files.h"
+#include "framework/grading/cost_json.h"
+#include "framework/grading/digest.h"
+#include "framework/grading/grade_pages.h"
 #include "framework/grading/plain_text.h"
 #include "framework/grading/scoring.h"
 
 namespace tumble::grading {
 namespace {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
+
+constexpr const char* kRecord = "record.json";
 
 constexpr std::array kStates = {"judged", "nothing to compile", "does not compile", "fault of the grader"};
 
@@ -93,11 +100,52 @@ ScoredTest test_of(const Json& json) {
   return test;
 }
 
+Json changes_json(const std::vector<TestChange>& changes) {
+  Json list = Json::array();
+  for (const TestChange& c : changes) list.push_back({{"test", c.test}, {"title", c.title}, {"before", c.before}, {"after", c.after}, {"reason", c.reason}});
+  return list;
+}
+
+std::string code_of(const Json& json, const std::string& machine_key) { return authentication_code(machine_key, "tumble record 1\n" + dumped(json)); }
+
+GradeRecord record_of(const Json& json) {
+  GradeRecord record;
+  record.assignment = json.at("assignment");
+  record.key = {json.at("submission"), json.at("judging"), json.at("rubric"), json.at("pictures")};
+  record.files = json.at("files").get<std::map<std::string, std::string>>();
+  Grade& grade = record.grade;
+  grade.name = json.at("name");
+  grade.folder = json.at("folder");
+  const std::string state = json.at("state");
+  for (std::size_t i = 0; i < kStates.size(); ++i)
+    if (state == kStates[i]) grade.state = static_cast<GradeState>(i);
+  grade.score = json.at("score");
+  grade.possible = json.at("possible");
+  grade.change = json.at("change");
+  for (const Json& c : json.at("changes")) grade.changes.push_back({c.at("test"), c.at("title"), c.at("before"), c.at("after"), c.at("reason")});
+  grade.story = json.at("story");
+  grade.notes = json.at("notes").get<std::vector<std::string>>();
+  for (const Json& test : json.at("tests")) grade.tests.push_back(test_of(test));
+  for (const Json& media : json.at("media")) grade.media.push_back(media_of(media));
+  grade.cost = cost_of(json.at("cost"));
+  return record;
+}
+
+// The last line of a page: the first digits of each digest find the entry in the ledger.
+std::string graded_from(const GradeKey& key) {
+  constexpr std::size_t kShown = 16;
+  const auto head = [](const std::string& digits) { return digits.substr(0, kShown); };
+  std::string text = "Submission " + head(key.submission) + " · judge " + head(key.judging) + " · rubric " + head(key.rubric);
+  if (!key.pictures.empty()) text += " · pictures " + head(key.pictures);
+  return text + " · Tumble";
+}
+
 }  // namespace
 
 std::string gradescope_json(const Grade& grade) {
   Json page;
-  page["score"] = grade.score;
+  // Without a score Gradescope keeps what it has: nobody's 0 is written for what was not judged.
+  if (grade.has_score()) page["score"] = grade.score;
   std::string said = grade.story;
   for (const std::string& note : grade.notes) said += (said.empty() ? "" : "\n") + ("note: " + note);
   page["output"] = plain_text(said);
@@ -111,7 +159,7 @@ std::string gradescope_json(const Grade& grade) {
   for (const ScoredTest& test : grade.tests) {
     Json entry;
     entry["name"] = test.item.title;
-    entry["score"] = test.score;
+    if (grade.has_score()) entry["score"] = test.score;
     entry["max_score"] = test.item.points;
     entry["status"] = test.result.verdict == Verdict::kRight ? "passed" : "failed";
     entry["output"] = output_of(test);
@@ -130,66 +178,89 @@ std::string gradebook_csv(const std::string& assignment_title, const std::vector
   text += "    Points Possible,,,," + points_text(possible) + "\n";
   for (const Grade& grade : grades) {
     const std::string name = csv_cell(grade.name);
-    text += name + ",," + name + ",," + (grade.is_final() ? points_text(grade.score) : "") + "\n";
+    text += name + "," + grade.student_id + "," + name + ",," + (grade.has_score() ? points_text(grade.score) : "") + "\n";
   }
   return text;
 }
 
-std::string record_json(const Grade& grade, const GradeKey& key, const std::string& results_digest) {
-  Json record;
-  record["submission"] = key.submission;
-  record["grader"] = key.grader;
-  record["pictures"] = key.pictures;
-  record["results"] = results_digest;
-  record["name"] = grade.name;
-  record["state"] = kStates.at(static_cast<std::size_t>(grade.state));
-  record["score"] = grade.score;
-  record["possible"] = grade.possible;
-  record["change"] = grade.change;
-  record["story"] = grade.story;
-  record["notes"] = grade.notes;
-  record["tests"] = Json::array();
-  for (const ScoredTest& test : grade.tests) record["tests"].push_back(test_json(test));
-  record["media"] = Json::array();
-  for (const SceneMedia& media : grade.media) record["media"].push_back(media_json(media));
-  return dumped(record);
+std::map<std::string, std::string> digests_below(const fs::path& folder) {
+  std::map<std::string, std::string> digests;
+  std::error_code failed;
+  for (fs::recursive_directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
+    const std::string name = it->path().lexically_relative(folder).string();
+    if (fs::is_directory(it->symlink_status()) || name == kRecord) continue;
+    digests[name] = fs::is_regular_file(it->symlink_status()) ? digest_of_file(it->path()) : "no file";
+  }
+  return digests;
 }
 
-std::optional<GradeRecord> read_record(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  if (!in) return std::nullopt;
+std::string record_json(const GradeRecord& record, const std::string& machine_key) {
+  const Grade& grade = record.grade;
+  Json json;
+  json["assignment"] = record.assignment;
+  json["folder"] = grade.folder;
+  json["submission"] = record.key.submission;
+  json["judging"] = record.key.judging;
+  json["rubric"] = record.key.rubric;
+  json["pictures"] = record.key.pictures;
+  json["name"] = grade.name;
+  json["state"] = kStates.at(static_cast<std::size_t>(grade.state));
+  json["score"] = grade.score;
+  json["possible"] = grade.possible;
+  json["change"] = grade.change;
+  json["changes"] = changes_json(grade.changes);
+  json["story"] = grade.story;
+  json["notes"] = grade.notes;
+  json["tests"] = Json::array();
+  for (const ScoredTest& test : grade.tests) json["tests"].push_back(test_json(test));
+  json["media"] = Json::array();
+  for (const SceneMedia& media : grade.media) json["media"].push_back(media_json(media));
+  json["cost"] = cost_json(grade.cost);
+  json["files"] = record.files;
+  // Through text and back: what is signed is what a reader will have, after bytes that are no UTF-8 have been replaced.
+  json = Json::parse(dumped(json));
+  json["mac"] = code_of(json, machine_key);
+  return dumped(json);
+}
+
+EarlierRun read_earlier_run(const fs::path& folder, const std::string& assignment, const std::string& machine_key) {
+  std::error_code failed;
+  if (!fs::exists(fs::symlink_status(folder, failed))) return {};
+  std::ifstream in(folder / kRecord);
+  if (!in) return {{}, "it has no record"};
+  GradeRecord record;
   try {
-    const Json json = Json::parse(in);
-    GradeRecord record;
-    record.key = {json.at("submission"), json.at("grader"), json.at("pictures")};
-    record.results_digest = json.at("results");
-    Grade& grade = record.grade;
-    grade.name = json.at("name");
-    grade.folder = file.parent_path().filename().string();
-    const std::string state = json.at("state");
-    for (std::size_t i = 0; i < kStates.size(); ++i)
-      if (state == kStates[i]) grade.state = static_cast<GradeState>(i);
-    grade.score = json.at("score");
-    grade.possible = json.at("possible");
-    grade.change = json.at("change");
-    grade.story = json.at("story");
-    grade.notes = json.at("notes").get<std::vector<std::string>>();
-    for (const Json& test : json.at("tests")) grade.tests.push_back(test_of(test));
-    for (const Json& media : json.at("media")) grade.media.push_back(media_of(media));
-    return record;
+    Json json = Json::parse(in);
+    const std::string code = json.at("mac");
+    json.erase("mac");
+    if (!is_same_code(code, code_of(json, machine_key))) return {{}, "its record is not signed by this machine's key"};
+    record = record_of(json);
   } catch (const Json::exception&) {
-    return std::nullopt;
+    return {{}, "its record cannot be read"};
   }
+  if (record.assignment != assignment || record.grade.folder != folder.filename().string()) return {{}, "its record is of another folder"};
+  if (record.files != digests_below(folder)) return {{}, "its files are not those that were written"};
+  return {std::move(record), ""};
+}
+
+void write_grade(const modules::ModuleKind& kind, const Grade& grade, const GradeKey& key, const fs::path& folder, const std::string& machine_key) {
+  write_whole(folder / "results.json", gradescope_json(grade));
+  submission_page(kind, grade, graded_from(key)).write(folder / "index.html");
+  write_whole(folder / kRecord, record_json({grade, key, kind.id, digests_below(folder)}, machine_key));
 }
 
 std::string ledger_json(const std::string& id, const std::vector<GradeRecord>& records) {
   Json ledger;
   ledger["assignment"] = id;
   ledger["submissions"] = Json::array();
-  for (const GradeRecord& record : records)
-    ledger["submissions"].push_back({{"name", plain_name(record.grade.name)}, {"folder", record.grade.folder}, {"submission", record.key.submission}, {"grader", record.key.grader},
-                                     {"results", record.results_digest}, {"score", record.grade.score}, {"final", record.grade.is_final()},
-                                     {"change", record.grade.change}});
+  for (const GradeRecord& record : records) {
+    const auto results = record.files.find("results.json");
+    ledger["submissions"].push_back({{"name", plain_name(record.grade.name)}, {"folder", record.grade.folder}, {"submission", record.key.submission},
+                                     {"judging", record.key.judging}, {"rubric", record.key.rubric},
+                                     {"results", results == record.files.end() ? "missing" : results->second},
+                                     {"score", record.grade.has_score() ? Json(record.grade.score) : Json(nullptr)}, {"final", record.grade.is_final()},
+                                     {"remarks", record.grade.remarks}, {"change", record.grade.change}, {"changes", changes_json(record.grade.changes)}});
+  }
   return dumped(ledger);
 }
 

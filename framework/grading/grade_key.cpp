@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "framework/grading/digest.h"
+
 namespace tumble::grading {
 namespace {
 
@@ -31,9 +33,13 @@ std::string judging_digest(const Course& course, const std::string& id) {
 }
 
 std::string grader_digest(const Course& course, const std::string& id, double budget_s) {
-  const std::string folder = course.registry->find(id).folder;
-  return digest(judging_digest(course, id) + fmt::format(" {} ", budget_s) + digest_of_files({course.root / "assignments" / folder / "rubric.json",
-                                                              course.root / "solutions_private" / folder / "rubric_hidden.json", "/proc/self/exe"}));
+  return digest(judging_digest(course, id) + fmt::format(" {} ", budget_s) + digest_of_file("/proc/self/exe"));
+}
+
+std::string rubric_digest(const Rubric& rubric) {
+  std::string text;
+  for (const RubricItem& item : rubric.items) text += fmt::format("{}\n{}\n{}\n{}\n{}\n", item.test, item.points, item.level, item.title, item.hidden);
+  return digest(text);
 }
 
 std::string pictures_digest(const Course& course, const std::string& id, const GradeOptions& options) {
@@ -58,8 +64,10 @@ std::string folder_of(const std::string& name) {
     plain += keep ? c : '_';
   }
   if (plain.size() > kLongest) plain.resize(kLongest);
-  const bool taken = plain.empty() || plain[0] == '.' || plain[0] == '-' || plain == "index.html" || plain == "gradebook.csv" || plain == "ledger.json" || plain == "times.json";
-  return plain == name && !taken ? plain : "_" + plain + "-" + digest(name).substr(0, 8);
+  // Names that begin with "_" are those made here: nobody's own name may look like one.
+  const bool taken = plain.empty() || plain[0] == '.' || plain[0] == '-' || plain[0] == '_' || plain == "index.html" || plain == "gradebook.csv" || plain == "ledger.json" || plain == "times.json";
+  constexpr std::size_t kDigits = 16;   // 64 bits of SHA-256: two names of a course do not share them by chance
+  return plain == name && !taken ? plain : "_" + plain + "-" + digest(name).substr(0, kDigits);
 }
 
 }  // namespace tumble::grading

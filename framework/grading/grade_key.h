@@ -2,14 +2,16 @@
 #pragma once
 
 #include "framework/grading/grade.h"
-#include "framework/grading/grade_files.h"
+#include "framework/grading/rubric.h"
 
 namespace tumble::grading {
 
 /// Digest of what decides a verdict: the judge with its tests, the worker, the module's headers, the compiler.
 std::string judging_digest(const Course& course, const std::string& id);
-/// Digest of everything but the submission: what decides a verdict, the rubrics, this program, the time that a submission may take.
+/// The same, with this program and the time that a submission may take.
 std::string grader_digest(const Course& course, const std::string& id, double budget_s);
+/// Digest of what a test is worth, and how it is named.
+std::string rubric_digest(const Rubric& rubric);
 /// Digest of the scenes and of how they are drawn; empty where no pictures are wanted.
 std::string pictures_digest(const Course& course, const std::string& id, const GradeOptions& options);
 std::string submission_digest(const Submission& submission);

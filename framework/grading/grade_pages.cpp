@@ -21,7 +21,8 @@ Look look_of(Verdict verdict) {
   switch (verdict) {
     case Verdict::kRight: return Look::kGood;
     case Verdict::kNotAttempted: return Look::kMuted;
-    case Verdict::kGraderFault: return Look::kWarning;
+    case Verdict::kGraderFault:
+    case Verdict::kMachineBusy: return Look::kWarning;
     default: return Look::kBad;
   }
 }
@@ -50,9 +51,9 @@ std::string flush_left(const std::string& story) {
 void add_tiles(report::Page& page, const Grade& grade) {
   std::vector<std::pair<std::string, Cell>> tiles;
   const Look look = !grade.is_final() ? Look::kWarning : grade.score == grade.possible ? Look::kGood : Look::kPlain;
-  tiles.push_back({"of " + points_text(grade.possible) + " points", {points_text(grade.score), "", look}});
+  tiles.push_back({"of " + points_text(grade.possible) + " points", {grade.has_score() ? points_text(grade.score) : "none", "", look}});
   if (grade.state != GradeState::kJudged) return page.tiles(tiles);
-  constexpr std::array kShown = {Verdict::kRight, Verdict::kWrong, Verdict::kNotAttempted, Verdict::kCrashed, Verdict::kOutOfResources, Verdict::kGraderFault};
+  constexpr std::array kShown = {Verdict::kRight, Verdict::kWrong, Verdict::kNotAttempted, Verdict::kCrashed, Verdict::kOutOfResources, Verdict::kGraderFault, Verdict::kMachineBusy};
   for (const Verdict verdict : kShown)
     if (const std::size_t n = count(grade, verdict); n > 0) tiles.push_back({words(verdict), {std::to_string(n), "", look_of(verdict)}});
   page.tiles(tiles);
@@ -78,6 +79,18 @@ void add_level(report::Page& page, const Grade& grade, const std::string& level)
   page.table(table);
 }
 
+// Of a grade that is not final: what stands in the way.
+Verdict unfinished_verdict(const Grade& grade) { return count(grade, Verdict::kGraderFault) > 0 ? Verdict::kGraderFault : Verdict::kMachineBusy; }
+
+void add_changes(report::Page& page, const Grade& grade) {
+  if (grade.changes.empty()) return;
+  report::Table table;
+  table.columns = {{"Test"}, {"Before"}, {"Now"}, {"Because"}};
+  for (const TestChange& c : grade.changes) table.rows.push_back({{c.title}, {c.before, "", Look::kMuted}, {c.after}, {c.reason, "", Look::kMuted}});
+  page.heading("What the last regrade changed", 2, "changes");
+  page.table(table);
+}
+
 std::string numbers_of(const engines::CheckResult& c) {
   return fmt::format("{:.3g} {} {:.3g}{}{}", c.value == 0.0 ? 0.0 : c.value, c.at_least ? ">=" : "<=", c.threshold, c.unit.empty() ? "" : " ", c.unit);
 }
@@ -91,7 +104,7 @@ std::string summary_of(const Grade& grade) {
     case GradeState::kGraderFault: return "fault of the grader";
     case GradeState::kJudged: break;
   }
-  return points_text(grade.score) + " of " + points_text(grade.possible) + (grade.is_final() ? "" : ", not final: fault of the grader");
+  return points_text(grade.score) + " of " + points_text(grade.possible) + (grade.is_final() ? "" : ", not final: " + std::string(words(unfinished_verdict(grade))) + "; run the same command again");
 }
 
 void add_stories(report::Page& page, const Grade& grade) {
@@ -157,6 +170,7 @@ report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade
     page.heading(summary_of(grade));
     page.preformatted(plain_text(grade.story));
   }
+  add_changes(page, grade);
   page.heading("Tests", 2, "tests");
   for (const char* level : {"basic", "intermediate", "advanced", ""}) add_level(page, grade, level);
   page.heading("Stories", 2, "stories");
@@ -175,9 +189,10 @@ report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade
   report::Page page(kind.title + ": all submissions", fmt::format("{}, {} submission{}", kind.id, grades.size(), grades.size() == 1 ? "" : "s"));
   page.links({{"gradebook.csv", "gradebook.csv"}, {"ledger.json", "ledger.json"}});
   std::vector<double> scores;
-  std::size_t faults = 0;
+  std::size_t faults = 0, not_found = 0;
   for (const Grade& grade : grades) {
-    if (grade.is_final()) scores.push_back(grade.score);
+    if (grade.has_score()) scores.push_back(grade.score);
+    else if (grade.is_final()) ++not_found;
     else ++faults;
   }
   std::sort(scores.begin(), scores.end());
@@ -185,15 +200,18 @@ report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade
     const double median = (scores[(scores.size() - 1) / 2] + scores[scores.size() / 2]) / 2.0;
     page.tiles({{"submissions", {std::to_string(grades.size())}}, {"lowest", {points_text(scores.front())}}, {"median", {points_text(median)}}, {"highest", {points_text(scores.back())}}});
   }
-  if (faults > 0) page.paragraph(fmt::format("{} without a final score: the grader failed. Run the same command again; their scores in the gradebook are blank.", faults), Look::kWarning);
+  if (faults > 0) page.paragraph(fmt::format("{} without a final score: the grader failed, or the machine was too busy. Run the same command again; their scores in the gradebook are blank.", faults), Look::kWarning);
+  if (not_found > 0) page.paragraph(fmt::format("{} without a file to grade: the reason stands beside each; their scores in the gradebook are blank.", not_found), Look::kWarning);
   report::Table table;
   table.columns = {{"Submission"}, {"Score", true}, {"of", true}, {"Right", true}, {"Wrong", true}, {"Not attempted", true}, {"Crashed", true}, {"Out of time or memory", true}, {"Remarks"}};
   for (const Grade& grade : grades) {
     std::string remarks = grade.state == GradeState::kJudged ? "" : summary_of(grade);
     for (const std::string& note : grade.notes) remarks += (remarks.empty() ? "" : "; ") + plain_text(note);
+    if (grade.state == GradeState::kNothingToCompile) remarks += ": " + plain_text(grade.story);
+    for (const std::string& remark : grade.remarks) remarks += (remarks.empty() ? "" : "; ") + remark;
     if (!grade.change.empty()) remarks += (remarks.empty() ? "" : "; ") + grade.change;
     const auto number = [&](Verdict v) { const auto n = grade.state == GradeState::kJudged ? count(grade, v) : 0; return Cell{n == 0 ? "" : std::to_string(n), "", n == 0 ? Look::kMuted : look_of(v)}; };
-    table.rows.push_back({{plain_name(grade.name), report::link_to(std::filesystem::path(grade.folder) / "index.html")}, {grade.is_final() ? points_text(grade.score) : "none", "", grade.is_final() ? Look::kPlain : Look::kWarning},
+    table.rows.push_back({{plain_name(grade.name), report::link_to(std::filesystem::path(grade.folder) / "index.html")}, {grade.has_score() ? points_text(grade.score) : "none", "", grade.has_score() ? Look::kPlain : Look::kWarning},
                           {points_text(grade.possible), "", Look::kMuted}, number(Verdict::kRight), number(Verdict::kWrong), number(Verdict::kNotAttempted), number(Verdict::kCrashed),
                           number(Verdict::kOutOfResources), {remarks, "", Look::kMuted}});
   }

@@ -74,6 +74,25 @@ std::string plain(std::string_view text, bool one_line) {
 
 }  // namespace
 
+std::string shell_word(std::string_view text) {
+  const auto is_plain = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || std::string_view("_-./+,@%").find(c) != std::string_view::npos; };
+  // What cannot be seen as it is goes as a byte in $'...' (bash and zsh); all else between single quotes.
+  std::string word;
+  bool is_seen = true;
+  for (std::size_t at = 0; at < text.size();) {
+    const Character c = character_at(text, at);
+    is_seen = is_seen && c.is_valid && !is_unseen(c.code);
+    at += c.length;
+  }
+  for (const char c : text) {
+    char byte[8];
+    std::snprintf(byte, sizeof byte, "\\x%02x", static_cast<unsigned>(static_cast<unsigned char>(c)));
+    if (is_seen) word += c == '\'' ? "'\\''" : std::string(1, c);
+    else word += is_plain(c) || c == ' ' ? std::string(1, c) : byte;
+  }
+  return (is_seen ? "'" : "$'") + word + "'";
+}
+
 std::string plain_name(std::string_view text) { return plain(text, true); }
 std::string plain_text(std::string_view text) { return plain(text, false); }
 

@@ -15,4 +15,7 @@ std::string plain_name(std::string_view text);
 /// Several lines: line ends and tabs stay, terminal colours are dropped, a backslash stays what it is.
 std::string plain_text(std::string_view text);
 
+/// One word of a command line that a person pastes into a shell: whatever a name holds, it stays that one word and nothing is run.
+std::string shell_word(std::string_view text);
+
 }  // namespace tumble::grading

@@ -15,6 +15,7 @@
 #include "framework/grading/grade_key.h"
 #include "framework/grading/grade_pages.h"
 #include "framework/grading/plain_text.h"
+#include "framework/grading/run_program.h"
 #include "framework/grading/scoring.h"
 
 namespace tumble::grading {
@@ -37,7 +38,7 @@ class Folder : public ::testing::Test {
   }
   void put(const std::string& file, const std::string& text = "int x;\n") const { write_whole(root / file, text); }
   Submission only() const {
-    const auto all = find_submissions(root, kind);
+    const auto all = find_submissions(root, kind).all;
     EXPECT_EQ(all.size(), 1u);
     return all.at(0);
   }
@@ -51,11 +52,71 @@ TEST_F(FindSubmissions, AreSortedByNameAndFilesBesideThemAreNone) {
   put("adam/a9_thing.cpp");
   put("roster.csv");
   put(".git/a9_thing.cpp");
-  const auto all = find_submissions(root, kind);
+  const auto all = find_submissions(root, kind).all;
   ASSERT_EQ(all.size(), 2u);
   EXPECT_EQ(all[0].name, "adam");
   EXPECT_EQ(all[1].name, "zoe");
   EXPECT_EQ(all[0].source, root / "adam/a9_thing.cpp");
+}
+
+TEST_F(FindSubmissions, NothingIsPassedOverInSilence) {
+  put("adam/a9_thing.cpp");
+  put(".zoe/a9_thing.cpp");
+  put(".git/config");
+  put("roster.csv");
+  put("__MACOSX/._adam");
+  const FoundSubmissions found = find_submissions(root, kind);
+  ASSERT_EQ(found.all.size(), 2u);
+  EXPECT_EQ(found.all[0].name, ".zoe");   // a dot before a name makes nobody invisible
+  EXPECT_EQ(found.all[0].source, root / ".zoe/a9_thing.cpp");
+  EXPECT_EQ(found.passed_over, (std::vector<std::string>{".git (a folder of a tool)", "roster.csv (neither a folder nor a source)"}));
+}
+
+TEST_F(FindSubmissions, FilesOfCanvasAreSubmissionsWithTheStudentsNumber) {
+  put("doejane_12345_678_a9_thing.cpp", "int a;\n");
+  put("roejohn_LATE_222_679_a9_thing-1.cpp", "int b;\n");
+  put("poeann_333_680_report.pdf");
+  put("moejo_444_681_work.zip");
+  const auto all = find_submissions(root, kind).all;
+  ASSERT_EQ(all.size(), 4u);
+  EXPECT_EQ(all[0].name, "doejane_12345");
+  EXPECT_EQ(all[0].student_id, "12345");
+  EXPECT_EQ(all[0].source, root / "doejane_12345_678_a9_thing.cpp");
+  EXPECT_TRUE(all[0].notes.empty()) << all[0].notes[0];
+  EXPECT_NE(all[1].problem.find("Unpack"), std::string::npos) << all[1].problem;
+  EXPECT_NE(all[2].problem.find("Holds no a9_thing.cpp"), std::string::npos) << all[2].problem;
+  EXPECT_EQ(all[3].name, "roejohn_222");
+  EXPECT_EQ(all[3].source, root / "roejohn_LATE_222_679_a9_thing-1.cpp");
+}
+
+TEST_F(FindSubmissions, ALooseFileAndALooseArchiveAreSubmissionsToo) {
+  put("alice.cpp");
+  put("bob.zip");
+  const auto all = find_submissions(root, kind).all;
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0].source, root / "alice.cpp");
+  EXPECT_NE(all[1].problem.find("Unpack"), std::string::npos) << all[1].problem;
+}
+
+TEST_F(FindSubmissions, CopiesThatAreEqualByteForByteAreOneFile) {
+  put("adam/a9_thing.cpp");
+  put("adam/backup/a9_thing.cpp");
+  EXPECT_EQ(only().source, root / "adam/a9_thing.cpp");
+  EXPECT_NE(only().notes.at(0).find("byte for byte"), std::string::npos);
+}
+
+TEST_F(FindSubmissions, CapitalsDoNotHideAFile) {
+  put("adam/A9_Thing.CPP");
+  EXPECT_EQ(only().source, root / "adam/A9_Thing.CPP");
+  EXPECT_NE(only().notes.at(0).find("A9_Thing.CPP"), std::string::npos);
+}
+
+TEST_F(FindSubmissions, AHeaderBesideTheFileIsSaidNotToCount) {
+  put("adam/a9_thing.cpp");
+  put("adam/a9_thing.h", "#pragma once\n");
+  EXPECT_EQ(only().source, root / "adam/a9_thing.cpp");
+  EXPECT_NE(only().notes.at(0).find("a9_thing.h"), std::string::npos);
+  EXPECT_NE(only().notes.at(0).find("course's own headers"), std::string::npos);
 }
 
 TEST_F(FindSubmissions, SourceMayLieDeeper) {
@@ -71,7 +132,7 @@ TEST_F(FindSubmissions, AnOnlySourceOfAnotherNameIsTakenWithANote) {
 
 TEST_F(FindSubmissions, TwoOfTheRightNameAreNotGuessedBetween) {
   put("adam/a9_thing.cpp");
-  put("adam/old/a9_thing.cpp");
+  put("adam/old/a9_thing.cpp", "int other;\n");
   EXPECT_TRUE(only().source.empty());
   EXPECT_NE(only().problem.find("2 times"), std::string::npos) << only().problem;
 }
@@ -108,7 +169,7 @@ TEST_F(FindSubmissions, APipeIsNotWaitedFor) {
 TEST_F(FindSubmissions, HugeAndEmptySourcesAreRefused) {
   put("big/a9_thing.cpp", std::string(2 << 20, 'x'));
   put("none/a9_thing.cpp", "");
-  const auto all = find_submissions(root, kind);
+  const auto all = find_submissions(root, kind).all;
   EXPECT_NE(all.at(0).problem.find("2097152 bytes"), std::string::npos) << all[0].problem;
   EXPECT_NE(all.at(1).problem.find("empty"), std::string::npos) << all[1].problem;
 }
@@ -135,6 +196,8 @@ TEST_F(FindSubmissions, NoFolderIsAUserError) { EXPECT_THROW(find_submissions(ro
 
 TEST(FolderOf, PlainNamesStayAndOthersCannotLeaveTheFolder) {
   EXPECT_EQ(folder_of("alice_b-2.x"), "alice_b-2.x");
+  // A name that looks like one made here is made anew, so that nobody takes another's place.
+  EXPECT_NE(folder_of(folder_of("a b")), folder_of("a b"));
   for (const std::string name : {"..", ".", "-rf", "a b", "<i>", "index.html", "a\nb", "\xff", "gr\u00fcn", ""}) {
     const std::string folder = folder_of(name);
     EXPECT_NE(folder, name);
@@ -237,6 +300,33 @@ TEST(PlainText, WhatHidesOrReordersIsWrittenOut) {
   for (const std::string name : {"Zo\u00eb \u0141ukasz", "\u5f20\u4f1f", "O'Brien-Smith", "\u0645\u062d\u0645\u062f"}) EXPECT_EQ(plain_name(name), name);
 }
 
+TEST(Gradebook, AFileThatWasNotFoundIsBlankAndNoZeroIsWritten) {
+  Grade grade = graded("ann", {});
+  grade.state = GradeState::kNothingToCompile;
+  grade.tests = score_nothing(two_items(), Verdict::kNotAttempted, "nothing to compile");
+  grade.student_id = "77";
+  EXPECT_TRUE(grade.is_final());
+  EXPECT_FALSE(grade.has_score());
+  EXPECT_NE(gradebook_csv("Thing", {grade}).find("\nann,77,ann,,\n"), std::string::npos) << gradebook_csv("Thing", {grade});
+  EXPECT_FALSE(nlohmann::json::parse(gradescope_json(grade)).contains("score"));
+}
+
+TEST(Grades, AMachineTooBusyIsNotFinalAndNoLostPoint) {
+  const Grade grade = graded("ann", {{result("S.Open", Verdict::kRight), result("S.Shut", Verdict::kMachineBusy, "too busy")}, ""});
+  EXPECT_FALSE(grade.is_final());
+  EXPECT_NE(summary_of(grade).find("not final: machine too busy"), std::string::npos) << summary_of(grade);
+  EXPECT_EQ(exit_code({result("S.Shut", Verdict::kMachineBusy)}), ExitCode::kOurBug);
+}
+
+TEST(ShellWord, WhateverANameHoldsStaysOneWord) {
+  for (const std::string name : {"plain", "two words", "it's", "$(touch x)", "`id`", "-rf", "a;b", "\"", "back\\slash", "line\nbreak", "\xff", "a\u202eb", "'; rm -rf /; '"}) {
+    const std::string command = "printf %s " + shell_word(name);
+    const ProgramOutcome outcome = run_program({"/bin/bash", "-c", command}, Output::kCaptured);
+    EXPECT_EQ(outcome.printed, name) << command;
+    EXPECT_EQ(command.find('\n'), std::string::npos) << "shown as one line: " << command;
+  }
+}
+
 TEST(Gradescope, WhatASubmissionSaysIsShownPlain) {
   Grade grade = graded("x", {{result("S.Open", Verdict::kCrashed, "it said \x1b[2J\u202egnp\x01"), result("S.Shut", Verdict::kRight)}, ""});
   grade.story = "a\u202eb";
@@ -254,21 +344,6 @@ TEST_F(Folder, PagesWriteOutWhatHidesInANameOrAStory) {
   EXPECT_NE(index_page(kind, {grade}).html().find("an\\u{202E}n"), std::string::npos);
 }
 
-TEST_F(Folder, ARecordIsReadAsItWasWritten) {
-  Grade grade = graded("x", {{result("S.Open", Verdict::kCrashed, "SIGSEGV"), result("S.Shut", Verdict::kRight)}, ""});
-  grade.notes = {"a note"};
-  grade.media = {{"pong", "Pong", "about", "pong.png", "pong.mp4", "", true, {{"gap", "all", INFINITY, 0.0, "m", false, "why", true, "at 1 s"}}, "pong.html"}};
-  put("x/record.json", record_json(grade, {"s", "g", "p"}, "r"));
-  const auto record = read_record(root / "x/record.json");
-  ASSERT_TRUE(record);
-  EXPECT_EQ(record_json(record->grade, record->key, record->results_digest), record_json(grade, {"s", "g", "p"}, "r"));
-  EXPECT_EQ(record->grade.folder, "x");
-  EXPECT_TRUE(std::isinf(record->grade.media[0].checks[0].value));
-  EXPECT_EQ(record->grade.media[0].page, "pong.html");
-  put("x/record.json", "{\"half\": ");
-  EXPECT_FALSE(read_record(root / "x/record.json"));
-}
-
 TEST_F(Folder, PagesShowHostileNamesAndStoriesAsText) {
   const std::string evil = "<script>alert(1)</script>";
   Grade grade = graded(evil, {{result("S.Open", Verdict::kWrong, evil), result("S.Shut", Verdict::kNotAttempted, evil)}, ""});
@@ -278,6 +353,17 @@ TEST_F(Folder, PagesShowHostileNamesAndStoriesAsText) {
     EXPECT_EQ(html.find("<script"), std::string::npos);
     EXPECT_NE(html.find("&lt;script&gt;"), std::string::npos);
   }
+}
+
+TEST(CompilerStory, AFailureOfTheCompilerItselfSaysWhatToDo) {
+  const std::string story = compiler_story("a9_thing.cpp:7:3: internal compiler error: in foo, at cp/bar.cc:1\nPlease submit a full bug report\n", "/elsewhere/a9_thing.cpp");
+  EXPECT_NE(story.find("a9_thing.cpp:7:3: internal compiler error"), std::string::npos) << story;
+  EXPECT_NE(story.find("your code may be right"), std::string::npos) << story;
+}
+
+TEST(CompilerStory, AHeaderOfOnesOwnIsSaidNotToBeThere) {
+  const std::string story = compiler_story("a9_thing.cpp:1:10: fatal error: a9_thing.h: No such file or directory\n", "/elsewhere/a9_thing.cpp");
+  EXPECT_NE(story.find("Only this one file is compiled"), std::string::npos) << story;
 }
 
 TEST(CompilerStory, KeepsTheErrorsAndNoFolderOfThisMachine) {

@@ -1,0 +1,270 @@
+// Where results go: a folder of the grader's own, or nobody's. What is trusted of an earlier run: what this machine's key signed.
+#include <cstdlib>
+#include <fstream>
+
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "framework/core/error.h"
+#include "framework/core/files.h"
+#include "framework/grading/digest.h"
+#include "framework/grading/grade_files.h"
+#include "framework/grading/machine_key.h"
+#include "framework/grading/output_folder.h"
+#include "framework/grading/scoring.h"
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST(Digest, IsSha256) {
+  // FIPS 180-4's own examples.
+  EXPECT_EQ(digest(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(digest("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+}
+
+TEST(Digest, AuthenticationIsHmacSha256) {
+  // RFC 4231, test case 2.
+  EXPECT_EQ(authentication_code("Jefe", "what do ya want for nothing?"), "5bdcc146bf60754e6a042426089575c75a003f089d2739839dec58b964ec3843");
+}
+
+TEST(Digest, OfAFileIsThatOfItsBytes) {
+  const PrivateFolder folder;
+  const std::string bytes(200'000, 'x');   // more than one piece
+  write_whole(folder.path() / "file", bytes);
+  EXPECT_EQ(digest_of_file(folder.path() / "file"), digest(bytes));
+  EXPECT_EQ(digest_of_file(folder.path() / "none"), "missing");
+}
+
+class Key : public ::testing::Test {
+ protected:
+  Key() { ::setenv("TUMBLE_GRADER_KEY", file().c_str(), 1); }
+  ~Key() override { ::unsetenv("TUMBLE_GRADER_KEY"); }
+  fs::path file() const { return folder_.path() / "state/grader.key"; }
+  PrivateFolder folder_;
+};
+
+TEST_F(Key, IsMadeOnFirstUseForThisUserAloneAndKept) {
+  const MachineKey first = machine_key(), second = machine_key();
+  EXPECT_EQ(first.bytes.size(), 32u);
+  EXPECT_NE(first.notice.find(file().string()), std::string::npos) << first.notice;
+  EXPECT_EQ(second.bytes, first.bytes);
+  EXPECT_EQ(second.notice, "");
+  struct stat about {};
+  ASSERT_EQ(::stat(file().c_str(), &about), 0);
+  EXPECT_EQ(about.st_mode & 07777, 0600u);
+}
+
+TEST_F(Key, ThatOthersCanReadIsReplacedAndSaidSo) {
+  const std::string first = machine_key().bytes;
+  ASSERT_EQ(::chmod(file().c_str(), 0644), 0);
+  const MachineKey second = machine_key();
+  EXPECT_NE(second.bytes, first);
+  EXPECT_NE(second.notice.find("can be read or written by others"), std::string::npos) << second.notice;
+}
+
+TEST_F(Key, ThatIsALinkOrNoKeyIsReplaced) {
+  fs::create_directories(file().parent_path());
+  fs::create_symlink("/etc/hostname", file());
+  EXPECT_NE(machine_key().notice.find("symbolic link"), std::string::npos);
+  EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(file())));
+  fs::remove(file());
+  write_whole(file(), "short");
+  fs::permissions(file(), fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_NE(machine_key().notice.find("is no key"), std::string::npos);
+}
+
+TEST_F(Key, ThatCannotBeKeptIsAnotherEachTime) {
+  ::setenv("TUMBLE_GRADER_KEY", "/proc/none/grader.key", 1);
+  const MachineKey first = machine_key(), second = machine_key();
+  EXPECT_NE(first.bytes, second.bytes);
+  EXPECT_NE(first.notice.find("TUMBLE_GRADER_KEY"), std::string::npos) << first.notice;
+}
+
+class Output : public ::testing::Test {
+ protected:
+  Output() { fs::create_directories(subs()); }
+  fs::path root() const { return folder_.path(); }
+  fs::path subs() const { return root() / "subs"; }
+  std::string refusal(const fs::path& out, const std::string& id = "a1") const {
+    try {
+      const OutputFolder folder(out, subs(), id);
+      return "";
+    } catch (const UserError& error) {
+      return error.what();
+    }
+  }
+  // A folder in which this grader has made `folder`, with the files of a submission.
+  void make(const fs::path& out, const std::string& folder) const {
+    OutputFolder output(out, subs(), "a1");
+    output.claim({folder});
+    for (const char* file : {"index.html", "results.json", "record.json", "media/pong.png"}) write_whole(out / folder / file, "x");
+  }
+  PrivateFolder folder_;
+};
+bool names(const std::string& refusal, const std::string& part) { return refusal.find(part) != std::string::npos; }
+
+TEST_F(Output, ThatOverlapsTheSubmissionsIsRefusedByAnyPath) {
+  fs::create_directories(subs() / "alice");
+  fs::create_directory_symlink(subs(), root() / "link");
+  fs::create_directory_symlink(root(), root() / "up");
+  for (const fs::path& out : {subs(), subs() / ".", subs() / "alice/..", root() / "link", root() / "up/subs"}) EXPECT_TRUE(names(refusal(out), "is the folder of the submissions itself")) << out;
+  for (const fs::path& out : {subs() / "out", subs() / "alice", root() / "link/out", root() / "up/subs/a/b"}) EXPECT_TRUE(names(refusal(out), "lies in the folder of the submissions")) << out;
+  for (const fs::path& out : {root(), root() / "up", root() / "subs/.."}) EXPECT_TRUE(names(refusal(out), "holds the folder of the submissions")) << out;
+  EXPECT_FALSE(fs::exists(subs() / "out"));
+  EXPECT_EQ(refusal(root() / "subs2"), "") << "a name that begins alike is another folder";
+}
+
+TEST_F(Output, FilesOfOthersAreNamedAndNothingIsTouched) {
+  write_whole(root() / "out/thesis.txt", "years of work");
+  EXPECT_TRUE(names(refusal(root() / "out"), "thesis.txt was not written by this grader")) << refusal(root() / "out");
+  EXPECT_EQ(std::distance(fs::directory_iterator(root() / "out"), {}), 1);
+}
+
+TEST_F(Output, FilesThatLookLikeOursAreNotWithoutTheManifest) {
+  for (const char* file : {"index.html", "alice/record.json", "alice/results.json", ".making-alice/x"}) {
+    fs::remove_all(root() / "out");
+    write_whole(root() / "out" / file, "x");
+    EXPECT_TRUE(names(refusal(root() / "out"), "was not written by this grader")) << file;
+  }
+}
+
+TEST_F(Output, FilesPutAmongOursAreForeign) {
+  for (const char* file : {"notes.txt", "bob/record.json", "alice/comments.txt", "alice/media/talk.pdf", "alice/deep/x.html", ".making-bob/x"}) {
+    fs::remove_all(root() / "out");
+    make(root() / "out", "alice");
+    EXPECT_EQ(refusal(root() / "out"), "") << file;
+    write_whole(root() / "out" / file, "x");
+    EXPECT_TRUE(names(refusal(root() / "out"), "was not written by this grader")) << file;
+    EXPECT_EQ(text_of(root() / "out" / file), "x");
+  }
+}
+
+TEST_F(Output, ALinkAmongOursIsForeign) {
+  make(root() / "out", "alice");
+  fs::remove_all(root() / "out/alice");
+  fs::create_directory_symlink(subs(), root() / "out/alice");
+  EXPECT_TRUE(names(refusal(root() / "out"), "was not written by this grader"));
+}
+
+TEST_F(Output, ResultsOfAnotherAssignmentStay) {
+  make(root() / "out", "alice");
+  EXPECT_TRUE(names(refusal(root() / "out", "a2"), "holds results of a1, not of a2")) << refusal(root() / "out", "a2");
+}
+
+TEST_F(Output, IsLockedForAsLongAsAProcessOfTheGradingLives) {
+  int ready[2];
+  ASSERT_EQ(::pipe(ready), 0);
+  const pid_t other = ::fork();
+  if (other == 0) {
+    const OutputFolder held(root() / "out", subs(), "a1");
+    const ssize_t told = ::write(ready[1], "x", 1);
+    ::pause();
+    ::_exit(static_cast<int>(told));
+  }
+  char byte = 0;
+  ASSERT_EQ(::read(ready[0], &byte, 1), 1);
+  EXPECT_TRUE(names(refusal(root() / "out"), "another grading writes there"));
+  ::kill(other, SIGKILL);
+  ::waitpid(other, nullptr, 0);
+  EXPECT_EQ(refusal(root() / "out"), "") << "a lock outlives its process";
+}
+
+TEST_F(Output, WhatAKilledRunLeftIsSwept) {
+  make(root() / "out", "alice");
+  for (const char* file : {".making-alice/alice/results.json", ".index.draft123.html", ".gradebook.draft9.csv", "..tumble-grade.draft5.json"}) write_whole(root() / "out" / file, "half");
+  EXPECT_EQ(refusal(root() / "out"), "");
+  for (const char* file : {".making-alice", ".index.draft123.html", ".gradebook.draft9.csv", "..tumble-grade.draft5.json"}) EXPECT_FALSE(fs::exists(root() / "out" / file)) << file;
+  EXPECT_TRUE(fs::exists(root() / "out/alice/record.json"));
+}
+
+// ---- Records -----------------------------------------------------------------------------------------------------------
+
+class Record : public ::testing::Test {
+ protected:
+  Record() {
+    kind.id = "a9";
+    kind.title = "Thing";
+    grade.name = "x\xff";   // no UTF-8
+    grade.folder = "x";
+    grade.state = GradeState::kJudged;
+    TestResult crashed;
+    crashed.test = "S.Open";
+    crashed.verdict = Verdict::kCrashed;
+    crashed.story = "SIGSEGV";
+    grade.tests = {{{"S.Open", 100.0, "basic", "Open one", false}, crashed, 0.0}};
+    grade.notes = {"a note"};
+    grade.changes = {{"S.Open", "Open one", "right, 100 of 100", "crashed, 0 of 100", "the submission changed"}};
+    grade.media = {{"pong", "Pong", "about", "pong.png", "pong.mp4", "", true, {{"gap", "all", INFINITY, 0.0, "m", false, "why", true, "at 1 s"}}, "pong.html"}};
+    grade.cost.scene = "A ball";
+    grade.cost.plots = {{"Error", {"step", "s", report::Scale::kLog}, {"error", "m", report::Scale::kLog}, {{"rk4", {1.0, 0.5}, {0.1, std::nan("")}, true}}, {{1e-9, "floor"}}, "caption"}};
+    grade.cost.tables = {{"counts", {{"name"}, {"n", true}}, {{{"a"}, {"1", "#x", report::Look::kBad}}}}};
+    add_up(grade);
+    write_grade(kind, grade, {"s", "j", "r", "p"}, place(), key);
+  }
+  fs::path place() const { return folder_.path() / "x"; }
+  EarlierRun read(const std::string& with) const { return read_earlier_run(place(), "a9", with); }
+  std::string record() const { return text_of(place() / "record.json"); }
+
+  PrivateFolder folder_;
+  modules::ModuleKind kind;
+  Grade grade;
+  const std::string key = std::string(32, 'k');
+};
+
+TEST_F(Record, IsReadAsItWasWritten) {
+  const EarlierRun run = read(key);
+  ASSERT_TRUE(run.record) << run.problem;
+  EXPECT_EQ(record_json(*run.record, key), record());
+  EXPECT_TRUE(std::isinf(run.record->grade.media[0].checks[0].value));
+  EXPECT_EQ(run.record->grade.cost.plots.at(0).curves.at(0).x, (std::vector<double>{1.0, 0.5}));
+  EXPECT_EQ(run.record->grade.cost.tables.at(0).rows.at(0).at(1).look, report::Look::kBad);
+}
+
+TEST_F(Record, CountsOnlyWithTheKeyThatSignedIt) {
+  const EarlierRun run = read(std::string(32, 'l'));
+  EXPECT_FALSE(run.record);
+  EXPECT_EQ(run.problem, "its record is not signed by this machine's key");
+}
+
+TEST_F(Record, WithAnyFieldChangedIsNotTrusted) {
+  const std::string whole = record();
+  const auto json = nlohmann::ordered_json::parse(whole);
+  for (const auto& [field, value] : json.items()) {
+    auto forged = json;
+    if (field == "mac") forged[field] = std::string(64, '0');
+    else if (value.is_number()) forged[field] = 100.0;
+    else if (value.is_string()) forged[field] = value.get<std::string>() + "x";
+    else forged.erase(field);
+    if (forged == json) continue;
+    write_whole(place() / "record.json", forged.dump());
+    EXPECT_FALSE(read(key).record) << field;
+  }
+  for (const std::string text : {std::string(), std::string("{"), std::string("[]"), std::string("{\"mac\": 1}"), whole.substr(0, whole.size() / 2)}) {
+    write_whole(place() / "record.json", text);
+    EXPECT_FALSE(read(key).record) << text;
+  }
+  write_whole(place() / "record.json", whole);
+  EXPECT_TRUE(read(key).record);
+}
+
+TEST_F(Record, OfOtherFilesOrAnotherFolderIsNotTrusted) {
+  fs::copy(place(), folder_.path() / "y");
+  EXPECT_FALSE(read_earlier_run(folder_.path() / "y", "a9", key).record) << "a copy under another student's name";
+  EXPECT_FALSE(read_earlier_run(place(), "a8", key).record);
+  write_whole(place() / "index.html", "all right");
+  EXPECT_EQ(read(key).problem, "its files are not those that were written");
+}
+
+}  // namespace
+}  // namespace tumble::grading

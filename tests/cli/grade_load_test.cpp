@@ -1,0 +1,55 @@
+// What a submission gets does not depend on what else the machine does; what it sleeps, it pays for.
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+
+#include "tests/cli/grading_fixture.h"
+
+namespace tumble::grading {
+namespace {
+
+// Programs that compute for nothing beside a test.
+class BusyLoops {
+ public:
+  explicit BusyLoops(int count) {
+    for (int i = 0; i < count; ++i) {
+      const pid_t child = ::fork();
+      if (child == 0) {
+        ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+        for (volatile unsigned spin = 0;; spin = spin + 1) {}
+      }
+      children_.push_back(child);
+    }
+  }
+  ~BusyLoops() {
+    for (const pid_t child : children_) ::kill(child, SIGKILL);
+    for (const pid_t child : children_) ::waitpid(child, nullptr, 0);
+  }
+
+ private:
+  std::vector<pid_t> children_;
+};
+
+TEST_F(Grading, BusyLoopsBesideItChangeNoByte) {
+  id = "a2";
+  put("reference/a2_integration.cpp", text_of(fs::path(TUMBLE_SOURCE_DIR) / "solutions_private/a2_integration/a2_integration.cpp"));
+  EXPECT_EQ(grade("calm").code, 0);
+  const BusyLoops loops(4);
+  const ProgramOutcome busy = grade("busy");
+  EXPECT_EQ(busy.code, 0) << busy.printed;
+  EXPECT_EQ(results("reference", "busy")["score"], 100.0) << busy.printed;
+  EXPECT_EQ(text_of(root / "busy/reference/results.json"), text_of(root / "calm/reference/results.json"));
+}
+
+TEST_F(Grading, SleepIsCharged) {
+  put("sleeper/a1_impulse.cpp", "#include <unistd.h>\n" + stub_that("::usleep(900'000);"));
+  const ProgramOutcome outcome = grade("out", {"--no-media", "--budget-s", "3"});
+  EXPECT_EQ(outcome.code, 0) << outcome.printed;
+  EXPECT_TRUE(says(outcome, "the time budget of 3 s was used up")) << outcome.printed;
+  const auto tests = results("sleeper")["tests"];
+  EXPECT_EQ(tests[0]["extra_data"]["verdict"], "not attempted") << "a test that answers is judged by its answer";
+  EXPECT_EQ(tests.back()["extra_data"]["verdict"], "out of time or memory");
+}
+
+}  // namespace
+}  // namespace tumble::grading

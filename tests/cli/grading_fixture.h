@@ -1,0 +1,75 @@
+/// The grader as a person runs it: folders of submissions made on the spot, and what it wrote.
+#pragma once
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "framework/core/files.h"
+#include "framework/grading/run_program.h"
+
+namespace tumble::grading {
+
+namespace fs = std::filesystem;
+
+inline const fs::path kProgram = fs::path(TUMBLE_BINARY_DIR) / "bin/tumble";
+inline const fs::path kStub = fs::path(TUMBLE_SOURCE_DIR) / "assignments/a1_impulse/a1_impulse.cpp";
+inline const fs::path kReference = fs::path(TUMBLE_SOURCE_DIR) / "solutions_private/a1_impulse/a1_impulse.cpp";
+
+inline std::string text_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// A stub whose ray test does something else than throw.
+inline std::string stub_that(const std::string& does) {
+  std::string text = text_of(kStub);
+  const auto at = text.find("throw NotImplemented(");
+  return text.insert(at, does + "\n  ");
+}
+
+inline bool says(const ProgramOutcome& outcome, const std::string& words) { return outcome.printed.find(words) != std::string::npos; }
+
+/// Folders in, in/NAME/..., and what is graded into out. The key of this machine is one of the test's own.
+class Grading : public ::testing::Test {
+ protected:
+  Grading() {
+    std::string name = (fs::temp_directory_path() / "tumble-grade-run-XXXXXX").string();
+    root = ::mkdtemp(name.data());
+    ::setenv("TUMBLE_ROOT", TUMBLE_SOURCE_DIR, 1);
+    ::setenv("TUMBLE_GRADER_KEY", (root / "grader.key").c_str(), 1);
+  }
+  ~Grading() override {
+    std::error_code ignored;
+    fs::remove_all(root, ignored);
+  }
+  void put(const std::string& file, const std::string& text) const { write_whole(root / "in" / file, text); }
+  std::vector<std::string> words_for(const std::string& out, const std::vector<std::string>& more) const {
+    std::vector<std::string> words = {kProgram.string(), "grade", id, (root / "in").string(), "--out", (root / out).string()};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+  ProgramOutcome grade(const std::string& out, const std::vector<std::string>& more = {"--no-media"}) const {
+    return run_program(words_for(out, more), Output::kCaptured, 580.0);
+  }
+  nlohmann::json results(const std::string& name, const std::string& out = "out") const { return nlohmann::json::parse(text_of(root / out / name / "results.json")); }
+  /// Every file but the times, by its path below root.
+  std::map<std::string, std::string> files(const std::string& out) const {
+    std::map<std::string, std::string> all;
+    for (const auto& entry : fs::recursive_directory_iterator(root / out))
+      if (entry.is_regular_file() && entry.path().filename() != "times.json") all[entry.path().lexically_relative(root / out).string()] = text_of(entry.path());
+    return all;
+  }
+  fs::path root;
+  std::string id = "a1";
+};
+
+}  // namespace tumble::grading
