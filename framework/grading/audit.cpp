@@ -72,7 +72,7 @@ void run_one(const Course& course, const std::string& id, const Candidate& candi
   Judgement judgement = judge_module(course, id, object);
   fs::remove(object);
   for (const TestResult& test : judgement.results)  // a fault of ours is not kept: the next audit tries again
-    if (test.verdict == Verdict::kGraderFault) judgement.fault = test.test + ": " + test.story;
+    if (!is_final_verdict(test.verdict)) judgement.fault = test.test + ": " + test.story;
   if (!judgement.fault.empty()) write_whole(kept.refused, judgement.fault);
   else make_whole(kept.results, [&](const fs::path& draft) { write_results(draft.string(), judgement.results); });
 }
@@ -92,7 +92,7 @@ AuditResult read_result(const Rubric& rubric, const Candidate& candidate, const 
   for (const ScoredTest& test : score_tests(rubric, {tests, ""})) {
     result.score += test.score;
     result.possible += test.item.points;
-    if (test.result.verdict == Verdict::kGraderFault) result.fault = test.item.test + ": " + test.result.story;
+    if (!is_final_verdict(test.result.verdict)) result.fault = test.item.test + ": " + test.result.story;
   }
   const std::string keyword = lower(candidate.keyword);
   for (const TestResult& test : tests) {

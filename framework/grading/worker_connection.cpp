@@ -211,6 +211,7 @@ double WorkerConnection::own_s(const Account& from, const Account& to) const {
 
 WorkerConnection::TimePoint WorkerConnection::look_at_time(TimePoint passed) {
   Call& call = calls_.back();
+  if (call.look > passed && call.look > Channel::Clock::now()) return call.look;   // looked at before, and not due again
   last_ = account();
   const double call_left_s = call_limit(call.function) - own_s(call.start, last_), session_left_s = options_.session_own_s - own_s(session_, last_);
   const double left_s = std::min(call_left_s, session_left_s);

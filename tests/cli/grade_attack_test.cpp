@@ -42,7 +42,7 @@ TEST_F(GradeAttack, ResultsPlantedAmongSubmissionsDestroyNothingAndEarnNothing) 
   put("alice/results.json", R"({"score": 100})");
   put(".tumble-grade.json", R"({"assignment": "a1", "folders": ["alice", "bob"]})");
   const auto before = files("in");
-  for (const std::string out : {"in", "in/.", "in/alice", "in/../in", ".", "in/new"}) {
+  for (const std::string out : {"in", "in/.", "in/alice", "in/../in", "in/new"}) {
     const ProgramOutcome outcome = grade(out);
     EXPECT_EQ(outcome.code, 2) << out << ": " << outcome.printed;
     EXPECT_TRUE(says(outcome, "folder of the submissions")) << outcome.printed;

@@ -127,7 +127,7 @@ TEST_F(Output, ThatOverlapsTheSubmissionsIsRefusedByAnyPath) {
 
 TEST_F(Output, FilesOfOthersAreNamedAndNothingIsTouched) {
   write_whole(root() / "out/thesis.txt", "years of work");
-  EXPECT_TRUE(names(refusal(root() / "out"), "thesis.txt was not written by this grader")) << refusal(root() / "out");
+  EXPECT_TRUE(names(refusal(root() / "out"), "thesis.txt: was not written by this grader")) << refusal(root() / "out");
   EXPECT_EQ(std::distance(fs::directory_iterator(root() / "out"), {}), 1);
 }
 
