@@ -33,11 +33,13 @@ struct Graded {
 };
 enum { kReference, kStarter, kFlawed };
 
-std::vector<grading::Submission> submissions_of(const Context& context, const modules::ModuleKind& kind) {
+grading::FoundSubmissions submissions_of(const Context& context, const modules::ModuleKind& kind) {
   const fs::path file = kind.folder + ".cpp", ours = context.root / kPrivate / kind.folder;
-  return {{"reference", ours / file, "", {}},
-          {"starter", context.root / "assignments" / kind.folder / file, "", {}},
-          {"flawed", ours / "flawed_submission" / file, "", {}}};
+  return {ours,
+          {{"reference", ours / file, "", {}},
+           {"starter", context.root / "assignments" / kind.folder / file, "", {}},
+           {"flawed", ours / "flawed_submission" / file, "", {}}},
+          {}};
 }
 
 void tell_progress(const std::string& id, const grading::GradeProgress& progress) {
