@@ -40,7 +40,8 @@ TEST_F(GradeSizes, OfStatesAndDerivativesOfA2) {
   EXPECT_EQ(outcome.code, 0) << outcome.printed;
   expect_wrong({{"Rk4Step.", "the derivative was asked with 0 numbers"}, {"EulerStep.", "euler_step answered with 0 numbers, 2 are needed"}, {"RigidBodyDerivative.", "rigid_body_derivative answered with 1000000 numbers, 13 are needed"}});
   int right = 0;
-  for (const auto& test : results("ann")["tests"]) right += test["extra_data"]["verdict"] == "right";
+  const auto all = results("ann");   // named: a range over a part of a temporary would outlive it
+  for (const auto& test : all["tests"]) right += test["extra_data"]["verdict"] == "right";
   EXPECT_GT(right, 10);
 }
 
