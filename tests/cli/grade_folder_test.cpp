@@ -46,6 +46,21 @@ TEST(Digest, OfAFileIsThatOfItsBytes) {
   EXPECT_EQ(digest_of_file(folder.path() / "none"), "missing");
 }
 
+TEST(Folders, OfTheDeadAreSweptAndOfTheLivingNot) {
+  const PrivateFolder where;
+  const pid_t gone = ::fork();
+  if (gone == 0) ::_exit(0);
+  ::waitpid(gone, nullptr, 0);
+  const std::string dead = std::to_string(gone);
+  for (const std::string& name : {"t-" + dead + "-a", "t-" + dead + "-held", "t-" + std::to_string(::getpid()) + "-a", "t-" + dead, "u-" + dead + "-a"}) write_whole(where.path() / name / "file", "x");
+  fs::create_directory_symlink(where.path() / ("u-" + dead + "-a"), where.path() / ("t-" + dead + "-link"));
+  const int held = hold_folder(where.path() / ("t-" + dead + "-held"));   // as by a process of another container, whose number is nobody's here
+  sweep_folders_of_the_dead(where.path(), "t-");
+  EXPECT_FALSE(fs::exists(where.path() / ("t-" + dead + "-a")));
+  for (const std::string& name : {"t-" + dead + "-held", "t-" + std::to_string(::getpid()) + "-a", "t-" + dead, "u-" + dead + "-a"}) EXPECT_TRUE(fs::exists(where.path() / name / "file")) << name;
+  ::close(held);
+}
+
 class Key : public ::testing::Test {
  protected:
   Key() { ::setenv("TUMBLE_GRADER_KEY", file().c_str(), 1); }
