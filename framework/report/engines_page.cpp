@@ -38,7 +38,7 @@ std::uint64_t count_of(const EngineRow& row, const std::string& name) {
 const std::vector<std::pair<std::string, std::string>>& compared_counts() {
   static const std::vector<std::pair<std::string, std::string>> counts = {
       {"integrations", "Integrations"}, {"undone_integrations", "Undone"},        {"pair_checks", "Pair checks"}, {"root_findings", "Root findings"}, {"rollbacks", "Rollbacks"},
-      {"anti_messages", "Anti-messages"}, {"states_kept", "States kept"}, {"discontinuities", "Discontinuities"}};
+      {"anti_messages", "Anti-messages"}, {"states_kept", "States kept"}, {"discontinuities", "Discontinuities"}, {"sliding_changes", "Sliding begins or ends (RD alone reports it)"}};
   return counts;
 }
 
@@ -128,7 +128,8 @@ void write_engines_page(const std::string& title, const std::string& about, cons
     else page.paragraph(what + (row.counts.empty() ? "not run: " : "stopped ") + row.stopped_by, row.counts.empty() ? Look::kMuted : Look::kBad);
   }
   page.paragraph("An integration takes one body from one time to another; undone ones were taken back. A pair check looks for the first impact of one pair in an interval. w h is the number of "
-                 "discontinuities a body and largest step: where n w h is above 2, engines whose bodies all stop at each discontinuity begin to pay for every other body.", Look::kMuted);
+                 "discontinuities a body and largest step: where n w h is above 2, engines whose bodies all stop at each discontinuity begin to pay for every other body. A change between sliding and sticking or rolling is a discontinuity "
+                 "in the lecture; here it is not in w h, because no engine ends a step of all bodies for it: the contact problem of one island finds it. Retroactive detection counts it apart.", Look::kMuted);
   if (!ladder.empty()) {
     page.heading("Against the number of bodies");
     for (const Plot& plot : plots_against_n(ladder)) page.plot(plot);
