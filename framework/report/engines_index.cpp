@@ -177,6 +177,24 @@ Table table_of_scenes(const std::vector<EnginesScene>& scenes) {
   return table;
 }
 
+Table table_of_mean_steps(const std::vector<EnginesScene>& scenes) {
+  Table table;
+  table.caption = "The mean step against w: simulated time a body over integrations, those undone too. RD and CA stop all bodies at each discontinuity of any, so n w is what shortens their steps; TW stops those who meet.";
+  table.columns = {{"Scene"}, {"Bodies n", true}, {"w [1/s]", true}, {"n w [1/s]", true}, {"Largest step [ms]", true}, {"RD [ms]", true}, {"CA [ms]", true}, {"TW [ms]", true}};
+  std::vector<const EnginesScene*> sorted;
+  for (const EnginesScene& scene : scenes)
+    if (scene.problem.empty() && !scene.rows.empty()) sorted.push_back(&scene);
+  std::stable_sort(sorted.begin(), sorted.end(), [](const EnginesScene* a, const EnginesScene* b) { return discontinuities_a_body(a->rows) < discontinuities_a_body(b->rows); });
+  const auto step = [](const EngineRow* row) { return Cell{row == nullptr ? "\u2013" : fmt::format("{:.3g}", 1e3 * mean_step_s(*row))}; };
+  for (const EnginesScene* scene : sorted) {
+    const EngineRow& first = scene->rows.front();
+    const double w = discontinuities_a_body(scene->rows);
+    table.rows.push_back({{scene->name, "#" + scene->name}, {std::to_string(first.bodies)}, {fmt::format("{:.3g}", w)}, {fmt::format("{:.3g}", first.bodies * w)}, {fmt::format("{:.3g}", 1e3 * first.step_s)},
+                          step(row_of(scene->rows, "rd")), step(row_of(scene->rows, "ca")), step(row_of(scene->rows, "tw"))});
+  }
+  return table;
+}
+
 Table table_of_ladder(const std::vector<std::vector<EngineRow>>& ladder) {
   Table table;
   table.caption = "Average integration step: simulated time a body over integrations. Work: integrations a body and simulated second. Undone work counts.";
@@ -221,6 +239,7 @@ void write_engines_index(const EnginesIndex& index, const std::filesystem::path&
   add_engines(page);
   page.heading("All scenes", 2, "all");
   page.table(table_of_scenes(index.scenes));
+  page.table(table_of_mean_steps(index.scenes));
   page.paragraph(std::string("Times are CPU times of this machine in this run; their ratios are what matters. ") + (index.is_full ? "Sizes are those of the paper." : "Sizes are small, so that the page takes little time; ./tumble engines --full runs those of the paper."), Look::kMuted);
   if (!index.ladder.empty()) add_slides(page, index);
   if (!index.ghosts.empty() || !index.pong.empty()) add_pong(page, index);

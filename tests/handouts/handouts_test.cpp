@@ -112,8 +112,8 @@ TEST(Handouts, NameTestsAndScenesThatExist) {
     for (const std::string& test : all(a.handout, "`([A-Z]\\w+\\.[A-Z]\\w+)`"))
       EXPECT_TRUE(exists(test.substr(0, test.find('.')), test.substr(test.find('.') + 1))) << a.handout_file() << " names " << test;
     for (const std::string& suite : all(a.header, "(\\w+)\\.\\*")) EXPECT_TRUE(exists(suite, "\\w+")) << a.folder << ".h names " << suite << ".*";
-    for (const std::string& scene_name : all(a.handout, "\\./tumble (?:run|poke) ([a-z0-9_]+)")) {
-      bool found = scene::sized_scene_named(scene_name) != nullptr;
+    for (const std::string& scene_name : all(a.handout, "\\./tumble (?:run|poke) ([a-z0-9_/]+(?:\\.3ds)?)")) {
+      bool found = scene::sized_scene_named(scene_name) != nullptr || (scene_name.ends_with(".3ds") && (fs::exists(kRoot / scene_name) || fs::exists(kRoot / "models" / scene_name)));
       for (const Assignment& other : assignments()) found = found || fs::exists(kRoot / "assignments" / other.folder / "scenes" / (scene_name + ".json"));
       EXPECT_TRUE(found) << a.handout_file() << " runs the scene " << scene_name;
     }

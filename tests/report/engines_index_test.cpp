@@ -79,6 +79,22 @@ TEST(PageOfEngines, SaysWhoseTheModelIsAndWhyTheSlidesDiffer) {
     EXPECT_NE(page.find(words), std::string::npos) << words;
 }
 
+TEST(TablesOfEngines, PutTheMeanStepBesideW) {
+  EnginesScene often, rare;
+  often.name = "often";
+  often.rows = ladder().front();
+  rare = often;
+  rare.name = "rare";
+  for (EngineRow& row : rare.rows) row.w_h = 0.1;
+  const Table table = table_of_mean_steps({often, rare});
+  ASSERT_EQ(table.rows.size(), 2U);
+  EXPECT_EQ(table.rows[0][0].text, "rare");   // w ascending
+  EXPECT_EQ(table.rows[0][2].text, "3");      // 0.1 over 1/30 s
+  EXPECT_EQ(table.rows[1][3].text, "600");    // 100 bodies, 6 1/s each
+  EXPECT_EQ(table.rows[1][5].text, "2");      // ms: 100 bodies, 2 s, 100,000 integrations
+  EXPECT_EQ(table.rows[1][7].text, "50");     // 4,000 integrations
+}
+
 TEST(TablesOfEngines, CountStepsAndWork) {
   const Table table = table_of_ladder(ladder());
   ASSERT_EQ(table.rows.size(), 5U);
