@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The pictures of the handouts, drawn by the framework with the reference solutions. The same tree gives the same bytes.
+# The figures of the handouts: pictures and plots of runs with the reference solutions, and the drawings of handouts/drawings. The same tree gives the same bytes.
 # Usage: make_figures.sh [FOLDER]     FOLDER: where they are put; default: handouts/figures, which is what the repository shows
 set -euo pipefail
 folder=$(realpath -m "${1:-$(dirname "${BASH_SOURCE[0]}")/figures}")
@@ -17,6 +17,15 @@ done
 # A plot of a page: its own folder, since a page has several.
 pages=$(mktemp -d)
 trap 'rm -rf "$pages"' EXIT
+# Drawings (handouts/drawings), twice as large as they stand on a page.
+build=${TUMBLE_BUILD:-build}
+cmake --build "$build" --target draw_handouts >&2
+mkdir "$pages/drawings"
+"$build/bin/draw_handouts" "$pages/drawings"
+for drawing in "$pages"/drawings/*.svg; do
+  rsvg-convert --zoom 2 "$drawing" -o "$folder/$(basename "$drawing" .svg).png"
+done
+
 plot_of() { # PAGE PLOT FIGURE
   ./tumble plots "$pages/$1/index.html" --out "$pages/$1/plots"
   cp "$pages/$1/plots/$2.png" "$folder/$3.png"

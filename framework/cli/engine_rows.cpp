@@ -261,7 +261,7 @@ void print_rows(const std::vector<EngineRow>& rows) {
     if (row.stopped_by.empty()) quickest = std::min(quickest, row.cpu_s);
   fmt::print("{:<8}", "engine");
   for (const auto& [name, heading] : report::compared_counts()) fmt::print(" {:>15}", heading);
-  fmt::print(" {:>8} {:>8}  {}\n", "w h", "time", "agreement");
+  fmt::print(" {:>8} {:>9} {:>13} {:>8}  {}\n", "w h", "w [1/s]", "mean step[ms]", "time", "agreement");
   for (const EngineRow& row : rows) {
     fmt::print("{:<8}", row.label);
     if (row.counts.empty()) {
@@ -269,7 +269,7 @@ void print_rows(const std::vector<EngineRow>& rows) {
       continue;
     }
     for (const auto& [name, heading] : report::compared_counts()) fmt::print(" {:>15}", report::count_of(row, name));
-    fmt::print(" {:>8.3g} {:>7.2f}x  {}\n", row.w_h, row.cpu_s / quickest, row.stopped_by.empty() ? row.agreement : "STOPPED " + row.stopped_by);
+    fmt::print(" {:>8.3g} {:>9.3g} {:>13.3g} {:>7.2f}x  {}\n", row.w_h, row.w_h / row.step_s, 1e3 * report::mean_step_s(row), row.cpu_s / quickest, row.stopped_by.empty() ? row.agreement : "STOPPED " + row.stopped_by);
   }
 }
 

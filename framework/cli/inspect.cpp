@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "framework/cli/scene_run.h"
 #include "framework/cli/verb.h"
 #include "framework/geometry/load_3ds.h"
 #include "framework/geometry/mass_properties.h"
@@ -36,6 +37,14 @@ struct Paint {
   std::string bad(const std::string& text) const { return (*this)("1;31", text); }
   std::string odd(const std::string& text) const { return (*this)("33", text); }
 };
+
+/// A word that a shell takes as one.
+std::string quoted(const std::string& word) {
+  if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+=:@%,") == word.npos && !word.empty()) return word;
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
 
 double clean(double value, double scale) { return std::abs(value) <= kShownAsZero * scale ? 0.0 : value; }
 
@@ -118,18 +127,16 @@ Json to_json(const LoadedObject& object, double density) {
   return json;
 }
 
-/// A path, or the name of a file of models/ with or without its ending.
-std::filesystem::path find_file(const Context& context, const std::string& word) {
-  if (std::filesystem::is_regular_file(word)) return word;
-  for (const std::string& name : {word, word + ".3ds"}) {
-    const auto path = context.root / "models" / name;
-    if (std::filesystem::is_regular_file(path)) return path.lexically_proximate(std::filesystem::current_path());
-  }
-  return word;  // the loader says that it is not there
+/// What to type next: of a model that is a solid, to see it move.
+void print_next(const InspectWords& words, const std::filesystem::path& path) {
+  const std::string scale = words.metres_per_unit == 1.0 ? "" : fmt::format(" --scale {:g}", words.metres_per_unit);
+  const std::string density = words.density == kWater ? "" : fmt::format(" --density {:g}", words.density);
+  const std::string rest = quoted(path.string()) + scale + density;
+  fmt::print("\nsee it move:  tumble run {} --html model.html     (--drop: onto a floor)\npush it:      tumble poke {} --pixel 320,240 --force 0,1,0 --duration-s 0.2 --html poke.html\n", rest, rest);
 }
 
 ExitCode inspect(const Context& context, const InspectWords& words) {
-  const auto path = find_file(context, words.file);
+  const auto path = find_model_file(context, words.file);
   const LoadedFile file = load_3ds(path, {words.metres_per_unit});
   std::size_t closed = 0;
   for (const LoadedObject& object : file.objects) closed += object.report.is_closed() ? 1 : 0;
@@ -146,6 +153,7 @@ ExitCode inspect(const Context& context, const InspectWords& words) {
                closed == n ? "" : paint.bad(n == 1 ? ", not a solid" : fmt::format(", {} of them not solid", n - closed)),
                words.metres_per_unit, words.density);
     for (const LoadedObject& object : file.objects) print_object(object, words.density, paint);
+    if (closed == n) print_next(words, path);
   }
   return closed == file.objects.size() ? ExitCode::kFine : ExitCode::kCheckFailed;
 }

@@ -142,7 +142,7 @@ void replace_checks(const Context& context, scene::Scene& scene, const scene::Po
 void poke(Context& context, const PokeWords& words) {
   if ((words.pixel.empty() ? 0 : 1) + (words.ray.empty() ? 0 : 1) + (words.point.empty() ? 0 : 1) != 1)
     throw UserError("poke", "expected exactly one of --pixel, --ray, --point", "For example --pixel 200,250.");
-  scene::Scene scene = find_scene(context, words.scene);
+  scene::Scene scene = scene_of_words(context, words, false);   // a model rests until it is pushed
   const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(words.modules, context.registry));
   if (!chosen.laws.wrench_of_point_force) throw UserError("--modules", "no module here turns a point force into force and torque", "Build a1, or name one: --modules a1=PATH.cpp");
 
@@ -174,7 +174,7 @@ void add_poke(CLI::App& app, Context& context) {
   verb.option("--force", words->force, "FX,FY,FZ [N], world, constant while it lasts").required().type_name("FORCE");
   verb.option("--duration-s", words->push_s, "How long the force lasts [s]").required().positive();
   verb.footer("The face is found through a tree of boxes over the model, then asked of your own ray function, whose answer counts.\n"
-               "Example: tumble poke poked_box --pixel 200,250 --force 0,60,0 --duration-s 0.2 --video poke.mp4");
+               "Example: tumble poke poked_box --pixel 200,250 --force 0,60,0 --duration-s 0.2 --video poke.mp4\n         tumble poke t_handle.3ds --pixel 320,240 --force 0,40,0 --duration-s 0.2 --html poke.html");
   verb.runs([&context, words] { poke(context, *words); });
 }
 

@@ -88,7 +88,8 @@ void print_summary(const scene::Scene& scene, const Laws& laws, const Trajectory
   for (const auto& [name, count] : count_events(run)) events += fmt::format("{}{} {}", events.empty() ? "" : " · ", name, count);
   fmt::print("  events   {}\n", events.empty() ? "none" : events);
   print_counts(run.counters.counts);
-  fmt::print("  w h      {:.3g}: discontinuities a body and largest step\n", engines::discontinuities_a_body_and_step(run));
+  fmt::print("  w h      {:.3g}: discontinuities a body and largest step{}\n", engines::discontinuities_a_body_and_step(run),
+             run.counters.counts.contains("sliding_changes") ? "; without the sliding changes above, for which no engine ends a step of all bodies" : "");
   for (const auto& notice : run.counters.notices) fmt::print("  note     {}\n", notice);
   if (!run.stopped_by.empty()) fmt::print("  STOPPED  {}\n", run.stopped_by);
   fmt::print("{}", judgement_table(checks));
@@ -163,13 +164,16 @@ scene::Scene judged_part(scene::Scene scene, const RunWords& words) {
 }  // namespace
 
 void add_run_words(Verb& verb, RunWords& words) {
-  verb.option("scene", words.scene, "A scene file, or the bare name of one under assignments/*/scenes").required().type_name("SCENE");
+  verb.option("scene", words.scene, "A scene file, the bare name of one under assignments/*/scenes, or a .3ds file").required().type_name("SCENE");
   verb.option("--modules", words.modules, "Whose laws: student, reference, library, or a submission (PATH.cpp, PATH.so, a folder: in the sandbox); for all or each: a1=student,a2=library").type_name("WORDS");
   verb.option("--engine", words.engine, "rd: retroactive detection with fixed step; ca: conservative advancement; tw: timewarp; ordered: event by event, the reference; default: the scene's own, or rd").type_name("WORD");
   verb.option("--propagator", words.propagator, "laws: bodies go by the laws' integration (rd's default); auto: in closed form where nothing but gravity acts").type_name("WORD");
   verb.option("--threads", words.threads, "Of --engine tw: how many; the run is the same with any number. Laws must keep nothing from one call to the next").shows_default();
   verb.option("--most-states", words.most_states, "Of --engine tw: how many states of a body it keeps at most, 8 or more; 0: as many as it takes").shows_default();
   verb.option("--n", words.n, "Size of a scene whose size is a parameter: such as atoms, pong, cars, avalanche").positive();
+  verb.option("--scale", words.scale, "Of a .3ds file: length of its unit [m]: 0.001 for millimetres; default 1").positive();
+  verb.option("--density", words.density, "Of a .3ds file: density [kg/m^3]; default 1000").positive();
+  verb.flag("--drop", words.drop, "Of a .3ds file: drop it on a floor; without this word it is free in space");
   verb.option("--step-s", words.step_s, "Step of the integrator [s] instead of the scene's").positive();
   verb.option("--png", words.png, "Write one picture").type_name("FILE");
   verb.option("--at-s", words.at_s, "Instant of the picture [s]; default the end").not_negative();
@@ -202,13 +206,35 @@ Vector3d parse_vector(const std::string& flag, const std::string& text) {
   return v;
 }
 
-scene::Scene find_scene(const Context& context, const std::string& word, std::optional<int> n) {
+fs::path find_model_file(const Context& context, const std::string& word) {
+  if (fs::is_regular_file(word)) return word;
+  for (const std::string& name : {word, word + ".3ds"}) {
+    const auto path = context.root / "models" / name;
+    if (fs::is_regular_file(path)) return path.lexically_proximate(fs::current_path());
+  }
+  return word;  // the loader says that it is not there
+}
+
+scene::Scene scene_of_words(const Context& context, const RunWords& words, bool turns) {
+  if ((words.scale || words.density || words.drop) && !scene::names_model(words.scene))
+    throw UserError(words.scale ? "--scale" : words.density ? "--density" : "--drop", "'" + words.scene + "' is a scene, which says its sizes and masses itself",
+                    "These words are about a .3ds file: tumble run t_handle.3ds --drop");
+  scene::ModelSceneOptions model;
+  if (words.scale) model.metres_per_unit = *words.scale;
+  if (words.density) model.density_kg_m3 = *words.density;
+  model.is_dropped = words.drop;
+  model.turns = turns;
+  return find_scene(context, words.scene, words.n, model);
+}
+
+scene::Scene find_scene(const Context& context, const std::string& word, std::optional<int> n, const scene::ModelSceneOptions& model) {
   if (const scene::SizedScene* sized = scene::sized_scene_named(word); sized != nullptr && !fs::is_regular_file(word)) {
     scene::Scene made = scene::make_sized_scene(word, n.value_or(sized->default_n));
     made.file = context.root / "models" / word;   // models are looked for beside it
     return made;
   }
   if (n) throw UserError("--n " + std::to_string(*n), "'" + word + "' has one size", "Sizes are parameters of " + sized_names() + ".");
+  if (scene::names_model(word)) return scene::make_model_scene(find_model_file(context, word), model);
   if (fs::is_regular_file(word)) return scene::load_scene(word);
   if (word.ends_with(".json") || word.find('/') != std::string::npos) throw UserError(word, "there is no such file", "Check the path, or give a scene's bare name: " + listing(context));
   std::vector<fs::path> beginning;   // a name may be cut short where that is clear

@@ -13,7 +13,7 @@ using ScalarFunction = std::function<double(double t)>;
 enum class RootStatus {
   kConverged,    // the bracket is as small as asked, or the function is exactly zero
   kNoSignChange, // f does not go from + (or 0) to - (or 0): no impact seen, or overlap from the start. Nothing was searched
-  kNotConverged, // the iteration limit was reached first; `time` is the best so far
+  kNotConverged, // the search ended with a larger bracket: f was NaN, or a method's own iteration limit was reached; `time` is the best so far
 };
 
 /// What a root finder found, and how good it is.

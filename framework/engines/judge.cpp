@@ -184,6 +184,7 @@ const std::map<std::string, Kind>& kinds() {
       {"gap", {gap, "m", Right::kAtLeastMinus}},
       {"final_position", {final_position, "m"}},
       {"final_velocity", {final_velocity, "m/s"}},
+      {"centre_of_mass", {centre_of_mass, "m"}},
       {"impact_times", {impact_times, "s"}},
       {"event_count", {event_count, ""}},
       {"restitution_law", {restitution_law, ""}},

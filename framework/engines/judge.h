@@ -8,6 +8,7 @@
 /// | gap              | smallest gap of any frame [m]                                         | >= -tolerance              |
 /// | final_position   | distance of body's centre from `expected` at `at_s` [m]               | <= tolerance               |
 /// | final_velocity   | the same for its velocity [m/s]                                       | <= tolerance               |
+/// | centre_of_mass   | distance of the common centre of mass of `bodies`, or of all that move, from `expected` at `at_s` [m] | <= tolerance |
 /// | impact_times     | largest error of the first impacts of `body` and `other` [s]          | <= tolerance               |
 /// | event_count      | |collisions - expected|, of `body` and `other` where named [-]        | <= tolerance               |
 /// | restitution_law  | largest |v_after + e v_before| over |v_before|, of all collisions [-] | <= tolerance               |

@@ -51,6 +51,7 @@ Finding drift(const CheckSpec&, const Scene&, const Trajectory&);
 Finding tilt(const CheckSpec&, const Scene&, const Trajectory&);
 Finding at_rest(const CheckSpec&, const Scene&, const Trajectory&);
 Finding distance_travelled(const CheckSpec&, const Scene&, const Trajectory&);
+Finding centre_of_mass(const CheckSpec&, const Scene&, const Trajectory&);
 Finding angle_at(const CheckSpec&, const Scene&, const Trajectory&);
 Finding stands(const CheckSpec&, const Scene&, const Trajectory&);
 Finding falls(const CheckSpec&, const Scene&, const Trajectory&);

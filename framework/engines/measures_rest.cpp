@@ -94,6 +94,25 @@ Finding distance_travelled(const CheckSpec& check, const Scene&, const Trajector
   return finding;
 }
 
+Finding centre_of_mass(const CheckSpec& check, const Scene& scene, const Trajectory& run) {
+  // x = sum m_i x_i / sum m_i, over the bodies that can move
+  const Frame* frame = frame_at(check.at_s, run);
+  if (frame == nullptr) return no_frame(check.at_s);
+  const World world = build_world(scene);
+  Vector3d moment = Vector3d::Zero();
+  double mass = 0.0;
+  for (const std::size_t i : bodies_of(check, run)) {
+    if (run.bodies[i].immovable) return {kInfinity, run.bodies[i].name + " has no finite mass"};
+    moment += world.bodies[i].inertia.mass * frame->poses[i].com_world;
+    mass += world.bodies[i].inertia.mass;
+  }
+  if (mass == 0.0) return {kInfinity, kNobody};
+  const Vector3d found = moment / mass;
+  Finding finding;
+  finding.worst((found - Eigen::Map<const Vector3d>(check.expected.data())).norm(), fmt::format("({:.9g}, {:.9g}, {:.9g}) {}", found.x(), found.y(), found.z(), at_time(frame->time)));
+  return finding;
+}
+
 Finding angle_at(const CheckSpec& check, const Scene&, const Trajectory& run) {
   const Frame* end = frame_at(check.at_s, run);
   if (end == nullptr) return no_frame(check.at_s);

@@ -103,6 +103,8 @@ bool DiscontinuityCount::is_first_at_its_instant(const Event& event) {
 void DiscontinuityCount::event(const Event& event) {
   const bool is_one = event.kind != EventKind::kSleep && event.kind != EventKind::kWake && event.kind != EventKind::kStick && event.kind != EventKind::kSlide;
   const bool holds_from_the_start = event.kind == EventKind::kContact && event.time == 0.0;
+  const bool is_change_of_sliding = event.kind == EventKind::kStick || event.kind == EventKind::kSlide;
+  if (is_change_of_sliding && event.time > 0.0) ++sliding_changes_;   // at 0 it holds from the start
   if (is_one && !holds_from_the_start && is_first_at_its_instant(event)) ++count_;
   sink_.event(event);
 }
@@ -110,6 +112,7 @@ void DiscontinuityCount::event(const Event& event) {
 void DiscontinuityCount::end(const Counters& counters, const std::string& stopped_by) {
   Counters with_count = counters;
   with_count.counts["discontinuities"] = count_;
+  if (sliding_changes_ > 0) with_count.counts["sliding_changes"] = sliding_changes_;
   sink_.end(with_count, stopped_by);
 }
 

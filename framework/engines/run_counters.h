@@ -41,9 +41,11 @@ struct RunCounters {
 };
 
 /// Counts discontinuities where every engine's events pass, so that all engines count the same: "discontinuities" among the counts that end()
-/// is given. One is an instant at which something happens to a body or a pair: a blow, however many impulses it takes, a contact that begins
-/// or opens, a force that is switched, a callback, rest. What lies in contact when a run begins is none, nor are sleep, sticking and sliding,
-/// at which no engine stops.
+/// is given. One is an instant at which something happens to a body or a pair: an impact, however many impulses it takes, a contact that begins
+/// or opens, a force that is switched, a callback, rest. What lies in contact when a run begins is none, nor is sleep.
+/// A change between sliding and sticking or rolling is a discontinuity, too, by the lecture's definition (it changes the equations of motion).
+/// It is counted apart, as "sliding_changes": no engine here ends a step of all bodies for it (the contact problem of one island finds it), and
+/// only retroactive detection reports it, so one sum of both would differ from engine to engine in the same motion.
 class DiscontinuityCount final : public TrajectorySink {
  public:
   explicit DiscontinuityCount(TrajectorySink& sink) : sink_(sink) {}
@@ -58,7 +60,7 @@ class DiscontinuityCount final : public TrajectorySink {
   bool is_first_at_its_instant(const Event& event);
 
   TrajectorySink& sink_;
-  std::uint64_t count_ = 0;
+  std::uint64_t count_ = 0, sliding_changes_ = 0;
   double instant_ = kUnset;                                // of the event before [s]
   std::pair<int, int> pair_;                               // the first at that instant,
   std::set<std::pair<int, int>> others_;                   // and those after it
@@ -68,7 +70,7 @@ class DiscontinuityCount final : public TrajectorySink {
 /// Where n w h is above 2, engines whose bodies all stop at each discontinuity begin to pay for it.
 /// @param movable_bodies  n;  @param simulated_s  T [s];  @param step_s  h, the largest step [s]
 /// @return 0 where nothing moves or no time passes [-]
-/// Source: model of cost on the course's slides about B. Mirtich, "Timewarp Rigid Body Simulation", SIGGRAPH 2000.
+/// Source: our model of cost (report/engines_model.h); what a discontinuity is: B. Mirtich, "Timewarp Rigid Body Simulation", SIGGRAPH 2000.
 double discontinuities_a_body_and_step(std::uint64_t discontinuities, int movable_bodies, double simulated_s, double step_s);
 
 /// The same of a run that has ended: as far as its last frame.

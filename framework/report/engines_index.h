@@ -30,6 +30,8 @@ struct EnginesIndex {
 
 /// A line a scene: size, w h, time of each engine against timewarp, agreement.
 Table table_of_scenes(const std::vector<EnginesScene>& scenes);
+/// A line a scene, w ascending: how far each engine takes a body at once, on the average.
+Table table_of_mean_steps(const std::vector<EnginesScene>& scenes);
 /// The slides' total times beside those of the ladder, where sizes are the same.
 Table table_of_slides(const std::vector<std::vector<EngineRow>>& ladder);
 /// One row a size and engine of the ladder: average integration step, work a body, total time.

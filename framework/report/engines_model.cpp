@@ -36,7 +36,7 @@ Plot plot_of_model(const std::vector<std::vector<EngineRow>>& ladder) {
   plot.title = "The model of cost, and what was counted";
   plot.x = {"bodies", "", Scale::kLog};
   plot.y = {"integrations a simulated second", "1/s", Scale::kLog};
-  plot.caption = "With marks: counted. Without: the model at each size's own number of discontinuities a body and second.";
+  plot.caption = "With marks: counted. Without: our model at each size's own number of discontinuities a body and second.";
   std::map<std::string, std::pair<std::size_t, std::size_t>> places;
   for (const auto& rows : ladder) {
     const double w = discontinuities_a_body(rows);

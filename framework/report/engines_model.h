@@ -1,10 +1,11 @@
-/// What integrations the three kinds of engine should need, from how often something happens to a body: TIMEWARP's model of cost.
+/// What integrations the three kinds of engine should need, from how often something happens to a body: this course's model of cost.
 ///
 ///   RD: n lambda (1 + p) / p      CA: n (1/h + 3 lambda)      TW: n (1/h + 3 w)      in integrations a simulated second
 ///   lambda = n w / 2 (discontinuities a second, of all bodies),  p = 1 - exp(-lambda h)
 /// n bodies, h the largest step [s], w discontinuities a body and second [1/s]; a discontinuity is of two bodies.
-/// Source: the course's slides on B. Mirtich, Timewarp Rigid Body Simulation, SIGGRAPH 2000. The model knows no closed forms: an engine that
-/// takes a free body to its next discontinuity in one go stays below it.
+/// Source: ours, neither the slides' nor the paper's; derived in handouts/a4_timewarp.md#cost from the three engines as B. Mirtich, Timewarp
+/// Rigid Body Simulation, SIGGRAPH 2000, describes them. The model knows no closed forms: an engine that takes a free body to its next
+/// discontinuity in one integration stays below it.
 #pragma once
 
 #include <optional>

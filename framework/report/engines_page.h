@@ -32,6 +32,9 @@ struct EngineRow {
 /// The counts that are compared, in order: name in Counters, heading.
 const std::vector<std::pair<std::string, std::string>>& compared_counts();
 
+/// How far one integration takes one body on the average: simulated time a body over integrations, those undone too. [s]
+double mean_step_s(const EngineRow& row);
+
 /// Nothing counted: 0.
 std::uint64_t count_of(const EngineRow& row, const std::string& name);
 

@@ -21,6 +21,7 @@ const std::map<std::string, CheckNeeds>& check_needs() {
       {"gap", {}},
       {"final_position", {.body = true, .expected = 3}},
       {"final_velocity", {.body = true, .expected = 3}},
+      {"centre_of_mass", {.expected = 3}},
       {"impact_times", {.body = true, .other = true, .expected = kAny}},
       {"event_count", {.expected = 1}},
       {"restitution_law", {}},

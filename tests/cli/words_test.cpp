@@ -311,6 +311,43 @@ TEST_F(CommandLine, ASchedulerIsTriedOnScenesOfOtherAssignments) {
 }
 #endif
 
+#ifdef TUMBLE_HAS_REFERENCE
+TEST_F(CommandLine, RunAndPokeTakeAModelAtOnce) {
+  const Said free = type("run t_handle.3ds --modules reference"), dropped = type("run wedge.3ds --drop --scale 0.5 --modules reference");
+  EXPECT_EQ(free.code, 0) << free.out << free.err;
+  EXPECT_TRUE(holds(free.out, "free in space")) << free.out;
+  EXPECT_TRUE(holds(free.out, "angular_momentum")) << free.out;
+  EXPECT_EQ(dropped.code, 0) << dropped.out << dropped.err;
+  EXPECT_TRUE(holds(dropped.out, "dropped on a floor")) << dropped.out;
+  const Said poked = type("poke t_handle.3ds --pixel 320,240 --force 0,40,0 --duration-s 0.2 --modules reference");
+  EXPECT_EQ(poked.code, 0) << poked.out << poked.err;
+  EXPECT_TRUE(holds(poked.out, "hit body")) << poked.out;
+  EXPECT_EQ(type("explain t_handle.3ds").code, 0);
+}
+#endif
+
+TEST_F(CommandLine, AModelThatIsNotClosedIsRefusedInTheLoadersWords) {
+  for (const std::string verb : {"run", "explain"}) {
+    const Said said = type(verb + " '" TUMBLE_SOURCE_DIR "/models/broken/missing_face.3ds'");
+    EXPECT_EQ(said.code, 2) << verb;
+    EXPECT_TRUE(holds(said.err, "open edge")) << said.err;
+    EXPECT_FALSE(holds(said.err, "JSON")) << said.err;
+  }
+  EXPECT_EQ(type("run nowhere.3ds").code, 2);
+}
+
+TEST_F(CommandLine, WordsAboutAModelAreRefusedOfAScene) {
+  const Said said = type("run t_handle --scale 2");
+  EXPECT_EQ(said.code, 2);
+  EXPECT_TRUE(holds(said.err, "is a scene")) << said.err;
+}
+
+TEST_F(CommandLine, InspectSaysHowToSeeAModelMove) {
+  const Said said = type("inspect t_handle --scale 0.5");
+  EXPECT_TRUE(holds(said.out, "tumble run") && holds(said.out, "t_handle.3ds --scale 0.5")) << said.out;
+  EXPECT_FALSE(holds(type("inspect '" TUMBLE_SOURCE_DIR "/models/broken/missing_face.3ds'").out, "tumble run"));
+}
+
 // What students get: the stub, which is not attempted and no error of anybody.
 TEST_F(CommandLine, AStubIsNotAttempted) {
   const Said said = type("run ball_against_wall --modules a1=" TUMBLE_BINARY_DIR "/modules/a1_student.so");

@@ -322,13 +322,15 @@ TEST(DiscontinuitiesABodyAndStep, CountABlowOnceHoweverManyImpulsesItTakesAndNot
   count.event(event(0.5, EventKind::kCollision, 0, 2));
   count.event(event(0.5, EventKind::kCollision, 2, 3));
   count.event(event(0.5, EventKind::kContact, 0, 2));     // it does not rebound: the same discontinuity
-  count.event(event(0.75, EventKind::kStick, 0, 2));      // nobody stops for it
+  count.event(event(0.0, EventKind::kSlide, 0, 1));       // slides from the start
+  count.event(event(0.75, EventKind::kStick, 0, 2));      // counted apart: no engine ends a step of all bodies for it
   count.event(event(0.75, EventKind::kBreak, 0, 2));
   count.event(event(0.8, EventKind::kCollision, 0, 2));   // again, later
   count.event(event(0.9, EventKind::kSleep, 0, -1));
   count.end({}, "");
-  EXPECT_EQ(recorder.trajectory().events.size(), 10U);    // all are passed on
+  EXPECT_EQ(recorder.trajectory().events.size(), 11U);    // all are passed on
   EXPECT_EQ(recorder.trajectory().counters.counts.at("discontinuities"), 4U);
+  EXPECT_EQ(recorder.trajectory().counters.counts.at("sliding_changes"), 1U);
 }
 
 // A point has no size to measure a grid by; nothing else is in its way but a floor.

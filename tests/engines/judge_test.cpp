@@ -179,6 +179,17 @@ TEST(Judge, AtRestNothingMovesOrTurns) {
   EXPECT_FALSE(judged(made, since).passed);
 }
 
+TEST(Judge, ACommonCentreOfMassIsWeighed) {
+  HandMade made([](double t) { return at({3 * t, 0, 0}); }, stays({9, 0, 0}));   // of equal masses
+  CheckSpec centre = check_of("centre_of_mass", 0.01);
+  centre.expected = {6, 0, 0};
+  expect_value(made, centre, 0.0);
+  centre.at_s = 0.5;
+  expect_value(made, centre, 0.75);
+  centre.bodies = {"first", "second"};
+  expect_value(made, centre, 0.75);
+}
+
 TEST(Judge, AWayAndAnAngleAreCountedFromTheStart) {
   HandMade made([](double t) { return at({1 + 3 * t, 4 * t, 0}, turned(7.0 * t, Vector3d::UnitZ())); }, stays({9, 0, 0}));
   CheckSpec way = check_of("distance_travelled", 0.01);

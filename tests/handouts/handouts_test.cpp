@@ -1,15 +1,19 @@
 // Handouts are true: what they cite exists, what cites them is answered, and the points they print are the rubric's.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <numbers>
 #include <regex>
 #include <set>
 #include <string>
 #include <vector>
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "framework/core/math.h"
 #include "framework/grading/rubric.h"
 #include "framework/scene/sized_scenes.h"
 
@@ -101,19 +105,57 @@ TEST(Handouts, LinkToWhatExists) {
 
 TEST(Handouts, NameTestsAndScenesThatExist) {
   for (const Assignment& a : assignments()) {
-    const std::string tests = sources_below({"tests/" + a.folder});
+    const std::string tests = sources_below({"tests/" + a.folder, "tests/handouts"});
     const auto exists = [&tests](const std::string& suite, const std::string& name) {
       return std::regex_search(tests, std::regex("TEST(_F)?\\(" + suite + ", " + name + "\\)"));
     };
     for (const std::string& test : all(a.handout, "`([A-Z]\\w+\\.[A-Z]\\w+)`"))
       EXPECT_TRUE(exists(test.substr(0, test.find('.')), test.substr(test.find('.') + 1))) << a.handout_file() << " names " << test;
     for (const std::string& suite : all(a.header, "(\\w+)\\.\\*")) EXPECT_TRUE(exists(suite, "\\w+")) << a.folder << ".h names " << suite << ".*";
-    for (const std::string& scene_name : all(a.handout, "\\./tumble (?:run|poke) ([a-z0-9_]+)")) {
-      bool found = scene::sized_scene_named(scene_name) != nullptr;
+    for (const std::string& scene_name : all(a.handout, "\\./tumble (?:run|poke) ([a-z0-9_/]+(?:\\.3ds)?)")) {
+      bool found = scene::sized_scene_named(scene_name) != nullptr || (scene_name.ends_with(".3ds") && (fs::exists(kRoot / scene_name) || fs::exists(kRoot / "models" / scene_name)));
       for (const Assignment& other : assignments()) found = found || fs::exists(kRoot / "assignments" / other.folder / "scenes" / (scene_name + ".json"));
       EXPECT_TRUE(found) << a.handout_file() << " runs the scene " << scene_name;
     }
   }
+}
+
+// handouts/a2_integration.md#euler-example: of the lecture's two triples only the x axes agree, 90 degrees apart about them; in the order of (A2.8) the y axes.
+TEST(Handouts, EulerAnglesOfTheLectureShareOneAxis) {
+  constexpr double kDegree = std::numbers::pi / 180.0, kRounding = 1e-15;
+  const Vector3d x = Vector3d::UnitX(), y = Vector3d::UnitY(), z = Vector3d::UnitZ();
+  const auto product = [&](const Vector3d& first, const Vector3d& second, const Vector3d& third, double a, double b, double c) -> Matrix3d {
+    using Turn = Eigen::AngleAxisd;
+    return (Turn(c * kDegree, third) * Turn(b * kDegree, second) * Turn(a * kDegree, first)).toRotationMatrix();
+  };
+  const auto same_axes = [&](const Matrix3d& one, const Matrix3d& other) {
+    std::string same;
+    for (int i = 0; i < 3; ++i)
+      if ((one.col(i) - other.col(i)).norm() < 4 * kRounding) same += "xyz"[i];
+    return same;
+  };
+  const Matrix3d one = product(z, x, y, 90, 45, 45), other = product(z, x, y, 45, 0, -45);
+  EXPECT_EQ(same_axes(one, other), "x");
+  EXPECT_LT((one.col(0) - Vector3d(0.5, std::sqrt(0.5), 0.5)).norm(), 4 * kRounding);
+  EXPECT_NEAR(Eigen::AngleAxisd(Matrix3d(one.transpose() * other)).angle(), 90 * kDegree, 1e-14);
+  EXPECT_EQ(same_axes(product(x, y, z, 90, 45, 45), product(x, y, z, 45, 0, -45)), "y");
+}
+
+// handouts/a2_integration.md, the second slip of the lecture's slide: k4 at y3, where k3 was taken.
+TEST(Handouts, TheLastSlopeAtTheThirdPointCostsThreeOrders) {
+  const auto slope = [](double y) { return 6.0 * y - 0.007 * y * y; };
+  const auto reached = [&](int steps) {
+    const double h = 0.5 / steps;
+    double y = 10.0;
+    for (int i = 0; i < steps; ++i) {
+      const double k1 = slope(y), k2 = slope(y + 0.5 * h * k1), y3 = y + 0.5 * h * k2, k3 = slope(y3), k4 = slope(y3);
+      y += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+    }
+    return y;
+  };
+  EXPECT_NEAR(reached(1), 104.6, 0.05);   // as printed
+  const double exact = 6.0 / 0.007 / (1.0 + (6.0 / 0.07 - 1.0) * std::exp(-3.0));
+  EXPECT_NEAR(std::log2((reached(128) - exact) / (reached(256) - exact)), 1.0, 0.02);   // the observed order at steps of 1/512
 }
 
 double points_of(const grading::Rubric& rubric, const std::string& level) {

@@ -68,6 +68,33 @@ TEST(TablesOfEngines, PutTheSlidesFiguresWhereSizesAreTheSame) {
   EXPECT_EQ(table.rows[1][5].text, "5.00");
 }
 
+// The page says whose each figure is, and why 100 atoms differ from the slides'.
+TEST(PageOfEngines, SaysWhoseTheModelIsAndWhyTheSlidesDiffer) {
+  const PrivateFolder folder;
+  write_engines_index({{}, ladder(), {{row_of("tw", "TW", 1, 0.001, 31)}}, {}, false, "tumble engines"}, folder.path() / "index.html");
+  std::ifstream file(folder.path() / "index.html");
+  const std::string page{std::istreambuf_iterator<char>(file), {}};
+  EXPECT_EQ(page.find("the slides count integrations"), std::string::npos);
+  for (const char* words : {"This model is ours", "the sizes are ours", "Why RD / TW of 100 atoms", "100 atoms: RD / TW 30.0 in time, 25.0 in integrations, 13 by our model"})
+    EXPECT_NE(page.find(words), std::string::npos) << words;
+}
+
+TEST(TablesOfEngines, PutTheMeanStepBesideW) {
+  EnginesScene often, rare;
+  often.name = "often";
+  often.rows = ladder().front();
+  rare = often;
+  rare.name = "rare";
+  for (EngineRow& row : rare.rows) row.w_h = 0.1;
+  const Table table = table_of_mean_steps({often, rare});
+  ASSERT_EQ(table.rows.size(), 2U);
+  EXPECT_EQ(table.rows[0][0].text, "rare");   // w ascending
+  EXPECT_EQ(table.rows[0][2].text, "3");      // 0.1 over 1/30 s
+  EXPECT_EQ(table.rows[1][3].text, "600");    // 100 bodies, 6 1/s each
+  EXPECT_EQ(table.rows[1][5].text, "2");      // ms: 100 bodies, 2 s, 100,000 integrations
+  EXPECT_EQ(table.rows[1][7].text, "50");     // 4,000 integrations
+}
+
 TEST(TablesOfEngines, CountStepsAndWork) {
   const Table table = table_of_ladder(ladder());
   ASSERT_EQ(table.rows.size(), 5U);

@@ -105,6 +105,13 @@ TEST(DemoScenes, ContactForcesThatAreNotThereAreJudgedWrong) {
   for (const std::string name : {"stack_of_10", "beam_on_two_supports"}) EXPECT_TRUE(fails(demo_scene(name), laws)) << name;
 }
 
+// Without friction it is the student's forces that hold the box: too strong, they throw it up again and again.
+TEST(DemoScenes, ContactForcesThatAreHalfTooLargeAreJudgedWrong) {
+  Laws laws = right_laws();
+  laws.contact_forces = [right = laws.contact_forces](const MatrixXd& A, const VectorXd& b) { return VectorXd(1.5 * right(A, b)); };
+  EXPECT_TRUE(fails(demo_scene("drop_without_friction"), laws));
+}
+
 TEST(DemoScenes, AForceThatCountsTwiceIsJudgedWrongWhereAllStandsStill) {
   Laws laws = right_laws();
   laws.state_derivative = [right = laws.state_derivative](const RigidBodyState& state, const Inertia& inertia, const Wrench& wrench) {
@@ -151,6 +158,19 @@ TEST(DemoScenes, AForgottenRestLengthIsJudgedWrong) {
   for (const std::string name : {"hung_by_spring", "newtons_cradle_springs", "newtons_cradle_springs_2", "newtons_cradle_springs_3"}) EXPECT_TRUE(fails(demo_scene(name), laws)) << name;
 }
 
+// A rod that pulls one of its two bodies only: the common centre of mass leaves its parabola.
+TEST(DemoScenes, ARodThatPullsOneEndOnlyIsJudgedWrong) {
+  Laws laws = right_laws();
+  laws.rod_row = [right = laws.rod_row](const Body& a, const Vector3d& point_a, const Body& b, const Vector3d& point_b, double length) {
+    ConstraintRow row = right(a, point_a, b, point_b, length);
+    row.jacobian_b *= 0.5;
+    return row;
+  };
+  const Trajectory result = run(demo_scene("joined_by_rods"), laws);
+  const auto wrong = failures(demo_scene("joined_by_rods"), result);
+  EXPECT_TRUE(!result.stopped_by.empty() || std::find(wrong.begin(), wrong.end(), "centre_of_mass") != wrong.end());
+}
+
 TEST(DemoScenes, ARodWithoutItsVelocityProductIsJudgedWrong) {
   Laws laws = right_laws();
   laws.rod_row = [right = laws.rod_row](const Body& a, const Vector3d& point_a, const Body& b, const Vector3d& point_b, double length) {
@@ -158,7 +178,7 @@ TEST(DemoScenes, ARodWithoutItsVelocityProductIsJudgedWrong) {
     row.velocity_product = 0.0;
     return row;
   };
-  for (const std::string name : {"hung_by_rod", "double_pendulum", "chain_8", "newtons_cradle_2"}) EXPECT_TRUE(fails(demo_scene(name), laws)) << name;
+  for (const std::string name : {"hung_by_rod", "double_pendulum", "chain_8", "newtons_cradle_2", "joined_by_rods"}) EXPECT_TRUE(fails(demo_scene(name), laws)) << name;
 }
 
 TEST(DemoScenes, ASolverThatIsOffByAMillionthIsJudgedWrong) {
