@@ -75,12 +75,12 @@ void FrameRecorder::push(MovingWorld& moving, double t) {
   frame.momentum_world = sums.momentum_world;
   frame.angular_momentum_world = sums.angular_momentum_world;
   frame.smallest_gap = smallest_gap_.measure(moving, states);
-  LinkForces forces = moving.measure_links(states, t);
+  if (built::kContact && contacts_) frame.contacts = contacts_->forces();
+  if (built::kSleep && sleepers_) sleepers_->append_forces(frame.contacts);
+  LinkForces forces = moving.measure_links(states, t, frame.contacts);
   frame.spring_forces = std::move(forces.springs);
   frame.rod_tensions = std::move(forces.rods);
   frame.joint_forces = std::move(forces.joints);
-  if (built::kContact && contacts_) frame.contacts = contacts_->forces();
-  if (built::kSleep && sleepers_) sleepers_->append_forces(frame.contacts);
   sink_.frame(frame);
 }
 
