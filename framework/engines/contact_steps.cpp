@@ -391,6 +391,7 @@ bool LastingContacts::give_paths(const Group& group, const std::vector<Touch>& t
   for (const int body : group.bodies) {
     if (landing) set_straight_path(body, ends[body]);
     else moving_.set_path(body, moving_.state(body), ends[body], SmoothPath::Momenta::kEven);
+    moving_.refuse_whirl(body);
   }
   return apart;
 }

@@ -346,6 +346,7 @@ void LastingContacts::open_gaps(std::vector<RigidBodyState>& states, double t) {
   for (const Group& group : groups_) {
     // A path that leads straight to the step's end has the velocity of that end all along. Momenta that change evenly show no energy that
     // neither end has.
+    if (!group.linked.empty()) continue;   // momenta of these are on their rods and joints
     for (const int body : group.bodies) {
       const RigidBodyState &start = moving_.state(body), &end = moving_.path_end(body);
       states[body].momentum_world = left * start.momentum_world + (1 - left) * end.momentum_world;

@@ -95,6 +95,14 @@ bool MovingWorld::keep_constraints(const std::vector<Event>& events) {
   return any;
 }
 
+void MovingWorld::close_links(std::vector<RigidBodyState>& states, double t) {
+  if (!world_.stabilisation || world_.stabilisation->kind != scene::StabilisationKind::kProjection) return;
+  const RunCounters before = counters_;   // what is looked at must not show in what a run counts
+  for (LinkedBodies& group : linked_)
+    if (!asleep(group.bodies().front())) group.project(states, t);
+  counters_ = before;
+}
+
 void MovingWorld::watch_links(double h) {
   for (LinkedBodies& group : linked_)
     if (!asleep(group.bodies().front())) group.watch(states_, time_, h);

@@ -84,6 +84,9 @@ class MovingWorld {
   double look();
   /// What springs, rods and joints pull with in these states. @param contacts  lasting ones, which weigh on them
   LinkForces measure_links(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts);
+  /// For a picture within a step: rods and joints of projected groups hold there too, where the path between the step's ends is off by its fourth power.
+  /// Changes nothing but these states.
+  void close_links(std::vector<RigidBodyState>& states, double t);
   /// At the end of a step of length h: notes rods and joints that have come apart.
   void watch_links(double h);
   /// After impacts or callbacks: velocities of the bodies joined to those that were hit or called back onto the constraints. @return whether there are any

@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kRuin = 1e3;            // factor over a run by which a method may lengthen a swing: more is refused
 constexpr double kSeen = 1.1;            // more is told
+constexpr double kJerk = 0.1;            // of the longest step at which a swing does not grow: links that come taut set it going, and it has to be followed, not only outlived
 constexpr double kRunaway = 10.0;        // times all the energy there was to begin with: more has run away
 constexpr double kRoundingOfRest = 1e-6; // of the energy a world at rest has by its height: what steps may leave of it
 
@@ -210,9 +211,10 @@ std::optional<double> tell_of_unstable_links(const World& world, const std::vect
   LinkLoads loads = largest_link_loads(world);
   for (std::size_t k = 0; k < std::min(tensions.size(), loads.rods.size()); ++k) loads.rods[k] = std::max(loads.rods[k], std::abs(tensions[k]));
   std::optional<double> named;
-  for (const std::optional<StepLimit>& limit : {judge_rods(world, loads.rods, laws, steps.step), judge_joints(world, loads, laws, steps.step)}) {
+  for (std::optional<StepLimit> limit : {judge_rods(world, loads.rods, laws, steps.step), judge_joints(world, loads, laws, steps.step)}) {
     // A method that lengthens every swing is told of by what it does to energy.
     if (!limit || !(limit->largest_step > 0) || !(growth_over(steps, limit->amplification) > std::log(kRuin))) continue;
+    if (loads.by_falling) limit->largest_step *= kJerk;
     notices.push_back(words_of(*limit, laws, steps.step) + smaller_steps(*limit));
     named = std::min(named.value_or(limit->largest_step), limit->largest_step);
   }

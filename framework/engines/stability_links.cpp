@@ -17,6 +17,8 @@
 namespace tumble::engines {
 namespace {
 
+constexpr double kTaut = 0.999;   // of a line's length: what starts nearer to where it hangs than this falls before its links pull
+
 /// A rod or a joint, as far as both carry.
 struct Carrier {
   Anchor a, b;
@@ -37,7 +39,10 @@ class Hanging {
 
   /// The load of each carrier: the weight below it, and what holds the way round of all that energy can set going there:
   ///   T = M g + 2 (E_kinetic + E_fall) / R
-  /// with R how far down the line the mass below lies from where it all hangs.
+  /// with R how far down the line the mass below lies from where it all hangs. Where the links hang loose first, or the fall pulls harder than the
+  /// weight, they come taut with a jerk: what falls is turned round by a light body that takes all its energy and passes the line at  sqrt(M / m)  times its
+  /// speed, so that the second part is so much larger.
+  bool by_falling() const { return by_falling_; }
   void find_loads() {
     hang();
     const double gravity = world_.gravity_world ? world_.gravity_world->norm() : 0.0;
@@ -56,7 +61,10 @@ class Hanging {
         mass[static_cast<std::size_t>(hung_[i].above)] += mass[i];
         moment[static_cast<std::size_t>(hung_[i].above)] += moment[i];
       }
-      *carriers_[hung_[i].carrier].load = mass[i] * gravity + 2.0 * energy * mass[i] / std::max(moment[i], std::numeric_limits<double>::min());
+      const double weight = mass[i] * gravity, swing = 2.0 * energy * mass[i] / std::max(moment[i], std::numeric_limits<double>::min());
+      const bool is_jerked = swing > weight || hung_[i].distance < kTaut * hung_[i].depth;
+      by_falling_ = by_falling_ || is_jerked;
+      *carriers_[hung_[i].carrier].load = weight + swing * (is_jerked ? std::sqrt(mass[i] / lighter_of(*body)) : 1.0);
     }
   }
 
@@ -64,10 +72,17 @@ class Hanging {
   struct Hung {
     double depth = std::numeric_limits<double>::infinity();   // of its centre, along the carriers [m]
     double down = 0.0;       // of its centre now, below where it all hangs, along gravity [m]
+    double distance = 0.0;   // of its centre now, from there [m]
     int above = -1;
     std::size_t carrier = 0;
   };
 
+  // Of the body and the one that it hangs on. [kg]
+  double lighter_of(int body) const {
+    const Hung& hung = hung_[static_cast<std::size_t>(body)];
+    const double own = world_.bodies[static_cast<std::size_t>(body)].inertia.mass;
+    return hung.above < 0 ? own : std::min(own, world_.bodies[static_cast<std::size_t>(hung.above)].inertia.mass);
+  }
   bool is_movable(const Anchor& anchor) const { return anchor.body >= 0 && !world_.bodies[static_cast<std::size_t>(anchor.body)].immovable(); }
   Vector3d down() const { return world_.gravity_world && !world_.gravity_world->isZero(0.0) ? world_.gravity_world->normalized() : Vector3d(Vector3d::UnitZ()); }
 
@@ -78,7 +93,8 @@ class Hanging {
       Hung& hung = hung_[static_cast<std::size_t>(to.body)];
       const double reached = depth + carriers_[k].length + to.point_body.norm();
       if (!(reached < hung.depth)) return;
-      hung = {reached, down().dot(states_[static_cast<std::size_t>(to.body)].com_world - root), above, k};
+      const Vector3d from_root = states_[static_cast<std::size_t>(to.body)].com_world - root;
+      hung = {reached, down().dot(from_root), from_root.norm(), above, k};
       next.emplace(reached, to.body);
     };
     std::vector<Vector3d> roots(world_.bodies.size(), Vector3d::Zero());
@@ -113,6 +129,7 @@ class Hanging {
   std::vector<Hung> hung_;
   std::vector<std::vector<std::size_t>> ends_on_;   // by body
   std::vector<int> order_;                          // from where they hang outwards
+  bool by_falling_ = false;
 };
 
 }  // namespace
@@ -122,7 +139,10 @@ LinkLoads largest_link_loads(const World& world) {
   std::vector<Carrier> carriers;
   for (std::size_t k = 0; k < world.rods.size(); ++k) carriers.push_back({world.rods[k].a, world.rods[k].b, world.rods[k].length, &loads.rods[k]});
   for (std::size_t k = 0; k < world.joints.size(); ++k) carriers.push_back({world.joints[k].a, world.joints[k].b, 0.0, &loads.joints[k]});
-  if (!carriers.empty()) Hanging(world, carriers).find_loads();
+  if (carriers.empty()) return loads;
+  Hanging hanging(world, carriers);
+  hanging.find_loads();
+  loads.by_falling = hanging.by_falling();
   return loads;
 }
 

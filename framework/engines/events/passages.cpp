@@ -148,8 +148,7 @@ ProcessState Passages::state_at(int number, double t) {
 std::vector<RigidBodyState> Passages::shown_at(int number, double t) {
   const ProcessStep& step = step_at(number, t);
   const ProcessState state = state_at(number, t);
-  const bool is_within = t > step.from.time && t < step.end, touches = !step.forces.empty() || !state.lasting.empty() || !state.near.empty();
-  return is_within && touches ? at(number).machine->world->drawn_apart(state).states : state.states;
+  return t > step.from.time && t < step.end ? at(number).machine->world->shown(state).states : state.states;
 }
 
 collision::Motion Passages::motion_in_step(int number, int body, double low) {

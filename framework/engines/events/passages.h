@@ -57,7 +57,7 @@ class Passages {
   /// Everything at an instant. @pre the passage has not ended before it
   ProcessState state_at(int passage, double t);
   RigidBodyState body_state(int passage, int body, double t);
-  /// The states of all members, by place among them, as a picture shows them: what lies on each other does not overlap within a step either.
+  /// The states of all members, by place among them, as a picture shows them: what lies on each other does not overlap within a step either, and links hold.
   std::vector<RigidBodyState> shown_at(int passage, double t);
   collision::MotionState motion_at(int passage, int body, double t);
   /// The step that holds t.

@@ -163,11 +163,11 @@ ProcessState ProcessWorld::on_constraints(const ProcessState& state) {
   return after;
 }
 
-ProcessState ProcessWorld::drawn_apart(const ProcessState& state) {
-  if (!has_contacts()) return state;
+ProcessState ProcessWorld::shown(const ProcessState& state) {
   load(state);
   std::vector<RigidBodyState> all = moving_.states();
-  contacts_->draw_apart(near_pairs(std::nullopt), all, state.time);
+  moving_.close_links(all, state.time);
+  if (has_contacts()) contacts_->draw_apart(near_pairs(std::nullopt), all, state.time);
   ProcessState after = state;
   for (std::size_t k = 0; k < members_.size(); ++k) after.states[k] = all[static_cast<std::size_t>(part_.members[k])];
   return after;

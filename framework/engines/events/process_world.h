@@ -77,9 +77,9 @@ class ProcessWorld {
   /// A state with the velocities that rods and joints allow.
   ProcessState on_constraints(const ProcessState& state);
 
-  /// A state within a step, for a picture: contacts keep members apart at a step's ends, and on the path between them one that turns dips in by what
-  /// is of second order in the step. Here that is taken back.
-  ProcessState drawn_apart(const ProcessState& state);
+  /// A state within a step, for a picture: contacts keep members apart at a step's ends, and links hold there; on the path between them a body that turns
+  /// dips in by what is of second order in the step, and links open by its fourth power. Here that is taken back.
+  ProcessState shown(const ProcessState& state);
 
   /// What happens at one instant.
   struct Change {
