@@ -26,6 +26,10 @@ constexpr double kMoves = 10.0;             // rest speeds: what holds a group t
 constexpr double kSlips = 1e-4;           // of the rest speed: slower than this nothing slides, though friction may be all there can be
 constexpr double kTurns = 1e-5;           // rad: where nothing turns more in a step, forces of its start do for the whole; errors of energy go with this
 constexpr int kCurvedRounds = 2;          // where a curved surface touches at the step's end hangs on how it turns in it: a second look leaves a thirtieth of the error
+constexpr std::size_t kContactsOfAHeap = 60;   // in_step: so many are asked for by a few sweeps
+// Of the heap's speed: what its sweeps leave at the worst of hundreds of contacts (0.28 in the bowl of 200 models, whose energy and gaps are right) its shell
+// and the next step take up. Where as much is left as there was, no answer was found at all.
+constexpr double kHeapSolved = 1.0;
 constexpr int kFrameRounds = 6;           // of drawing apart what a frame within a step shows
 
 }  // namespace
@@ -316,8 +320,10 @@ std::optional<double> LastingContacts::take_step(const Group& group, double h) {
 }
 
 void LastingContacts::note_unsolved(const Group& group, const ContactSolution& solution, double h) {
-  if (solution.converged || solution.residual <= kContactSolved) return;
-  unsolved_.note(RunWatch::Kind::kContactUnsolved, names_of(moving_.world(), group.bodies), {solution.residual, kContactSolved, moving_.time(), h});
+  const bool is_heap = group.pile || (rules_.plastic_impacts == scene::PlasticImpacts::kInStep && solution.impulses_world.size() > kContactsOfAHeap);
+  const double allowed = is_heap ? kHeapSolved : kContactSolved;
+  if (solution.converged || solution.residual <= allowed) return;
+  unsolved_.note(RunWatch::Kind::kContactUnsolved, names_of(moving_.world(), group.bodies), {solution.residual, allowed, moving_.time(), h});
 }
 
 void LastingContacts::require_numbers(const Group& group, const ContactSolution& solution) const {

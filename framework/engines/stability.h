@@ -66,7 +66,7 @@ std::optional<StepLimit> judge_rods(const World& world, const std::vector<double
 /// What rods and joints of a world carry, by its lists. [N]
 struct LinkLoads {
   std::vector<double> rods, joints;
-  bool by_falling = false;         // some carries more by what has fallen than by what hangs on it: it comes taut with a jerk
+  bool by_falling = false;         // some hangs loose first, or carries more by what has fallen than by what hangs on it: it comes taut with a jerk
 };
 
 /// About the most that each will carry in a run by gravity and what moves at the start: the weight below it, and what turns that round where it has
