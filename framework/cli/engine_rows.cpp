@@ -18,6 +18,7 @@
 #include "framework/engines/run_counters.h"
 #include "framework/engines/time_parts.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
+#include "framework/trajectory/fault_words.h"
 
 namespace tumble::cli {
 namespace {
@@ -98,6 +99,7 @@ std::string agreement_of(const Trajectory& reference, const Trajectory& run) {
 /// Of the run that is shown: its energy, and how far it came. Counts and time are those of a run without pictures.
 void keep(EngineRow& row, const Trajectory& run) {
   row.stopped_by = run.stopped_by;
+  row.faults = in_words(run.counters.faults);
   row.step_s = run.info.step_s;
   row.simulated_s = run.frames.empty() ? 0.0 : run.frames.back().time;
   row.w_h = engines::discontinuities_a_body_and_step(run);
@@ -270,6 +272,7 @@ void print_rows(const std::vector<EngineRow>& rows) {
     }
     for (const auto& [name, heading] : report::compared_counts()) fmt::print(" {:>15}", report::count_of(row, name));
     fmt::print(" {:>8.3g} {:>9.3g} {:>13.3g} {:>7.2f}x  {}\n", row.w_h, row.w_h / row.step_s, 1e3 * report::mean_step_s(row), row.cpu_s / quickest, row.stopped_by.empty() ? row.agreement : "STOPPED " + row.stopped_by);
+    if (!row.faults.empty()) fmt::print("{:<8} NOT TO BE TRUSTED: {}\n", "", row.faults);
   }
 }
 

@@ -53,7 +53,7 @@ void run_engines(Context& context, const EnginesWords& words) {
   report::write_engines_page(scene.title, scene.about, rows, ladder, context.command_line, page);
   fmt::print("{}\n", page.string());
   for (const EngineRow& row : rows)
-    if (!row.counts.empty() && !row.stopped_by.empty()) context.exit = ExitCode::kCheckFailed;
+    if ((!row.counts.empty() && !row.stopped_by.empty()) || !row.faults.empty()) context.exit = ExitCode::kCheckFailed;
 }
 
 }  // namespace

@@ -152,6 +152,7 @@ bool LastingContacts::strike(const Group& group, std::vector<Touch> down) {
   struck_at_ = moving_.time();
   if (++struck_ > kMostBlows) return false;
   const ContactSolution solution = solve(group, problem, 1.0);
+  note_unsolved(group, solution, step_);
   for (std::size_t k = 0; k < group.bodies.size(); ++k) {
     const int body = group.bodies[k];
     const Inertia& inertia = moving_.world().bodies[body].inertia;

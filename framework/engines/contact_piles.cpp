@@ -97,8 +97,11 @@ std::optional<double> LastingContacts::take_pile_step(const Group& group, double
   std::vector<double> gaps(group.pairs.size(), 0.0);
   const bool apart = keep_pile_apart(group, group.pairs, ends, moving_.target(), gaps);
   if (!apart && h > kShortest * step_) return moving_.time() + 0.5 * h;
-  for (const int body : group.bodies) set_straight_path(body, ends[body], SmoothPath::Momenta::kEven);
-  keep_warm(touches, problem, solution, h);
+  for (const int body : group.bodies) {
+    set_straight_path(body, ends[body]);
+    moving_.refuse_whirl(body);
+  }
+  keep_warm(group, touches, problem, solution, h);
   return std::nullopt;
 }
 

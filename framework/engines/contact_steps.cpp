@@ -386,22 +386,23 @@ bool LastingContacts::give_paths(const Group& group, const std::vector<Touch>& t
       if (touches[i].start_gap < kNotYet * shell(touches[i].pair) && solution.impulses_world[i].squaredNorm() > 0.0) held.push_back({touches[i].pair, touches[i].point, &touches_at});
   // Pairs that are not in contact may meet within the step: that is for the finding of impacts.
   const bool apart = keep_apart(group, group.pairs, ends, moving_.target(), held);
-  // Rods and joints hold along the path: momenta between its ends are its own there.
-  const auto momenta = group.linked.empty() ? SmoothPath::Momenta::kEven : SmoothPath::Momenta::kOfPath;
+  // The path goes where a shift has taken its end, however short the step: velocities along it are no momenta. What rods and joints hold is put
+  // right where a step ends within it (MovingWorld::commit).
   for (const int body : group.bodies) {
-    if (landing) set_straight_path(body, ends[body], momenta);
-    else moving_.set_path(body, moving_.state(body), ends[body], momenta);
+    if (landing) set_straight_path(body, ends[body]);
+    else moving_.set_path(body, moving_.state(body), ends[body], SmoothPath::Momenta::kEven);
+    moving_.refuse_whirl(body);
   }
   return apart;
 }
 
 // From place to place, as x' = x + h v' says: a bent path would dip below the surface on its way.
-void LastingContacts::set_straight_path(int body, const RigidBodyState& end, SmoothPath::Momenta momenta) {
+void LastingContacts::set_straight_path(int body, const RigidBodyState& end) {
   const Inertia& inertia = moving_.world().bodies[body].inertia;
   RigidBodyState start = moving_.state(body);
   start.momentum_world = end.momentum_world;
   start.angular_momentum_world = angular_momentum_of(omega_of(end, inertia), start.world_from_body, inertia);
-  moving_.set_path(body, start, end, momenta);
+  moving_.set_path(body, start, end, SmoothPath::Momenta::kEven);
 }
 
 // A contact of a problem of shifts: bodies of other groups stay where they are.

@@ -232,11 +232,26 @@ CheckResult judge(const CheckSpec& check, const Scene& scene, const Trajectory& 
   return result;
 }
 
+// What the run's own watch has found stands beside what the scene asks for.
+CheckResult judge(const RunFault& fault) {
+  CheckResult result;
+  result.kind = fault.kind;
+  result.subject = fault.subject;
+  result.value = fault.worst;
+  result.threshold = fault.allowed;
+  result.unit = fault.unit;
+  result.passed = false;
+  result.why = fault.meaning + ". Likely remedy: " + fault.remedy;
+  result.detail = fmt::format("first {}, {} in all, worst {}", at_time(fault.first_s), fault.count == 1 ? "once" : fmt::format("{} times", fault.count), at_time(fault.worst_s));
+  return result;
+}
+
 }  // namespace
 
 std::vector<CheckResult> judge_run(const Scene& scene, const Trajectory& run) {
   std::vector<CheckResult> results;
   for (const CheckSpec& check : scene.checks) results.push_back(judge(check, scene, run));
+  for (const RunFault& fault : run.counters.faults) results.push_back(judge(fault));
   return results;
 }
 

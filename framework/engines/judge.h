@@ -29,6 +29,12 @@
 /// | falls            | the same; the smallest [rad]                                          | >= tolerance               |
 /// | order_of_falls   | how many of `bodies` lean by expected [rad] before the one before them, or never [-] | <= tolerance |
 ///
+/// What the run's own watch found while it went (engines/run_watch.h) follows, as checks that failed whatever the scene asks for:
+/// | link_open        | how far a rod or joint came apart, over its size [-], or at an angle [rad] | never                 |
+/// | projection_open  | what a correction onto rods and joints left of their errors, over the group's size [-] | never     |
+/// | contact_unsolved | what impulses of contacts left of approach and slip, over the group's speed [-]        | never     |
+/// | energy_rises     | rise of E above its least value so far, where nothing brings energy in, over what there was to begin with [-] | never |
+///
 /// Energies are compared with the kinetic energy at `at_s` plus the deepest fall of the potential energy below its value there:
 /// what a run makes from nothing is not in it, so that it cannot widen its own pass mark.
 /// For energy, momentum, angular momentum, drift and tilt `at_s` is the instant from which on the quantity must stay (a push has ended by
@@ -55,7 +61,7 @@ struct CheckResult {
   std::string detail;      // where and when the worst was found
 };
 
-/// One result a check, in the scene's order. @throws UserError for a kind of check that is not known.
+/// One result a check, in the scene's order, then one for each of the run's faults. @throws UserError for a kind of check that is not known.
 std::vector<CheckResult> judge_run(const scene::Scene& scene, const Trajectory& run);
 
 }  // namespace tumble::engines

@@ -60,6 +60,8 @@ class LastingContacts {
   /// Takes back overlaps among bodies in contact at a time within the step under way: contacts keep bodies apart at its ends, and on the
   /// path between them a body that turns dips in by what is of second order in the step. Changes nothing but these states.
   void open_gaps(std::vector<RigidBodyState>& states, double t);
+  /// The same of any of these pairs that overlap in these states, whatever is in contact in the step under way; velocities stay.
+  void draw_apart(const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t);
   const std::vector<ContactPoint>& forces() const { return forces_; }
   /// Friction of a pair: the smaller of the two.
   double friction(Pair pair) const;
@@ -147,6 +149,7 @@ class LastingContacts {
   std::optional<double> take_steps(double h);
   std::optional<double> take_step(const Group& group, double h);
   void require_numbers(const Group& group, const ContactSolution& solution) const;
+  void note_unsolved(const Group& group, const ContactSolution& solution, double h);
   void draw_apart();
   bool is_pile(const Group& group) const;
   double room_of(Pair pair) const;
@@ -160,8 +163,8 @@ class LastingContacts {
   bool apply_shift(int body, const Velocity& shift, std::vector<RigidBodyState>& states) const;
   void place_for_shift(const Group& group, Pair pair, const collision::NearPoint& point, const std::vector<RigidBodyState>& states, double t, double room, std::map<int, int>& places,
                        ContactProblem& problem, PushingContact& contact);
-  void set_straight_path(int body, const RigidBodyState& end, SmoothPath::Momenta momenta);
-  void keep_warm(const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h);
+  void set_straight_path(int body, const RigidBodyState& end);
+  void keep_warm(const Group& group, const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h);
   std::optional<double> stop_of_sliding(const ContactProblem& problem, const std::vector<Touch>& touches, const ContactSolution& solution, double h);
   static bool lands(const std::vector<Touch>& touches, const ContactSolution& solution);
   std::vector<RigidBodyState> ends_of(const Group& group, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing,
@@ -192,6 +195,7 @@ class LastingContacts {
   std::set<Pair> stuck_, next_stuck_;            // pairs with friction that did not slide in the last step
   std::vector<Group> groups_;                    // of the step
   std::vector<ContactPoint> forces_;
+  RunWatch unsolved_;                            // what the step that has begun leaves unsolved, until it is committed
   double struck_at_ = -1e300;                    // blows were struck last, and how many then
   int struck_ = 0;
   double searched_from_ = -1e300;                // ends of sliding were looked for since, and how often

@@ -305,6 +305,7 @@ VectorXd LinkedBodies::derivative(double t, const VectorXd& y) {
 }
 
 std::vector<RigidBodyState> LinkedBodies::advance(const std::vector<RigidBodyState>& states, double t, double h) {
+  step_ = h;
   std::vector<RigidBodyState> local = take(states);
   VectorXd y(static_cast<Eigen::Index>(local.size()) * kStateSize);
   for (std::size_t i = 0; i < local.size(); ++i) y.segment(static_cast<Eigen::Index>(i) * kStateSize, kStateSize) = pack(local[i]);
@@ -323,6 +324,15 @@ std::vector<RigidBodyState> LinkedBodies::advance(const std::vector<RigidBodySta
   return local;
 }
 
+// The largest error of these rows, over the group's size: its longest rod, its farthest coordinate.
+double LinkedBodies::open_part(const std::vector<Body>& bodies, const std::vector<Constraint>& rows) const {
+  double worst = 0.0, size = 0.0;
+  for (const Constraint& c : rows) worst = std::isnan(c.row.value) ? c.row.value : std::max(worst, std::abs(c.row.value));
+  for (const Link& link : rods_) size = std::max(size, world_.rods[link.index].length);
+  for (const Body& body : bodies) size = std::max(size, body.com_world.cwiseAbs().maxCoeff());
+  return worst == 0.0 ? 0.0 : worst / size;
+}
+
 void LinkedBodies::project_local(std::vector<RigidBodyState>& local, double t, bool places) try {
   const StageTimer timer(counters_.constraint_seconds);
   const auto correction = [&](const std::vector<Body>& bodies, const std::vector<Constraint>& all, bool of_places) {
@@ -338,11 +348,7 @@ void LinkedBodies::project_local(std::vector<RigidBodyState>& local, double t, b
   std::vector<Body> bodies = place_bodies(local, t);
   std::vector<Constraint> all = rows(bodies);
   for (int round = 0; places && round < kMostProjections; ++round) {
-    double worst = 0.0, size = 0.0;
-    for (const Constraint& c : all) worst = std::max(worst, std::abs(c.row.value));
-    for (const Link& link : rods_) size = std::max(size, world_.rods[link.index].length);
-    for (const Body& body : bodies) size = std::max(size, body.com_world.cwiseAbs().maxCoeff());
-    if (worst <= kOnConstraint * size) break;
+    if (open_part(bodies, all) <= kOnConstraint) break;
     const VectorXd change = correction(bodies, all, true);
     for (std::size_t i = 0; i < local.size(); ++i) {
       const Eigen::Index at = 6 * static_cast<Eigen::Index>(i);
@@ -356,6 +362,7 @@ void LinkedBodies::project_local(std::vector<RigidBodyState>& local, double t, b
     bodies = place_bodies(local, t);
     all = rows(bodies);
   }
+  if (const double left = places ? open_part(bodies, all) : 0.0; !(left <= kProjected)) counters_.watch.note(RunWatch::Kind::kProjectionOpen, whose(), {left, kProjected, t, step_});
   const VectorXd change = correction(bodies, all, false);
   for (std::size_t i = 0; i < local.size(); ++i) {
     const Eigen::Index at = 6 * static_cast<Eigen::Index>(i);
@@ -382,15 +389,51 @@ void LinkedBodies::project(std::vector<RigidBodyState>& states, double t) {
   put(local, states);
 }
 
+void LinkedBodies::watch(const std::vector<RigidBodyState>& states, double t, double h) {
+  if (!has_constraints()) return;
+  const bool is_projected = world_.stabilisation && world_.stabilisation->kind == scene::StabilisationKind::kProjection;
+  const double allowed = is_projected ? kLinkClosed : kLinkDrifts;
+  const std::vector<Body> bodies = place_bodies(take(states), t);
+  const auto note = [&](const std::string& name, double open) {
+    if (!(open <= allowed)) counters_.watch.note(RunWatch::Kind::kLinkOpen, fmt::format("'{}'", name), {open, allowed, t, h});
+  };
+  const auto at = [&](const End& end) { return point_world(bodies[end.place], end.point_body); };
+  if (built::kRod)
+    for (const Link& link : rods_) {
+      const RodLink& rod = world_.rods[link.index];
+      note(rod.name, std::abs((at(link.a) - at(link.b)).norm() - rod.length) / rod.length);
+    }
+  if (!built::kJoint) return;
+  for (const Link& link : joints_) {
+    const JointLink& joint = world_.joints[link.index];
+    note(joint.name, (at(link.a) - at(link.b)).norm() / size_of_joint(link));
+    const Quaterniond a = bodies[link.a.place].world_from_body * joint.a_from_joint, b = bodies[link.b.place].world_from_body * joint.b_from_joint;
+    if (joint.kind == scene::JointKind::kHinge) note(joint.name, (a * Vector3d::UnitZ()).cross(b * Vector3d::UnitZ()).norm());
+    if (joint.kind == scene::JointKind::kWeld) note(joint.name, 2.0 * (a.conjugate() * b).vec().norm());
+  }
+}
+
+// The longer arm of the two bodies; of bodies that are held at their centres, how far their mass lies from there. [m]
+double LinkedBodies::size_of_joint(const Link& joint) const {
+  double size = 0.0;
+  for (const End* end : {&joint.a, &joint.b}) {
+    if (end->place >= static_cast<int>(bodies_.size())) continue;
+    const Inertia& inertia = world_.bodies[bodies_[end->place]].inertia;
+    size = std::max({size, end->point_body.norm(), std::sqrt(0.5 * inertia.inertia_body.trace() * inertia.inverse_mass)});
+  }
+  return size > 0.0 ? size : 1.0;
+}
+
 std::string LinkedBodies::whose() const { return "body '" + world_.bodies[bodies_.front()].name + "' and what is linked to it"; }
 
-void LinkedBodies::measure(const std::vector<RigidBodyState>& states, double t, LinkForces& measured) try {
+void LinkedBodies::measure(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts, LinkForces& measured) try {
   const std::vector<RigidBodyState> local = take(states);
   time_of_stage_ = t;
   const std::vector<Body> bodies = place_bodies(local, t);
   if (built::kSpring) measure_springs(bodies, measured);
   if (!has_constraints()) return;
   std::vector<Wrench> wrenches = forces(local, bodies);
+  if (built::kContact) add_contacts(bodies, contacts, wrenches);
   const VectorXd multipliers = add_constraint_forces(bodies, local, wrenches);
   Eigen::Index at = 0;
   // A rod's multiplier pushes A along the growing length: away from B.
@@ -405,6 +448,17 @@ void LinkedBodies::measure(const std::vector<RigidBodyState>& states, double t, 
   throw;
 } catch (const StoppedRun& stop) {
   throw StoppedRun(whose() + ": " + stop.what());
+}
+
+// The force on A at the point, its opposite on B.
+void LinkedBodies::add_contacts(const std::vector<Body>& bodies, const std::vector<ContactPoint>& contacts, std::vector<Wrench>& wrenches) const {
+  for (const ContactPoint& contact : contacts)
+    for (const auto& [body, sign] : {std::pair{contact.body_a, 1.0}, std::pair{contact.body_b, -1.0}}) {
+      const auto found = std::lower_bound(bodies_.begin(), bodies_.end(), body);
+      if (found == bodies_.end() || *found != body) continue;
+      const auto place = static_cast<std::size_t>(found - bodies_.begin());
+      add_force(bodies[place], sign * contact.force_on_a_world, contact.point_world, wrenches[place]);
+    }
 }
 
 void LinkedBodies::measure_springs(const std::vector<Body>& bodies, LinkForces& measured) {

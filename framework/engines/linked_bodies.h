@@ -62,8 +62,12 @@ class LinkedBodies {
   std::vector<Constraint> constraint_rows(const std::vector<RigidBodyState>& states, double t);
   int fixed_end() const { return static_cast<int>(bodies_.size()); }
 
-  /// Adds the forces of this group's links in these states.
-  void measure(const std::vector<RigidBodyState>& states, double t, LinkForces& forces);
+  /// Notes rods and joints of this group that are open in these states at the end of a step of length h. From places alone: no law is asked.
+  void watch(const std::vector<RigidBodyState>& states, double t, double h);
+
+  /// Adds the forces of this group's links in these states. What lies on its bodies, leans or rubs against them weighs on the links too.
+  /// @param contacts  lasting ones of the world, at that time
+  void measure(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts, LinkForces& forces);
 
  private:
   struct End {                 // of a link: a place in the list of bodies
@@ -76,6 +80,8 @@ class LinkedBodies {
   };
 
   std::string whose() const;   // in words
+  double size_of_joint(const Link& joint) const;
+  double open_part(const std::vector<Body>& bodies, const std::vector<Constraint>& rows) const;
   End end_of(const Anchor& anchor);
   std::vector<Body> place_bodies(const std::vector<RigidBodyState>& local, double t) const;
   std::vector<Wrench> forces(const std::vector<RigidBodyState>& local, const std::vector<Body>& bodies);
@@ -85,6 +91,7 @@ class LinkedBodies {
   std::vector<Constraint> rows(const std::vector<Body>& bodies);
   void append_rods(const std::vector<Body>& bodies, std::vector<Constraint>& rows);
   void append_joints(const std::vector<Body>& bodies, std::vector<Constraint>& rows);
+  void add_contacts(const std::vector<Body>& bodies, const std::vector<ContactPoint>& contacts, std::vector<Wrench>& wrenches) const;
   void measure_springs(const std::vector<Body>& bodies, LinkForces& measured);
   VectorXd add_constraint_forces(const std::vector<Body>& bodies, const std::vector<RigidBodyState>& local, std::vector<Wrench>& wrenches);
   VectorXd derivative(double t, const VectorXd& y);
@@ -103,6 +110,7 @@ class LinkedBodies {
   std::size_t most_rows_ = 0;   // of rods and joints
   std::vector<double> torques_, next_looks_;   // by motors_
   double time_of_stage_ = 0.0;
+  double step_ = kUnset;   // the last that advance() took [s]
 };
 
 /// The groups of a world: movable bodies that links tie together, each with what its links need. Bodies without links are in none.

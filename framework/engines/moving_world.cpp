@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "framework/core/error.h"
 #include "framework/dynamics/rotation_bounds.h"
@@ -92,9 +95,35 @@ bool MovingWorld::keep_constraints(const std::vector<Event>& events) {
   return any;
 }
 
-LinkForces MovingWorld::measure_links(const std::vector<RigidBodyState>& states, double t) {
+void MovingWorld::close_links(std::vector<RigidBodyState>& states, double t) {
+  if (!world_.stabilisation || world_.stabilisation->kind != scene::StabilisationKind::kProjection) return;
+  const RunCounters before = counters_;   // what is looked at must not show in what a run counts
+  for (LinkedBodies& group : linked_)
+    if (!asleep(group.bodies().front())) group.project(states, t);
+  counters_ = before;
+}
+
+void MovingWorld::watch_links(double h) {
+  for (LinkedBodies& group : linked_)
+    if (!asleep(group.bodies().front())) group.watch(states_, time_, h);
+}
+
+// A method that sees forces a few times a step follows no body that turns about itself several times in it, and a search for impacts along such a path
+// would hardly end.
+void MovingWorld::refuse_whirl(int body) const {
+  constexpr double kWhirl = 20 * std::numbers::pi;   // rad in a step: ten turns
+  const Path& path = paths_[body];
+  const double step = target_ - time_, speed = path.smooth->bounds().angular_speed;
+  const std::string who = fmt::format("body '{}'", world_.bodies[body].name);
+  if (!pack(path.end).allFinite() || std::isnan(speed)) throw StoppedRun(fmt::format("{}: its state is not a number (integrator: {})", who, laws_.integrator_source));
+  if (shapes_[body]->is_ball() || !(speed * step > kWhirl)) return;   // a ball looks the same however it turns
+  throw StoppedRun(fmt::format("{} turns at {:.3g} rad/s, {:.3g} rad in a step of {:.3g} s, which no step follows. Likely something drives it beyond measure: a motor that overshoots because it holds its torque too "
+                               "long (\"period_s\"), a force, a spring; else it turns too far in a step: make the step (\"step_s\") shorter", who, speed, speed * step, step));
+}
+
+LinkForces MovingWorld::measure_links(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts) {
   LinkForces forces{std::vector<double>(world_.springs.size()), std::vector<double>(world_.rods.size()), std::vector<double>(world_.joints.size())};
-  for (LinkedBodies& group : linked_) group.measure(states, t, forces);
+  for (LinkedBodies& group : linked_) group.measure(states, t, contacts, forces);
   return forces;
 }
 
@@ -264,7 +293,10 @@ void MovingWorld::begin_linked_paths() {
   for (LinkedBodies& group : linked_) {
     if (asleep(group.bodies().front())) continue;   // they sleep together
     const std::vector<RigidBodyState> ends = group.advance(states_, time_, target_ - time_);
-    for (std::size_t i = 0; i < ends.size(); ++i) set_path(group.bodies()[i], states_[group.bodies()[i]], ends[i]);
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      set_path(group.bodies()[i], states_[group.bodies()[i]], ends[i]);
+      refuse_whirl(group.bodies()[i]);
+    }
     integrations_in_step_ += ends.size();
   }
 }
@@ -408,9 +440,15 @@ void MovingWorld::commit(double t) {
       arrived.push_back(path(i, t));
     }
   }
-  if (t < target_) counters_.undone_integrations += before;
+  const bool is_cut_short = t < target_;
+  if (is_cut_short) counters_.undone_integrations += before;
   states_ = std::move(arrived);
   time_ = t;
+  if (!is_cut_short) return;
+  for (LinkedBodies& group : linked_) {   // momenta that change evenly between a step's ends fit rods and joints at these only
+    const std::optional<SmoothPath>& path = paths_[group.bodies().front()].smooth;
+    if (path && path->momenta() == SmoothPath::Momenta::kEven) group.project_velocities(states_, time_);
+  }
 }
 
 Body MovingWorld::body_at_impact(int index) const {

@@ -82,12 +82,19 @@ class MovingWorld {
   int linked_group(int body) const { return group_of_[body]; }
   /// Control laws whose time has come look. @return when the next one does; infinite without
   double look();
-  /// What springs, rods and joints pull with in these states.
-  LinkForces measure_links(const std::vector<RigidBodyState>& states, double t);
+  /// What springs, rods and joints pull with in these states. @param contacts  lasting ones, which weigh on them
+  LinkForces measure_links(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts);
+  /// For a picture within a step: rods and joints of projected groups hold there too, where the path between the step's ends is off by its fourth power.
+  /// Changes nothing but these states.
+  void close_links(std::vector<RigidBodyState>& states, double t);
+  /// At the end of a step of length h: notes rods and joints that have come apart.
+  void watch_links(double h);
   /// After impacts or callbacks: velocities of the bodies joined to those that were hit or called back onto the constraints. @return whether there are any
   bool keep_constraints(const std::vector<Event>& events);
   /// From here on to the step's target the body goes from `start` (at time(); its velocities may jump there) to `end`.
   void set_path(int body, const RigidBodyState& start, const RigidBodyState& end, SmoothPath::Momenta momenta = SmoothPath::Momenta::kOfPath);
+  /// @throws StoppedRun where the body turns about itself ten times on its smooth path in the step under way, or where that path is not made of numbers
+  void refuse_whirl(int body) const;
   /// Where the step leads without what set_path has added.
   const RigidBodyState& path_end(int body);
   /// The path that set_path has given, or that links have; nothing where the laws are asked at every instant.

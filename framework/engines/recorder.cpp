@@ -59,6 +59,7 @@ double SmallestGap::measure(const MovingWorld& moving, const std::vector<RigidBo
 void FrameRecorder::push(MovingWorld& moving, double t) {
   std::vector<RigidBodyState> states;
   for (int i = 0; i < moving.size(); ++i) states.push_back(t == moving.time() && moving.can_move(i) ? moving.state(i) : moving.path(i, t));
+  if (t > moving.time() && !moving.linked_groups().empty()) moving.close_links(states, t);
   if (built::kContact && contacts_ && t > moving.time()) contacts_->open_gaps(states, t);
   Frame frame;
   frame.time = t;
@@ -75,12 +76,12 @@ void FrameRecorder::push(MovingWorld& moving, double t) {
   frame.momentum_world = sums.momentum_world;
   frame.angular_momentum_world = sums.angular_momentum_world;
   frame.smallest_gap = smallest_gap_.measure(moving, states);
-  LinkForces forces = moving.measure_links(states, t);
+  if (built::kContact && contacts_) frame.contacts = contacts_->forces();
+  if (built::kSleep && sleepers_) sleepers_->append_forces(frame.contacts);
+  LinkForces forces = moving.measure_links(states, t, frame.contacts);
   frame.spring_forces = std::move(forces.springs);
   frame.rod_tensions = std::move(forces.rods);
   frame.joint_forces = std::move(forces.joints);
-  if (built::kContact && contacts_) frame.contacts = contacts_->forces();
-  if (built::kSleep && sleepers_) sleepers_->append_forces(frame.contacts);
   sink_.frame(frame);
 }
 

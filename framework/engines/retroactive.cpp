@@ -29,7 +29,7 @@ class RetroactiveRun {
   RetroactiveRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink)
       : scene_(scene), laws_(guarded(laws)), sink_(sink), step_(options.step_s.value_or(scene.step_s)),
         duration_(options.duration_s.value_or(scene.duration_s)), moving_(build_world(scene), laws_, counters_), meetings_(moving_, laws_, counters_),
-        impacts_(laws_, {scene.rest_speed_m_s, step_ / 100}, counters_), callbacks_(options.callbacks), recorder_(options.frame_rate_hz, duration_, sink) {
+        impacts_(laws_, {scene.rest_speed_m_s, step_ / 100}, counters_), callbacks_(options.callbacks), recorder_(options.frame_rate_hz, duration_, sink), energy_watch_(scene.rest_speed_m_s, step_) {
     if (options.propagator == "auto") moving_.go_in_closed_form();
     if (!built::kContact || !moving_.world().contact) return;
     contacts_.emplace(moving_, laws_, *moving_.world().contact, scene.rest_speed_m_s, counters_, sink);
@@ -297,6 +297,7 @@ void RetroactiveRun::advance_to(double target) {
     const bool apart = !has_contacts() || contacts_->commit();
     if (!apart) meetings_.separate(near);
     if (has_sleepers()) note_touching(near);
+    if (!earliest) moving_.watch_links(reached - before);
     if (!built::kCollision || !earliest) continue;
     ++counters_.rollbacks;
     resolve_at(near.empty() ? pairs : near, pairs[earliest->pair]);
@@ -309,12 +310,12 @@ void RetroactiveRun::advance_to(double target) {
   }
 }
 
-// On rods between heavy ones.
+// On rods between heavy ones, or between joints.
 void RetroactiveRun::tell_of_light_bodies() {
   const RunCounters before = counters_;   // what is looked at must not show in what a run counts
-  const std::vector<double> tensions = moving_.measure_links(moving_.states(), 0.0).rods;
+  const std::vector<double> tensions = moving_.measure_links(moving_.states(), 0.0, {}).rods;
   counters_ = before;
-  tell_of_unstable_rods(moving_.world(), tensions, laws_, {step_, duration_}, counters_.notices);
+  if (const auto step = tell_of_unstable_links(moving_.world(), tensions, laws_, {step_, duration_}, counters_.notices)) counters_.watch.name_step(*step);
 }
 
 void RetroactiveRun::run() {
@@ -326,18 +327,19 @@ void RetroactiveRun::run() {
     switch_times_.insert(force.end);
   }
   try {
-    if (!moving_.world().rods.empty()) tell_of_light_bodies();
+    if (!moving_.world().rods.empty() || !moving_.world().joints.empty()) tell_of_light_bodies();
     run_to_the_end();
   } catch (const StoppedRun& stop) {
     stopped_by_ = fmt::format("at t = {:.6f} s, {}", moving_.time(), stop.what());
   }
+  energy_watch_.tell(moving_.world(), counters_.watch);
   sink_.end(counters_.named(), stopped_by_);
 }
 
 void RetroactiveRun::stop_for(const Runaway& runaway) {
-  const LinkForces links = moving_.measure_links(moving_.states(), moving_.time());
-  const std::vector<ContactPoint> none;
-  stopped_by_ = told_runaway(moving_.time(), moving_.world(), runaway, {links.springs, links.rods, links.joints, has_contacts() ? contacts_->forces() : none}, laws_);
+  const std::vector<ContactPoint> none, &contacts = has_contacts() ? contacts_->forces() : none;
+  const LinkForces links = moving_.measure_links(moving_.states(), moving_.time(), contacts);
+  stopped_by_ = told_runaway(moving_.time(), moving_.world(), runaway, {links.springs, links.rods, links.joints, contacts}, laws_);
 }
 
 void RetroactiveRun::run_to_the_end() {
@@ -360,7 +362,7 @@ void RetroactiveRun::run_to_the_end() {
     switch_forces();
     run_callbacks();
     if (callbacks_.empty())   // they bring energy in
-      if (const auto runaway = energy_watch_.look(moving_.world(), moving_.states())) stop_for(*runaway);
+      if (const auto runaway = energy_watch_.look(moving_.time(), moving_.world(), moving_.states())) stop_for(*runaway);
     record([&] { recorder_.record_committed(moving_); });
     if (has_sleepers()) sleepers_->look(touching_);
   }

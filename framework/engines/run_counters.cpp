@@ -22,6 +22,7 @@ void RunCounters::add(const RunCounters& other) {
   most_states = std::max(most_states, other.most_states);
   collision.gap_evaluations += other.collision.gap_evaluations;
   collision.root_findings += other.collision.root_findings;
+  watch.add(other.watch);
   for (const std::string& notice : other.notices)
     if (std::find(notices.begin(), notices.end(), notice) == notices.end()) notices.push_back(notice);
 }
@@ -88,6 +89,7 @@ Counters RunCounters::named() const {
   if (together_seconds > 0.0) named.stage_seconds["threads_together"] = together_seconds;
   if (alone_seconds > 0.0) named.stage_seconds["thread_alone"] = alone_seconds;
   named.notices = notices;
+  named.faults = watch.faults();
   return named;
 }
 

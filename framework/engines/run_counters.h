@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "framework/collision/first_impact.h"
+#include "framework/engines/run_watch.h"
 #include "framework/trajectory/trajectory.h"
 
 namespace tumble::engines {
@@ -27,6 +28,7 @@ struct RunCounters {
   std::uint64_t rounds = 0, held_back = 0, most_states = 0;   // of threads; events that had to wait for global virtual time; of one body at any time
   collision::ImpactCost collision;
   std::vector<std::string> notices;   // once each
+  RunWatch watch;                     // what is not to be trusted
   double integration_seconds = 0.0, collision_seconds = 0.0, impact_seconds = 0.0, record_seconds = 0.0;
   double constraint_seconds = 0.0, contact_seconds = 0.0, control_seconds = 0.0, force_seconds = 0.0, sleep_seconds = 0.0;
   double together_seconds = 0.0, alone_seconds = 0.0;   // of threads, CPU: the busiest of each round, and what one does while the others wait

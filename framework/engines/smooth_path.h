@@ -28,6 +28,7 @@ class SmoothPath {
     angular_momentum_[0] = state.angular_momentum_world;
   }
 
+  Momenta momenta() const { return momenta_; }
   RigidBodyState at(double t) const;
   /// Velocities of the path.
   collision::MotionState motion_at(double t) const;

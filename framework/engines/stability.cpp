@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kRuin = 1e3;            // factor over a run by which a method may lengthen a swing: more is refused
 constexpr double kSeen = 1.1;            // more is told
+constexpr double kJerk = 0.1;            // of the longest step at which a swing does not grow: links that come taut set it going, and it has to be followed, not only outlived
 constexpr double kRunaway = 10.0;        // times all the energy there was to begin with: more has run away
 constexpr double kRoundingOfRest = 1e-6; // of the energy a world at rest has by its height: what steps may leave of it
 
@@ -169,7 +170,7 @@ std::optional<StepLimit> judge_rods(const World& world, const std::vector<double
   Eigen::Index most = 0;
   solver.eigenvectors().col(3 * n - 1).cwiseAbs().maxCoeff(&most);
   const auto body = std::find(place.begin(), place.end(), most - most % 3) - place.begin();
-  return StepLimit{fmt::format("the swing of body '{}' across its rods ({:.4g} rad/s where the run starts)", world.bodies[static_cast<std::size_t>(body)].name, frequency), amplified,
+  return StepLimit{fmt::format("the swing of body '{}' across its rods ({:.4g} rad/s where they pull most)", world.bodies[static_cast<std::size_t>(body)].name, frequency), amplified,
                    largest_stable_step(laws, all ? frequency : std::sqrt(bound), 0.0, step), "masses that differ less"};
 }
 
@@ -206,43 +207,84 @@ void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfAR
   // A law that fails here fails in the first step too, which says of whom.
 }
 
-void tell_of_unstable_rods(const World& world, const std::vector<double>& tensions, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices) try {
-  const auto limit = judge_rods(world, tensions, laws, steps.step);
-  // A method that lengthens every swing is told of by what it does to energy.
-  if (limit && limit->largest_step > 0 && growth_over(steps, limit->amplification) > std::log(kRuin)) notices.push_back(words_of(*limit, laws, steps.step) + smaller_steps(*limit));
+std::optional<double> tell_of_unstable_links(const World& world, const std::vector<double>& tensions, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices) try {
+  LinkLoads loads = largest_link_loads(world);
+  for (std::size_t k = 0; k < std::min(tensions.size(), loads.rods.size()); ++k) loads.rods[k] = std::max(loads.rods[k], std::abs(tensions[k]));
+  std::optional<double> named;
+  for (std::optional<StepLimit> limit : {judge_rods(world, loads.rods, laws, steps.step), judge_joints(world, loads, laws, steps.step)}) {
+    // A method that lengthens every swing is told of by what it does to energy.
+    if (!limit || !(limit->largest_step > 0) || !(growth_over(steps, limit->amplification) > std::log(kRuin))) continue;
+    if (loads.by_falling) limit->largest_step *= kJerk;
+    notices.push_back(words_of(*limit, laws, steps.step) + smaller_steps(*limit));
+    named = std::min(named.value_or(limit->largest_step), limit->largest_step);
+  }
+  return named;
 } catch (const StoppedRun&) {
   // As above; and a law that takes whole bodies only can move them nevertheless.
+  return std::nullopt;
 }
 
-std::optional<Runaway> EnergyWatch::look(const World& world, const std::vector<RigidBodyState>& states) {
-  const auto driven = [](const WorldBody& b) { return b.immovable() && !(b.motion.velocity_m_s.isZero(0.0) && b.motion.amplitude_m.isZero(0.0)); };
-  if (!world.point_forces.empty() || !world.motors.empty() || std::any_of(world.bodies.begin(), world.bodies.end(), driven)) return std::nullopt;
-  const Invariants sums = invariants_of(world, states);
-  const double energy = sums.kinetic_energy + sums.potential_energy;
-  if (std::isnan(first_energy_)) {
-    first_energy_ = energy;
-    lowest_potential_ = first_potential_ = sums.potential_energy;
-    scale_ = sums.kinetic_energy;
-    for (const SpringLink& link : world.springs) {
-      const double stretch = (anchor_point(link.a, states) - anchor_point(link.b, states)).norm() - link.spring.rest_length;
-      scale_ += 0.5 * link.spring.stiffness * stretch * stretch;
-    }
-  }
-  lowest_potential_ = std::min(lowest_potential_, sums.potential_energy);
-  const double available = scale_ + (first_potential_ - lowest_potential_);
-  if (energy - first_energy_ <= kRunaway * available + kRoundingOfRest * std::abs(first_energy_)) return std::nullopt;
-  if (available == 0.0 && first_energy_ == 0.0 && !(sums.kinetic_energy > 0)) return std::nullopt;
-  std::size_t fastest = 0;
+namespace {
+
+int body_with_most_energy(const World& world, const std::vector<RigidBodyState>& states) {
+  int fastest = 0;
   double most = -1.0;
   for (std::size_t i = 0; i < world.bodies.size(); ++i) {
     if (world.bodies[i].immovable()) continue;
     const double kinetic = kinetic_energy(states[i], world.bodies[i].inertia);
-    if (kinetic > most) {
-      most = kinetic;
-      fastest = i;
-    }
+    if (!(kinetic > most)) continue;
+    most = kinetic;
+    fastest = static_cast<int>(i);
   }
-  return Runaway{static_cast<int>(fastest), energy, first_energy_, by_blows_};
+  return fastest;
+}
+
+}  // namespace
+
+// What the world has to give: its kinetic energy, what its springs hold, and (available()) how far it falls.
+void EnergyWatch::begin(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums) {
+  // Of the size of a body: lying bodies are let down and lifted by less where they are kept apart.
+  constexpr double kLifted = 1e-3;
+  first_energy_ = least_energy_ = sums.kinetic_energy + sums.potential_energy;
+  lowest_potential_ = first_potential_ = sums.potential_energy;
+  scale_ = sums.kinetic_energy;
+  for (const SpringLink& link : world.springs) {
+    const double stretch = (anchor_point(link.a, states) - anchor_point(link.b, states)).norm() - link.spring.rest_length;
+    scale_ += 0.5 * link.spring.stiffness * stretch * stretch;
+  }
+  const double gravity = world.gravity_world ? world.gravity_world->norm() : 0.0;
+  for (const WorldBody& body : world.bodies) {
+    if (body.immovable()) continue;
+    const double size = std::sqrt(0.5 * body.inertia.inertia_body.trace() * body.inertia.inverse_mass);   // of gyration [m]
+    unseen_ += body.inertia.mass * (rest_speed_ * rest_speed_ + kLifted * gravity * size);
+  }
+}
+
+void EnergyWatch::note_rise(double time, double energy, const World& world, const std::vector<RigidBodyState>& states) {
+  constexpr double kFarther = 1.1;   // times the last: what is kept of a rise that goes on
+  const double rise = energy - least_energy_;
+  least_energy_ = std::min(least_energy_, energy);
+  if (!(rise > unseen_) || (!rises_.empty() && !(rise > kFarther * rises_.back().size))) return;
+  rises_.push_back({time, rise, body_with_most_energy(world, states)});
+}
+
+void EnergyWatch::tell(const World& world, RunWatch& watch) const {
+  const double whole = available() + unseen_ / kEnergyRises;
+  for (const Rise& rise : rises_)
+    watch.note(RunWatch::Kind::kEnergyRises, fmt::format("'{}'", world.bodies[static_cast<std::size_t>(rise.body)].name), {rise.size / whole, kEnergyRises, rise.time, step_});
+}
+
+std::optional<Runaway> EnergyWatch::look(double time, const World& world, const std::vector<RigidBodyState>& states) {
+  const auto driven = [](const WorldBody& b) { return b.immovable() && !(b.motion.velocity_m_s.isZero(0.0) && b.motion.amplitude_m.isZero(0.0)); };
+  if (!world.point_forces.empty() || !world.motors.empty() || std::any_of(world.bodies.begin(), world.bodies.end(), driven)) return std::nullopt;
+  const Invariants sums = invariants_of(world, states);
+  const double energy = sums.kinetic_energy + sums.potential_energy;
+  if (std::isnan(first_energy_)) begin(world, states, sums);
+  lowest_potential_ = std::min(lowest_potential_, sums.potential_energy);
+  note_rise(time, energy, world, states);
+  if (energy - first_energy_ <= kRunaway * available() + kRoundingOfRest * std::abs(first_energy_)) return std::nullopt;
+  if (available() == 0.0 && first_energy_ == 0.0 && !(sums.kinetic_energy > 0)) return std::nullopt;
+  return Runaway{body_with_most_energy(world, states), energy, first_energy_, by_blows_};
 }
 
 std::string told_runaway(double time, const World& world, const Runaway& runaway, const ActingForces& acting, const Laws& laws) {

@@ -7,6 +7,7 @@
 
 #include "framework/dynamics/laws.h"
 #include "framework/dynamics/world.h"
+#include "framework/engines/run_watch.h"
 #include "framework/trajectory/trajectory.h"
 
 namespace tumble::engines {
@@ -62,6 +63,20 @@ std::vector<StepLimit> judge_decays(const World& world, const Laws& laws, double
 /// @return nothing where the method does not lengthen it, and where rods end beside centres of mass or joints are there too: such worlds are not judged
 std::optional<StepLimit> judge_rods(const World& world, const std::vector<double>& tensions, const Laws& laws, double step);
 
+/// What rods and joints of a world carry, by its lists. [N]
+struct LinkLoads {
+  std::vector<double> rods, joints;
+  bool by_falling = false;         // some hangs loose first, or carries more by what has fallen than by what hangs on it: it comes taut with a jerk
+};
+
+/// About the most that each will carry in a run by gravity and what moves at the start: the weight below it, and what turns that round where it has
+/// fallen as far as its links let it. 0 for links of which none leads to anything that does not move.
+LinkLoads largest_link_loads(const World& world);
+
+/// The fastest swing of bodies between joints that carry these loads, an upper bound: w^2 = max sum of load times arm / moment of inertia.
+/// @return nothing where the method does not lengthen it
+std::optional<StepLimit> judge_joints(const World& world, const LinkLoads& loads, const Laws& laws, double step);
+
 struct StepsOfARun {
   double step, duration;           // [s]
 };
@@ -70,8 +85,11 @@ struct StepsOfARun {
 /// @throws UserError naming the spring, body or term, what happens to it and the largest step that does not do it
 void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfARun& steps, const std::string& where, std::vector<std::string>& notices);
 
-/// Tells of rods whose bodies swing too fast for the step of a method that has a range. Not refused: what hangs straight does not swing, and a chain that moves has other tensions.
-void tell_of_unstable_rods(const World& world, const std::vector<double>& tensions, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices);
+/// Tells of rods and joints whose bodies swing too fast for the step of a method that has a range, with the step that follows them all through the run. Not
+/// refused: what hangs straight does not swing.
+/// @param tensions  of the world's rods where the run starts, where they are known [N]
+/// @return that step, where one is told [s]
+std::optional<double> tell_of_unstable_links(const World& world, const std::vector<double>& tensions, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices);
 
 /// Energy that nothing can have brought in.
 struct Runaway {
@@ -83,15 +101,31 @@ struct Runaway {
 /// Looks on while a world moves: energy that nothing can have brought in is the method's, or a wrong law's.
 class EnergyWatch {
  public:
+  /// @param rest_speed  below which impacts may do as they like: so little energy is not asked for [m/s];  @param step  of the run [s]
+  EnergyWatch(double rest_speed, double step) : rest_speed_(rest_speed), step_(step) {}
+
   /// An impact has taken place: its impulse has done the work j (u + u') / 2.
   void note(const Event& event) {
     if (event.kind == EventKind::kCollision) by_blows_ += 0.5 * event.impulse * (event.normal_velocity_before + event.normal_velocity_after);
   }
   /// @return nothing while all is well, and for worlds that are driven (point forces, motors, moving walls)
-  std::optional<Runaway> look(const World& world, const std::vector<RigidBodyState>& states);
+  std::optional<Runaway> look(double time, const World& world, const std::vector<RigidBodyState>& states);
+  /// Notes what energy has risen by above the least it has been, where that is more than steps leave of all that the world had to give.
+  void tell(const World& world, RunWatch& watch) const;
 
  private:
+  struct Rise {
+    double time, size;             // [s], [J]
+    int body;                      // that had most of the world's energy then
+  };
+  void begin(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums);
+  void note_rise(double time, double energy, const World& world, const std::vector<RigidBodyState>& states);
+  double available() const { return scale_ + (first_potential_ - lowest_potential_); }
+
+  double rest_speed_, step_;
   double first_energy_ = kUnset, scale_ = 0.0, first_potential_ = 0.0, lowest_potential_ = 0.0, by_blows_ = 0.0;   // [J]
+  double least_energy_ = 0.0, unseen_ = 0.0;   // the least so far; what the model itself is free to make [J]
+  std::vector<Rise> rises_;        // each larger than the one before
 };
 
 /// What acts on bodies at an instant.

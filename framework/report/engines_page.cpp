@@ -128,6 +128,7 @@ void write_engines_page(const std::string& title, const std::string& about, cons
     const std::string what = row.label + " (" + row.meaning + "): ";
     if (row.stopped_by.empty()) page.paragraph(what + row.agreement + ".");
     else page.paragraph(what + (row.counts.empty() ? "not run: " : "stopped ") + row.stopped_by, row.counts.empty() ? Look::kMuted : Look::kBad);
+    if (!row.faults.empty()) page.paragraph(row.label + " is not to be trusted: " + row.faults + ".", Look::kBad);
   }
   page.paragraph("An integration takes one body from one time to another; undone ones were taken back. A pair check looks for the first impact of one pair in an interval. w h is the number of "
                  "discontinuities a body and largest step: where n w h is above 2, engines whose bodies all stop at each discontinuity begin to pay for every other body. A change between sliding and sticking or rolling is a discontinuity "

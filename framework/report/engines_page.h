@@ -27,6 +27,7 @@ struct EngineRow {
   double physics = 0.0;                        // of them together what is done by the same functions for all engines
   std::string agreement;                       // with the first engine that goes event by event, in words
   std::string stopped_by;                      // also why it did not run
+  std::string faults;                          // why the run is not to be trusted, in words; empty: it is
 };
 
 /// The counts that are compared, in order: name in Counters, heading.

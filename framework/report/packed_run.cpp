@@ -12,6 +12,7 @@
 
 #include "framework/report/channels.h"
 #include "framework/report/comparison.h"
+#include "framework/trajectory/fault_words.h"
 
 namespace tumble::report {
 namespace {
@@ -59,7 +60,7 @@ class RunPacker {
     add_events();
     packed.channels = deflated(writer_.bytes());
     packed.head = {{"label", label}, {"engine", run_.info.engine}, {"step", run_.info.step_s}, {"impulses", run_.info.impulse_source}, {"motion", run_.info.integrator_source},
-                   {"constraints", run_.info.constraint_source}, {"stopped", run_.stopped_by}, {"frames", frames_.size()}, {"stride", stride_},
+                   {"constraints", run_.info.constraint_source}, {"stopped", run_.stopped_by}, {"faults", in_words(run_.counters.faults)}, {"frames", frames_.size()}, {"stride", stride_},
                    {"moving", moving_}, {"resting", resting_}, {"series", series}, {"contactStride", contact_stride_}, {"contacts", contacts},
                    {"events", run_.events.size()}, {"bytes", writer_.bytes().size()}};
     return packed;

@@ -57,11 +57,23 @@ struct Event {
   double normal_velocity_after = kUnset;   // [m/s], of the same point, when the impulse has been applied; the framework measures it
 };
 
+/// A reason not to trust a run, which the framework found while it went (engines/run_watch.h). A run that has one is judged wrong.
+struct RunFault {
+  std::string kind;                // as a check's: "link_open", "projection_open", "contact_unsolved", "energy_rises"
+  std::string subject;             // the bodies or links of the worst, by name
+  double worst = 0.0, allowed = 0.0;
+  std::string unit;                // of both
+  double first_s = kUnset, worst_s = kUnset;   // when it happened first, and when worst [s]
+  std::uint64_t count = 0;         // how often
+  std::string meaning, remedy;     // in words
+};
+
 /// What a run cost, as counts (deterministic) and times (not).
 struct Counters {
   std::map<std::string, std::uint64_t> counts;   // "integrations", "undone_integrations", "gap_evaluations", "rollbacks", ...
   std::map<std::string, double> stage_seconds;   // "integration", "collision", "forces", ...; kept out of anything compared byte by byte
   std::vector<std::string> notices;              // for people, e.g. that steps were shortened and why; not kept in files
+  std::vector<RunFault> faults{};                // judged as checks that failed; not kept in files
 };
 
 struct TrajectoryBody {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 
 #include "framework/collision/gap.h"
 #include "framework/collision/sweep.h"
@@ -52,8 +53,19 @@ Frame frame_of(const FlightWorld& world, double t, const FlightOf& flight_of, st
   Frame frame;
   frame.time = t;
   states.clear();
+  std::map<int, std::vector<RigidBodyState>> shown;   // by passage: its members
   for (int i = 0; i < world.size(); ++i) {
     const Flight& flight = flight_of(i);
+    if (flight.passage >= 0) {   // its path may go a way that no velocity stands for (SmoothPath::Momenta): what the state says counts
+      const Inertia& inertia = world.world().bodies[i].inertia;
+      Passages& passages = world.all_processes().passages();
+      const auto [members, is_new] = shown.try_emplace(flight.passage);
+      if (is_new) members->second = passages.shown_at(flight.passage, t);
+      states.push_back(members->second[passages.place(flight.passage, i)]);
+      const RigidBodyState& state = states.back();
+      frame.poses.push_back({state.com_world, state.world_from_body, inertia.inverse_mass * state.momentum_world, omega_of(state, inertia)});
+      continue;
+    }
     const collision::MotionState now = world.motion_at(i, flight, t);
     frame.poses.push_back({now.pose.com_world, now.pose.world_from_body, now.velocity_world, now.omega_world});
     states.push_back({now.pose.com_world, now.pose.world_from_body, Vector3d::Zero(), Vector3d::Zero()});

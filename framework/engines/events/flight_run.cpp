@@ -18,10 +18,11 @@ constexpr double kMicroInterval = 0.01;   // of the step: a pair that meets agai
 FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink)
     : laws_(guarded(laws)), step_(options.step_s.value_or(scene.step_s)), duration_(options.duration_s.value_or(scene.duration_s)), rate_(options.frame_rate_hz),
       world_(scene, options.engine, laws_, {step_, scene.rest_speed_m_s}), impacts_(world_, laws_.find_impact_time, step_),
-      meetings_(world_, laws_, {scene.rest_speed_m_s, kMicroInterval * step_}), sink_(sink), on_membership_(options.on_membership), callbacks_(options.callbacks) {
+      meetings_(world_, laws_, {scene.rest_speed_m_s, kMicroInterval * step_}), sink_(sink), on_membership_(options.on_membership), callbacks_(options.callbacks), energy_watch_(scene.rest_speed_m_s, step_) {
   for (std::size_t k = 0; k < callbacks_.size(); ++k) callback_keys_.push_back({callbacks_[k].time, static_cast<std::uint32_t>(k), EventClass::kCallback, callbacks_[k].bodies.front(), -1});
   if (!world_.processes()) return;
   refuse_unstable_steps(world_.world(), laws_, {step_, duration_}, scene.file.empty() ? scene.name : scene.file.string(), counters.notices);
+  if (const auto step = tell_of_unstable_links(world_.world(), {}, laws_, {step_, duration_}, counters.notices)) counters.watch.name_step(*step);
   links_ = std::make_unique<LinkMeasures>(world_, laws_);
   switches_ = force_switches(world_.world(), duration_);
   for (const Event& event : world_.start_events()) sink_.event(event);
@@ -155,7 +156,7 @@ void FlightRun::commit_frame(const FlightOf& flight_of) {
   if (on_membership_) tell_membership(frame.time, flight_of);
   ++next_;
   if (!callbacks_.empty()) return;   // they bring energy in
-  if (const auto runaway = energy_watch_.look(world_.world(), states_))
+  if (const auto runaway = energy_watch_.look(frame.time, world_.world(), states_))
     throw StoppedRun(told_runaway(frame.time, world_.world(), *runaway, {frame.spring_forces, frame.rod_tensions, frame.joint_forces, frame.contacts}, laws_));
 }
 
@@ -175,6 +176,7 @@ void FlightRun::end(const std::string& stopped_by) {
   counters.pair_checks += cost.pair_checks;
   counters.collision.gap_evaluations += cost.narrow.gap_evaluations;
   counters.collision.root_findings += cost.narrow.root_findings;
+  energy_watch_.tell(world_.world(), counters.watch);
   sink_.end(counters.named(), stopped_by);
 }
 

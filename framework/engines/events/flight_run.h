@@ -81,13 +81,13 @@ class FlightRun {
   std::vector<Event> switches_;    // of point forces, in order of time; known from the start
   std::size_t switched_ = 0;
   std::unique_ptr<LinkMeasures> links_;
-  EnergyWatch energy_watch_;
   std::vector<RigidBodyState> states_;   // of the frame that was committed last
   void tell_membership(double t, const FlightOf& flight_of) const;
 
   std::function<void(const Membership&)> on_membership_;
   std::vector<Callback> callbacks_;
   std::vector<EventKey> callback_keys_;
+  EnergyWatch energy_watch_;
 };
 
 }  // namespace tumble::engines

@@ -26,6 +26,12 @@ void LinkMeasures::measure(Frame& frame, const FlightOf& flight_of) {
   LinkForces forces{std::vector<double>(world.springs.size()), std::vector<double>(world.rods.size()), std::vector<double>(world.joints.size())};
   std::vector<RigidBodyState> states;
   for (int i = 0; i < world_.size(); ++i) states.push_back(world_.state(i, flight_of(i), frame.time));
+  for (const int body : world_.movers()) {
+    const Flight& flight = flight_of(body);
+    if (flight.passage < 0 || world_.first_member(body, flight) != body) continue;
+    const std::vector<ContactPoint>& contacts = world_.processes()->passages().step_at(flight.passage, frame.time).forces;
+    frame.contacts.insert(frame.contacts.end(), contacts.begin(), contacts.end());
+  }
   for (LinkedBodies& group : groups_) {
     const ProcessState& from = world_.processes()->passages().step_at(flight_of(group.bodies().front()).passage, frame.time).from;
     std::vector<double> torques, looks;
@@ -36,17 +42,11 @@ void LinkMeasures::measure(Frame& frame, const FlightOf& flight_of) {
     }
     group.remember(std::move(torques), std::move(looks));
     points_body_ = &from.force_points_body;
-    group.measure(states, frame.time, forces);
+    group.measure(states, frame.time, frame.contacts, forces);
   }
   frame.spring_forces = std::move(forces.springs);
   frame.rod_tensions = std::move(forces.rods);
   frame.joint_forces = std::move(forces.joints);
-  for (const int body : world_.movers()) {
-    const Flight& flight = flight_of(body);
-    if (flight.passage < 0 || world_.first_member(body, flight) != body) continue;
-    const std::vector<ContactPoint>& contacts = world_.processes()->passages().step_at(flight.passage, frame.time).forces;
-    frame.contacts.insert(frame.contacts.end(), contacts.begin(), contacts.end());
-  }
 }
 
 std::vector<Event> force_switches(const World& world, double until) {

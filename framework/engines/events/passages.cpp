@@ -145,6 +145,12 @@ ProcessState Passages::state_at(int number, double t) {
   return state;
 }
 
+std::vector<RigidBodyState> Passages::shown_at(int number, double t) {
+  const ProcessStep& step = step_at(number, t);
+  const ProcessState state = state_at(number, t);
+  return t > step.from.time && t < step.end ? at(number).machine->world->shown(state).states : state.states;
+}
+
 collision::Motion Passages::motion_in_step(int number, int body, double low) {
   const ProcessStep& step = step_at(number, low);
   const std::size_t member = place(number, body);

@@ -47,6 +47,8 @@ class Passages {
 
   const std::vector<int>& members(int passage) const { return at(passage).start->members; }
   double began(int passage) const { return at(passage).start->time; }
+  /// Place of a body among the members.
+  std::size_t place(int passage, int body) const;
 
   /// Where it ends by itself, if that is at `to` or before; else null.
   const PassageEnd* end_by(int passage, double to);
@@ -55,6 +57,8 @@ class Passages {
   /// Everything at an instant. @pre the passage has not ended before it
   ProcessState state_at(int passage, double t);
   RigidBodyState body_state(int passage, int body, double t);
+  /// The states of all members, by place among them, as a picture shows them: what lies on each other does not overlap within a step either, and links hold.
+  std::vector<RigidBodyState> shown_at(int passage, double t);
   collision::MotionState motion_at(int passage, int body, double t);
   /// The step that holds t.
   const ProcessStep& step_at(int passage, double t);
@@ -109,7 +113,6 @@ class Passages {
   Passage& at(int passage) { return *passages_[passage]; }
   const Passage& at(int passage) const { return *passages_[passage]; }
   Machine& machine_of(const std::vector<int>& members, int still);
-  std::size_t place(int passage, int body) const;
   void reach(int passage, double t);
   void take_step(Passage& passage);
   std::string names(const std::vector<int>& members) const;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -15,7 +14,6 @@ namespace {
 constexpr double kMicroInterval = 0.01;   // of the step: a pair that meets again sooner, and slowly, is sent apart (as retroactive.cpp)
 constexpr int kMostPassings = 100;        // of a blow to and fro between bodies that touch and bodies that are joined
 constexpr double kTogether = 2.0;         // steps
-constexpr double kWhirl = 20 * std::numbers::pi;   // rad in a step: ten turns
 constexpr double kNear = 1e-6;            // of the sizes: pairs farther apart do not touch
 
 std::vector<const collision::CollisionShape*> shapes_of(const WorldPart& part, const ShapeOf& shape_of) {
@@ -165,6 +163,16 @@ ProcessState ProcessWorld::on_constraints(const ProcessState& state) {
   return after;
 }
 
+ProcessState ProcessWorld::shown(const ProcessState& state) {
+  load(state);
+  std::vector<RigidBodyState> all = moving_.states();
+  moving_.close_links(all, state.time);
+  if (has_contacts()) contacts_->draw_apart(near_pairs(std::nullopt), all, state.time);
+  ProcessState after = state;
+  for (std::size_t k = 0; k < members_.size(); ++k) after.states[k] = all[static_cast<std::size_t>(part_.members[k])];
+  return after;
+}
+
 std::vector<Event> ProcessWorld::take_events() {
   std::vector<Event> events = std::move(collector_.events);
   collector_.events.clear();
@@ -182,17 +190,8 @@ void ProcessWorld::begin_step(double target) {
   moving_.begin_step(target);
   for (const int member : part_.members) {
     if (!moving_.smooth_path(member)) moving_.set_path(member, moving_.state(member), moving_.path_end(member));
-    refuse_whirl(member, target);
+    moving_.refuse_whirl(member);
   }
-}
-
-// Nothing that is meant to turn so far in a step is followed by it, and a search for impacts along such a path would hardly end.
-void ProcessWorld::refuse_whirl(int member, double target) const {
-  if (moving_.shape(member).is_ball()) return;   // looks the same however it turns
-  const double speed = moving_.smooth_path(member)->bounds().angular_speed, turn = speed * (target - moving_.time());
-  if (!(turn > kWhirl)) return;
-  throw StoppedRun(fmt::format("body {} turns at {:.3g} rad/s, {:.3g} rad in a step of {:.3g} s, which no step follows. Likely something drives it beyond measure: a motor that overshoots because it holds its torque too "
-                               "long (\"period_s\"), a force, a spring; else take a shorter step", name(member), speed, turn, target - moving_.time()));
 }
 
 ProcessWorld::Outcome ProcessWorld::step(ProcessState& start, double due) {
@@ -224,6 +223,7 @@ ProcessWorld::Outcome ProcessWorld::step(ProcessState& start, double due) {
     if (!contacts_->commit()) meetings_.separate(near);
     if (earliest) resolve(near.empty() ? pairs : near, pairs[earliest->pair], true);
   }
+  if (!earliest) moving_.watch_links(reached - step.from.time);
   ProcessState after = save();
   return {std::move(step), std::move(after), take_events()};
 }

@@ -77,6 +77,10 @@ class ProcessWorld {
   /// A state with the velocities that rods and joints allow.
   ProcessState on_constraints(const ProcessState& state);
 
+  /// A state within a step, for a picture: contacts keep members apart at a step's ends, and links hold there; on the path between them a body that turns
+  /// dips in by what is of second order in the step, and links open by its fourth power. Here that is taken back.
+  ProcessState shown(const ProcessState& state);
+
   /// What happens at one instant.
   struct Change {
     ProcessState after;
@@ -113,7 +117,6 @@ class ProcessWorld {
   double load_forces(const ProcessState& from);
   void begin_step(double target);
   void require_numbers() const;
-  void refuse_whirl(int member, double target) const;
   bool has_contacts() const { return contacts_.has_value(); }
   bool keep_contacts(std::vector<BodyPair>& pairs);
   std::vector<ContactPoint> forces() const;

@@ -201,7 +201,8 @@ function addWords(player, picture) {
   player.runs.forEach((run, r) => {
     const laws = [run.head.impulses, run.head.motion].filter(word => word && word !== 'none');
     const now = html('p', { className: 'now' });
-    const box = html('div', { className: 'label' }, html('b', {}, run.label || ''), html('span', {}, run.head.stopped ? ` stopped: ${run.head.stopped}` : ''), now);
+    const box = html('div', { className: 'label' }, html('b', {}, run.label || ''), html('span', {}, run.head.stopped ? ` stopped: ${run.head.stopped}` : ''),
+      html('span', {}, run.head.faults ? ` not to be trusted: ${run.head.faults}` : ''), now);
     player.listeners.push(() => { if (player.isTimeToTell()) now.textContent = happeningIn(player, run); });
     labels.push(box);
     box.title = `engine ${run.head.engine}, step ${short(run.head.step)} s, laws: ${laws.join(', ')}`;

@@ -1,0 +1,67 @@
+/// What a run must not keep to itself: links that come apart, projections and contact problems that end unsolved, energy that nothing brings in.
+///
+/// Every stage of every engine notes here what it could not do (the watch is part of RunCounters, which each stage has and which threads and
+/// processes add up); at the end the run's faults are judged as checks that failed (judge.h), so that they stand in the table, in --json and in
+/// the exit code. What stays below the limits is not kept: the limits are what a solver's tolerance and rounding leave, and a reader would see.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "framework/dynamics/world.h"
+#include "framework/trajectory/trajectory.h"
+
+namespace tumble::engines {
+
+/// A link counts as closed up to this part of its size (a rod's length, the arms of a joint), or this angle [rad]. Projection leaves 1e-13; a check of
+/// a joint's gap asks for 1e-6 to 1e-9 m; a picture shows 1e-3.
+inline constexpr double kLinkClosed = 1e-6;
+/// With Baumgarte's term or no stabilisation links drift by design: up to here they are the mechanism that the scene asks for.
+inline constexpr double kLinkDrifts = 1e-2;
+/// A projection onto rods and joints has ended where it leaves at most this part of the group's size: Newton's method doubles the digits, so that
+/// one which does not get here in eight rounds does not converge.
+inline constexpr double kProjected = 1e-9;
+/// An answer to a contact problem stands up to this violation of Signorini's and Coulomb's conditions, as a part of the speed that the problem has
+/// to take away: what is wrong with the energy goes with its square, and with its first power over the contact's other impulses.
+inline constexpr double kContactSolved = 1e-3;
+/// Energy may rise above the least it has been by this part of what the scene has to give (EnergyWatch): methods of order 4 whose step is within
+/// reach of the motion lose a thousandth.
+inline constexpr double kEnergyRises = 1e-2;
+
+class RunWatch {
+ public:
+  enum class Kind : std::uint8_t { kLinkOpen, kProjectionOpen, kContactUnsolved, kEnergyRises };
+  struct Size {
+    double found, allowed;         // relative, [rad] of an angle
+    double time, step;             // [s]
+  };
+
+  /// Keeps what is above what is allowed, or is not a number.
+  void note(Kind kind, const std::string& subject, const Size& size);
+  /// Adds what another has noted: a thread, or a part of the world.
+  void add(const RunWatch& other);
+  bool empty() const { return incidents_.empty(); }
+  /// A step that a stability criterion names for the scene: the remedy then. [s]
+  void name_step(double step);
+  /// One a kind, in the order of kinds.
+  std::vector<RunFault> faults() const;
+
+ private:
+  struct Incident {
+    Size first, worst;
+    std::string worst_subject;
+    std::set<std::string> subjects;
+    std::uint64_t count = 0;
+  };
+
+  std::map<Kind, Incident> incidents_;
+  double named_step_ = kUnset;     // [s]
+};
+
+/// "'a', 'b' and 3 more". @param bodies  of the world
+std::string names_of(const World& world, const std::vector<int>& bodies);
+
+}  // namespace tumble::engines

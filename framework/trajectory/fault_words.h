@@ -1,0 +1,16 @@
+/// What makes a run one that cannot be trusted, in words.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/trajectory/trajectory.h"
+
+namespace tumble {
+
+/// "link_open of 'wire', 161 where 1e-06 is allowed, first at t = 0.25 s, 12 times in all".
+std::string in_words(const RunFault& fault);
+/// All of them, with semicolons between; empty where there is none.
+std::string in_words(const std::vector<RunFault>& faults);
+
+}  // namespace tumble
