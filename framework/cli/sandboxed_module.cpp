@@ -1,36 +1,17 @@
 #include "framework/cli/sandboxed_module.h"
 
 #include <cstdio>
-#include <stdlib.h>
 
+#include "framework/core/temporary_folder.h"
 #include "framework/grading/build_submission.h"
 #include "framework/grading/call_log.h"
+#include "framework/grading/compiler_words.h"
 #include "framework/grading/worker_connection.h"
 
 namespace tumble::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// A folder that is gone at the end of the scope.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "tumble-submission-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw UserError(name, "this folder cannot be made", "Free some space, or set TMPDIR.");
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 void compile(const Context& context, const modules::ModuleKind& kind, const fs::path& source, const fs::path& object) {
   using Outcome = grading::BuiltSubmission::Outcome;
@@ -39,13 +20,13 @@ void compile(const Context& context, const modules::ModuleKind& kind, const fs::
   const auto built = grading::build_submission(course, kind.id, source, object);
   if (built.outcome == Outcome::kGraderFault) throw std::runtime_error("the sandboxed compiler could not be asked: " + built.said);
   if (built.outcome == Outcome::kRefused)
-    throw UserError(source.string(), "does not compile:\n" + grading::compiler_story(built.said, source) + "\n", "Correct it, or name another file after --modules.");
+    throw UserError(source.string(), "does not compile:\n" + grading::compiler_story(built.said, source, grading::module_header(course, kind.id)) + "\n", "Correct it, or name another file after --modules.");
 }
 
 }  // namespace
 
 SandboxedModule load_sandboxed(const Context& context, const modules::ModuleKind& kind, const fs::path& file) {
-  const TemporaryFolder folder;
+  const TemporaryFolder folder("tumble-submission");
   grading::WorkerOptions options;
   options.id = kind.id;
   options.module = file;
