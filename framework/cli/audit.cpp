@@ -72,13 +72,14 @@ void print_json(const std::vector<AuditResult>& results) {
 
 void audit(Context& context, const Words& words) {
   const grading::Course course{context.root, context.build, &context.registry, context.command_line};
+  const auto candidates = grading::only(grading::find_candidates(course, words.id, words.mutants), words.only);
   grading::judge_of(course, words.id);
   const bool line = ::isatty(STDERR_FILENO) == 1;
   const auto told = [&](std::size_t done, std::size_t total) {
     if (line) fmt::print(stderr, "\r{} of {} judged{}", done, total, done == total ? "\n" : "");
     else if (done == total || done % 10 == 0) fmt::print(stderr, "{} of {} judged\n", done, total);
   };
-  const auto results = grading::audit(course, words.id, grading::only(grading::find_candidates(course, words.id, words.mutants), words.only), words.jobs, told);
+  const auto results = grading::audit(course, words.id, candidates, words.jobs, told);
   std::size_t wrong = 0, caught = 0, named = 0, right = 0, whole = 0;
   for (const AuditResult& r : results) {
     (r.candidate.is_right ? right : wrong) += 1;

@@ -127,7 +127,7 @@ std::vector<Candidate> find_candidates(const Course& course, const std::string& 
 std::vector<Candidate> only(const std::vector<Candidate>& candidates, const std::vector<std::string>& names) {
   if (names.empty()) return candidates;
   std::vector<std::string> known;
-  for (const Candidate& candidate : candidates) known.push_back(candidate.name);
+  for (const Candidate& candidate : candidates) known.insert(known.end(), {candidate.file.stem().string(), candidate.name});
   std::vector<Candidate> chosen;
   for (const std::string& name : names) {
     const auto found = std::find_if(candidates.begin(), candidates.end(), [&](const Candidate& c) { return c.name == name || c.file.stem() == name; });
