@@ -318,9 +318,9 @@ TEST_F(CommandLine, AStubIsNotAttempted) {
 }
 
 TEST_F(CommandLine, AnAuditOfAnUnknownSlipIsAnsweredWithTheNearest) {
-  const Said said = type("audit a1 --only all_zeroes");
+  const Said said = type("audit a1 --only arm_cross_omga");
   EXPECT_EQ(said.code, 2);
-  EXPECT_TRUE(holds(said.err, "Did you mean 'all_zeros'?")) << said.err;
+  EXPECT_TRUE(holds(said.err, "Did you mean 'arm_cross_omega'?")) << said.err;
 }
 #endif
 
