@@ -1,6 +1,5 @@
 // tumble audit a1 [--mutants FOLDER]: do the tests catch every known-wrong solution, and accuse no right one?
 #include <cstdio>
-#include <map>
 #include <memory>
 #include <thread>
 
@@ -19,6 +18,7 @@ using grading::AuditResult;
 
 struct Words {
   std::string id, mutants;
+  std::vector<std::string> only;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   bool json = false;
 };
@@ -46,13 +46,17 @@ void print_mutants(const std::vector<AuditResult>& results) {
 }
 
 void print_tests(const grading::Rubric& rubric, const std::vector<AuditResult>& results) {
-  std::map<std::string, std::size_t> kills;
-  for (const AuditResult& r : results)
-    for (const auto& test : r.caught_by) ++kills[test.test];
+  const auto catches = grading::catches_of(results);
   std::size_t widest = 0;
   for (const auto& item : rubric.items) widest = std::max(widest, item.test.size());
-  fmt::print("\n{:<{}}  catches\n", "test", widest);
-  for (const auto& item : rubric.items) fmt::print("{:<{}}  {:>7}{}\n", item.test, widest, kills[item.test], kills[item.test] == 0 ? "  none of these slips" : "");
+  fmt::print("\n{:<{}}  catches  alone\n", "test", widest);
+  for (const auto& item : rubric.items) {
+    const auto found = catches.find(item.test);
+    const grading::Catches none, &of_test = found == catches.end() ? none : found->second;
+    std::string alone;
+    for (const std::string& slip : of_test.alone) alone += (alone.empty() ? "" : ", ") + slip;
+    fmt::print("{:<{}}  {:>7}  {}\n", item.test, widest, of_test.count, of_test.count == 0 ? "none of these slips" : alone);
+  }
 }
 
 void print_json(const std::vector<AuditResult>& results) {
@@ -68,13 +72,14 @@ void print_json(const std::vector<AuditResult>& results) {
 
 void audit(Context& context, const Words& words) {
   const grading::Course course{context.root, context.build, &context.registry, context.command_line};
+  const auto candidates = grading::only(grading::find_candidates(course, words.id, words.mutants), words.only);
   grading::judge_of(course, words.id);
   const bool line = ::isatty(STDERR_FILENO) == 1;
   const auto told = [&](std::size_t done, std::size_t total) {
     if (line) fmt::print(stderr, "\r{} of {} judged{}", done, total, done == total ? "\n" : "");
     else if (done == total || done % 10 == 0) fmt::print(stderr, "{} of {} judged\n", done, total);
   };
-  const auto results = grading::audit(course, words.id, grading::find_candidates(course, words.id, words.mutants), words.jobs, told);
+  const auto results = grading::audit(course, words.id, candidates, words.jobs, told);
   std::size_t wrong = 0, caught = 0, named = 0, right = 0, whole = 0;
   for (const AuditResult& r : results) {
     (r.candidate.is_right ? right : wrong) += 1;
@@ -98,7 +103,8 @@ void add_audit(CLI::App& app, Context& context) {
   Verb verb(app, "audit", "Judge every known-wrong solution: which test catches which, and does its story name the slip");
   verb.option("assignment", words->id, "Which, e.g. a1").required().type_name("ID");
   verb.option("--mutants", words->mutants, "Known-wrong solutions to judge instead of the assignment's own").type_name("FOLDER");
-  verb.option("--jobs", words->jobs, "At a time").between(1, 256).shows_default();
+  verb.option("--only", words->only, "These alone, by the first column's names, with commas between them; reference and other right solutions too").separated_by(',').type_name("SLIP");
+  verb.option("--jobs", words->jobs, "At a time").between(1, 256).default_text("number of cores");
   verb.flag("--json", words->json, "For machines");
   verb.footer("Exit: 0 all caught and no right solution accused, 1 otherwise.");
   verb.runs([&context, words] { audit(context, *words); });

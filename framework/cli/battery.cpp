@@ -11,6 +11,7 @@
 #include "framework/cli/module_choice.h"
 #include "framework/cli/read_truth.h"
 #include "framework/cli/verb.h"
+#include "framework/grading/laws_around.h"
 #include "framework/report/battery_page.h"
 
 namespace tumble::cli {
@@ -38,21 +39,15 @@ bool is_wanted(const battery::Case& a_case, const std::vector<std::string>& only
          });
 }
 
-/// Fills in laws and modules: by the word given, else the reference's, where this tree has one.
+/// Fills in laws and modules: by the word given, else the reference's where this tree has one, else the student's.
 void provide(const Context& context, const std::string& word, battery::Given& given) {
   given.laws = library_laws();
   for (const modules::ModuleKind* kind : context.registry.all()) {
     const bool has_reference = fs::exists(context.build / "modules" / (kind->id + "_reference.so"));
-    if (word.empty() && !has_reference) continue;
-    const std::string chosen = word.empty() ? "reference" : word;
+    const std::string chosen = !word.empty() ? word : has_reference ? "reference" : "student";
     const modules::AnyModule module = load_word(context, *kind, chosen);
     given.modules[kind->id] = module;
-    kind->bind(module, given.laws);
-    Laws alone;   // shows which laws this module is about
-    kind->bind(module, alone);
-    if (alone.collision_impulse) given.laws.impulse_source = kind->id + ' ' + chosen;
-    if (alone.integrate_step) given.laws.integrator_source = kind->id + ' ' + chosen;
-    if (alone.constraint_multipliers) given.laws.constraint_source = kind->id + ' ' + chosen;
+    grading::put_into(*kind, module, kind->id + ' ' + chosen, given.laws);
   }
 }
 
@@ -125,7 +120,7 @@ void add_battery(CLI::App& app, Context& context) {
   verb.option("--only", options->only, "Cases by number, or by a word of the name");
   verb.flag("--each", options->each, "Show every measure, not only the one closest to its threshold");
   verb.option("--out", options->out, "Folder of the page battery.html").shows_default();
-  verb.option("--modules", options->modules, "student, reference, PATH.cpp or PATH.so").default_text("reference, where this tree has one");
+  verb.option("--modules", options->modules, "student, reference, PATH.cpp or PATH.so").default_text("reference where this tree has one, else student");
   verb.runs([&context, options] { run_battery(context, *options); });
 }
 

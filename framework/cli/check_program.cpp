@@ -1,12 +1,16 @@
 #include "framework/cli/check_program.h"
 
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <sstream>
 
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "framework/core/files.h"
 #include "framework/grading/build_submission.h"
+#include "framework/grading/compiler_words.h"
 #include "framework/grading/run_program.h"
 
 namespace tumble::cli {
@@ -16,59 +20,33 @@ namespace fs = std::filesystem;
 using grading::Output;
 using grading::ProgramOutcome;
 
+constexpr double kLoadLimit = 10.0;   // s: a program of tests starts in 20 ms; this is for a loaded machine
+
+bool has_colours() { return ::isatty(STDOUT_FILENO) == 1; }
+
+void print_indented(const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) fmt::print("    {}\n", line);
+}
+
 // Shows the compiler's errors as the verdict that they are.
-ExitCode does_not_compile(const fs::path& file, const std::string& said) {
-  const bool colours = ::isatty(STDOUT_FILENO) == 1;
-  fmt::print("{}does not compile{}: {}\n\n", colours ? "\033[31m" : "", colours ? "\033[0m" : "", file.filename().string());
-  std::istringstream story(grading::compiler_story(said, file));
-  for (std::string line; std::getline(story, line);) fmt::print("    {}\n", line);
+ExitCode does_not_compile(const fs::path& file, const fs::path& header, const std::string& said) {
+  fmt::print("{}does not compile{}: {}\n\n", has_colours() ? "\033[31m" : "", has_colours() ? "\033[0m" : "", file.filename().string());
+  print_indented(grading::compiler_story(said, file, header));
   fmt::print("\nno test ran: the first error is the one to mend\n");
   return ExitCode::kCheckFailed;
 }
 
-// The student's own stub: the build knows how.
-ProgramOutcome build_stub(const Context& context, const std::string& id) {
-  return grading::run_program({"ninja", "-C", context.build.string(), "--quiet", "check_" + id}, Output::kCaptured);
+void print_warnings(const fs::path& file, const std::string& said) {
+  const std::string warnings = grading::compiler_warnings(said, file);
+  if (warnings.empty()) return;
+  fmt::print("{}the compiler warns{}: {}\n\n", has_colours() ? "\033[33m" : "", has_colours() ? "\033[0m" : "", file.filename().string());
+  print_indented(warnings);
+  fmt::print("\n");
 }
 
-std::string replaced(std::string text, const std::string& from, const std::string& to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size()) text.replace(at, from.size(), to);
-  return text;
-}
-
-std::string quoted(const std::string& word) { return "'" + replaced(word, "'", "'\\''") + "'"; }
-
-// Another file in the stub's place: the build's own two commands, to compile the stub and to link, with other names in them.
-struct OtherFile {
-  std::string compile, link;
-  fs::path program;
-};
-
-OtherFile commands_for(const Context& context, const CheckWords& words) {
-  const std::string folder = context.registry.find(words.id).folder;
-  const std::string object = "assignments/" + folder + "/CMakeFiles/" + words.id + "_linked.dir/" + folder + ".cpp.o";
-  const fs::path stub = context.root / "assignments" / folder / (folder + ".cpp");
-  const ProgramOutcome listed = grading::run_program({"ninja", "-C", context.build.string(), "--quiet", "-t", "commands", "check_" + words.id}, Output::kCaptured);
-  const fs::path place = context.build / "checked";
-  fs::create_directories(place);
-  OtherFile other;
-  other.program = place / ("check_" + words.id);
-  const std::string own_object = (place / (folder + ".o")).string();
-  std::istringstream lines(listed.printed);
-  for (std::string line; std::getline(lines, line);) {
-    if (line.find("-o " + object + " -c ") != std::string::npos) {
-      other.compile = replaced(replaced(line, object, own_object), "-c " + stub.string(), "-c " + quoted(fs::absolute(*words.file).string()));
-      other.compile += " -I " + quoted(stub.parent_path().string());
-    } else if (line.find("-o bin/check_" + words.id + " ") != std::string::npos) {
-      other.link = replaced(replaced(line, object, own_object), "-o bin/check_" + words.id + " ", "-o " + other.program.string() + " ");
-    }
-  }
-  if (other.compile.empty() || other.link.empty()) throw std::runtime_error("the build has no rule for check_" + words.id);
-  return other;
-}
-
-ExitCode run_tests(const Context& context, const CheckWords& words, const fs::path& program) {
-  std::vector<std::string> command = {program.string(), "--rubric", (context.root / "assignments" / context.registry.find(words.id).folder / "rubric.json").string()};
+ExitCode run_tests(const Context& context, const CheckWords& words, std::vector<std::string> command) {
+  command.insert(command.end(), {"--rubric", (context.root / "assignments" / context.registry.find(words.id).folder / "rubric.json").string()});
   command.insert(command.end(), words.patterns.begin(), words.patterns.end());
   std::fflush(stdout);
   const int code = grading::run_program(command, Output::kOurs).code;
@@ -79,11 +57,79 @@ ExitCode run_tests(const Context& context, const CheckWords& words, const fs::pa
   return static_cast<ExitCode>(code);
 }
 
+// ---- the student's own file: the build knows how ----
+
+std::string contents_of(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+/// What the compiler said of the file when it last compiled it. Warnings stay until they are mended, though a file that
+/// has not changed is not compiled again: words older than the object are not of it, and it is compiled once more.
+class KeptWords {
+ public:
+  KeptWords(const Context& context, const std::string& id, const std::string& folder)
+      : object_(context.build / "assignments" / folder / "CMakeFiles" / (id + "_linked.dir") / (folder + ".cpp.o")),
+        words_(context.build / "checked" / (id + ".compiler.txt")) {
+    std::error_code ignored;
+    if (!are_of_object()) fs::remove(object_, ignored);
+  }
+  /// @param said  what the build printed just now: nothing where there was nothing to do
+  std::string after_build(const std::string& said) const {
+    if (!are_of_object()) write_whole(words_, said);
+    return contents_of(words_);
+  }
+
+ private:
+  bool are_of_object() const {
+    std::error_code missing;
+    const auto compiled = fs::last_write_time(object_, missing);
+    if (missing) return false;
+    const auto kept = fs::last_write_time(words_, missing);
+    return !missing && kept >= compiled;
+  }
+  fs::path object_, words_;
+};
+
+// A global object's initial value is worked out before main: one that does not end would hang every test.
+bool starts(const fs::path& program) {
+  return grading::run_program({program.string(), "--debug", "--gtest_list_tests"}, Output::kDropped, kLoadLimit).in_time;
+}
+
+ExitCode check_own(const Context& context, const CheckWords& words, const fs::path& file, const fs::path& header) {
+  const KeptWords kept(context, words.id, context.registry.find(words.id).folder);
+  const ProgramOutcome built = grading::run_program({"ninja", "-C", context.build.string(), "--quiet", "check_" + words.id}, Output::kCaptured);
+  if (built.code != 0) return does_not_compile(file, header, built.printed);
+  print_warnings(file, kept.after_build(built.printed));
+  const fs::path program = context.build / "bin" / ("check_" + words.id);
+  if (!starts(program)) {
+    fmt::print("out of time: {}\n\n    does not start within {:g} s: the initial value of a global or static variable is a loop that does not end\n\nno test ran\n",
+               file.filename().string(), kLoadLimit);
+    return ExitCode::kCheckFailed;
+  }
+  return run_tests(context, words, {program.string()});
+}
+
+// ---- a file that is not one's own: compiled and called in the sandbox ----
+
+ExitCode check_foreign(const Context& context, const CheckWords& words, const fs::path& file, const fs::path& header) {
+  const fs::path program = context.build / "bin" / ("check_" + words.id + "_sandboxed");
+  if (!fs::exists(program)) throw UserError(program.string(), "is not built", "Run ./tumble check, which builds it.");
+  const PrivateFolder folder;
+  const fs::path object = folder.path() / (words.id + ".so");
+  const grading::Course course{context.root, context.build, &context.registry, context.command_line};
+  const auto built = grading::build_submission(course, words.id, file, object);
+  if (built.outcome == grading::BuiltSubmission::Outcome::kGraderFault) throw std::runtime_error("the sandboxed compiler could not be asked: " + built.said);
+  if (built.outcome == grading::BuiltSubmission::Outcome::kRefused) return does_not_compile(file, header, built.said);
+  print_warnings(file, built.said);
+  return run_tests(context, words, {program.string(), "--submission", object.string(), "--quick"});
+}
+
 }  // namespace
 
 void add_check_words(Verb& verb, std::vector<std::string>& rest, std::string& id) {
   verb.option("assignment", id, "Which, e.g. a1").required().type_name("ID");
-  verb.option("what", rest, "FILE.cpp: instead of your file under assignments/; other words choose tests, e.g. 'CollisionImpulse.*'").type_name("[FILE] [PATTERN]");
+  verb.option("what", rest, "FILE.cpp: instead of your file under assignments/, run in the sandbox; other words choose tests, e.g. 'CollisionImpulse.*'").type_name("[FILE] [PATTERN]");
 }
 
 CheckWords read_check_words(const Context& context, const std::string& id, const std::vector<std::string>& rest) {
@@ -107,18 +153,10 @@ fs::path checked_file(const Context& context, const CheckWords& words) {
 ExitCode check_once(const Context& context, const CheckWords& words) {
   const fs::path file = checked_file(context, words);
   if (!fs::exists(file)) throw UserError(file.string(), "is not there", "Put your file back, or take it from the starter tree.");
-  if (!words.file) {
-    const ProgramOutcome built = build_stub(context, words.id);
-    if (built.code != 0) return does_not_compile(file, built.printed);
-    return run_tests(context, words, context.build / "bin" / ("check_" + words.id));
-  }
-  // The tests must be built; the stub beside them need not compile, so that nobody's half-written file is in the way.
-  grading::run_program({"ninja", "-C", context.build.string(), "--quiet", "-k", "0", "check_" + words.id}, Output::kDropped);
-  const OtherFile other = commands_for(context, words);
-  const std::string script = "cd " + quoted(context.build.string()) + " && " + other.compile + " && " + other.link;
-  const ProgramOutcome built = grading::run_program({"/bin/sh", "-c", script}, Output::kCaptured);
-  if (built.code != 0) return does_not_compile(file, built.printed);
-  return run_tests(context, words, other.program);
+  const std::string folder = context.registry.find(words.id).folder;
+  const fs::path own = context.root / "assignments" / folder / (folder + ".cpp"), header = own.parent_path() / (folder + ".h");
+  std::error_code missing;
+  return fs::equivalent(file, own, missing) ? check_own(context, words, file, header) : check_foreign(context, words, file, header);
 }
 
 }  // namespace tumble::cli

@@ -82,7 +82,7 @@ void add_cost(CLI::App& app, Context& context) {
   verb.option("--budget-s", words->budget_s, "CPU time of all ladders together [s], default 30, of all: 4 a scene; the truth takes 18 s at most beside").positive();
   verb.option("--n", words->n, "Size of a scene whose size is a parameter");
   verb.option("--out", words->out, "Folder in which the page SCENE/index.html is made").shows_default();
-  verb.footer("Example: tumble cost double_pendulum --modules reference\n         tumble cost a2 --modules mine/a2_integration.cpp\nTimes are CPU times in this run and are meant to be compared with each other only.");
+  verb.footer("Example: tumble cost double_pendulum\n         tumble cost a2 --modules mine/a2_integration.cpp\nTimes are CPU times in this run and are meant to be compared with each other only.");
   verb.runs([&context, words] { run_cost(context, *words); });
 }
 

@@ -35,7 +35,7 @@ void run_engines(Context& context, const EnginesWords& words) {
   if (words.scene.empty() || words.scene == kAllScenes) return engines_of_all(context, words);
   if (words.full || words.small || words.no_videos) throw UserError(words.full ? "--full" : words.small ? "--small" : "--no-videos", "is of the page of all scenes", "Leave it out, or leave the scene out.");
   const scene::Scene scene = find_scene(context, words.scene, words.n);
-  const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(words.modules, context.registry));
+  const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(words.modules, context.registry), words.engines);
   refuse_threads_of_sandboxes(chosen, words.threads);
   for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
   std::vector<std::vector<EngineRow>> ladder;
@@ -74,7 +74,7 @@ void add_engines(CLI::App& app, Context& context) {
   verb.option("--step-s", words->step_s, "Largest step [s] instead of the scene's").positive();
   verb.option("--threads", words->threads, "Of tw: how many; then times are by the clock").shows_default();
   verb.option("--out", words->out, "Folder in which pages are made: index.html of all scenes, SCENE/index.html of one").shows_default();
-  verb.footer("Example: tumble engines\n         tumble engines atoms --sizes 30,100,300 --modules reference\nTimes are CPU times in this run (by the clock with --threads) and are meant to be compared with each other only.");
+  verb.footer("Example: tumble engines\n         tumble engines atoms --sizes 30,100,300\nTimes are CPU times in this run (by the clock with --threads) and are meant to be compared with each other only.");
   verb.runs([&context, words] { run_engines(context, *words); });
 }
 

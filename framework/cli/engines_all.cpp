@@ -152,7 +152,7 @@ EnginesScene show(const Context& context, const EnginesWords& words, const Shown
     shown.command = fmt::format("./tumble engines {} --n {}", which.name, n);
     const bool in_part = words.full && which.paper_duration > 0;
     if (in_part) shown.command += fmt::format(" --duration-s {:g}", which.paper_duration);
-    const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(modules_of(context, words), context.registry));
+    const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(modules_of(context, words), context.registry), words.engines);
     std::vector<EngineRun> runs;
     for (EngineChoice choice : choices_of(words)) {
       if (in_part) choice.duration_s = which.paper_duration;
@@ -191,7 +191,7 @@ std::vector<std::vector<EngineRow>> climb(const Context& context, const EnginesW
   std::vector<std::vector<EngineRow>> ladder;
   for (const int n : sizes) {
     const scene::Scene scene = find_scene(context, name, n);
-    const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(modules_of(context, words), context.registry));
+    const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(modules_of(context, words), context.registry), words.engines);
     std::vector<EngineRun> runs;
     for (EngineChoice choice : choices_of_ladder(words)) {
       choice.most_s = std::min(choice.most_s, most_s);

@@ -84,7 +84,7 @@ void add_grade(CLI::App& app, Context& context) {
   verb.option("assignment", words->id, "Which, e.g. a1").required().type_name("ID");
   verb.option("folder", words->folder, "One submission a sub-folder").required().type_name("FOLDER");
   verb.option("--out", words->out, "Where results go, a folder of their own; default out/grade_ID. A run that was ended goes on from there").type_name("FOLDER");
-  verb.option("--jobs", words->jobs, "Submissions at a time").between(1, 256).shows_default();
+  verb.option("--jobs", words->jobs, "Submissions at a time").between(1, 256).default_text("number of cores");
   verb.option("--budget-s", words->budget_s, "Time for all tests of one submission together; tests after it are out of time, not run").positive().shows_default();
   verb.flag("--no-media", words->no_media, "Without pictures, videos and pages that play: seconds instead of minutes a submission");
   verb.footer("Exit: 0 all graded, 1 no file was found for somebody (that score is blank, the reason is told), 2 something to repair, "

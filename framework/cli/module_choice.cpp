@@ -1,15 +1,22 @@
 #include "framework/cli/module_choice.h"
 
 #include <algorithm>
+#include <cstdio>
+#include <set>
 
 #include <spawn.h>
-#include <stdlib.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include "framework/cli/sandboxed_module.h"
 #include "framework/core/nearest_word.h"
 #include "framework/core/not_implemented.h"
+#include "framework/core/files.h"
+#include "framework/engines/timewarp/fast_timewarp.h"
+#include "framework/grading/compiler_words.h"
+#include "framework/grading/guarded_calls.h"
+#include "framework/grading/laws_around.h"
+#include "framework/grading/run_program.h"
 #include "framework/modules/load.h"
 
 namespace tumble::cli {
@@ -22,26 +29,6 @@ using modules::ModuleKind;
 fs::path built(const Context& context, const std::string& id, const std::string& word) {
   return context.build / "modules" / (id + '_' + word + ".so");
 }
-
-/// A folder that is gone at the end of the scope: a loaded object stays mapped without its file.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = (fs::temp_directory_path() / "tumble-module-XXXXXX").string();
-    if (::mkdtemp(name.data()) == nullptr) throw UserError(name, "this folder cannot be made", "Free some space, or set TMPDIR.");
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 /// Compiles as the build does (assignments/CMakeLists.txt: tumble_module_object). The compiler's words go to stderr.
 void compile(const Context& context, const fs::path& source, const fs::path& object) {
@@ -60,39 +47,63 @@ void compile(const Context& context, const fs::path& source, const fs::path& obj
     throw UserError(source.string(), "does not compile; the compiler says why above", "Correct it, or name another file after --modules.");
 }
 
+/// The student's file, for people: from the root of the tree.
+std::string student_file(const ModuleKind& kind) { return "assignments/" + kind.folder + "/" + kind.folder + ".cpp"; }
+
+/// The student's module, built from the file as it is now.
+/// @throws UserError with the compiler's words: an old object must not stand in for a file that does not compile
+fs::path build_student(const Context& context, const ModuleKind& kind) {
+  const fs::path object = built(context, kind.id, "student"), source = context.root / student_file(kind);
+  static std::set<std::string> fresh;   // ids, built by this process
+  if (fresh.contains(kind.id)) return object;
+  if (!fs::exists(source)) throw UserError(source.string(), "is not there", "Put your file back, or take it from the starter tree.");
+  std::error_code missing;
+  const auto made = fs::last_write_time(object, missing);
+  if (missing || made < fs::last_write_time(source)) std::fprintf(stderr, "compiling %s\n", student_file(kind).c_str());
+  const auto outcome = grading::run_program({"ninja", "-C", context.build.string(), "--quiet", kind.id + "_student"}, grading::Output::kCaptured);
+  if (outcome.code != 0) {
+    const fs::path header = source.parent_path() / (kind.folder + ".h");
+    throw UserError(student_file(kind), "does not compile:\n" + grading::compiler_story(outcome.printed, source, header), "Correct it (./tumble check " + kind.id + " says the same), or name another file after --modules.");
+  }
+  fresh.insert(kind.id);
+  return object;
+}
+
+/// Code of one's own, in this process: guarded against its slips.
+AnyModule load_own(const ModuleKind& kind, const fs::path& object, const std::string& file) {
+  return grading::guarded(kind, grading::guarded_load(file, [&] { return modules::load_module(kind, object); }), file);
+}
+
+/// Whether this tree has the module that a word means.
+bool is_there(const Context& context, const ModuleKind& kind, const std::string& word) {
+  return word == "student" ? fs::exists(context.root / student_file(kind)) : fs::exists(built(context, kind.id, word));
+}
+
 }  // namespace
 
 AnyModule load_word(const Context& context, const ModuleKind& kind, const std::string& word) {
-  if (word == "student" || word == "reference") {
-    const fs::path file = built(context, kind.id, word);
-    if (!fs::exists(file) && word == "reference")
+  if (word == "student") return load_own(kind, build_student(context, kind), student_file(kind));
+  if (word == "reference") {
+    if (!is_there(context, kind, word))
       throw UserError("--modules " + kind.id + "=reference", "this tree holds no reference solution of " + kind.id,
                       "Use " + kind.id + "=student, or name a file of your own.");
-    if (!fs::exists(file))
-      throw UserError("--modules " + kind.id + "=student", file.string() + " is not built", "Run ./tumble, which builds it, or: ninja -C " + context.build.string() + " " + kind.id + "_student");
-    return modules::load_module(kind, file);
+    return modules::load_module(kind, built(context, kind.id, word));
   }
   const fs::path file = word;
   if (file.extension() != ".cpp" && file.extension() != ".so")
     throw UserError("--modules " + kind.id + "=" + word, "this is none of student, reference, library, PATH.so, PATH.cpp", "Give one of these.");
   if (!fs::exists(file)) throw UserError("--modules " + kind.id + "=" + word, "there is no such file", "Check the path.");
-  if (file.extension() == ".so") return modules::load_module(kind, file);
-  const TemporaryFolder folder;
+  if (file.extension() == ".so") return load_own(kind, file, word);
+  const PrivateFolder folder;
   const fs::path object = folder.path() / (kind.id + ".so");
   compile(context, file, object);
-  return modules::load_module(kind, object);
+  return load_own(kind, object, word);
 }
 
 namespace {
 
 void bind_module(const ModuleKind& kind, const AnyModule& module, const std::string& source, Laws& laws) {
-  kind.bind(module, laws);
-  Laws alone;   // shows which laws this module is about
-  kind.bind(module, alone);
-  if (alone.collision_impulse) laws.impulse_source = kind.id + ' ' + source;
-  if (alone.integrate_step) laws.integrator_source = kind.id + ' ' + source;
-  if (alone.constraint_multipliers) laws.constraint_source = kind.id + ' ' + source;
-  if (alone.scheduling) laws.scheduling_source = kind.id + ' ' + source;
+  grading::put_into(kind, module, kind.id + ' ' + source, laws);
 }
 
 bool is_path(const std::string& word) { return !word.empty() && word != "student" && word != "reference" && word != "library"; }
@@ -234,22 +245,41 @@ void refuse_unknown_needs(const scene::Scene& scene, const std::vector<const Mod
 
 }  // namespace
 
-ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words) {
+namespace {
+
+/// A module that the scene does not need, for what may still be asked: from what there is, if it compiles.
+void bind_spare(const Context& context, const ModuleKind& kind, ChosenLaws& result) {
+  const std::string word = best_available(context, kind.id);
+  if (kind.is_scheduler || !is_there(context, kind, word)) return;
+  try {
+    bind_module(kind, load_word(context, kind, word), word, result.laws);
+  } catch (const UserError& error) {
+    result.notices.push_back(error.where() + " does not compile; this scene does not need it");
+  }
+}
+
+}  // namespace
+
+ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words, const std::string& engine) {
   const auto kinds = context.registry.all();
   refuse_unknown_needs(scene, kinds);
   const bool has_home = std::any_of(kinds.begin(), kinds.end(), [&](const ModuleKind* kind) { return is_own(scene, *kind); });
   // Who names a scheduler is at work on it, whatever the scene: earlier assignments that are not done are not in its way.
   const bool is_for_scheduler = std::any_of(kinds.begin(), kinds.end(), [&](const ModuleKind* kind) { return kind->is_scheduler && words.contains(kind->id); });
+  const bool needs_scheduler = (engine.empty() ? scene.engine : engine).find("tw") != std::string::npos && !engines::fast_timewarp();
   std::map<std::string, std::string> chosen;   // by id
   std::map<std::string, fs::path> files;
   for (const ModuleKind* kind : kinds) {
     const auto told = words.contains(kind->id) ? words.find(kind->id) : words.find("");
-    const std::string otherwise = default_word(context, scene, *kind, has_home || is_for_scheduler);
+    const bool is_asked = kind->is_scheduler && needs_scheduler;
+    const std::string otherwise = is_asked ? best_available(context, kind->id) : default_word(context, scene, *kind, has_home || is_for_scheduler);
     chosen[kind->id] = told != words.end() ? told->second : otherwise;
     // One word for all modules is meant for those that the scene is about and those there are: "reference" where a later
     // assignment has none yet.
+    // A scheduler is meant where an engine is that has no other: a tree without the fast one runs timewarp by the student's.
     const bool for_all = told != words.end() && told->first.empty() && (told->second == "reference" || told->second == "student");
-    if (for_all && !is_about(scene, *kind) && (kind->is_scheduler || !fs::exists(built(context, kind->id, told->second)))) chosen[kind->id] = otherwise;
+    const bool left_out = kind->is_scheduler ? !needs_scheduler : !is_there(context, *kind, told == words.end() ? "" : told->second);
+    if (for_all && !is_about(scene, *kind) && left_out) chosen[kind->id] = otherwise;
     if (told == words.end() || !is_path(told->second)) continue;
     files[kind->id] = file_for(context, *kind, told->second, told->first.empty());
     // A submission of another assignment beside it: this one must not be paid for, so it is right where it can be.
@@ -259,8 +289,7 @@ ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const 
   ChosenLaws result;
   // What the scene does not need may still be asked for (a push by hand): from what is built, if it is.
   for (const ModuleKind* kind : kinds) {
-    const std::string word = best_available(context, kind->id);
-    if (chosen[kind->id].empty() && fs::exists(built(context, kind->id, word))) bind_module(*kind, load_word(context, *kind, word), word, result.laws);
+    if (chosen[kind->id].empty()) bind_spare(context, *kind, result);
   }
   // A scheduler is asked only where the scene is about it, or somebody named it: the framework has a faster one.
   result.laws.scheduling = {};

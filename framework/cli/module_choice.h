@@ -39,8 +39,10 @@ struct ChosenLaws {
   std::vector<std::shared_ptr<void>> connections;   // to sandboxes: must outlive every call of the laws
 };
 
+/// @param engine  that will run the scene; empty: the scene's own. In a tree without a fast scheduler, timewarp (a list of engines
+///                that names "tw") asks for a scheduler's module as a scene about it does.
 /// @throws UserError when a word names nothing that can be loaded, with what to do
-ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words);
+ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words, const std::string& engine = "");
 
 /// @throws UserError where several threads would call laws of a sandbox, which answers one call at a time
 void refuse_threads_of_sandboxes(const ChosenLaws& chosen, int threads);

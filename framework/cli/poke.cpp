@@ -143,7 +143,7 @@ void poke(Context& context, const PokeWords& words) {
   if ((words.pixel.empty() ? 0 : 1) + (words.ray.empty() ? 0 : 1) + (words.point.empty() ? 0 : 1) != 1)
     throw UserError("poke", "expected exactly one of --pixel, --ray, --point", "For example --pixel 200,250.");
   scene::Scene scene = scene_of_words(context, words, false);   // a model rests until it is pushed
-  const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(words.modules, context.registry));
+  const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(words.modules, context.registry), words.engine);
   if (!chosen.laws.wrench_of_point_force) throw UserError("--modules", "no module here turns a point force into force and torque", "Build a1, or name one: --modules a1=PATH.cpp");
 
   const Vector3d force = parse_vector("--force", words.force);

@@ -1,13 +1,17 @@
-// tumble release FOLDER [--publish a1]: the tree that students get. It is the tree without solutions_private/, proven so.
+// tumble release FOLDER [--publish a1]: the tree that students get. It is the tree without solutions_private/, proven so,
+// with a README that begins with the student. It was built once, and every stub in it is "not attempted".
 #include <algorithm>
 #include <array>
 #include <cstdio>
 #include <fstream>
 #include <memory>
-#include <set>
 #include <vector>
 
 #include "framework/cli/verb.h"
+#include "framework/core/files.h"
+#include "framework/grading/course.h"
+#include "framework/grading/release_checks.h"
+#include "framework/grading/run_program.h"
 
 namespace tumble::cli {
 namespace {
@@ -15,10 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPrivate = "solutions_private";
+constexpr const char* kStudentsReadme = "README_students.md";   // in the place of README.md
 
 struct Options {
   std::string folder;
   std::vector<std::string> publish;
+  bool build = true;
 };
 
 // Never part of a release, whatever the tree is under: build trees, results, the version control's own folder.
@@ -26,27 +32,36 @@ bool is_made_here(const std::string& name) {
   return name == ".git" || name == "out" || name == "build" || name.starts_with("build-") || name == kPrivate;
 }
 
+// What git lists, relative to the root.
+std::vector<fs::path> listed_by_git(const fs::path& root, const std::string& which) {
+  const std::string command = "git -C '" + root.string() + "' ls-files -z " + which;
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(::popen(command.c_str(), "r"), ::pclose);
+  std::string listing;
+  std::array<char, 4096> part;
+  for (std::size_t n; pipe && (n = std::fread(part.data(), 1, part.size(), pipe.get())) > 0;) listing.append(part.data(), n);
+  std::vector<fs::path> files;
+  for (std::size_t at = 0, end; (end = listing.find('\0', at)) != std::string::npos; at = end + 1) files.emplace_back(listing.substr(at, end - at));
+  std::erase_if(files, [](const fs::path& file) { return is_made_here(file.begin()->string()); });
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
 // The files that belong to the project, relative to the root. In a git checkout these are the tracked ones, so that a
 // teacher's notes lying about are not handed out by accident.
 std::vector<fs::path> project_files(const fs::path& root) {
-  std::vector<fs::path> files;
   if (fs::exists(root / ".git")) {
-    const std::string command = "git -C '" + root.string() + "' ls-files -z";
-    const std::unique_ptr<FILE, int (*)(FILE*)> pipe(::popen(command.c_str(), "r"), ::pclose);
-    std::string listing;
-    std::array<char, 4096> part;
-    for (std::size_t n; pipe && (n = std::fread(part.data(), 1, part.size(), pipe.get())) > 0;) listing.append(part.data(), n);
-    for (std::size_t at = 0, end; (end = listing.find('\0', at)) != std::string::npos; at = end + 1)
-      files.emplace_back(listing.substr(at, end - at));
+    const std::vector<fs::path> files = listed_by_git(root, "");
     if (files.empty()) throw UserError(root.string(), "git lists no files here", "Run the command in a whole checkout.");
-  } else {
-    for (auto it = fs::recursive_directory_iterator(root); it != fs::recursive_directory_iterator(); ++it) {
-      const fs::path relative = it->path().lexically_relative(root);
-      if (it->is_directory() && is_made_here(relative.begin()->string())) it.disable_recursion_pending();
-      else if (it->is_regular_file()) files.push_back(relative);
-    }
+    for (const fs::path& file : files)
+      if (!fs::exists(root / file)) throw UserError(file.string(), "is tracked by git and not there", "Put it back, or remove it for good: git rm " + file.string());
+    return files;
   }
-  std::erase_if(files, [&](const fs::path& file) { return is_made_here(file.begin()->string()) || !fs::exists(root / file); });
+  std::vector<fs::path> files;
+  for (auto it = fs::recursive_directory_iterator(root); it != fs::recursive_directory_iterator(); ++it) {
+    const fs::path relative = it->path().lexically_relative(root);
+    if (it->is_directory() && is_made_here(relative.begin()->string())) it.disable_recursion_pending();
+    else if (it->is_regular_file()) files.push_back(relative);
+  }
   std::sort(files.begin(), files.end());
   return files;
 }
@@ -65,22 +80,66 @@ void publish_solution(const Context& context, const std::string& id, const fs::p
   fs::copy_file(solution, release / "assignments" / file, fs::copy_options::overwrite_existing);
 }
 
-// Whole files of the private folder must not stand anywhere in the release under another name, unless published on purpose.
-void refuse_private_copies(const Context& context, const fs::path& release, const std::vector<std::string>& published) {
-  std::set<std::string> secrets;
-  if (!fs::exists(context.root / kPrivate)) return;
+bool is_published(const Context& context, const std::vector<std::string>& published, const fs::path& file) {
+  return std::any_of(published.begin(), published.end(), [&](const std::string& id) {
+    const std::string folder = context.registry.find(id).folder;
+    return file == fs::path(kPrivate) / folder / (folder + ".cpp");
+  });
+}
+
+// A flawed submission is a student's file: what it left of the stub is the stub. What CMake says of solutions is in no student's way.
+std::vector<grading::PrivateFile> private_files(const Context& context, const std::vector<std::string>& published) {
+  std::vector<grading::PrivateFile> files;
+  if (!fs::exists(context.root / kPrivate)) return files;
   for (const auto& entry : fs::recursive_directory_iterator(context.root / kPrivate)) {
-    if (!entry.is_regular_file() || entry.path().filename() == "CMakeLists.txt") continue;
-    const bool is_published = std::any_of(published.begin(), published.end(), [&](const std::string& id) {
-      const std::string folder = context.registry.find(id).folder;
-      return entry.path() == context.root / kPrivate / folder / (folder + ".cpp");
-    });
-    if (!is_published) secrets.insert(contents_of(entry.path()));
+    const fs::path file = entry.path().lexically_relative(context.root), folder = file.parent_path().filename();
+    if (!entry.is_regular_file() || file.filename() == "CMakeLists.txt" || folder == "flawed_submission" || is_published(context, published, file)) continue;
+    // Once a reference is public, so is what its wrong and other versions share with it.
+    const bool of_published = std::any_of(published.begin(), published.end(), [&](const std::string& id) { return *std::next(file.begin()) == context.registry.find(id).folder; });
+    if (of_published && (folder == "mutants" || folder == "alternatives")) continue;
+    files.push_back({file, contents_of(entry.path()), folder == "tests" || folder == "support"});
   }
-  for (const auto& entry : fs::recursive_directory_iterator(release))
-    if (entry.is_regular_file() && secrets.contains(contents_of(entry.path())))
-      throw UserError(entry.path().lexically_relative(release).string(), "is a copy of a private file",
-                      "Take it out of the public folders; nothing was released.");
+  return files;
+}
+
+void refuse(const std::vector<grading::Finding>& findings, const std::string& remedy) {
+  if (findings.empty()) return;
+  std::string more;
+  for (std::size_t i = 1; i < findings.size(); ++i) more += "\n  " + findings[i].where + ": " + findings[i].problem;
+  throw UserError(findings.front().where, findings.front().problem + more, remedy + " Nothing was released.");
+}
+
+// The points of each assignment, public and hidden together, are read as the grader reads them: a sum that is not 100 is refused.
+void refuse_odd_rubrics(const Context& context) {
+  const grading::Course course{context.root, context.build, &context.registry, context.command_line};
+  for (const modules::ModuleKind* kind : context.registry.all())
+    if (fs::exists(context.root / kPrivate / kind->folder / "rubric_hidden.json")) grading::rubric_of(course, kind->id);
+}
+
+void refuse_what_is_no_stub(const Context& context, const fs::path& release, const std::vector<std::string>& published) {
+  for (const modules::ModuleKind* kind : context.registry.all()) {
+    if (std::find(published.begin(), published.end(), kind->id) != published.end()) continue;
+    const fs::path file = fs::path("assignments") / kind->folder / (kind->folder + ".cpp");
+    refuse(grading::what_is_no_stub(file.string(), contents_of(release / file), kind->functions), "Students write this file: take out what is written in it.");
+  }
+}
+
+// Builds the tree and everything in it, then checks each stub as a student does first.
+void build_and_check(const Context& context, const fs::path& release, const std::vector<std::string>& published) {
+  const PrivateFolder folder;
+  const auto launch = [&](const std::string& words) {
+    const std::string script = "unset TUMBLE_ROOT; TUMBLE_BUILD='" + (folder.path() / "build").string() + "' exec '" + (release / "tumble").string() + "' " + words + " >'" + (folder.path() / "said").string() + "'";
+    return grading::run_program({"/bin/sh", "-c", script}, grading::Output::kOurs).code;
+  };
+  std::fprintf(stderr, "building the released tree (minutes; --no-build leaves this out)\n");
+  if (launch("test --show-only") != 0) throw UserError(release.string(), "does not build: its errors stand above", "A file that it needs may be untracked or private. Nothing was released.");
+  for (const modules::ModuleKind* kind : context.registry.all()) {
+    const bool is_stub = std::find(published.begin(), published.end(), kind->id) == published.end();
+    const int code = launch("check " + kind->id), expected = static_cast<int>(is_stub ? ExitCode::kNotAttempted : ExitCode::kFine);
+    if (code != expected)
+      throw UserError("tumble check " + kind->id, "exits with " + std::to_string(code) + " in the released tree, not " + std::to_string(expected) + ":\n" + contents_of(folder.path() / "said"),
+                      is_stub ? "Each test of a stub must be \"not attempted\". Nothing was released." : "The published reference must pass its tests. Nothing was released.");
+  }
 }
 
 void release(Context& context, const Options& options) {
@@ -88,19 +147,26 @@ void release(Context& context, const Options& options) {
   if (fs::exists(target) && !(fs::is_directory(target) && fs::is_empty(target)))
     throw UserError(target.string(), "exists already", "Name a new folder, or remove this one first.");
   for (const std::string& id : options.publish) context.registry.find(id);
+  const std::vector<fs::path> files = project_files(context.root);
+  refuse_odd_rubrics(context);
+  if (fs::exists(context.root / ".git"))
+    refuse(grading::missing_files(context.root, files, listed_by_git(context.root, "--others")), "git add it, or take out what needs it.");
 
   // Built beside the target and renamed last: a release is there whole or not at all.
   const fs::path partial = target.string() + ".partial";
   fs::remove_all(partial);
   std::size_t count = 0;
   try {
-    for (const fs::path& file : project_files(context.root)) {
+    for (const fs::path& file : files) {
       fs::create_directories((partial / file).parent_path());
       fs::copy_file(context.root / file, partial / file);
       ++count;
     }
     for (const std::string& id : options.publish) publish_solution(context, id, partial);
-    refuse_private_copies(context, partial, options.publish);
+    if (fs::exists(partial / kStudentsReadme)) fs::rename(partial / kStudentsReadme, partial / "README.md"), --count;
+    refuse_what_is_no_stub(context, partial, options.publish);
+    refuse(grading::leaks(partial, private_files(context, options.publish)), "Take it out of the public folders.");
+    if (options.build) build_and_check(context, partial, options.publish);
   } catch (...) {
     fs::remove_all(partial);
     throw;
@@ -119,6 +185,9 @@ void add_release(CLI::App& app, Context& context) {
   Verb verb(app, "release", "Write the starter tree for students: everything but the solutions");
   verb.option("folder", options->folder, "Where to write it (must not exist yet)").required();
   verb.option("--publish", options->publish, "Assignments whose reference replaces the stub, e.g. after a deadline").separated_by(',');
+  verb.flag("!--no-build", options->build, "Do not build what is released and check its stubs: seconds instead of minutes");
+  verb.footer("Refused: a file that is needed and not tracked, a stub that is more than a stub, lines of a solution anywhere, a rubric that does not sum to 100,\n"
+              "a tree that does not build.");
   verb.runs([&context, options] { release(context, *options); });
 }
 

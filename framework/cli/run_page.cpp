@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kExample = "For example --beside reference, --beside a1=reference, --beside step-s=0.001 or --beside recording=FILE.";
+constexpr const char* kExample = "For example --beside library, --beside a1=PATH, --beside step-s=0.001 or --beside recording=FILE.";
 
 struct Second {
   Trajectory run;
@@ -55,7 +55,7 @@ Second second_run(const Context& context, const scene::Scene& scene, const Chose
   const BesideWords beside = parse_beside(words.beside);
   if (!beside.recording.empty()) return recorded(beside.recording);
   const ModuleWords mine = parse_module_words(words.modules, context.registry);
-  const ChosenLaws other = choose_laws(context, scene, with_changes(mine, parse_module_words(beside.modules, context.registry)));
+  const ChosenLaws other = choose_laws(context, scene, with_changes(mine, parse_module_words(beside.modules, context.registry)), beside.engine.empty() ? words.engine : beside.engine);
   engines::RunOptions options;
   options.engine = beside.engine.empty() ? words.engine : beside.engine;
   VirtualTimes times;   // of the fast scheduler; the teaching one tells them to the recorder

@@ -5,6 +5,7 @@
 #include "framework/core/files.h"
 #include "framework/grading/build_submission.h"
 #include "framework/grading/call_log.h"
+#include "framework/grading/compiler_words.h"
 #include "framework/grading/worker_connection.h"
 
 namespace tumble::cli {
@@ -19,7 +20,7 @@ void compile(const Context& context, const modules::ModuleKind& kind, const fs::
   const auto built = grading::build_submission(course, kind.id, source, object);
   if (built.outcome == Outcome::kGraderFault) throw std::runtime_error("the sandboxed compiler could not be asked: " + built.said);
   if (built.outcome == Outcome::kRefused)
-    throw UserError(source.string(), "does not compile:\n" + grading::compiler_story(built.said, source) + "\n", "Correct it, or name another file after --modules.");
+    throw UserError(source.string(), "does not compile:\n" + grading::compiler_story(built.said, source, grading::module_header(course, kind.id)) + "\n", "Correct it, or name another file after --modules.");
 }
 
 }  // namespace

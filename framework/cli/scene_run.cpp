@@ -260,6 +260,7 @@ std::vector<std::string> scene_names(const Context& context) {
 
 void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const RunWords& words, const std::string& extra) {
   const PictureSize size = parse_size(words.size);   // refused before the run, not after it
+  engines::refuse_other_units(scene);
   check_page_words(context, words);
   for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
   PlannedRun plan = plan_run(context, scene, chosen, words);

@@ -248,7 +248,23 @@ CheckResult judge(const RunFault& fault) {
 
 }  // namespace
 
+void refuse_other_units(const Scene& scene) {
+  for (std::size_t i = 0; i < scene.checks.size(); ++i) {
+    const CheckSpec& check = scene.checks[i];
+    const auto kind = kinds().find(check.kind);
+    if (check.unit.empty() || kind == kinds().end()) continue;
+    const std::string own = kind->second.unit;
+    // A force that should be 0 is compared with 0, any other as a part of itself.
+    const bool is_zero = std::all_of(check.expected.begin(), check.expected.end(), [](double expected) { return expected == 0.0; });
+    const bool is_force = check.unit == "N" && is_zero && (check.kind == "reaction" || check.kind == "link_force");
+    if (check.unit == own || is_force) continue;
+    throw UserError(place_of(scene, "/checks/" + std::to_string(i) + "/unit"), "a check of kind '" + check.kind + "' is in " + (own.empty() ? "no unit" : own) + ", not in '" + check.unit + "': nothing is converted",
+                    own.empty() ? "Leave \"unit\" out." : "Write its numbers in " + own + ", and leave \"unit\" out.");
+  }
+}
+
 std::vector<CheckResult> judge_run(const Scene& scene, const Trajectory& run) {
+  refuse_other_units(scene);
   std::vector<CheckResult> results;
   for (const CheckSpec& check : scene.checks) results.push_back(judge(check, scene, run));
   for (const RunFault& fault : run.counters.faults) results.push_back(judge(fault));

@@ -61,6 +61,10 @@ struct CheckResult {
   std::string detail;      // where and when the worst was found
 };
 
+/// A check's unit is a word for people: a number in another unit would be compared with metres all the same.
+/// @throws UserError at the first check that names a unit which is not its kind's
+void refuse_other_units(const scene::Scene& scene);
+
 /// One result a check, in the scene's order, then one for each of the run's faults. @throws UserError for a kind of check that is not known.
 std::vector<CheckResult> judge_run(const scene::Scene& scene, const Trajectory& run);
 

@@ -23,7 +23,7 @@ template <class Law>
 void need(const Law& law, const scene::Scene& scene, const char* what, const char* assignment) {
   if (law) return;
   throw UserError(scene.name, std::string("needs ") + what + ", and no module provides it",
-                  std::string("assignment ") + assignment + " provides it: run with --modules reference, or fill in that assignment first");
+                  std::string("assignment ") + assignment + " provides it: fill in that assignment first, or name a file that has it: --modules " + assignment + "=PATH");
 }
 
 bool may_meet(const scene::Scene& scene) {

@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include "framework/core/files.h"
+#include "framework/core/nearest_word.h"
 #include "framework/grading/build_submission.h"
+#include "framework/grading/compiler_words.h"
 #include "framework/grading/digest.h"
 #include "framework/grading/grade_key.h"
 #include "framework/grading/processes.h"
@@ -66,7 +68,7 @@ void run_one(const Course& course, const std::string& id, const Candidate& candi
   const fs::path object = kept.results.string() + ".so";
   const BuiltSubmission built = build_submission(course, id, candidate.file, object);
   if (built.outcome != BuiltSubmission::Outcome::kBuilt) {
-    write_whole(kept.refused, "does not compile: " + compiler_story(built.said, candidate.file));
+    write_whole(kept.refused, "does not compile: " + compiler_story(built.said, candidate.file, module_header(course, id)));
     return;
   }
   Judgement judgement = judge_module(course, id, object);
@@ -122,6 +124,29 @@ std::vector<Candidate> find_candidates(const Course& course, const std::string& 
   if (all.empty()) throw UserError(wrong.string(), "holds no known-wrong solution", "Put one .cpp a slip there.");
   if (fs::exists(own / (folder + ".cpp"))) all.push_back({"reference", own / (folder + ".cpp"), true, "", ""});
   for (const fs::path& file : sources_in(own / "alternatives")) all.push_back({file.stem().string(), file, true, "", ""});
+  return all;
+}
+
+std::vector<Candidate> only(const std::vector<Candidate>& candidates, const std::vector<std::string>& names) {
+  if (names.empty()) return candidates;
+  std::vector<std::string> known;
+  for (const Candidate& candidate : candidates) known.insert(known.end(), {candidate.file.stem().string(), candidate.name});
+  std::vector<Candidate> chosen;
+  for (const std::string& name : names) {
+    const auto found = std::find_if(candidates.begin(), candidates.end(), [&](const Candidate& c) { return c.name == name || c.file.stem() == name; });
+    if (found == candidates.end()) throw UserError("--only " + name, "no solution of this audit has such a name." + did_you_mean(name, known), "The first column of the whole audit has the names.");
+    chosen.push_back(*found);
+  }
+  return chosen;
+}
+
+std::map<std::string, Catches> catches_of(const std::vector<AuditResult>& results) {
+  std::map<std::string, Catches> all;
+  for (const AuditResult& result : results) {
+    if (result.candidate.is_right) continue;
+    for (const TestResult& test : result.caught_by) ++all[test.test].count;
+    if (result.caught_by.size() == 1) all[result.caught_by.front().test].alone.push_back(result.candidate.name);
+  }
   return all;
 }
 

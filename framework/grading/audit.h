@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -43,5 +44,18 @@ std::vector<Candidate> find_candidates(const Course& course, const std::string& 
 /// @pre  this process runs no thread
 std::vector<AuditResult> audit(const Course& course, const std::string& id, const std::vector<Candidate>& candidates, int jobs,
                                const std::function<void(std::size_t done, std::size_t total)>& told = {});
+
+/// The candidates of these names; all of them where there is none.
+/// @throws UserError for a name that no candidate has, with the nearest
+std::vector<Candidate> only(const std::vector<Candidate>& candidates, const std::vector<std::string>& names);
+
+/// What one test does among known-wrong solutions. Right solutions that it accuses are no catch.
+struct Catches {
+  std::size_t count = 0;
+  std::vector<std::string> alone;   // slips that no other test catches
+};
+
+/// By test. A test that catches nothing is not in it.
+std::map<std::string, Catches> catches_of(const std::vector<AuditResult>& results);
 
 }  // namespace tumble::grading

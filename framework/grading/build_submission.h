@@ -18,7 +18,7 @@ struct BuiltSubmission {
 /// @param object  written where the outcome is kBuilt
 BuiltSubmission build_submission(const Course& course, const std::string& id, const std::filesystem::path& source, const std::filesystem::path& object);
 
-/// "file.cpp:12:5: error: ..." lines alone, paths shortened to the file's name; all of it where there is no such line.
-std::string compiler_story(const std::string& said, const std::filesystem::path& source);
+/// The header that says what the module of an assignment is.
+std::filesystem::path module_header(const Course& course, const std::string& id);
 
 }  // namespace tumble::grading

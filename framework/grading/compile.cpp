@@ -29,7 +29,7 @@ constexpr const char* kPrecompiled = "precompiled.h";
 
 // The compiler may fork its passes, and link to /tmp. What it made leaves through descriptor 3, not through a folder of ours.
 constexpr const char* kScript = "cd /submission && /usr/bin/g++ " TUMBLE_SUBMISSION_FLAGS
-                                " -fdiagnostics-color=never -fmax-errors=20 -I /headers -isystem " TUMBLE_EIGEN_INCLUDE
+                                " -Wall -Wextra -Wno-unused-parameter -fdiagnostics-color=never -fmax-errors=20 -I /headers -isystem " TUMBLE_EIGEN_INCLUDE
                                 " -include /headers/precompiled.h -x c++ \"$1\" -x none -shared -Wl,-z,defs -o /tmp/module.so && exec cat /tmp/module.so >&3";
 
 std::string text_of(const fs::path& file) {

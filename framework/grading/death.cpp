@@ -15,15 +15,17 @@ std::string place(const std::string& last_call, bool in_call) {
 
 }  // namespace
 
-std::string signal_story(int signal, const std::string& last_call, bool in_call) {
+std::string signal_words_of(int signal) {
   const char* abbreviation = ::sigabbrev_np(signal);
   std::string text = std::string("SIG") + (abbreviation != nullptr ? abbreviation : std::to_string(signal)) + ": " + ::strsignal(signal);
   if (signal == SIGSEGV) text += " (an index or pointer out of range, or a recursion without end)";
   if (signal == SIGFPE) text += " (an integer divided by zero)";
   if (signal == SIGABRT) text += " (a failed assertion inside a library, such as sizes in Eigen that do not match)";
   if (signal == SIGSYS) text += " (a system call that the sandbox refuses)";
-  return text + place(last_call, in_call);
+  return text;
 }
+
+std::string signal_story(int signal, const std::string& last_call, bool in_call) { return signal_words_of(signal) + place(last_call, in_call); }
 
 std::string exit_story(int code, const std::string& last_call, bool in_call) {
   return "the program was ended with exit code " + std::to_string(code) + place(last_call, in_call) + "; a function must return its answer";

@@ -8,6 +8,8 @@ namespace tumble::grading {
 /// "SIGSEGV: Segmentation fault (an index or pointer out of range, or a recursion without end), in rk4_step"
 /// @param last_call  empty when no function of the module was called
 /// @param in_call    it had not returned
+/// The same without the place: "SIGSEGV: Segmentation fault (an index or pointer out of range, or a recursion without end)"
+std::string signal_words_of(int signal);
 std::string signal_story(int signal, const std::string& last_call, bool in_call);
 std::string exit_story(int code, const std::string& last_call, bool in_call);
 /// @param limit_s  of own time (own_time.h)

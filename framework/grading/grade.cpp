@@ -7,6 +7,7 @@
 
 #include "framework/core/files.h"
 #include "framework/grading/build_submission.h"
+#include "framework/grading/compiler_words.h"
 #include "framework/grading/grade_files.h"
 #include "framework/grading/grade_key.h"
 #include "framework/grading/grade_pages.h"
@@ -43,7 +44,7 @@ void judge(const Course& course, const std::string& id, const Submission& submis
     grade.tests = score_nothing(rubric, Verdict::kGraderFault, grade.story);
   } else if (built.outcome == BuiltSubmission::Outcome::kRefused) {
     grade.state = GradeState::kDoesNotCompile;
-    grade.story = compiler_story(built.said, submission.source);
+    grade.story = compiler_story(built.said, submission.source, module_header(course, id));
     grade.tests = score_nothing(rubric, Verdict::kWrong, "the file does not compile, so no test ran");
   } else {
     grade.tests = score_tests(rubric, judge_module(course, id, object.path, false, budget_s));

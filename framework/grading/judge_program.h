@@ -11,11 +11,12 @@
 namespace tumble::grading {
 
 /// Words of a judge:
-///   judge_a1 --submission FILE.so [--json FILE] [--rubric FILE]... [--budget-s S] [--plain] [PATTERN...]
+///   judge_a1 --submission FILE.so [--json FILE] [--rubric FILE]... [--budget-s S] [--plain] [--quick] [PATTERN...]
 /// --budget-s bounds the time of all tests together (TimeBudget); those after it are not run.
 ///   judge_a1 --list [PATTERN...]
 /// --list prints the names of the tests, one a line, and runs none.
 /// --plain runs the submission without a sandbox: for our own code only.
+/// --quick ends loops without end as soon as a student's own check does: a person waits.
 /// @param attach  makes the connection's proxy the module under test
 int run_judge_program(const char* id, const std::function<void(modules::Connection&)>& attach, int argc, char** argv);
 

@@ -14,7 +14,8 @@ using modules::ModuleKind;
 
 bool needs(const scene::Scene& scene, const std::string& id) { return std::find(scene.needs.begin(), scene.needs.end(), id) != scene.needs.end(); }
 
-// Puts a module's functions into the laws, and says whose they are.
+}  // namespace
+
 // (Not called bind: std::bind would be found through the arguments, and silently do nothing.)
 void put_into(const ModuleKind& kind, const AnyModule& module, const std::string& source, Laws& laws) {
   kind.bind(module, laws);
@@ -22,10 +23,9 @@ void put_into(const ModuleKind& kind, const AnyModule& module, const std::string
   kind.bind(module, alone);
   if (alone.collision_impulse) laws.impulse_source = source;
   if (alone.integrate_step) laws.integrator_source = source;
+  if (alone.constraint_multipliers) laws.constraint_source = source;
   if (alone.scheduling) laws.scheduling_source = source;
 }
-
-}  // namespace
 
 AnyModule reference_of(const Course& course, const ModuleKind& kind) {
   const fs::path file = built_module(course, kind.id, "reference");

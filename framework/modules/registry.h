@@ -10,6 +10,7 @@
 #include "framework/dynamics/laws.h"
 #include "framework/modules/proxy.h"
 #include "framework/modules/serve.h"
+#include "framework/modules/watched.h"
 
 namespace tumble::truths {
 struct Case;
@@ -46,6 +47,7 @@ struct ModuleKind {
   std::function<void(const AnyModule&, Laws&)> bind;                 // lets the module's functions be laws of a world
   std::function<void(const AnyModule&, Channel&)> serve;             // worker's side
   std::function<AnyModule(Connection&)> make_proxy;                  // judge's side
+  std::function<AnyModule(const AnyModule&, CallWatcher&)> watched;  // the same module, its calls seen from outside
   /// Families of truths (engines/truths) whose values this module's functions give directly, by name.
   std::map<std::string, std::function<void(const AnyModule&, const truths::Case&, truths::Comparison&)>> truth_families;
   std::vector<NamedMethod> methods;        // empty where the module is not about integration
@@ -70,6 +72,9 @@ class Registry {
     kind.serve = [](const AnyModule& module, Channel& channel) { modules::serve(*static_cast<const Module*>(module.get()), channel); };
     kind.make_proxy = [](Connection& connection) -> AnyModule {
       return std::make_shared<const Module>(modules::make_proxy<Module>(connection));
+    };
+    kind.watched = [](const AnyModule& module, CallWatcher& watcher) -> AnyModule {
+      return std::make_shared<const Module>(modules::watched(*static_cast<const Module*>(module.get()), watcher));
     };
     kinds_[kind.id] = std::move(kind);
   }

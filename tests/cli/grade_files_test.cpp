@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/core/files.h"
-#include "framework/grading/build_submission.h"
+#include "framework/grading/compiler_words.h"
 #include "framework/grading/grade_files.h"
 #include "framework/grading/grade_key.h"
 #include "framework/grading/grade_pages.h"

@@ -69,16 +69,18 @@ std::string sources_below(const std::vector<std::string>& folders) {
 }
 
 TEST(Handouts, NumberTheEquationsOfTheHeader) {
+  std::size_t found = 0;   // in all headers: an assignment may do without numbered equations, the course does not
   for (const Assignment& a : assignments()) {
     const std::string A = "A" + a.id.substr(1);
     // In a header an equation's number stands at the end of its line; in a handout it opens the paragraph, below its anchor.
     const std::set<std::string> in_header = all(a.header, " \\(" + A + "\\.(\\d+)[a-z]?\\)\\n");
     const std::set<std::string> in_handout = all(a.handout, "\\n\\*\\*\\(" + A + "\\.(\\d+)\\)");
     const std::set<std::string> anchored = all(a.handout, "<a id=\"eq-" + a.id + "-(\\d+)\"></a>\\n\\*\\*\\(" + A + "\\.\\d+\\)");
-    EXPECT_GE(in_header.size(), 8u) << a.folder << ": the equations of the header were not found";
+    found += in_header.size();
     EXPECT_EQ(in_header, in_handout) << a.folder;
     EXPECT_EQ(in_handout, anchored) << a.folder;
   }
+  EXPECT_GT(found, 20u) << "the equations of the headers were not found";
 }
 
 TEST(Handouts, HaveTheAnchorsThatSourcesPointTo) {

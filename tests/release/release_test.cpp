@@ -39,7 +39,7 @@ class Release : public ::testing::Test {
   static void SetUpTestSuite() {
     folder_ = fs::temp_directory_path() / ("tumble-release-" + std::to_string(::getpid()));
     fs::remove_all(folder_);
-    ASSERT_EQ(run("release '" + folder_.string() + "' > /dev/null"), 0);
+    ASSERT_EQ(run("release '" + folder_.string() + "' --no-build > /dev/null"), 0);
   }
   static void TearDownTestSuite() { fs::remove_all(folder_); }
 
@@ -159,10 +159,32 @@ TEST_F(Release, HoldsNoPrivateFolderAndNoBuild) {
   EXPECT_TRUE(fs::exists(folder_ / "handouts/a1_impulse.md"));
 }
 
+TEST_F(Release, TheReadmeIsTheStudents) {
+  const std::string readme = contents_of(folder_ / "README.md");
+  EXPECT_EQ(readme, contents_of(kRoot / "README_students.md"));
+  EXPECT_FALSE(fs::exists(folder_ / "README_students.md"));
+  EXPECT_LT(readme.find("./tumble check a1"), 800u) << "what to type first does not come first";
+  for (const char* of_others : {"./tumble demo", "./tumble grade", "./tumble audit", "./tumble release", "reference,", "=reference"})
+    EXPECT_EQ(readme.find(of_others), std::string::npos) << of_others;
+}
+
+// Every command of the README names a verb, and what it names is there.
+TEST_F(Release, TheReadmesCommandsAreKnown) {
+  static const std::regex command(R"(\n\./tumble (\w+)(?: ([\w./]+))?)");
+  const std::string readme = contents_of(folder_ / "README.md");
+  int count = 0;
+  for (std::sregex_iterator it(readme.begin(), readme.end(), command), end; it != end; ++it, ++count) {
+    const std::string verb = (*it)[1], what = (*it)[2];
+    EXPECT_TRUE(verb == "test" || fs::exists(folder_ / "framework/cli/help" / (verb + ".txt"))) << verb;
+    if (what.find('/') != std::string::npos) EXPECT_TRUE(fs::exists(folder_ / what)) << what;
+  }
+  EXPECT_GT(count, 15);
+}
+
 TEST_F(Release, PublishPutsTheReferenceWhereTheStubWas) {
   const fs::path published = folder_.string() + "-published";
   fs::remove_all(published);
-  ASSERT_EQ(run("release '" + published.string() + "' --publish a1 > /dev/null"), 0);
+  ASSERT_EQ(run("release '" + published.string() + "' --publish a1 --no-build > /dev/null"), 0);
   EXPECT_EQ(contents_of(published / "assignments/a1_impulse/a1_impulse.cpp"), contents_of(kPrivate / "a1_impulse/a1_impulse.cpp"));
   EXPECT_EQ(contents_of(published / "assignments/a2_integration/a2_integration.cpp"), contents_of(kRoot / "assignments/a2_integration/a2_integration.cpp"));
   fs::remove_all(published);
@@ -170,7 +192,7 @@ TEST_F(Release, PublishPutsTheReferenceWhereTheStubWas) {
 
 TEST_F(Release, NeverOverwrites) {
   const auto before = fs::last_write_time(folder_ / "README.md");
-  EXPECT_EQ(run("release '" + folder_.string() + "' 2> /dev/null"), 2);
+  EXPECT_EQ(run("release '" + folder_.string() + "' --no-build 2> /dev/null"), 2);
   EXPECT_EQ(fs::last_write_time(folder_ / "README.md"), before);
   EXPECT_FALSE(fs::exists(folder_.string() + ".partial"));
 }

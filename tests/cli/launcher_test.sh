@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# ./tumble in a tree that was never built: what needs no build is answered at once, with the right exit code, and leaves
+# nothing behind. A build shows how far it is: one line rewritten on a terminal, plain lines without one.
+# Usage: launcher_test.sh ROOT
+set -euo pipefail
+root=$1
+tree=$(mktemp -d)
+trap 'rm -rf "$tree"' EXIT
+mkdir -p "$tree/framework/cli" "$tree/assignments"
+cp "$root/tumble" "$tree/"
+cp -r "$root/framework/cli/help" "$tree/framework/cli/"
+for folder in "$root"/assignments/a*/; do mkdir -p "$tree/assignments/$(basename "$folder")"; done
+fail() { echo "launcher_test: $*" >&2; exit 1; }
+
+# said CODE WORDS...: runs the launcher, expects the exit code, keeps what it printed in $out and $err.
+said() {
+  local code=$1 got=0
+  shift
+  timeout 10 "$tree/tumble" "$@" >"$tree/out" 2>"$tree/err" || got=$?
+  out=$(cat "$tree/out") err=$(cat "$tree/err")
+  rm -f "$tree/out" "$tree/err"
+  [ "$got" = "$code" ] || fail "'$*' exits with $got, not $code: $out $err"
+  [ ! -e "$tree/build" ] || fail "'$*' began to build"
+}
+holds() { case $1 in *"$2"*) ;; *) fail "'$2' is missing in: $1" ;; esac; }
+
+said 0 && holds "$out" "Subcommands:"
+said 0 --help && holds "$out" "check"
+said 0 check --help && holds "$out" "PATTERN"
+said 0 run pong_1 --help && holds "$out" "--modules"
+said 2 chek a1 && holds "$err" "Did you mean 'check'?"
+said 2 simulate && holds "$err" "there is no such verb" && holds "$err" "Known: "
+said 2 check && holds "$err" "which assignment?"
+said 2 check a11 && holds "$err" "there is no such assignment" && holds "$err" "Did you mean 'a1'?"
+said 2 watch a9
+# In a starter tree, which has no solutions, an instructor's command says whose it is.
+for verb in demo grade audit release; do said 2 $verb a1 && holds "$err" "instructor's command"; done
+
+# Progress, on a build made of steps that sleep.
+export TUMBLE_BUILD=$tree/steps
+mkdir -p "$TUMBLE_BUILD/bin"
+printf '#!/bin/sh\necho ran\n' >"$TUMBLE_BUILD/bin/tumble" && chmod +x "$TUMBLE_BUILD/bin/tumble"
+: >"$tree/packages.txt" && cp "$tree/packages.txt" "$TUMBLE_BUILD/.packages"
+steps() {
+  { printf 'rule slow\n  command = sleep 0.5 && touch $out\n'
+    for i in $(seq 40); do echo "build s$i: slow"; done
+    printf 'build tumble: phony'; printf ' s%s' $(seq 40); printf '\n'; } >"$TUMBLE_BUILD/build.ninja"
+  rm -f "$TUMBLE_BUILD"/s*
+}
+steps && "$tree/tumble" inspect box >"$tree/out" 2>"$tree/err"
+holds "$(cat "$tree/out")" "ran"
+holds "$(cat "$tree/err")" "building: "
+holds "$(cat "$tree/err")" " of 40 steps"
+LC_ALL=C grep -q '[[:cntrl:]]' "$tree/err" && fail "control characters without a terminal"
+if command -v script >/dev/null; then
+  steps && script -qec "'$tree/tumble' inspect box" /dev/null >"$tree/out" </dev/null
+  holds "$(cat "$tree/out")" $'\r\033[Ktumble: building: '
+  holds "$(cat "$tree/out")" "s left"
+fi
+echo "the launcher answers without building, and builds with a word"
