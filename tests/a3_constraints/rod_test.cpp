@@ -241,7 +241,6 @@ TEST(EndsInContact, HasNoMarginOfItsOwn) {
 
 // Two calls of each function in one process: a static variable is filled by the first, and spoils the second.
 TEST(Constraints, KeepNothingBetweenCalls) {
-  using One = Eigen::Matrix<double, 1, 1>;
   const auto story = [](const std::string& function, int number) { return Story{.scene = "two calls of " + function + ", each with other numbers", .slip = function + " itself: see its own tests", .handout = equation(number)}; };
   const Spring spring{.stiffness = 10, .damping = 0, .rest_length = 2};
   const AnchorState origin{Vector3d::Zero(), Vector3d::Zero()};
