@@ -210,8 +210,8 @@ TEST(ConstraintMultipliers, AreSolvedAsTheChainTheyAre) {
   constexpr int kShort = 125;
   const auto chain = [](int links) { return hanging_chain(std::vector<double>(static_cast<std::size_t>(links), 0.1)); };
   const double a_link = seconds_of(chain(kShort), 0.0, 20) / kShort;
-  for (const int links : {kShort, 250, 500, 1000, 2000}) {
-    const double allowed = std::max(kPatience, 8 * a_link * links), seconds = seconds_of(chain(links), allowed, 3);
+  for (const int links : {kShort, 250, 500, 1000, 1300, 1600, 2000}) {
+    const double allowed = std::max(kPatience, 8 * a_link * links), seconds = seconds_of(chain(links), allowed, 2);
     expect_true(seconds <= allowed, "an answer within " + show(allowed) + " s", show(std::round(seconds * 100) / 100) + " s",
                 {.scene = "a chain of " + std::to_string(links) + " links of 0.1 kg hangs at rest", .slip = "A is solved as a dense matrix: its cost grows with the cube of the links, and A of a chain has three numbers a row", .handout = equation(7)});
     if (seconds > allowed) return;
