@@ -28,7 +28,7 @@ namespace tumble::a1 {
 /// Where a half-line meets a closed triangle, if it does.
 ///   o + t d = w_a a + w_b b + w_c c,   w_a + w_b + w_c = 1,   hit when w_a, w_b, w_c >= 0 and t >= 0        (A1.1)
 /// Both faces count. A point on an edge or a corner is a hit (weights of exactly 0 and 1 are inside), so that a ray
-/// through the seam of two triangles hits at least one of them. A ray parallel to the plane, also one inside it, is a miss.
+/// through the seam of two triangles hits at least one of them (which of them, rounding may decide). A ray parallel to the plane, also one inside it, is a miss.
 /// @param ray       o, d: (3), world; o [m]; d not zero and of any length: t counts in lengths of d
 /// @param triangle  a, b, c: (3), world [m], either orientation, of any size: a micrometre is not "almost zero"
 /// @return t [-] and the weights (w_a, w_b, w_c) [-]; nothing for a miss, a triangle behind o, or a parallel ray
@@ -89,7 +89,7 @@ RelativeMotion classify_relative_motion(double normal_velocity, double tolerance
 /// @param vertex_a_world                        (2), world [m]
 /// @param edge_start_b_world, edge_end_b_world  (2), world [m], distinct
 /// @return n, (2), unit, from B to A [-]. A corner exactly on the edge's line does not say which side: then the right-hand
-///         side of start -> end, which is outside when B is listed counter-clockwise.
+///         side of start -> end, which is outside when B is listed counter-clockwise. (Within rounding of the line either side is right.)
 /// Source: Hecker part 3.   Tests: ContactNormal2d.*   Hints: handouts/a1_impulse.md#hint-normals
 Vector2d contact_normal_vertex_edge(const Vector2d& vertex_a_world, const Vector2d& edge_start_b_world, const Vector2d& edge_end_b_world);
 

@@ -1,6 +1,7 @@
 /// What the tests of a1 share: bodies with easy numbers, and words for a wrong answer that a known slip gives.
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <utility>
@@ -28,6 +29,9 @@ inline Quaterniond third_turn() { return {0.5, 0.5, 0.5, 0.5}; }
 
 /// At rest, not turned: 2 kg with principal moments 1, 2, 4 kg m^2.
 Body block(const Vector3d& com_world);
+/// At rest, not turned: 2 kg, lopsided: no axis of its body frame is a principal one, so that a formula for principal axes is found out.
+///   I = (4, -2, -2; -2, 5, -1; -2, -1, 6) kg m^2,   I^-1 = (29, 14, 12; 14, 20, 8; 12, 8, 16) / 64
+Body bracket(const Vector3d& com_world);
 /// At rest: a solid ball, moments 2/5 m r^2.
 Body ball(double mass, double radius, const Vector3d& com_world);
 /// Immovable; its inertia_body is NaN, because nobody may use it.
@@ -49,10 +53,12 @@ using Slips = std::vector<std::pair<Value, std::string>>;
 inline const std::string kNotANumber =
     "no number came out: infinite mass (use inverse_mass and inverse_inertia_body, never mass or inertia_body) or a division by 0";
 
+inline constexpr double kSameAnswer = 1e-9;  // relative: far above rounding, far below any slip
+
 /// The words of the slip whose answer was found; `otherwise` when it is none of them.
 inline std::string likely(double found, const Slips<double>& slips, const std::string& otherwise) {
   for (const auto& [gives, words] : slips) {
-    if (std::abs(found - gives) <= 1e-9 * (1.0 + std::abs(gives))) return words;
+    if (std::abs(found - gives) <= kSameAnswer * std::max(std::abs(found), std::abs(gives))) return words;
   }
   return std::isfinite(found) ? otherwise : kNotANumber;
 }
@@ -61,7 +67,7 @@ template <int n>
 std::string likely(const Eigen::Matrix<double, n, 1>& found, const Slips<Eigen::Matrix<double, n, 1>>& slips,
                    const std::string& otherwise) {
   for (const auto& [gives, words] : slips) {
-    if ((found - gives).norm() <= 1e-9 * (1.0 + gives.norm())) return words;
+    if ((found - gives).norm() <= kSameAnswer * std::max(found.norm(), gives.norm())) return words;
   }
   return found.allFinite() ? otherwise : kNotANumber;
 }
@@ -96,5 +102,48 @@ struct Encounter {
 };
 /// Two random bodies touching at a random point, approaching. Every fourth time B is a moving wall.
 Encounter random_encounter(Random& random, int number);
+
+/// Two lopsided bodies in skew poses that meet on a skew normal, both spinning: nothing is 0, 1, diagonal, equal or along an axis, so
+/// that every term of (A1.5) and (A1.9) has a share of its own in the answer.
+Encounter skew_encounter();
+/// The same with units of length, mass and time changed: every power of two shifts exponents only, so that answers scale exactly.
+Encounter scaled(const Encounter& e, double length, double mass, double time);
+Body scaled(const Body& body, double length, double mass, double time);
+/// Changes of unit that a threshold of a millionth in any quantity would notice: lengths, masses, times, up and down.
+struct Units {
+  double length, mass, time;
+};
+std::vector<Units> changes_of_unit();
+std::string show(const Units& units);
+/// The slip where an answer is wrong in other units. Where the same question in plain units is answered wrongly too, no threshold is to blame.
+std::string slip_of_units(bool right_in_plain_units, const std::string& slip);
+
+// ---- (A1.5) and (A1.9) with a slip in them -----------------------------------------------------------------------------
+
+enum class InertiaSlip { kNone, kBodyAxes, kTransposed, kDiagonal, kOneByOne, kNotInverted };
+
+/// The formulas term by term. Each default is right; a slip is one of them changed.
+struct FormulaSlip {
+  bool spin_of_a = true, spin_of_b = true;          // w x r in the relative velocity
+  bool turning_of_a = true, turning_of_b = true;    // in the denominator
+  bool own_arms = true;                             // false: r_a serves B as well
+  bool arms_from_com = true;                        // false: from the world's origin
+  bool walls_move = true;                           // false: what is immovable is at rest
+  bool right_handed = true;                         // false: r x w for w x r
+  InertiaSlip inertia_of_a = InertiaSlip::kNone, inertia_of_b = InertiaSlip::kNone;
+};
+
+double relative_normal_velocity_by(const Encounter& e, const FormulaSlip& slip = {});
+double collision_impulse_by(const Encounter& e, double restitution, const FormulaSlip& slip = {});
+Matrix3d inverse_inertia_by(const Body& body, InertiaSlip slip = InertiaSlip::kNone);
+
+/// What known slips would give for this encounter, with their words; slips that change nothing here are left out.
+Slips<double> slips_of_relative_velocity(const Encounter& e);
+Slips<double> slips_of_impulse(const Encounter& e, double restitution);
+/// The same for the angular velocity that an impulse gives, and for w' of (A1.4).
+Slips<Vector3d> slips_of_apply(const Body& body, const Vector3d& impulse_world, const Vector3d& point_world);
+Slips<Vector3d> slips_of_angular_acceleration(const Body& body, const Vector3d& torque_world);
+/// w' by (A1.4), in world axes throughout: another way than the header's.
+Vector3d angular_acceleration_by(const Body& body, const Vector3d& torque_world);
 
 }  // namespace tumble::testing

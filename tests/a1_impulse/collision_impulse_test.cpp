@@ -11,6 +11,7 @@ constexpr double kRoundoff = 15 * kEps;
 const Vector3d kUp = Vector3d::UnitZ();
 const std::string kForgotOnePlusE = "the (1 + e) is missing";
 const std::string kOnlyE = "e where (1 + e) belongs";
+const std::string kSquaredE = "1 + e^2 where 1 + e belongs: e is a ratio of speeds, e^2 one of energies";
 const std::string kWrongSign = "the sign of j: u_n is negative when bodies approach, so j needs the minus in front";
 const std::string kCalledSeparating =
     "approaching bodies treated as separating: u_n = n . (u_a - u_b) with n from B to A is negative when they approach";
@@ -23,7 +24,7 @@ TEST(ImpulseWithoutRotation, HeadOnHitSharesTheBlowByInverseMasses) {
   // Exact: 1.5 * 3 / (1/2 + 1/6) = 6.75.
   expect_near(found, 6.75, kRoundoff * 6.75, "N s",
               {.scene = "A, 2 kg at -1 m/s, meets B, 6 kg at +2 m/s, along n = +z; e = 0.5",
-               .slip = likely(found, {{4.5, kForgotOnePlusE}, {2.25, kOnlyE}, {-6.75, kWrongSign}, {0.0, kCalledSeparating},
+               .slip = likely(found, {{4.5, kForgotOnePlusE}, {2.25, kOnlyE}, {-6.75, kWrongSign}, {5.625, kSquaredE}, {0.0, kCalledSeparating},
                                       {36.0, "1/(m_a + m_b) where 1/m_a + 1/m_b belongs"}},
                               "inverse masses or relative velocity"),
                .handout = equation("8")});
@@ -35,7 +36,7 @@ TEST(ImpulseWithoutRotation, WallIsABodyOfInfiniteMass) {
   const double found = student().collision_impulse_without_rotation({{0, 0, 0}, kUp}, a, wall({0, 0, 0}), 0.5);
   expect_near(found, 9.0, kRoundoff * 9.0, "N s",
               {.scene = "a 2 kg ball at 3 m/s hits an immovable wall, e = 0.5",
-               .slip = likely(found, {{6.0, kForgotOnePlusE}, {3.0, kOnlyE}, {-9.0, kWrongSign}, {0.0, kCalledSeparating}},
+               .slip = likely(found, {{6.0, kForgotOnePlusE}, {3.0, kOnlyE}, {7.5, kSquaredE}, {-9.0, kWrongSign}, {0.0, kCalledSeparating}},
                               "infinite mass: its inverse mass is 0"),
                .handout = equation("8")});
 }
@@ -47,7 +48,7 @@ TEST(ImpulseWithoutRotation, TakesNoNoticeOfSpin) {
   const double found = student().collision_impulse_without_rotation({{6, 3, 0}, kUp}, a, wall({0, 0, 0}), 0.5);
   expect_near(found, 12.0, kRoundoff * 12.0, "N s",
               {.scene = "a spinning 2 kg block at 4 m/s hits a wall off centre; equation (A1.8) knows points only; e = 0.5",
-               .slip = likely(found, {{8.0, kForgotOnePlusE}, {4.0, kOnlyE}, {-12.0, kWrongSign}, {0.0, kCalledSeparating}},
+               .slip = likely(found, {{8.0, kForgotOnePlusE}, {4.0, kOnlyE}, {10.0, kSquaredE}, {-12.0, kWrongSign}, {0.0, kCalledSeparating}},
                               "rotation taken into account: v_a - v_b is of the centres of mass here, and no inertia tensor occurs"),
                .handout = equation("8")});
 }
@@ -63,6 +64,35 @@ TEST(ImpulseWithoutRotation, SeparatingBodiesGetNone) {
                .handout = equation("8")});
 }
 
+TEST(ImpulseWithoutRotation, DrivenWallsMoveToo) {
+  for (const bool wall_is_a : {false, true}) {
+    Body driven = wall({0, 0, 0}), struck = ball(2.0, 0.5, {0, 0, 0.5});
+    driven.velocity_world = {0, 0, 2};
+    const Contact contact{{0, 0, 0}, wall_is_a ? Vector3d(-kUp) : kUp};
+    const double found = student().collision_impulse_without_rotation(contact, wall_is_a ? driven : struck, wall_is_a ? struck : driven, 0.5);
+    expect_near(found, 6.0, kRoundoff * 6.0, "N s",
+                {.scene = std::string("a floor that rises at 2 m/s meets a resting 2 kg ball, e = 0.5; the floor is ") + (wall_is_a ? "A" : "B"),
+                 .slip = likely(found, {{0.0, "an immovable body taken to be at rest: infinite mass says nothing about its velocity"}, {4.0, kForgotOnePlusE}, {2.0, kOnlyE}, {5.0, kSquaredE}, {-6.0, kWrongSign}},
+                                "inverse masses or relative velocity"),
+                 .handout = equation("8")});
+  }
+}
+
+TEST(ImpulseWithoutRotation, IsRightInEveryUnit) {
+  Body a = ball(2.0, 0.5, {0, 0, 1}), b = ball(6.0, 0.5, {0, 0, 0});
+  a.velocity_world = {0, 0, -1};
+  b.velocity_world = {0, 0, 2};
+  const bool plain = std::abs(student().collision_impulse_without_rotation({{0, 0, 0.5}, kUp}, a, b, 0.5) - 6.75) <= kRoundoff * 6.75;
+  for (const Units& units : changes_of_unit()) {
+    const Encounter e = scaled({{{0, 0, 0.5}, kUp}, a, b}, units.length, units.mass, units.time);
+    const double size = units.mass * units.length / units.time, found = student().collision_impulse_without_rotation(e.contact, e.a, e.b, 0.5);
+    expect_near(found, 6.75 * size, kRoundoff * 6.75 * size, "N s",
+                {.scene = "A, 2 kg at -1 m/s, meets B, 6 kg at +2 m/s, along n = +z; e = 0.5; " + show(units),
+                 .slip = slip_of_units(plain, "an absolute threshold: bodies approach where u_n < 0, and both are of infinite mass where 1/m_a + 1/m_b is exactly 0"),
+                 .handout = equation("8")});
+  }
+}
+
 TEST(CollisionImpulse, CentralHitReversesVelocityScaledByRestitution) {
   Body a = ball(2.0, 0.5, {0, 0, 0.5});
   a.velocity_world = {0, 0, -3};
@@ -70,7 +100,7 @@ TEST(CollisionImpulse, CentralHitReversesVelocityScaledByRestitution) {
   // Exact: j = (1 + e) m |v| = 1.5 * 2 * 3 = 9 N s. The arm is along n, so rotation adds nothing.
   expect_near(found, 9.0, kRoundoff * 9.0, "N s",
               {.scene = "a 2 kg ball at 3 m/s hits a wall, e = 0.5",
-               .slip = likely(found, {{6.0, kForgotOnePlusE}, {3.0, kOnlyE}, {-9.0, kWrongSign}, {0.0, kCalledSeparating}},
+               .slip = likely(found, {{6.0, kForgotOnePlusE}, {3.0, kOnlyE}, {7.5, kSquaredE}, {-9.0, kWrongSign}, {0.0, kCalledSeparating}},
                               "inverse mass or relative velocity"),
                .handout = equation("9")});
 }
@@ -85,6 +115,7 @@ TEST(CollisionImpulse, OffCentreHitTurnsPartOfTheBlow) {
                .slip = likely(found, {{12.0, "the rotation term of the denominator is missing"},
                                       {4.0, kForgotOnePlusE},
                                       {2.0, kOnlyE},
+                                      {5.0, kSquaredE},
                                       {-6.0, kWrongSign},
                                       {0.0, kCalledSeparating},
                                       {6.0 / 27.5, "the arm starts at the world's origin: r = p - x"},
@@ -118,6 +149,7 @@ TEST(CollisionImpulse, SpinAloneCanCauseACollision) {
                .slip = likely(found, {{0.0, "relative velocity without rotation, or r x w for w x r: the touching point moves at v + w x r"},
                                       {3.0, kForgotOnePlusE},
                                       {1.5, kOnlyE},
+                                      {3.75, kSquaredE},
                                       {-4.5, kWrongSign}},
                               "velocity of the touching point, v + w x r"),
                .handout = equation("5")});
@@ -134,9 +166,54 @@ TEST(CollisionImpulse, BothBodiesYield) {
                                       {-4.0, kWrongSign},
                                       {8.0 / 3.0, kForgotOnePlusE},
                                       {4.0 / 3.0, kOnlyE},
+                                      {10.0 / 3.0, kSquaredE},
                                       {0.0, kCalledSeparating}},
                               "the denominator sums over both bodies"),
                .handout = equation("9")});
+}
+
+// Rounding: u_n is a sum of twelve products of up to 3 m/s that is -5 m/s, the denominator one of nine times nine; kRoundoff * 10 times j.
+constexpr double kSkewRoundoff = 10 * kRoundoff;
+
+TEST(CollisionImpulse, TwoTurnedBodiesMeetOnASkewNormal) {
+  const Encounter e = skew_encounter();
+  for (const double restitution : {0.0, 0.25, 1.0}) {
+    const double j = collision_impulse_by(e, restitution), found = student().collision_impulse(e.contact, e.a, e.b, restitution);
+    expect_near(found, j, kSkewRoundoff * j, "N s",
+                {.scene = "two lopsided bodies (full inertia tensors), both turned and spinning, meet off their centres; n = (2, -1, 2) / 3, e = " + show(restitution),
+                 .slip = likely(found, slips_of_impulse(e, restitution), "both arms, both spins, the whole inertia tensors in the world frame"),
+                 .handout = equation("9")});
+  }
+}
+
+TEST(CollisionImpulse, DrivenWallsMoveAndTurn) {
+  for (const bool wall_is_a : {false, true}) {
+    Encounter e = skew_encounter();
+    Body& driven = wall_is_a ? e.a : e.b;
+    const Body moving = driven;
+    driven = wall(moving.com_world);
+    driven.velocity_world = moving.velocity_world;
+    driven.omega_world = moving.omega_world;
+    const double j = collision_impulse_by(e, 0.25), found = student().collision_impulse(e.contact, e.a, e.b, 0.25);
+    expect_near(found, j, kSkewRoundoff * j, "N s",
+                {.scene = std::string("a driven wall that moves and turns is ") + (wall_is_a ? "A" : "B") + "; n = (2, -1, 2) / 3, e = 0.25",
+                 .slip = likely(found, slips_of_impulse(e, 0.25), "the wall's velocity v + w x r, and no inverse mass or inertia of it"),
+                 .handout = equation("9")});
+  }
+}
+
+TEST(CollisionImpulse, IsRightInEveryUnit) {
+  const Encounter e = skew_encounter();
+  const double j = collision_impulse_by(e, 0.25);
+  const bool plain = std::abs(student().collision_impulse(e.contact, e.a, e.b, 0.25) - j) <= kSkewRoundoff * j;
+  for (const Units& units : changes_of_unit()) {
+    const Encounter other = scaled(e, units.length, units.mass, units.time);
+    const double size = units.mass * units.length / units.time, found = student().collision_impulse(other.contact, other.a, other.b, 0.25);
+    expect_near(found, j * size, kSkewRoundoff * j * size, "N s",
+                {.scene = "two lopsided bodies meet on a skew normal, e = 0.25; " + show(units),
+                 .slip = slip_of_units(plain, "an absolute threshold: bodies approach where u_n < 0, and both are of infinite mass where the denominator is exactly 0"),
+                 .handout = equation("9")});
+  }
 }
 
 TEST(CollisionImpulse, SeparatingBodiesGetNone) {
@@ -158,7 +235,8 @@ TEST(CollisionImpulse, TwoWallsExchangeNone) {
   expect_near(found, 0.0, 0.0, "N s",
               {.scene = "a driven wall (infinite mass, 1 m/s) meets another wall",
                .slip = "infinite mass on both sides: the denominator is 0, and no impulse can do anything",
-               .handout = equation("9")});
+               .handout = equation("9"),
+               .no_number = "infinite mass on both sides: the denominator is 0, and no impulse can do anything"});
 }
 
 }  // namespace

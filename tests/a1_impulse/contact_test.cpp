@@ -55,8 +55,35 @@ TEST(RelativeNormalVelocity, DrivenWallsMoveToo) {
   const double found = student().relative_normal_velocity({{0, 0, 0}, kUp}, ball(2.0, 0.5, {0, 0, 0.5}), b);
   expect_near(found, -2.0, kRoundoff * 2, "m/s",
               {.scene = "a floor that rises at 2 m/s meets a resting ball",
-               .slip = "an immovable body taken to be at rest: infinite mass says nothing about its velocity",
+               .slip = likely(found, {{0.0, "an immovable body taken to be at rest: infinite mass says nothing about its velocity"},
+                                      {2.0, "u_b - u_a where u_a - u_b belongs: n points from B to A"}},
+                              "u_n = n . (u_a - u_b)"),
                .handout = equation("5")});
+}
+
+TEST(RelativeNormalVelocity, EachBodyHasItsOwnArmAndSpin) {
+  const Encounter e = skew_encounter();
+  const double found = student().relative_normal_velocity(e.contact, e.a, e.b);
+  expect_near(found, relative_normal_velocity_by(e), kRoundoff * 10, "m/s",
+              {.scene = "two spinning bodies meet at (5.5, 2.25, 0.25) m, arms (0.5, -0.75, -0.75) and (-0.75, 0.75, 1) m, n = (2, -1, 2) / 3",
+               .slip = likely(found, slips_of_relative_velocity(e), "u_n = n . (u_a - u_b), u = v + w x r for each body with its own arm"),
+               .handout = equation("5")});
+}
+
+TEST(RelativeNormalVelocity, WallsMayTurnAndMayBeA) {
+  for (const bool wall_is_a : {false, true}) {
+    Encounter e = skew_encounter();
+    Body& driven = wall_is_a ? e.a : e.b;
+    const Body moving = driven;
+    driven = wall(moving.com_world);
+    driven.velocity_world = moving.velocity_world;
+    driven.omega_world = moving.omega_world;
+    const double found = student().relative_normal_velocity(e.contact, e.a, e.b);
+    expect_near(found, relative_normal_velocity_by(e), kRoundoff * 10, "m/s",
+                {.scene = std::string("a driven wall that moves and turns is ") + (wall_is_a ? "A" : "B") + "; n = (2, -1, 2) / 3",
+                 .slip = likely(found, slips_of_relative_velocity(e), "u_n = n . (u_a - u_b), u = v + w x r for each body with its own arm"),
+                 .handout = equation("5")});
+  }
 }
 
 std::string name_of(a1::RelativeMotion motion) {
@@ -95,6 +122,27 @@ TEST(RelativeMotionCases, ExactlyAtTheToleranceIsResting) {
   expect_case(-0.001, a1::RelativeMotion::kResting, slip);
 }
 
+TEST(RelativeMotionCases, TheToleranceIsTheOneGiven) {
+  if (!tells_motions_apart()) return;
+  struct Case {
+    double normal_velocity, tolerance;
+    a1::RelativeMotion expected;
+  };
+  using enum a1::RelativeMotion;
+  for (const Case& c : {Case{-0.25, 0.5, kResting}, {0.25, 0.5, kResting}, {-0.0005, 0.0, kApproaching}, {0.0005, 0.0, kSeparating}, {0.0, 0.0, kResting},
+                        {-2e-9, 1e-9, kApproaching}, {2e-9, 1e-9, kSeparating}, {-5e-10, 1e-9, kResting}, {-1000.5, 1000.0, kApproaching}}) {
+    const a1::RelativeMotion found = student().classify_relative_motion(c.normal_velocity, c.tolerance);
+    const double u = std::abs(c.normal_velocity);
+    const bool as_by_a_millimetre = (found == kResting) == (u <= 0.001);
+    expect_true(found == c.expected, name_of(c.expected), name_of(found),
+                {.scene = "u_n = " + show(c.normal_velocity) + " m/s, tolerance " + show(c.tolerance) + " m/s",
+                 .slip = found == kResting && u < 1e-5 ? "an absolute threshold beside the tolerance that is given"
+                         : as_by_a_millimetre         ? "a tolerance of one's own: the tolerance that is given decides"
+                                                      : "the tolerance that is given: resting is |u_n| <= tolerance",
+                 .handout = equation("6")});
+  }
+}
+
 const std::string kNotUnit = "normal not unit: divide by its length";
 const std::string kFromAToB = "the normal points from A to B";
 
@@ -111,13 +159,42 @@ TEST(ContactNormal2d, VertexEdgeIsPerpendicularTowardsTheVertex) {
                .handout = equation("7")});
 }
 
+// Edges along an axis or a diagonal: there the corner is on the line in every order of evaluation, since both parts of the normal are
+// 0, or the same number. (Of an edge along (3, 4) the unit normal rounds, and with it the side.)
 TEST(ContactNormal2d, VertexExactlyOnTheEdgeTakesTheOutsideOfACounterClockwiseBody) {
-  const Vector2d found = student().contact_normal_vertex_edge({1.5, 2}, {0, 0}, {3, 4});
-  expect_near(found, Vector2d(0.8, -0.6), kRoundoff, "(unit)",
-              {.scene = "corner (1.5, 2) of A exactly on the edge (0, 0) -> (3, 4) of B",
-               .slip = likely<2>(found, {{{4, -3}, kNotUnit}, {{-4, 3}, kNotUnit}, {{-0.8, 0.6}, "the left-hand side: B is listed counter-clockwise, outside is on the right"}},
-                                 "no side to be seen: take the right-hand side of start -> end"),
-               .handout = equation("7")});
+  struct Edge {
+    Vector2d start, end, vertex, right;
+  };
+  const double c = std::sqrt(0.5);
+  for (const Edge& e : {Edge{{1, -2}, {3, 0}, {2.5, -0.5}, {c, -c}}, Edge{{3, 1}, {1, 3}, {2.5, 1.5}, {c, c}}, Edge{{1, -2}, {5, -2}, {2, -2}, {0, -1}}, Edge{{1, 4}, {1, -2}, {1, 3}, {-1, 0}}}) {
+    const Vector2d found = student().contact_normal_vertex_edge(e.vertex, e.start, e.end);
+    const Vector2d unscaled = e.right * (e.end - e.start).norm();
+    expect_near(found, e.right, kRoundoff, "(unit)",
+                {.scene = "corner " + show(e.vertex) + " of A exactly on the edge " + show(e.start) + " -> " + show(e.end) + " of B",
+                 .slip = likely<2>(found, {{unscaled, kNotUnit}, {-unscaled, kNotUnit}, {-e.right, "the left-hand side: B is listed counter-clockwise, outside is on the right"}},
+                                   "no side to be seen: take the right-hand side of start -> end"),
+                 .handout = equation("7")});
+  }
+}
+
+// Edges of a nanometre and of a million kilometres: nothing is small by itself.
+TEST(ContactNormal2d, IsRightInEveryUnit) {
+  for (const double size : {0x1p-30, 0x1p30}) {
+    for (const double side : {1.0, -1.0}) {
+      const Vector2d start = size * Vector2d(1, -2), end = size * Vector2d(4, 2), expected = side * Vector2d(0.8, -0.6);
+      const Vector2d off = start + size * (0.25 * Vector2d(3, 4) + side * 0.125 * Vector2d(4, -3));
+      const auto story = [&](const std::string& scene, const Vector2d& found) {
+        return Story{.scene = scene + ", lengths times " + show(size),
+                     .slip = likely<2>(found, {{-expected, "an absolute threshold: which side is told by the sign, however near the line is"}}, "an absolute threshold: no length is too short to have a direction"),
+                     .handout = equation("7")};
+      };
+      const Vector2d corner = student().contact_normal_vertex_edge(off, start, end), edge = student().contact_normal_edge_edge(start, end, off);
+      expect_near(corner, expected, kRoundoff, "(unit)", story("edge (1, -2) -> (4, 2) of B, a corner of A beside it", corner));
+      expect_near(edge, expected, kRoundoff, "(unit)", story("edge (1, -2) -> (4, 2) of B, the centre of A beside it", edge));
+      const Vector2d line = student().contact_normal_vertex_vertex(size * Vector2d(5, 6), size * Vector2d(1, 9));
+      expect_near(line, Vector2d(0.8, -0.6), kRoundoff, "(unit)", story("centres of A and B at (5, 6) and (1, 9)", line));
+    }
+  }
 }
 
 TEST(ContactNormal2d, EdgeEdgePointsToTheCentreOfAHoweverTheEdgeIsListed) {

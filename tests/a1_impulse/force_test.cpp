@@ -10,7 +10,7 @@ TEST(PointForce, TorqueIsArmCrossForce) {
   const Wrench found = student().wrench_of_point_force({0, 0, 5}, {1, 2, 3}, {0, 0, 0});
   expect_near(found.torque_world, Vector3d(10, -5, 0), kRoundoff * 10, "N m",
               {.scene = "5 N along z at (1, 2, 3) m on a body centred at the world's origin",
-               .slip = likely<3>(found.torque_world, {{{-10, 5, 0}, "F x r where r x F belongs"}}, "tau = r x F"),
+               .slip = likely<3>(found.torque_world, {{{-10, 5, 0}, "F x r where r x F belongs (or a left-handed cross product)"}}, "tau = r x F"),
                .handout = equation("2")});
 }
 
@@ -20,7 +20,7 @@ TEST(PointForce, ArmStartsAtTheCentreOfMass) {
               {.scene = "the same force on a body centred at (1, 0, 0) m",
                .slip = likely<3>(found.torque_world,
                                  {{{10, -5, 0}, "the arm starts at the world's origin: r = p - x"},
-                                  {{-10, 0, 0}, "F x r where r x F belongs, or r = x - p"}},
+                                  {{-10, 0, 0}, "F x r where r x F belongs, r = x - p, or a left-handed cross product"}},
                                  "r = p - x, tau = r x F"),
                .handout = equation("2")});
 }
@@ -45,7 +45,7 @@ TEST(LinearAcceleration, WallHasNone) {
   if (!gives_linear_acceleration()) return;
   const Vector3d found = student().linear_acceleration(wall({0, 0, 0}), {2, 0, -8});
   expect_near(found, Vector3d::Zero(), 0.0, "m/s^2",
-              {.scene = "(2, 0, -8) N on a wall", .slip = "infinite mass: multiply by inverse_mass, which is 0", .handout = equation("3")});
+              {.scene = "(2, 0, -8) N on a wall", .slip = "infinite mass: multiply by inverse_mass, which is 0", .handout = equation("3"), .no_number = "infinite mass: multiply by inverse_mass, which is 0"});
 }
 
 TEST(AngularAcceleration, FromRestIsTorqueOverInertia) {
@@ -59,13 +59,11 @@ TEST(AngularAcceleration, FromRestIsTorqueOverInertia) {
 TEST(AngularAcceleration, TurnedBlockNeedsItsInertiaInTheWorldFrame) {
   Body body = block({5, 3, 1});
   body.world_from_body = third_turn();
-  const Vector3d found = student().angular_acceleration(body, {4, 4, 4});
-  expect_near(found, Vector3d(1, 4, 2), kRoundoff * 4, "rad/s^2",
-              {.scene = "torque (4, 4, 4) N m on the resting block turned by 120 degrees: moments 4, 1, 2 about world x, y, z",
-               .slip = likely<3>(found,
-                                 {{{4, 2, 1}, "body inertia where world inertia belongs, or a result left in the body frame"},
-                                  {{2, 1, 4}, "R and R^T swapped: w_body = R^T w_world, and R takes the result back"}},
-                                 "frames: torque to the body frame, acceleration back to the world"),
+  const Vector3d torque(4, 8, 12);  // three numbers, so that a turn of the torque shows
+  const Vector3d found = student().angular_acceleration(body, torque);
+  expect_near(found, Vector3d(1, 8, 6), kRoundoff * 8, "rad/s^2",
+              {.scene = "torque (4, 8, 12) N m on the resting block turned by 120 degrees: moments 4, 1, 2 about world x, y, z",
+               .slip = likely<3>(found, slips_of_angular_acceleration(body, torque), "frames: torque to the body frame, acceleration back to the world"),
                .handout = equation("4")});
 }
 
@@ -100,13 +98,61 @@ TEST(AngularAcceleration, GyroscopicTermIsFormedInTheBodyFrame) {
                .handout = equation("4")});
 }
 
+TEST(AngularAcceleration, ProductsOfInertiaCount) {
+  for (const bool turned : {false, true}) {
+    Body body = bracket({5, 3, 1});
+    if (turned) body.world_from_body = third_turn();
+    body.omega_world = {1, -2, 0.5};
+    const Vector3d torque(3, -1, 2);
+    const Vector3d found = student().angular_acceleration(body, torque);
+    // Smallest moment 1.39, largest 7.27: rounding of w x (I w), up to 40 N m, is divided by 1.39.
+    expect_near(found, angular_acceleration_by(body, torque), kRoundoff * 40, "rad/s^2",
+                {.scene = std::string("torque (3, -1, 2) N m on a lopsided bracket, I = (4, -2, -2; -2, 5, -1; -2, -1, 6) kg m^2") + (turned ? ", turned by 120 degrees about (1, 1, 1)," : "") +
+                          " that spins at (1, -2, 0.5) rad/s",
+                 .slip = likely<3>(found, slips_of_angular_acceleration(body, torque), "I w' = tau - w x (I w) with the whole tensor: its axes here are no principal axes"),
+                 .handout = equation("4")});
+  }
+}
+
+TEST(AngularAcceleration, IsRightInEveryUnit) {
+  if (!gives_angular_acceleration()) return;
+  Body body = bracket({5, 3, 1});
+  body.omega_world = {1, -2, 0.5};
+  const Vector3d torque(3, -1, 2), expected = angular_acceleration_by(body, torque);
+  const bool plain = (student().angular_acceleration(body, torque) - expected).norm() <= kRoundoff * 80;
+  for (const Units& units : changes_of_unit()) {
+    const Body other = scaled(body, units.length, units.mass, units.time);
+    const Vector3d other_torque = torque * (units.mass * units.length * units.length / (units.time * units.time));
+    const Vector3d found = student().angular_acceleration(other, other_torque);
+    const double size = 1.0 / (units.time * units.time);
+    expect_near(found, Vector3d(expected * size), kRoundoff * 40 * size, "rad/s^2",
+                {.scene = "the spinning bracket under a torque, " + show(units),
+                 .slip = slip_of_units(plain, "an absolute threshold: compare with 0 exactly, since nothing is small by itself"),
+                 .handout = equation("4")});
+  }
+}
+
+TEST(LinearAcceleration, IsRightInEveryUnit) {
+  const bool plain = (student().linear_acceleration(block({5, 3, 1}), {2, 0, -8}) - Vector3d(1, 0, -4)).norm() <= kRoundoff * 8;
+  for (const Units& units : changes_of_unit()) {
+    const Body body = scaled(block({5, 3, 1}), units.length, units.mass, units.time);
+    const double acceleration = units.length / (units.time * units.time);
+    const Vector3d found = student().linear_acceleration(body, Vector3d(2, 0, -8) * (units.mass * acceleration));
+    expect_near(found, Vector3d(1, 0, -4) * acceleration, kRoundoff * 4 * acceleration, "m/s^2",
+                {.scene = "(2, 0, -8) N on a 2 kg block, " + show(units),
+                 .slip = slip_of_units(plain, "an absolute threshold: a body is immovable where its inverse mass is exactly 0, not where it is small"),
+                 .handout = equation("3")});
+  }
+}
+
 TEST(AngularAcceleration, WallHasNone) {
   if (!gives_angular_acceleration()) return;
   const Vector3d found = student().angular_acceleration(wall({0, 0, 0}), {1, 4, 2});
   expect_near(found, Vector3d::Zero(), 0.0, "rad/s^2",
               {.scene = "torque (1, 4, 2) N m on a wall, whose inertia_body is unset (NaN)",
                .slip = "infinite mass: inertia_body is not to be used; a zero inverse inertia means no acceleration",
-               .handout = equation("4")});
+               .handout = equation("4"),
+               .no_number = "infinite mass: inertia_body is not to be used; a zero inverse inertia means no acceleration"});
 }
 
 // What a click does, from the pixel's ray to two accelerations.

@@ -39,6 +39,21 @@ std::vector<Json> truths_of_family(const std::string& family) {
 
 // ---- Rays ----------------------------------------------------------------------------------------------------------
 
+// A ray aimed exactly at a seam passes within rounding of it, on either side: there each triangle alone may say hit or miss, and the law
+// is that one of them is hit (Woop's own order of evaluation shears the corners first, and takes one of the two).
+bool at_least_one_is_hit(const Json& ray, const Json& triangles) {
+  return std::any_of(ray["per_triangle"].begin(), ray["per_triangle"].end(), [&](const Json& expected) {
+    const Json& corners = triangles[expected["triangle"].get<std::size_t>()];
+    return student().intersect_ray_triangle({vector(ray["origin"]), vector(ray["direction"])}, {vector(corners[0]), vector(corners[1]), vector(corners[2])}).has_value();
+  });
+}
+
+/// Two triangles or more, and the ray goes through what they share.
+bool meets_a_seam(const Json& ray) {
+  const Json& all = ray["per_triangle"];
+  return all.size() > 1 && std::all_of(all.begin(), all.end(), [](const Json& one) { return one["class"].get<std::string>().starts_with("on_"); });
+}
+
 TEST(RayTriangle, AgreesWithTheTruths) {
   for (const Json& truth : truths_of_family("ray_triangle")) {
     for (const Json& ray : truth["outputs"]["rays"]["value"]) {
@@ -52,6 +67,10 @@ TEST(RayTriangle, AgreesWithTheTruths) {
                           .slip = found.has_value() == expected["hit"].get<bool>() ? "digits lost on the way: divide last, and only once" : "an epsilon somewhere: compare with 0 exactly",
                           .handout = "handouts/a1_impulse.md#hint-ray"};
         const bool hit = expected["hit"].get<bool>();
+        if (meets_a_seam(ray) && !found) {
+          expect_true(at_least_one_is_hit(ray, truth["inputs"]["triangles"]["value"]), "a hit of one of the triangles that share the seam", "a miss of all", story);
+          continue;
+        }
         expect_true(found.has_value() == hit, hit ? "a hit" : "a miss", found ? "a hit" : "a miss", story);
         if (found && hit) expect_near(found->t, number(expected["t"]), kFloors * number(expected["t_tolerance_floor"]), "lengths of d", story);
         if (::testing::Test::HasFailure()) return;  // one story is enough
@@ -168,19 +187,11 @@ std::vector<Impact> all_impacts() {
 
 const std::string kElsewhere = "none of the slips that the simpler tests name gives this number: a term that they do not reach (both arms, full tensors, walls that move), or digits lost on the way";
 
-/// What the slips of (A1.9) would give here. At e = 0 the first one is no slip.
-Slips<double> slips_of_size(const Impact& impact) {
-  const double e = impact.restitution, j = impact.impulse;
-  Slips<double> slips = {{-j, "the sign of j"}, {0.0, "no impulse: approaching bodies treated as separating"}};
-  if (e > 0.0) slips.insert(slips.end(), {{j / (1.0 + e), "the (1 + e) is missing"}, {j * e / (1.0 + e), "e where (1 + e) belongs"}});
-  return slips;
-}
-
 /// What a wrong impulse would make of A's velocity.
 Slips<Vector3d> slips_of_velocity(const Impact& impact) {
   const Vector3d before = impact.encounter.a.velocity_world, change = impact.after.a.linear_world - before;
   Slips<Vector3d> slips = {{before - change, "the sign: A gets +j n"}, {before, "no impulse reached A"}};
-  if (impact.restitution > 0.0) slips.push_back({before + change / (1.0 + impact.restitution), "the (1 + e) is missing in j"});
+  for (const auto& [wrong, words] : slips_of_impulse(impact.encounter, impact.restitution)) slips.push_back({before + wrong / impact.impulse * change, words + " (in j)"});
   return slips;
 }
 
@@ -189,7 +200,7 @@ TEST(CollisionImpulse, AgreesWithTheTruths) {
     const auto& [contact, a, b] = impact.encounter;
     const double found = student().collision_impulse(contact, a, b, impact.restitution);
     expect_near(found, impact.impulse, kFloors * impact.impulse_floor, "N s",
-                {.scene = "case " + impact.id + " of tests/truths, computed in exact arithmetic, e = " + show(impact.restitution), .slip = likely(found, slips_of_size(impact), kElsewhere), .handout = equation("9")});
+                {.scene = "case " + impact.id + " of tests/truths, computed in exact arithmetic, e = " + show(impact.restitution), .slip = likely(found, slips_of_impulse(impact.encounter, impact.restitution), kElsewhere), .handout = equation("9")});
     if (::testing::Test::HasFailure()) return;  // one story is enough
   }
 }

@@ -1,5 +1,6 @@
 #include "tests/a2_integration/a2_fixtures.h"
 
+#include <algorithm>
 #include <sstream>
 
 namespace tumble::a2_testing {
@@ -47,6 +48,92 @@ void expect_orders(const std::vector<double>& found, double order, double tolera
   expect_true(all_near, "order " + show(order) + " +- " + show(tolerance) + " at every halving of the step", all, story);
 }
 
+namespace {
+
+/// Weights in sixths of h, and the slopes of which each stage is made: `stage(i, k)` is the share of slope k in stage i, in h.
+struct SeenRk4 {
+  Eigen::Vector4d sixths = Eigen::Vector4d::Constant(kUnset);
+  Eigen::Matrix4d stage = Eigen::Matrix4d::Constant(kUnset);
+  std::size_t calls = 0;
+};
+
+SeenRk4 look_at_rk4() {
+  SeenRk4 seen;
+  for (Eigen::Index k = 0; k < 4; ++k) {
+    Diary diary;
+    std::vector<VectorXd> slopes(4, vector({0}));
+    slopes[static_cast<std::size_t>(k)] = vector({1});
+    const VectorXd y = a2_module().rk4_step(scripted(diary, slopes), 0.0, vector({0}), 1.0);
+    seen.calls = diary.calls();
+    if (seen.calls != 4 || y.size() != 1) return seen;
+    seen.sixths[k] = 6 * y[0];
+    for (Eigen::Index i = 0; i < 4; ++i) seen.stage(i, k) = diary.states[static_cast<std::size_t>(i)].size() == 1 ? diary.states[static_cast<std::size_t>(i)][0] : kUnset;
+  }
+  return seen;
+}
+
+/// Two steps that share nothing but their function: the answer of the first must not come again, whole or in its slopes.
+bool rk4_keeps_something() {
+  const auto step = [](double slope, double h) {
+    Diary diary;
+    const VectorXd y = a2_module().rk4_step(scripted(diary, std::vector<VectorXd>(4, vector({slope}))), 0.0, vector({8}), h);
+    return y.size() == 1 ? (y[0] - 8) / (slope * h) : kUnset;   // 1, whatever the slope and the step
+  };
+  const double first = step(2, 0.5), other_slope = step(16, 0.5), other_step = step(2, 4);
+  constexpr double kNear = 1e-6;   // more than float's rounding, which is no memory
+  return std::abs(first - other_slope) > kNear || std::abs(first - other_step) > kNear;
+}
+
+bool rk4_rounds_as_float() {
+  Diary diary;
+  const VectorXd y = a2_module().rk4_step(scripted(diary, std::vector<VectorXd>(4, vector({1.0 / 3}))), 0.0, vector({1.0 / 7}), 0.1);
+  const double exact = 1.0 / 7 + 0.1 / 3, off = y.size() == 1 ? std::abs(y[0] / exact - 1) : kUnset;
+  return off > 0x1p-32 && off < 0x1p-20;
+}
+
+}  // namespace
+
+std::string rk4_slip(const std::string& otherwise) {
+  const SeenRk4 seen = look_at_rk4();
+  if (seen.calls != 4 || !seen.sixths.allFinite()) return otherwise;
+  if (rk4_keeps_something()) return kKept;
+  const auto is = [&](double a, double b, double c, double d) { return (seen.sixths - Eigen::Vector4d(a, b, c, d)).norm() < 1e-5; };
+  const std::string right = "; k1 to k4 weigh 1, 2, 2, 1 sixths", weights = show(Eigen::Vector4d((seen.sixths * 1e6).array().round() / 1e6).transpose());
+  Eigen::Vector4d sorted = seen.sixths;
+  std::sort(sorted.data(), sorted.data() + 4);
+  if (!is(1, 2, 2, 1)) {
+    if (is(0, 0, 0, 0)) return "no slope has a weight: 1 / 6 in integers is 0, write 1.0 / 6 or h / 6" + right;
+    if (is(1, 0, 0, 1)) return "k2 and k3 have no weight: 2 / 6 in integers is 0, write 2.0 / 6" + right;
+    if (is(1, 1, 1, 1)) return "the weights 1, 2, 2, 1 are forgotten";
+    if (is(1.5, 1.5, 1.5, 1.5)) return "a plain average of the slopes: the weights 1, 2, 2, 1 over 6 are forgotten";
+    if (is(1.5, 3, 3, 1.5)) return "h/4 where h/6 belongs: the weights 1 + 2 + 2 + 1 sum to 6";
+    if (is(1.2, 2.4, 2.4, 1.2)) return "h/5 where h/6 belongs: the weights 1 + 2 + 2 + 1 sum to 6";
+    if (is(6, 12, 12, 6)) return "the division by 6 is forgotten" + right;
+    if (is(0.75, 2.25, 2.25, 0.75)) return "the weights 1, 3, 3, 1 over 8 belong to another method, with other stages" + right;
+    if (is(6, 0, 0, 0)) return "this is Euler's method: k1 alone";
+    if (is(0, 6, 0, 0)) return "this is the midpoint method: k2 alone";
+    if (is(1, 4, 0, 1)) return "k2 used for k3 in the sum" + right;
+    if ((sorted - Eigen::Vector4d(1, 1, 2, 2)).norm() < 1e-5) return "the right weights in another order: k1 to k4 weigh " + weights + right;
+    return "the weights: k1 to k4 weigh " + weights + " sixths" + right;
+  }
+  Eigen::Matrix4d stage = Eigen::Matrix4d::Zero();
+  stage(1, 0) = stage(2, 1) = 0.5;
+  stage(3, 2) = 1;
+  if (!((seen.stage - stage).norm() < 1e-5)) {
+    const auto of = [&](int i) { return seen.stage.row(i); };
+    if (!seen.stage.allFinite()) return otherwise;
+    if (seen.stage.norm() < 1e-9) return "all slopes are taken at the start: 1 / 2 in integers is 0";
+    if (std::abs(of(1)[0] - 1) < 1e-5 && std::abs(of(2)[1] - 1) < 1e-5) return "whole steps where half steps belong: y + (h/2) k1, y + (h/2) k2";
+    if (std::abs(of(2)[0] - 0.5) < 1e-5) return "k1 used where k2 belongs: the third slope is taken at y + (h/2) k2";
+    if (std::abs(of(3)[1] - 1) < 1e-5) return "k2 used for k3: the fourth slope is taken at y + h k3";
+    if (std::abs(of(3)[0] - 1) < 1e-5) return "k1 used for k3: the fourth slope is taken at y + h k3";
+    if (std::abs(of(3)[2] - 0.5) < 1e-5) return "the fourth stage takes half a step: it is taken at y + h k3";
+    for (int i = 1; i < 4; ++i)
+      if ((of(i) - stage.row(i)).norm() > 1e-5) return "stage " + std::to_string(i + 1) + " is taken at y + h times " + show(of(i)) + " of k1 to k4: it belongs at " + show(stage.row(i));
+  }
+  return rk4_rounds_as_float() ? kFloat : otherwise;
+}
+
 VectorXd logistic(double, const VectorXd& y) { return (6.0 * y.array() - 0.007 * y.array().square()).matrix(); }
 
 VectorXd free_top(double, const VectorXd& omega_body) {
@@ -56,6 +143,13 @@ VectorXd free_top(double, const VectorXd& omega_body) {
 }
 
 Inertia block() { return {2.0, 0.5, Vector3d(1, 2, 4).asDiagonal(), Vector3d(1, 0.5, 0.25).asDiagonal()}; }
+
+Inertia bracket() {
+  Matrix3d inertia, adjugate;
+  inertia << 4, -2, -2, -2, 5, -1, -2, -1, 6;
+  adjugate << 29, 14, 12, 14, 20, 8, 12, 8, 16;
+  return {2.0, 0.5, inertia, adjugate / 64};
+}
 
 RigidBodyState resting() { return {{5, 3, 1}, Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero()}; }
 
@@ -120,8 +214,9 @@ void expect_impact(const RootResult& found, const Approach& approach, const Look
   if (found.status != RootStatus::kConverged) return;
   const double gap = approach.gap(found.time);
   const bool is_early = found.time >= approach.t_low && gap >= 0;
-  expect_near(found.time, approach.time_of_impact, tolerance + round_off, "s",
-              because(slip + (is_early ? "; or the search ends too early: the bracket must be smaller than the tolerance, however many steps it takes" : "")));
+  Story of_time = because(slip + (is_early ? "; or the search ends too early: the bracket must be smaller than the tolerance, however many steps it takes" : ""));
+  of_time.iterates = true;
+  expect_near(found.time, approach.time_of_impact, tolerance + round_off, "s", of_time);
   if (!std::isfinite(found.time)) return;  // said above; the gap of no time says nothing more
   // The gap is the caller's own function of the same number: its sign is known without any tolerance.
   expect_true(gap >= 0, "gap(time) >= 0", "gap(" + show(found.time) + ") = " + show(gap),
@@ -139,6 +234,57 @@ void expect_no_impact(const RootResult& found, const Looks& looks, const std::st
               {.scene = scene, .slip = "a time is returned although no impact was found", .handout = equation(10)});
   expect_true(looks.calls <= 2, "2 calls of the gap, at the ends", std::to_string(looks.calls) + " calls",
               {.scene = scene, .slip = "the search goes on although the ends show no sign change", .handout = equation(10)});
+}
+
+void expect_nan_noticed(const RootResult& found, const Approach& approach, const Looks& looks, double last_open) {
+  const Story story{.scene = approach.scene, .slip = "NaN is not noticed: it compares as neither >= 0 nor < 0, so ask for it (std::isnan) at every look, the two ends included", .handout = equation(10)};
+  expect_true(found.status == RootStatus::kNotConverged, "status kNotConverged", "status " + show(found.status) + ", time " + show(found.time) + " s", story);
+  if (found.status != RootStatus::kNotConverged) return;
+  const double gap = approach.gap(found.time);
+  const std::string where = std::isnan(last_open) ? "NaN as time and residual: the gap is not known at t_low" : "the last time at which the gap was seen open, at most " + show(last_open) + " s, and the gap there";
+  const bool is_there = std::isnan(last_open) ? std::isnan(found.time) && std::isnan(found.residual)
+                                              : found.time >= approach.t_low && found.time <= last_open && gap >= 0 && found.residual == gap;
+  expect_true(is_there, where, "time " + show(found.time) + " s, residual " + show(found.residual) + " m",
+              {.scene = approach.scene, .slip = "time and residual are those of the last a, the open end of the bracket", .handout = equation(10)});
+  expect_true(found.evaluations == looks.calls, std::to_string(looks.calls) + " evaluations", std::to_string(found.evaluations),
+              {.scene = approach.scene, .slip = "evaluations does not count every call of g", .handout = equation(10)});
+}
+
+void expect_finder_notices_nan(const Finder& find) {
+  const double nan = std::nan("");
+  const auto fall = [](double t) { return 5.0 - 4.905 * t * t; };
+  const auto rate = [](double t) { return -9.81 * t; };
+  const std::string scene = "a falling point, gap = 5 - 4.905 t^2 in [0, 2] s, that is NaN ";
+  const std::pair<Approach, double> cases[] = {
+      {{scene + "everywhere but at the two ends", [=](double t) { return t > 0 && t < 2 ? nan : fall(t); }, rate, 0.0, 2.0, kUnset}, 0.0},
+      {{scene + "between 1.005 and 1.015 s, around the impact", [=](double t) { return t > 1.005 && t < 1.015 ? nan : fall(t); }, rate, 0.0, 2.0, kUnset}, 1.005},
+      {{scene + "at t_high", [=](double t) { return t == 2 ? nan : fall(t); }, rate, 0.0, 2.0, kUnset}, 0.0},
+      {{scene + "at t_low", [=](double t) { return t == 0 ? nan : fall(t); }, rate, 0.0, 2.0, kUnset}, kUnset}};
+  for (const auto& [approach, last_open] : cases) {
+    Looks looks;
+    expect_nan_noticed(find(approach, 1e-6, looks), approach, looks, last_open);
+  }
+}
+
+void expect_finder_looks_at_the_bracket(const Finder& find, int most) {
+  for (const double unit : {0x1p-40, 0x1p40}) {
+    const Approach ball = thrown_ball();
+    const Approach approach{"a ball of radius 0.5 units is thrown up at 2 units/s from 5 units: gap = 4.5 + 2 t - 4.905 t^2 units, looked for in [0, 3] s; a unit is " + show(unit) + " m",
+                            [=](double t) { return unit * ball.gap(t); }, [=](double t) { return unit * ball.gap_rate(t); }, ball.t_low, ball.t_high, ball.time_of_impact};
+    Looks looks;
+    expect_impact(find(approach, 1e-9, looks), approach, looks, 1e-9, 1e-15, "the size of the gap ends the search: the tolerance is a time, and the bracket must be smaller than it", 10);
+    expect_true(looks.calls <= most, "at most " + std::to_string(most) + " calls of the gap", std::to_string(looks.calls) + " calls",
+                {.scene = approach.scene + ", tolerance 1e-9 s", .slip = "the size of the gap keeps the search going: the tolerance is a time, and the bracket's width ends it", .handout = equation(10)});
+  }
+}
+
+void expect_finder_refuses_overlap(const Finder& find) {
+  Looks inside, leaving;
+  const Approach sunk{"gap = -1 - t in [0, 2] s", [](double t) { return -1 - t; }, [](double) { return -1.0; }, 0.0, 2.0, kUnset};
+  const Approach parting{"gap = t - 1 in [0, 2] s", [](double t) { return t - 1; }, [](double) { return 1.0; }, 0.0, 2.0, kUnset};
+  const std::string slip = "overlap from the start is not an impact: there is no open side, so g(t_low) < 0 is no sign change of the right sense";
+  expect_no_impact(find(sunk, 1e-6, inside), inside, sunk.scene, slip);
+  expect_no_impact(find(parting, 1e-6, leaving), leaving, parting.scene, slip);
 }
 
 namespace {

@@ -79,12 +79,22 @@ inline constexpr double kLogisticAtHalf = 164.276752310393929949275357847;  // y
 /// Euler's equations of a free top in its own axes: I w' = -w x (I w), moments 1, 2, 3 kg m^2. y = w_body.
 VectorXd free_top(double t, const VectorXd& omega_body);
 
+/// What is wrong with the rk4_step under test, read off it: asked with slopes of which one is 1 and the others 0, it shows the weight of
+/// each slope and where each stage is taken. `otherwise` where weights and stages are right.
+std::string rk4_slip(const std::string& otherwise);
+
 // ---- Rigid bodies ------------------------------------------------------------------------------------------------------
 
 /// Turns a third of a full turn about (1, 1, 1): x to y to z to x. Its numbers are exact, and so are those of its matrix.
 inline Quaterniond third_turn() { return {0.5, 0.5, 0.5, 0.5}; }
 /// 2 kg, principal moments 1, 2, 4 kg m^2.
 Inertia block();
+/// 2 kg, lopsided: no axis of its body frame is a principal one.
+///   I = (4, -2, -2; -2, 5, -1; -2, -1, 6) kg m^2,   I^-1 = (29, 14, 12; 14, 20, 8; 12, 8, 16) / 64, exact
+Inertia bracket();
+/// A turn whose axis and angle are skew: (1, 2, 4, 2) / 5.
+inline Quaterniond skew_turn() { return {0.2, 0.4, 0.8, 0.4}; }
+inline const std::string kDiagonalAlone = "the diagonal of the tensor alone: products of inertia count, so use the whole matrix";
 /// At rest at (5, 3, 1), not turned.
 RigidBodyState resting();
 inline Wrench no_wrench() { return {Vector3d::Zero(), Vector3d::Zero()}; }
@@ -122,6 +132,16 @@ void expect_impact(const RootResult& found, const Approach& approach, const Look
                    const std::string& slip, int equation_number);
 /// Status kNoSignChange, no time, no search.
 void expect_no_impact(const RootResult& found, const Looks& looks, const std::string& scene, const std::string& slip);
+
+/// A root finder on an approach, its looks counted: what both of them must do is asked of either.
+using Finder = std::function<RootResult(const Approach&, double tolerance, Looks&)>;
+/// kNotConverged with the last open time, wherever NaN stands: at either end, all over, around the impact.
+void expect_finder_notices_nan(const Finder& find);
+/// The width of the bracket ends the search, not the size of the gap: the same approach in units of 1e-12 and 1e12 m.
+/// @param most  calls of the gap that it may take
+void expect_finder_looks_at_the_bracket(const Finder& find, int most);
+/// kNoSignChange where the gap is closed from the start, whether it opens or not.
+void expect_finder_refuses_overlap(const Finder& find);
 
 /// "No impact", "stays as it is" and "few calls" are answers only from a function that can find, change and call something: a
 /// test whose right answer is such a nothing asks first for a case in which something must come. What comes is judged elsewhere.

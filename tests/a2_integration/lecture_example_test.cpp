@@ -19,17 +19,7 @@ TEST(LectureExample, Rk4Gives141Point63) {
   const double found = a2_module().rk4_step(logistic, 0.0, vector({10}), 0.5)[0];
   expect_near(found, 141.630290046212432779611631247, kRoundoff * 141.63, "",
               {.scene = "y' = 6 y - 0.007 y^2, y = 10, h = 0.5; the exact solution is at 164.2768",
-               .slip = likely(found,
-                              Slips<double>{{39.65, "this is Euler's method"},
-                                            {82.3180178125, "this is the midpoint method"},
-                                            {107.74066418454166, "the weights 1, 2, 2, 1 are forgotten"},
-                                            {156.6109962768125, "a plain average of the slopes: the weights 1, 2, 2, 1 over 6 are forgotten"},
-                                            {207.44543506931862, "h/4 where h/6 belongs"},
-                                            {117.14983757312368, "the fourth stage takes half a step: y + h k3"},
-                                            {100.35987141491219, "k2 used for k3, or k3 built on k1"},
-                                            {119.92711126325372, "k2 used for k3: the fourth slope is taken at y + h k3"},
-                                            {259.5512690524257, "whole steps where half steps belong"}},
-                              "a stage or a weight"),
+               .slip = rk4_slip(likely(found, Slips<double>{{39.65, "this is Euler's method"}, {82.3180178125, "this is the midpoint method"}, {10.0, "y stays as it is"}}, "the times of the stages, or h")),
                .handout = kRead});
 }
 
@@ -63,7 +53,8 @@ TEST(LectureExample, TableOfConvergenceIsTheHandouts) {
   for (const Row& row : rows) {
     const Story story{.scene = "the lecture's equation to t = 0.5", .steps = std::to_string(row.steps) + " equal steps", .slip = "one step is wrong: see the tests above", .handout = kRead};
     expect_near(integrate(a2_module().euler_step, logistic, 0, vector({10}), 0.5, row.steps)[0], row.euler, kRoundoff * row.euler, "(Euler)", story);
-    expect_near(integrate(a2_module().rk4_step, logistic, 0, vector({10}), 0.5, row.steps)[0], row.rk4, kRoundoff * row.rk4, "(RK4)", story);
+    const double by_rk4 = integrate(a2_module().rk4_step, logistic, 0, vector({10}), 0.5, row.steps)[0];
+    if (!(std::abs(by_rk4 - row.rk4) <= kRoundoff * row.rk4)) expect_near(by_rk4, row.rk4, kRoundoff * row.rk4, "(RK4)", with_slip(story, rk4_slip(story.slip)));
   }
 }
 

@@ -33,6 +33,23 @@ TEST(InertiaInWorld, MixesAxesOnASkewTurn) {
                .handout = equation(3)});
 }
 
+TEST(InertiaInWorld, ProductsOfInertiaTurnToo) {
+  const Matrix3d I = bracket().inertia_body;
+  for (const Quaterniond& q : {Quaterniond::Identity(), third_turn(), skew_turn()}) {
+    const Matrix3d R = q.toRotationMatrix(), moments = Vector3d(I.diagonal()).asDiagonal(), found = a2_module().inertia_in_world(I, q), expected = R * I * R.transpose();
+    const Matrix3d of_result = Vector3d(expected.diagonal()).asDiagonal();
+    expect_near(found, expected, kRoundoff * 8, "kg m^2",
+                {.scene = "I = (4, -2, -2; -2, 5, -1; -2, -1, 6) kg m^2, a lopsided body, turned by (w, x, y, z) = " + show(Eigen::RowVector4d(q.w(), q.x(), q.y(), q.z())),
+                 .slip = likely(found,
+                                Slips<Matrix3d>{{R * moments * R.transpose(), kDiagonalAlone},
+                                                {of_result, "the diagonal of the result alone: a turned tensor has products of inertia"},
+                                                {R.transpose() * I * R, "R and R^T swapped: R I R^T, not R^T I R"},
+                                                {I, "body inertia where world inertia belongs"}},
+                                "R I R^T with R on the left and its transpose on the right"),
+                 .handout = equation(3)});
+  }
+}
+
 TEST(RigidBodyDerivative, MovesTheCentreOfMassAndPassesForces) {
   RigidBodyState state = resting();
   state.momentum_world = {6, -2, 4};
@@ -100,6 +117,44 @@ TEST(RigidBodyDerivative, KnowsInWhichFrameItTurns) {
                .handout = equation(5)});
 }
 
+// In units from a nanometre's to a giant's: nothing is small by itself. Powers of two, so that answers scale exactly.
+TEST(RigidBodyDerivative, ProductsOfInertiaCountInEveryUnit) {
+  for (const auto& [inertia_unit, momentum_unit] : {std::pair{1.0, 1.0}, {1.0, 0x1p-30}, {0x1p-30, 0x1p-30}, {0x1p30, 1.0}, {1.0, 0x1p30}}) {
+    Inertia body = bracket();
+    body.mass *= inertia_unit, body.inverse_mass /= inertia_unit;
+    body.inertia_body *= inertia_unit, body.inverse_inertia_body /= inertia_unit;
+    RigidBodyState state = resting();
+    state.world_from_body = skew_turn();
+    state.momentum_world = Vector3d(6, -2, 4) * momentum_unit;
+    const Vector3d L = state.angular_momentum_world = Vector3d(3, -2, 1) * momentum_unit;
+    VectorXd found = a2_module().rigid_body_derivative(state, body, no_wrench());
+    if (found.size() != kStateSize) found = VectorXd::Constant(kStateSize, kUnset);
+    const double unit = momentum_unit / inertia_unit;
+    const Matrix3d R = skew_turn().toRotationMatrix();
+    // q' in units of the answer, from the angular velocity that a formula gives.
+    const auto rate = [&](const Vector3d& w_world) {
+      const Quaterniond two_rate = Quaterniond(0, w_world.x(), w_world.y(), w_world.z()) * skew_turn();
+      return VectorXd(vector({two_rate.w(), two_rate.x(), two_rate.y(), two_rate.z()}) / (2 * unit));
+    };
+    const Vector3d L_body = R.transpose() * L, moments = body.inertia_body.diagonal(), inverses = body.inverse_inertia_body.diagonal();
+    const VectorXd q_rate = found.segment<4>(3) / unit, expected = rate(R * (body.inverse_inertia_body * L_body));
+    const std::string scene = "a lopsided body, I = (4, -2, -2; -2, 5, -1; -2, -1, 6) kg m^2 times " + show(inertia_unit) + ", in a skew pose; P = (6, -2, 4) kg m/s and L = (3, -2, 1) kg m^2/s times " + show(momentum_unit);
+    const bool in_plain_units = inertia_unit == 1.0 && momentum_unit == 1.0;
+    const std::string unit_slip = in_plain_units ? "q' = 1/2 (0, w) q with w = R I^-1 R^T L" : "an absolute threshold: a body is immovable where its inverse mass is exactly 0, and turns however small L is";
+    expect_near(q_rate, expected, kRoundoff * 5, "units/s (w x y z)",
+                {.scene = scene,
+                 .slip = likely(q_rate,
+                                Slips<VectorXd>{{rate(R * inverses.cwiseProduct(L_body)), kDiagonalAlone},
+                                                {rate(R * L_body.cwiseQuotient(moments)), kDiagonalAlone},
+                                                {rate(body.inverse_inertia_body * L), "body inertia where world inertia belongs: w = R I^-1 R^T L"},
+                                                {rate(R.transpose() * (body.inverse_inertia_body * (R * L))), "R and R^T swapped: w = R I^-1 R^T L"},
+                                                {rate(body.inverse_inertia_body * L_body), "the body's angular velocity stands left of q: turn it into the world first"}},
+                                unit_slip),
+                 .handout = equation(5)});
+    expect_near(Vector3d(found.head<3>() / unit), Vector3d(3, -1, 2), kRoundoff * 3, "units/s (x')", {.scene = scene, .slip = in_plain_units ? "x' = P / m" : unit_slip, .handout = equation(4)});
+  }
+}
+
 TEST(RigidBodyDerivative, InfiniteMassStaysWhereItIs) {
   if (!a_body_moves()) return;
   Inertia wall{INFINITY, 0.0, Matrix3d::Constant(kUnset), Matrix3d::Zero()};
@@ -107,7 +162,8 @@ TEST(RigidBodyDerivative, InfiniteMassStaysWhereItIs) {
   expect_near(found, VectorXd::Zero(kStateSize), 0.0, "(x', q', P', L')",
               {.scene = "a wall: infinite mass, inverse mass 0, no forces",
                .slip = "infinite mass: use inverse_mass and inverse_inertia_body, never mass or inertia_body",
-               .handout = equation(4)});
+               .handout = equation(4),
+               .no_number = "infinite mass: use inverse_mass and inverse_inertia_body, never mass or inertia_body"});
 }
 
 TEST(RigidBodyDerivative, FollowsASymmetricTop) {

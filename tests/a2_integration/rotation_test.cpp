@@ -26,6 +26,17 @@ TEST(Renormalize, RepairsASmallDriftWithoutTurningAround) {
               {.scene = "q = (1 + 1e-6) (-0.5, 0.5, -0.5, 0.5)", .slip = likely(found, slips, "no renormalising, or a first-order repair only"), .handout = equation(6)});
 }
 
+TEST(Renormalize, RepairsAnyLength) {
+  const Quaterniond q(0.2, 0.4, -0.8, 0.4);
+  for (const double length : {1 + 1e-9, 1 - 0x1p-40, 0x1p-30, 0x1p30}) {
+    const Quaterniond given(length * q.coeffs()), found = a2_module().renormalize(given);
+    const Slips<Quaterniond> slips = {{Quaterniond::Identity(), "an absolute threshold: only the zero quaternion has no direction, however short another is"}};
+    const std::string otherwise = numbers(found) == numbers(given) ? "left as it is: every drift is repaired, however small" : "q / |q|";
+    expect_near(numbers(found), numbers(q), kRoundoff, "(w x y z)",
+                {.scene = "(0.2, 0.4, -0.8, 0.4), a unit quaternion, times " + show(length) + " (1 + " + show(length - 1) + ")", .slip = likely(found, slips, otherwise), .handout = equation(6), .iterates = true});
+  }
+}
+
 TEST(Orthonormalize, TakesOffProjectionsColumnByColumn) {
   Matrix3d drifted, only_first, scaled;
   drifted << 2, 3, 4, 0, 5, 6, 0, 0, 7;        // columns (2,0,0), (3,5,0), (4,6,7): Gram-Schmidt gives the unit axes
@@ -37,6 +48,7 @@ TEST(Orthonormalize, TakesOffProjectionsColumnByColumn) {
                .slip = likely(found,
                               Slips<Matrix3d>{{only_first, "the second projection is not taken off the third column: (y . c) y"},
                                               {scaled, "the columns are made unit, but no projection is taken off"},
+                                              {Vector3d(1, 1, -1).asDiagonal(), "left-handed axes: the third column is x cross y, not y cross x"},
                                               {drifted, "nothing is done"}},
                               "columns or rows: the columns of R are the body's axes; a comes first"),
                .handout = equation(7)});
@@ -54,6 +66,21 @@ TEST(Orthonormalize, RepairsADriftedRotation) {
               {.scene = story.scene, .slip = "the first column keeps its direction: start with it, and take columns, not rows", .handout = equation(7)});
   expect_near(R.col(1).dot(drifted.col(0).cross(drifted.col(1)).normalized()), 0.0, kRoundoff, "(second column off the plane of a and b)",
               {.scene = story.scene, .slip = "the second column stays in the plane of a and b", .handout = equation(7)});
+}
+
+TEST(Orthonormalize, RepairsAnyDrift) {
+  Matrix3d drift;
+  drift << 3, -1, 2, 4, 2, -3, -2, 5, 1;
+  for (const double size : {1e-8, 0x1p-36}) {
+    const Matrix3d drifted = third_turn().toRotationMatrix() + size * drift, R = a2_module().orthonormalize(drifted);
+    expect_near(Matrix3d(R.transpose() * R), Matrix3d(Matrix3d::Identity()), kRoundoff, "(R^T R)",
+                {.scene = "a rotation matrix whose entries have drifted by up to " + show(5 * size),
+                 .slip = R == drifted ? "left as it is: every drift is repaired, however small" : "Gram-Schmidt, column by column", .handout = equation(7), .iterates = true});
+  }
+  for (const double size : {0x1p-30, 0x1p30}) {
+    const Matrix3d R = third_turn().toRotationMatrix(), found = a2_module().orthonormalize(size * (R + 1e-3 * drift)), plain = a2_module().orthonormalize(R + 1e-3 * drift);
+    expect_near(found, plain, kRoundoff, "", {.scene = "a drifted rotation matrix, all of it times " + show(size), .slip = "an absolute threshold: columns of any length have a direction", .handout = equation(7)});
+  }
 }
 
 TEST(EulerAngles, EachTurnsItsOwnAxis) {
@@ -102,6 +129,18 @@ TEST(EulerAngles, ComeBackFromTheMatrix) {
                .handout = equation(9)});
 }
 
+TEST(EulerAngles, AreNumbersWhereRoundingExceedsOne) {
+  for (const double sign : {1.0, -1.0}) {
+    const double beyond = sign * (1 + 4 * kEps);
+    Matrix3d R;
+    R << 0, 0, beyond, 0, 1, 0, -beyond, 0, 0;
+    const a2::EulerAngles found = a2_module().euler_angles_from_rotation(R);
+    const std::string of_asin = "asin of a number beyond 1 is NaN: use atan2(-R_20, c)";
+    expect_near(vector({found.yaw, found.pitch, found.roll}), vector({0, sign * kRightAngle, 0}), 3e-8, "rad (yaw, pitch, roll)",
+                {.scene = "pitch " + std::string(sign > 0 ? "+" : "-") + "90 degrees, where rounding has made |R_20| 1 + 9e-16", .slip = "gimbal lock: roll = 0 and yaw = atan2(-R_01, R_11)", .handout = equation(9), .no_number = of_asin});
+  }
+}
+
 TEST(EulerAngles, GimbalLockKeepsTheRotation) {
   for (const double pitch_sign : {1.0, -1.0}) {
     // Yaw 0.5 and roll 0.3 at pitch +-90 degrees: only yaw -+ roll is left.
@@ -109,11 +148,11 @@ TEST(EulerAngles, GimbalLockKeepsTheRotation) {
     Matrix3d R;
     R << 0, -std::sin(turn), pitch_sign * std::cos(turn), 0, std::cos(turn), pitch_sign * std::sin(turn), -pitch_sign, 0, 0;
     const a2::EulerAngles found = a2_module().euler_angles_from_rotation(R);
-    const bool is_nan = !std::isfinite(found.yaw + found.pitch + found.roll);
     expect_near(vector({found.yaw, found.pitch, found.roll}), vector({turn, pitch_sign * kRightAngle, 0}), 1e-8, "rad (yaw, pitch, roll)",
                 {.scene = "yaw 0.5, pitch " + std::string(pitch_sign > 0 ? "+" : "-") + "90 degrees, roll 0.3",
-                 .slip = is_nan ? "a division by cos(pitch) = 0" : "gimbal lock: where cos(pitch) < 1e-8, roll = 0 and yaw = atan2(-R_01, R_11)",
-                 .handout = equation(9)});
+                 .slip = "gimbal lock: where cos(pitch) < 1e-8, roll = 0 and yaw = atan2(-R_01, R_11)",
+                 .handout = equation(9),
+                 .no_number = "a division by cos(pitch) = 0"});
   }
 }
 

@@ -80,6 +80,42 @@ TEST(RodRow, RateIsJacobianTimesVelocity) {
   }
 }
 
+TEST(RodRow, DrivenBodiesMoveToo) {
+  Random random(305);
+  for (const bool wall_is_a : {false, true}) {
+    Body a = random_body(random), b = random_body(random);
+    (wall_is_a ? a : b).inertia = {INFINITY, 0.0, Matrix3d::Constant(kUnset), Matrix3d::Zero()};
+    const Vector3d point_a = random_vector(random, 1), point_b = random_vector(random, 1), arm_a = a.world_from_body * point_a, arm_b = b.world_from_body * point_b;
+    const ConstraintRow row = a3_module().rod_row(a, point_a, b, point_b, 1.0);
+    const Vector3d d = a.com_world + arm_a - b.com_world - arm_b, n = d.normalized();
+    const Vector3d of_a = a.velocity_world + a.omega_world.cross(arm_a), of_b = b.velocity_world + b.omega_world.cross(arm_b), d_rate = of_a - of_b;
+    const Vector3d centripetal = a.omega_world.cross(a.omega_world.cross(arm_a)) - b.omega_world.cross(b.omega_world.cross(arm_b));
+    const double rate = n.dot(d_rate), velocity_product = n.dot(centripetal) + (d_rate - rate * n).squaredNorm() / d.norm();
+    const Story story{.scene = std::string("a rod between a random body and a driven one of infinite mass that moves and turns; the driven one is ") + (wall_is_a ? "A" : "B"),
+                      .slip = likely(row.rate, Slips<double>{{n.dot(wall_is_a ? Vector3d(-of_b) : of_a), "an immovable body taken to be at rest: infinite mass says nothing about its velocity"}}, "C' = n . (p_a' - p_b'), with omega x r in both"),
+                      .handout = equation(4)};
+    expect_near(row.rate, rate, kRoundoff * 50, "m/s (C')", story);
+    expect_near(row.velocity_product, velocity_product, kRoundoff * 300, "m/s^2 (J' u)", story);
+  }
+}
+
+// A rod of nanometres, and one of a million kilometres: powers of two, so that answers scale exactly.
+TEST(RodRow, IsRightAtEveryLength) {
+  const ConstraintRow plain = a3_module().rod_row(body_a(), kPointA, body_b(), kPointB, 2.0);
+  for (const double size : {0x1p-30, 0x1p30}) {
+    Body a = body_a(), b = body_b();
+    a.com_world *= size, b.com_world *= size;
+    a.velocity_world = size * Vector3d(1, -2, 0.5);
+    const ConstraintRow row = a3_module().rod_row(a, size * kPointA, b, size * kPointB, size * 2.0);
+    const Story story{.scene = kScene + ", all lengths times " + show(size) + "; A moves at (1, -2, 0.5) m/s times the same",
+                      .slip = std::abs(plain.value - 3.0) > 1e-9 ? "the same rod in metres is wrong, too: see the tests before this one" : "an absolute threshold: a rod has a direction unless its length is exactly 0", .handout = equation(4)};
+    expect_near(row.value / size, 3.0, kRoundoff * 35, "(C, in that unit)", story);
+    expect_near(Vector3d(row.jacobian_a.head<3>()), n, kRoundoff, "(n)", story);
+    expect_near(Vector3d(row.jacobian_a.tail<3>() / size), Vector3d(kArmA.cross(n)), kRoundoff * 10, "(r_a x n, in that unit)", story);
+    expect_near(row.rate / size, -1.0, kRoundoff * 10, "(C', in that unit)", story);
+  }
+}
+
 TEST(RodRow, AccelerationOfASwingingPoint) {
   // A mass circles a fixed point at 3 m/s on 0.5 m, at 1 m/s outwards: |d|'' = v_across^2 / |d| while no force acts.
   Body mass = resting_at({0.5, 0, 0});
@@ -127,7 +163,7 @@ TEST(RodRow, HasNoDirectionWhereThePointsCoincide) {
   b.velocity_world = {1, 1, 1};
   b.omega_world = {1, 2, 3};
   const ConstraintRow row = a3_module().rod_row(a, {0, 0, 1}, b, {0, 0, -1}, 2.0);
-  const Story story{.scene = "a rod of 2 m between two points at the same place", .slip = "a division by the length 0: there is no direction, hence J = 0, C' = 0, J' u = 0", .handout = equation(4)};
+  const Story story{.scene = "a rod of 2 m between two points at the same place", .slip = "there is no direction, hence J = 0, C' = 0, J' u = 0", .handout = equation(4), .no_number = "a division by the length 0: there is no direction, hence J = 0, C' = 0, J' u = 0"};
   expect_near(row.value, -2.0, kRoundoff * 10, "m (C)", story);
   expect_near(row.jacobian_a, Vector6d::Zero(), 0.0, "(J_a)", story);
   expect_near(row.jacobian_b, Vector6d::Zero(), 0.0, "(J_b)", story);
@@ -170,9 +206,13 @@ TEST(EndsInContact, WhereTheBounceIsTooSlow) {
   for (const Case& c : {Case{0.3, 0.5, 0.2, true}, Case{0.5, 0.5, 0.2, false}, Case{3, 0.05, 0.2, true}, Case{3, 0.5, 0.2, false}, Case{0.19, 1, 0.2, true}, Case{0.3, 1, 0.2, false}}) {
     const bool found = a3_module().ends_in_contact(c.approach, c.restitution, c.rest);
     const bool by_approach = (c.approach <= c.rest) == found && (c.approach <= c.rest) != c.ends;
+    const double e = c.restitution;
+    const bool by_square = (e * e * c.approach <= c.rest) == found && (e * e * c.approach <= c.rest) != c.ends;
     expect_true(found == c.ends, c.ends ? "true: a contact" : "false: it bounces", found ? "true" : "false",
                 {.scene = "met at " + show(c.approach) + " m/s, e = " + show(c.restitution) + ", rest speed " + show(c.rest) + " m/s",
-                 .slip = by_approach ? "the speed before the bounce is compared: what counts is the speed after it, e |u_n|" : "e |u_n| <= rest speed",
+                 .slip = by_approach ? "the speed before the bounce is compared: what counts is the speed after it, e |u_n|"
+                         : by_square ? "e^2 |u_n| is compared: e is a ratio of speeds, e^2 one of energies"
+                                     : "e |u_n| <= rest speed",
                  .handout = equation(10)});
   }
 }
@@ -185,6 +225,38 @@ TEST(EndsInContact, CountsTheBorder) {
   const auto with_scene = [&story](const std::string& scene) { Story s = story; s.scene = scene; return s; };
   expect_true(a3_module().ends_in_contact(0.5, 0.5, 0.25), "true", "false", with_scene("met at 0.5 m/s, e = 0.5, rest speed 0.25 m/s"));
   expect_true(a3_module().ends_in_contact(2, 0, 0), "true", "false", with_scene("met at 2 m/s, e = 0, rest speed 0"));
+}
+
+// The border is sharp, at every speed.
+TEST(EndsInContact, HasNoMarginOfItsOwn) {
+  for (const double unit : {0x1p-30, 1.0, 0x1p30}) {
+    for (const double off : {-0x1p-20, 0x1p-20}) {
+      const bool ends = a3_module().ends_in_contact(unit, 0.5, unit * (0.5 + off)), expected = off > 0;
+      expect_true(ends == expected, expected ? "true: a contact" : "false: it bounces", ends ? "true" : "false",
+                  {.scene = "met at " + show(unit) + " m/s, e = 0.5, rest speed half of that and a millionth " + (expected ? "more" : "less"),
+                   .slip = unit < 1 ? "an absolute threshold: speeds are compared as they are, however small" : "an absolute threshold, or a margin: e |u_n| <= rest speed as it stands", .handout = equation(10)});
+    }
+  }
+}
+
+// Two calls of each function in one process: a static variable is filled by the first, and spoils the second.
+TEST(Constraints, KeepNothingBetweenCalls) {
+  const auto story = [](const std::string& function, int number) { return Story{.scene = "two calls of " + function + ", each with other numbers", .slip = function + " itself: see its own tests", .handout = equation(number)}; };
+  const Spring spring{.stiffness = 10, .damping = 0, .rest_length = 2};
+  const AnchorState origin{Vector3d::Zero(), Vector3d::Zero()};
+  const auto pull = [&](const Vector3d& at) { return a3_module().spring_force(spring, origin, {at, Vector3d::Zero()}); };
+  const Vector3d f1 = pull({3, 4, 0}), f2 = pull({0, -6, 8});
+  expect_kept_nothing(f1, Vector3d(18, 24, 0), f2, Vector3d(0, -48, 64), kRoundoff * 100, "N", story("spring_force", 3));
+
+  const ConstraintRow first = a3_module().rod_row(body_a(), kPointA, body_b(), kPointB, 2.0), second = a3_module().rod_row(body_b(), kPointB, body_a(), kPointA, 2.0);
+  expect_kept_nothing(first.jacobian_a, six(n, kArmA.cross(n)), second.jacobian_a, six(-n, -kPointB.cross(n)), kRoundoff * 10, "(J_a)", story("rod_row", 4));
+
+  const VectorXd l1 = hanging_chain({2, 2}).multipliers(), l2 = hanging_chain({8, 8}).multipliers();
+  expect_kept_nothing(l1, vector({-4 * kGravity, -2 * kGravity}), l2, vector({-16 * kGravity, -8 * kGravity}), 1e-12 * 16 * kGravity, "N", story("constraint_multipliers", 7));
+
+  const auto push = [](double A, double b) { return VectorXd(a3_module().contact_forces(MatrixXd::Constant(1, 1, A), vector({b}))); };
+  const VectorXd c1 = push(0.5, -1), c2 = push(0.25, -3);
+  expect_kept_nothing(c1, vector({2}), c2, vector({12}), kRoundoff * 12, "N", story("contact_forces", 9));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 /// under test.
 #pragma once
 
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
@@ -19,6 +20,10 @@ namespace tumble::a4_testing {
 using namespace tumble::testing;
 
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The doubles next to a time: virtual times are compared as they are, without any margin.
+inline double just_before(double time) { return std::nextafter(time, -kInfinity); }
+inline double just_after(double time) { return std::nextafter(time, kInfinity); }
 
 // Bodies of stories, by number.
 inline constexpr std::int32_t A = 0, B = 1, C = 2, D = 3, E = 4, kWall = 9;

@@ -15,6 +15,7 @@ void expect_next(double gap, double speed, double acceleration, double expected,
 
 TEST(NextCheckTime, IsWhenTheGapMayHaveClosed) {
   expect_next(1.0, 2.0, 0.0, 2.5, "gap / speed is how long it takes at least; it is counted from now");
+  expect_next(0.3, 1.0, 0.0, 2.3, "gap / speed is how long it takes at least; it is counted from now");
   expect_next(0.5, 0.0, 1.0, 3.0, "from rest: sqrt(2 gap / a)");
   expect_next(2.0, 1.0, 2.0, 3.0, "gap = v s + a s^2 / 2: with both, neither gap / v nor sqrt(2 gap / a)");
 }
@@ -30,6 +31,17 @@ TEST(NextCheckTime, IsAtMostTenStepsAhead) {
   const std::string slip = "min(10 h, ...): a check that waits holds global virtual time back at its safe time";
   expect_next(100.0, 1.0, 0.0, 3.25, slip);
   expect_next(1.0, 0.0, 0.0, 3.25, slip);
+}
+
+TEST(NextCheckTime, IsRightInEveryUnit) {
+  // A gap in nanometres that closes at nanometres a second, and one of a million kilometres: s is the same, in powers of two exactly.
+  const bool plain = std::abs(a4_module().next_check_time(2.0, 2.0, 1.0, 2.0, kStep) - 3.0) < 1e-12;
+  const std::string slip = plain ? "an absolute threshold: only a gap of exactly 0, or a speed and an acceleration of exactly 0, are cases of their own" : "the same in metres is wrong, too: see the tests before this one";
+  for (const double unit : {0x1p-40, 0x1p40}) {
+    expect_next(2.0 * unit, 1.0 * unit, 2.0 * unit, 3.0, slip);
+    expect_next(1.0 * unit, 2.0 * unit, 0.0, 2.5, slip);
+  }
+  expect_next(1.0, 1.0, 0x1p-45, 3.0, slip);   // the school form of the root cancels here; s is 1 less 1.4e-14
 }
 
 // ---- Collision checks --------------------------------------------------------------------------------------------------

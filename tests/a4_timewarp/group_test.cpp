@@ -20,6 +20,14 @@ TEST(ContactGroups, AreNotConnectedByAWall) {
                 {.scene = "A and B lie on one floor, C lies on B", .slip = "a wall connects nobody: it is not among the bodies", .handout = equation(4)});
 }
 
+TEST(ContactGroups, KnowBodiesByTheirNumbers) {
+  const std::vector<std::int32_t> bodies{7, 12, 100, 4000};
+  for (const std::int32_t floor : {-1, 0, 50, 5000})
+    expect_groups(a4_module().contact_groups(bodies, {{12, 4000, kInfinity}, {std::min(floor, 7), std::max(floor, 7), kInfinity}, {std::min(floor, 100), std::max(floor, 100), kInfinity}}), {{7}, {12, 4000}, {100}},
+                  {.scene = "bodies 7, 12, 100 and 4000; 12 touches 4000, 7 and 100 lie on wall " + std::to_string(floor),
+                   .slip = "the number of a body is not its place in the list, and a wall is whoever is not in it, whatever its number", .handout = equation(4)});
+}
+
 TEST(OnGroupCheck, AGroupStaysWhileItsContactsHold) {
   const ScheduledEvent event = group_check({A, B, C}, 1.0, 1.5);
   const GroupDecision found = a4_module().on_group_check(event, {{A, B, kInfinity}, {B, C, 1.75}}, 0.125);
@@ -56,6 +64,11 @@ TEST(OnCallback, WhoIsLaterComesBack) {
   expect_rollbacks(found, {back(A, event.stamp), back(D, event.stamp)},
                    {.scene = "a callback at 0.5 s is received by A, B, D; local virtual times: A 1 s, B 0.5 s, C 0.9 s, D 0.75 s",
                     .slip = has(C) ? "C does not receive it: it is not concerned" : has(B) ? "B stands at 0.5 s: it has done nothing later, or it is not among the receivers" : "receivers later than the callback go back to its stamp, by body", .handout = equation(6)});
+}
+
+TEST(OnCallback, TimesAreComparedAsTheyAre) {
+  const ScheduledEvent event = callback(A, 0.5);
+  expect_rollbacks(a4_module().on_callback(event, {{A, just_after(0.5)}}), {back(A, event.stamp)}, {.scene = "a callback of A at 0.5 s; A stands one double later", .slip = "a margin: later is later, however little", .handout = equation(6)});
 }
 
 }  // namespace

@@ -1,4 +1,6 @@
 // Global virtual time (A4.10), what it lets happen (A4.11), what it lets be forgotten (A4.12).
+#include <algorithm>
+
 #include "tests/a4_timewarp/a4_fixtures.h"
 
 namespace tumble::a4_testing {
@@ -42,6 +44,12 @@ TEST(MayCommit, NothingAtGlobalVirtualTimeItself) {
   expect_true(a4_module().may_commit(redraw(0.5).stamp, kInfinity), "when nothing is left to happen it may be shown", "it may not", story);
 }
 
+TEST(MayCommit, TimesAreComparedAsTheyAre) {
+  const Story story{.scene = "global virtual time is 0.5 s; an impact one double before it, and one after", .slip = "a margin: what is earlier is certain, however little", .handout = equation(11)};
+  expect_true(a4_module().may_commit(impact(just_before(0.5), A, B), 0.5), "the first may be committed", "it may not", story);
+  expect_true(!a4_module().may_commit(impact(just_after(0.5), A, B), 0.5), "the second may not", "it may", story);
+}
+
 void expect_purged(const std::vector<double>& times, double gvt, std::uint32_t expected, const std::string& slip) {
   std::string list;
   for (const double time : times) list += (list.empty() ? "" : ", ") + show(time);
@@ -65,6 +73,33 @@ TEST(StatesToPurge, LeavesOneAlways) {
   expect_purged({0.0, 0.125, 0.25}, 1.0, 2, "all of them are old, and the last is where the body goes on from");
   expect_purged({0.0, 0.125, 0.25}, kInfinity, 2, "all of them are old, and the last is where the body goes on from");
   expect_purged({0.5, 0.625}, 0.5, 0, "no state is earlier: there is nothing to forget");
+}
+
+TEST(StatesToPurge, TimesAreComparedAsTheyAre) {
+  const double gvt = 0.25;
+  const std::uint32_t found = a4_module().states_to_purge({0.0, 0.125, just_before(gvt), just_after(gvt)}, gvt);
+  expect_true(found == 2, "2 of them", std::to_string(found), {.scene = "states at 0, 0.125 s, one double before 0.25 s and one after; global virtual time is 0.25 s", .slip = "a margin: a state that is earlier is the last one before global virtual time, however little it is earlier", .handout = equation(12)});
+}
+
+// Two calls of each function in one process: a static variable is filled by the first, and spoils the second.
+TEST(Decisions, KeepNothingBetweenCalls) {
+  const auto expect_kept = [](bool first_is_right, bool second_is_right, const std::string& function, int number) {
+    expect_true(first_is_right && second_is_right, "two right answers", !first_is_right ? "the first is wrong" : "the first is right, the second is wrong",
+                {.scene = "two calls of " + function + ", each with other data", .slip = first_is_right ? kKept : function + " itself: see its own tests", .handout = equation(number)});
+  };
+  using Groups = std::vector<std::vector<std::int32_t>>;
+  const Groups first = a4_module().contact_groups({A, B, C}, {{A, B, kInfinity}}), second = a4_module().contact_groups({A, B, C}, {{B, C, kInfinity}});
+  expect_kept(first == Groups{{A, B}, {C}}, second == Groups{{A}, {B, C}}, "contact_groups", 4);
+  const auto plan = [](std::int32_t body, double time) { return a4_module().plan_rollback({effect(0.75, B, C)}, {back(body, impact(time, D, E))}); };
+  const std::vector<Rollback> one = plan(A, 0.25), two = plan(B, 0.5);
+  const auto is = [](const std::vector<Rollback>& found, const std::vector<Rollback>& expected) {
+    return found.size() == expected.size() && std::equal(found.begin(), found.end(), expected.begin(), [](const Rollback& x, const Rollback& y) { return same(x, y); });
+  };
+  expect_kept(is(one, {back(A, impact(0.25, D, E))}), is(two, {back(B, impact(0.5, D, E)), back(C, impact(0.75, B, C))}), "plan_rollback", 8);
+  const double early = a4_module().global_virtual_time({{A, 0.25}}, {}), late = a4_module().global_virtual_time({{A, 0.75}}, {});
+  expect_kept(early == 0.25, late == 0.75, "global_virtual_time", 10);
+  const double near = a4_module().next_check_time(2.0, 1.0, 2.0, 0.0, 0.125), later = a4_module().next_check_time(4.0, 1.0, 1.0, 0.0, 0.125);
+  expect_kept(near == 2.5, later == 5.0, "next_check_time", 2);
 }
 
 }  // namespace

@@ -16,6 +16,12 @@ TEST(ComesBefore, TheEarlierTimeIsFirst) {
   expect_before({0.25, 7, WorkKind::kRedraw, -1, -1}, {0.25000001, 0, WorkKind::kCallback, A, -1}, slip);
 }
 
+TEST(ComesBefore, TimesAreComparedAsTheyAre) {
+  const std::string slip = "a tolerance in the order: it is no order any more (x = y and y = z, but x before z), and what is committed depends on who compared with whom";
+  expect_before(impact(just_before(1.0), C, D, 3), impact(1.0, A, B), slip);
+  expect_before(impact(1e-12, C, D), impact(2e-12, A, B), slip);
+}
+
 TEST(ComesBefore, AtOneInstantTheCauseIsFirst) {
   const std::string slip = "the generation stands before kind and bodies: an effect must not come before its cause";
   expect_before(impact(1.0, C, D, 0), impact(1.0, A, B, 1), slip);

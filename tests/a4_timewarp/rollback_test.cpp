@@ -85,6 +85,11 @@ TEST(AfterRollback, FromTheSafeTimeOnTheCheckStays) {
   expect_after(kCheck, {back(C, impact(0.25, C, D))}, 0.5, 0.75, "C goes back to 0.25 s", "C does not receive it");
 }
 
+TEST(AfterRollback, TimesAreComparedAsTheyAre) {
+  const double earlier = just_before(0.5);
+  expect_after(kCheck, {back(A, impact(earlier, A, C))}, earlier, earlier, "A goes back to one double before its safe time", "a margin: what was verified on a motion that is undone is no longer so, however little of it");
+}
+
 TEST(AfterRollback, MovesNothingElse) {
   expect_after(group_check({A, B, C}, 0.5, 0.75), {back(C, impact(0.25, C, D))}, 0.25, 0.25, "C goes back to 0.25 s", "a group check moves like a check of a pair");
   expect_after(callback(A, 0.5), {back(A, impact(0.25, A, C))}, 0.5, 0.5, "A goes back to 0.25 s", "a callback happens at its own time: it was not verified, it is due");

@@ -95,6 +95,10 @@ RootResult impact_time_bisection(const ScalarFunction& gap, double t_low, double
   RootResult r;
   const double g_low = gap(t_low), g_high = gap(t_high);
   r.evaluations = 2;
+  if (std::isnan(g_low) || std::isnan(g_high)) {  // as not converged, from the start of it
+    if (g_low >= 0) r.time = t_low, r.residual = g_low;
+    return r;
+  }
   if (g_low < 0 || (g_low > 0 && g_high > 0)) {
     r.status = RootStatus::kNoSignChange;
     return r;
@@ -123,18 +127,30 @@ RootResult impact_time_bisection(const ScalarFunction& gap, double t_low, double
 
 RootResult impact_time_newton(const ScalarFunction& gap, const ScalarFunction& gap_rate, double t_low, double t_high, double tolerance) {
   int evaluations = 0;
-  const auto g = [&](double t) { ++evaluations; return gap(t); };
+  bool saw_nan = false;
+  const auto g = [&](double t) {
+    ++evaluations;
+    const double value = gap(t);
+    saw_nan = saw_nan || std::isnan(value);
+    return value;
+  };
   double a = t_low, b = t_high, g_a = g(a), g_b = g(b);
   const auto done = [&](RootStatus status, double t, double residual) { return RootResult{status, t, residual, evaluations}; };
+  const auto not_converged = [&] { return done(RootStatus::kNotConverged, g_a >= 0 ? a : kUnset, g_a >= 0 ? g_a : kUnset); };
+  if (saw_nan) return not_converged();
   if (g_a < 0 || (g_a > 0 && g_b > 0)) return done(RootStatus::kNoSignChange, kUnset, kUnset);
   if (g_a == 0) return done(RootStatus::kConverged, a, 0.0);
   if (g_b == 0) return done(RootStatus::kConverged, b, 0.0);
-  const auto cut = [&](double t, double g_t) { g_t >= 0 ? (a = t, g_a = g_t) : (b = t, g_b = g_t); };
+  const auto cut = [&](double t, double g_t) {
+    if (saw_nan) return;
+    g_t >= 0 ? (a = t, g_a = g_t) : (b = t, g_b = g_t);
+  };
 
   // Newton's iterate, until its step is small; a midpoint where the step is no good or not half the one before last.
   double t = a + (b - a) / 2, last = b - a, before_last = b - a;
   for (int i = 0; i < 200 && b - a > tolerance; ++i) {
     const double g_t = g(t);
+    if (saw_nan) return not_converged();
     if (g_t == 0) return done(RootStatus::kConverged, t, 0.0);
     cut(t, g_t);
     double next = t - g_t / gap_rate(t);
@@ -145,18 +161,18 @@ RootResult impact_time_newton(const ScalarFunction& gap, const ScalarFunction& g
     t = next;
   }
   // Close the bracket around it: look a little to either side, further and further, then halve what is left.
-  for (double reach = std::max(tolerance / 4, 4e-16 * std::abs(t)); b - a > tolerance && reach < b - a; reach *= 4) {
+  for (double reach = std::max(tolerance / 4, 4e-16 * std::abs(t)); b - a > tolerance && reach < b - a && !saw_nan; reach *= 4) {
     const double before = a, after = b;
     for (const double probe : {t - reach, t + reach})
-      if (probe > a && probe < b) cut(probe, g(probe));
+      if (!saw_nan && probe > a && probe < b) cut(probe, g(probe));
     if (a != before && b != after) break;
   }
-  while (b - a > tolerance && g_a != 0) {
+  while (b - a > tolerance && g_a != 0 && !saw_nan) {
     const double m = a + (b - a) / 2;
     if (m <= a || m >= b) break;
     cut(m, g(m));
   }
-  return done(RootStatus::kConverged, a, g_a);
+  return saw_nan ? not_converged() : done(RootStatus::kConverged, a, g_a);
 }
 
 }  // namespace tumble::a2

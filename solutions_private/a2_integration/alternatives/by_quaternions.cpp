@@ -74,6 +74,11 @@ template <class Propose>
 RootResult close_bracket(const ScalarFunction& gap, double a, double b, double tolerance, Propose&& propose) {
   RootResult r{RootStatus::kConverged, kUnset, kUnset, 2};
   double g_a = gap(a), g_b = gap(b);
+  if (std::isnan(g_a) || std::isnan(g_b)) {
+    r.status = RootStatus::kNotConverged;
+    if (g_a >= 0) r.time = a, r.residual = g_a;
+    return r;
+  }
   if (g_a < 0 || (g_a > 0 && g_b > 0)) {
     r.status = RootStatus::kNoSignChange;
     return r;

@@ -1,5 +1,5 @@
 // mutant: dense_pseudo_inverse - right, at the cost of the cube of the rows
-// caught-by: no answer within
+// caught-by: solved as a dense matrix
 #include "assignments/a3_constraints/a3_constraints.h"
 
 #include <algorithm>
