@@ -244,7 +244,7 @@ ClosedReport examine(const TriangleMesh& mesh, std::size_t lines) {
   if (!report.is_closed()) return report;
 
   report.mesh = double_pinched_vertices(mesh, uses, report.notices);
-  append(report.defects, find_crossings(report.mesh, part_of_face));
+  append(report.defects, find_crossings(report.mesh, part_of_face, report.notices));
   if (report.is_closed()) append(report.defects, orient_parts(part_of_face, report.mesh, report.notices));
   if (report.is_closed()) append(report.defects, find_impossible_mass(report.mesh));
   if (!report.is_closed()) report.mesh = mesh;

@@ -22,6 +22,7 @@ constexpr double kRounding = 0x1.0p-22;
 constexpr double kParallel = 1e-6;
 constexpr double kAside = 16.0;              // roundings: so far before and behind a face it is asked what is inside
 constexpr std::size_t kMostNamed = 3;        // pairs of parts: a heap of leaves needs no thousand messages
+constexpr std::size_t kMostCompared = 20'000'000;   // pairs of faces, 2 s: a bundle of needles through one place is not looked through beyond that
 constexpr double kMostSolidAngles = 5e7;     // about 5 s: parts that lie on each other are not looked through beyond that
 
 struct Interval {
@@ -107,6 +108,8 @@ class CrossingSearch {
   const std::map<PairOfParts, Crossing>& crossings() const { return crossings_; }
   /// What rounding of coordinates leaves between faces. [m]
   double tolerance() const { return tolerance_; }
+  /// Whether all faces that may cross were compared.
+  bool is_complete() const { return compared_ < kMostCompared; }
   /// Pairs of different parts with faces in each other's boxes.
   const std::map<PairOfParts, bool>& close() const { return close_; }
 
@@ -142,7 +145,7 @@ class CrossingSearch {
 
   void search() {
     std::vector<std::pair<int, int>> to_do{{0, 0}};
-    while (!to_do.empty()) {
+    while (!to_do.empty() && compared_ < kMostCompared) {
       const auto [i, j] = to_do.back();
       to_do.pop_back();
       const Node &a = nodes_[i], &b = nodes_[j];
@@ -168,6 +171,7 @@ class CrossingSearch {
   }
 
   void look_at(int f, int g) {
+    ++compared_;
     const PairOfParts parts = std::minmax(part_of_face_[f], part_of_face_[g]);
     if (parts.first != parts.second) close_[parts] = true;
     const auto known = crossings_.find(parts);
@@ -188,6 +192,7 @@ class CrossingSearch {
   const TriangleMesh& mesh_;
   const std::vector<int>& part_of_face_;
   double tolerance_ = 0.0;
+  std::size_t compared_ = 0;    // pairs of faces
   std::vector<Plate> plates_;   // by face
   std::vector<int> order_;
   std::vector<Node> nodes_;
@@ -242,8 +247,9 @@ std::string name_of(int part, const TriangleMesh& mesh, const std::vector<int>& 
 
 }  // namespace
 
-std::vector<Defect> find_crossings(const TriangleMesh& mesh, const std::vector<int>& part_of_face) {
+std::vector<Defect> find_crossings(const TriangleMesh& mesh, const std::vector<int>& part_of_face, std::vector<std::string>& notices) {
   const CrossingSearch search(mesh, part_of_face);
+  bool is_complete = search.is_complete();
   std::vector<std::pair<PairOfParts, std::string>> found;
   for (const auto& [parts, crossing] : search.crossings()) found.emplace_back(parts, fmt::format("faces {} and {} at {}", crossing.face_a, crossing.face_b, show_point(crossing.point)));
 
@@ -253,12 +259,16 @@ std::vector<Defect> find_crossings(const TriangleMesh& mesh, const std::vector<i
     if (search.crossings().contains(parts)) continue;
     const TriangleMesh a = faces_of(parts.first, mesh, part_of_face), b = faces_of(parts.second, mesh, part_of_face);
     work += 2.0 * static_cast<double>(a.faces.size()) * static_cast<double>(b.faces.size());
-    if (work > kMostSolidAngles) break;
+    if (work > kMostSolidAngles) {
+      is_complete = false;
+      break;
+    }
     auto inside = half_inside(a, b, kAside * search.tolerance());
     if (!inside) inside = half_inside(b, a, kAside * search.tolerance());
     if (inside) found.emplace_back(parts, fmt::format("one has a face about {} inside the other", show_point(*inside)));
   }
 
+  if (!is_complete && found.empty()) notices.push_back("too many faces lie in each other's way: whether some pass through each other was not looked for everywhere");
   std::vector<Defect> defects;
   for (const auto& [parts, place] : found) {
     if (defects.size() == kMostNamed) {
