@@ -133,9 +133,11 @@ Verdict verdict_of_end(const Ended& ended, const fs::path& scene_file, const fs:
     kinds += (kinds.empty() ? "" : ", ") + fault.kind;
     words += (words.empty() ? "" : "; ") + fault.words;
   }
-  if (page["notices"].empty()) return verdict(Outcome::kSilent, kinds, words);
-  const std::string notice = page["notices"][0];
-  return verdict(Outcome::kNoted, kinds, words + "; the note: " + notice);
+  for (const std::string notice : page["notices"]) {   // what was done to the start is no word about what came of it
+    if (notice.find("the start ") != std::string::npos) continue;
+    return verdict(Outcome::kNoted, kinds, words + "; the note: " + notice);
+  }
+  return verdict(Outcome::kSilent, kinds, words);
 }
 
 }  // namespace
