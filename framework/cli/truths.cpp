@@ -100,8 +100,14 @@ std::optional<CaseResult> compute(const Context& context, const Chosen& chosen, 
   return CaseResult{truth.id, truth.family, comparison.lines()};
 }
 
-ExitCode exit_code(const std::vector<CaseResult>& results) {
+/// A file that is no truth file: what is wrong with it, and what to do.
+struct OddFile {
+  std::string file, problem;
+};
+
+ExitCode exit_code(const std::vector<CaseResult>& results, const std::vector<OddFile>& odd) {
   if (count_cases(results, Verdict::kWrong) > 0) return ExitCode::kCheckFailed;
+  if (!odd.empty()) return ExitCode::kUserError;
   return count_cases(results, Verdict::kNotAttempted) > 0 ? ExitCode::kNotAttempted : ExitCode::kFine;
 }
 
@@ -112,24 +118,34 @@ ExitCode run_truths(const Context& context, const Options& options) {
   std::map<std::string, int> skipped;
   std::set<std::string> said;   // hints
   if (!options.json) print_truths_head();
+  std::vector<OddFile> odd;
   for (const auto& file : files) {
-    const Case truth = read_truth(file);
-    const std::optional<CaseResult> result = compute(context, chosen, truth);
-    if (!result) {
-      ++skipped[truth.family];
-      continue;
+    try {
+      const Case truth = read_truth(file);
+      const std::optional<CaseResult> result = compute(context, chosen, truth);
+      if (!result) {
+        ++skipped[truth.family];
+        continue;
+      }
+      results.push_back(*result);
+      if (!options.json) print_truths_case(*result, options.each, said), std::fflush(stdout);
+    } catch (const UserError& error) {   // one odd file does not keep the others from being compared
+      if (files.size() == 1) throw;
+      odd.push_back({file.string(), error.what()});
+      std::fprintf(stderr, "tumble: %s\n", error.what());
     }
-    results.push_back(*result);
-    if (!options.json) print_truths_case(*result, options.each, said), std::fflush(stdout);
   }
   if (options.json) {
     nlohmann::ordered_json all{{"command", context.command_line}, {"modules", options.modules}};
     all.update(truths_to_json(results, skipped));
+    all["odd_files"] = nlohmann::ordered_json::array();
+    for (const OddFile& one : odd) all["odd_files"].push_back({{"file", one.file}, {"problem", one.problem}});
     std::printf("%s\n", all.dump(1).c_str());
   } else {
     print_truths_count(results, skipped);
+    if (!odd.empty()) std::printf("%zu file%s could not be compared, the first: %s\n", odd.size(), odd.size() == 1 ? "" : "s", odd.front().problem.c_str());
   }
-  return exit_code(results);
+  return exit_code(results, odd);
 }
 
 }  // namespace

@@ -15,7 +15,6 @@ constexpr std::size_t kPile = 60;         // contacts of a group
 constexpr double kEnoughOfAPile = 1e-5;
 constexpr int kSweepsOfAPile = 120;
 constexpr double kFarOff = 1e-3;          // of the group's speed: an answer this wrong is not taken without another attempt
-constexpr double kMidway = 0.3;           // of the smaller body: how far from each other points of one contact may lie at the middle of a step
 constexpr double kSamePoint = 1e-2;       // of the smaller body: nearer to where an impulse acted in the last step a point takes it as its guess
 constexpr double kSamePointOfAPile = 0.5; // there points come and go, and the sum of a pair's impulses is worth more than their places
 constexpr int kMostShifts = 10;           // rounds of taking back overlaps
@@ -317,6 +316,18 @@ double LastingContacts::largest_turn(const Group& group, const std::vector<Rigid
   return turn;
 }
 
+// The angle that the normal between two balls turns most in the step: the one that slides or rolls on the other follows its curve.
+double LastingContacts::turn_of_normals(const Group& group, const std::vector<RigidBodyState>& ends) const {
+  double turn = 0.0;
+  for (const Pair& pair : group.pairs) {
+    if (!are_balls(pair) || points_.at(pair).empty()) continue;
+    const auto end = [&](int body) -> Vector3d { return moving_.world().bodies[body].immovable() ? prescribed_position(moving_.world().bodies[body], moving_.target()) : ends[body].com_world; };
+    const Vector3d start = moving_.state(pair.first).com_world - moving_.state(pair.second).com_world, stop = end(pair.first) - end(pair.second);
+    turn = std::max(turn, std::atan2(start.cross(stop).norm(), start.dot(stop)));
+  }
+  return turn;
+}
+
 // The point of `points` that is `p` at another time: fixed in one of the two bodies. Null where none lies as near as that.
 const collision::NearPoint* LastingContacts::same_point(Pair pair, const collision::NearPoint& p, const std::vector<RigidBodyState>& p_at, const Points& points,
                                                         const std::vector<RigidBodyState>& at, double near) {
@@ -357,8 +368,8 @@ std::vector<LastingContacts::Touch> LastingContacts::touches_midway(const Group&
   for (const Pair& pair : group.pairs) {
     std::size_t to = from;
     while (to < touches.size() && touches[to].pair == pair) ++to;
-    const double near = kMidway * size_of(pair);
-    const Points at_middle = points_at(pair, middle, near), at_end = points_at(pair, ends, near);
+    const double near = same_within(pair), reach = are_balls(pair) ? size_of(pair) : near;
+    const Points at_middle = points_at(pair, middle, reach), at_end = points_at(pair, ends, reach);
     for (std::size_t i = from; i < to; ++i) {
       Touch touch = touches[i];
       const collision::NearPoint* mid = same_point(pair, touch.point, starts, at_middle, middle, near);
@@ -440,10 +451,10 @@ double LastingContacts::add_shifts(const Group& group, const std::vector<Pair>& 
   for (const Pair& pair : pairs) {
     const double room = shell(pair), size = size_of(pair);
     const bool holds = std::any_of(held.begin(), held.end(), [&](const Held& h) { return h.pair == pair; });
-    const Points points = points_at(pair, states, std::max({1e3 * room, reach, holds ? kHeldReach * size : 0.0}));
+    const Points points = points_at(pair, states, std::max({1e3 * room, reach, holds ? (are_balls(pair) ? 1.0 : kHeldReach) * size : 0.0}));
     std::vector<const collision::NearPoint*> at_shell;
     for (const Held& h : held)
-      if (h.pair == pair) at_shell.push_back(same_point(pair, h.point, *h.at, points, states, kMidway * size));
+      if (h.pair == pair) at_shell.push_back(same_point(pair, h.point, *h.at, points, states, same_within(pair)));
     for (const collision::NearPoint& point : points) {
       const bool is_held = std::find(at_shell.begin(), at_shell.end(), &point) != at_shell.end();
       if (point.gap < 0.5 * room || (is_held && point.gap > 2 * room)) wrong = std::max(wrong, std::abs(room - point.gap));

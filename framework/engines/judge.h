@@ -37,6 +37,8 @@
 ///
 /// Energies are compared with the kinetic energy at `at_s` plus the deepest fall of the potential energy below its value there:
 /// what a run makes from nothing is not in it, so that it cannot widen its own pass mark.
+/// What rounding leaves of a sum is not held against a run: of an energy eps of its terms, times the root of the number of steps; of a gap
+/// a few eps of sizes and places.
 /// For energy, momentum, angular momentum, drift and tilt `at_s` is the instant from which on the quantity must stay (a push has ended by
 /// then); elsewhere the instant that is looked at; 0 is the beginning or the end.
 #pragma once

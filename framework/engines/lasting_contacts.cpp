@@ -12,7 +12,6 @@ namespace tumble::engines {
 namespace {
 
 constexpr double kEpsilon = 2.220446049250313e-16;
-constexpr double kShell = 1e-10;          // of the smaller body's radius: far above rounding, far below what is seen or measured
 constexpr double kRounding = 64;          // of coordinates far from the origin, in the shell
 constexpr double kBand = 8.0;             // shells: nearer than this two touch
 constexpr double kUnseenRoom = 1e-9;      // of the way in a step: what the tolerance of the impulses leaves between bodies that touch
@@ -30,6 +29,7 @@ constexpr std::size_t kContactsOfAHeap = 60;   // in_step: so many are asked for
 // Of the heap's speed: what its sweeps leave at the worst of hundreds of contacts (0.28 in the bowl of 200 models, whose energy and gaps are right) its shell
 // and the next step take up. Where as much is left as there was, no answer was found at all.
 constexpr double kHeapSolved = 1.0;
+constexpr double kMidway = 0.3;           // of the smaller body: how far from each other points of one contact may lie at the middle of a step
 constexpr int kFrameRounds = 6;           // of drawing apart what a frame within a step shows
 
 }  // namespace
@@ -88,7 +88,7 @@ double LastingContacts::size_of(Pair pair) const { return std::min(moving_.shape
 double LastingContacts::shell(Pair pair) const {
   const double size = size_of(pair);
   const auto far = [&](int body) { return moving_.world().bodies[body].immovable() ? 0.0 : moving_.state(body).com_world.cwiseAbs().maxCoeff(); };
-  return kShell * size + kRounding * kEpsilon * (size + std::max(far(pair.first), far(pair.second)));
+  return kContactMargin * size + kRounding * kEpsilon * (size + std::max(far(pair.first), far(pair.second)));
 }
 
 // How much nearer the two can come in the step.
@@ -268,8 +268,14 @@ void LastingContacts::note_near_pairs(const std::vector<Pair>& candidates) {
 }
 
 bool LastingContacts::is_curved(const Group& group) const {
-  return std::any_of(group.bodies.begin(), group.bodies.end(), [&](int body) { return moving_.shape(body).ellipsoid() != nullptr; });
+  return std::any_of(group.bodies.begin(), group.bodies.end(), [&](int body) { return moving_.shape(body).ellipsoid() != nullptr; }) ||
+         std::any_of(group.pairs.begin(), group.pairs.end(), [&](const Pair& pair) { return are_balls(pair); });
 }
+
+bool LastingContacts::are_balls(Pair pair) const { return moving_.shape(pair.first).is_ball() && moving_.shape(pair.second).is_ball(); }
+
+// A ball has one point on another, however far it has gone from where it was.
+double LastingContacts::same_within(Pair pair) const { return are_balls(pair) ? std::numeric_limits<double>::infinity() : kMidway * size_of(pair); }
 
 // Of the fastest point of the group's bodies. [m/s]
 double LastingContacts::speed(const Group& group) const {
@@ -296,7 +302,7 @@ std::optional<double> LastingContacts::take_step(const Group& group, double h) {
     landing = false;
   }
   std::vector<RigidBodyState> ends = ends_of(group, problem, solution, h, landing);
-  const double turn = largest_turn(group, ends, h);
+  const double turn = std::max(largest_turn(group, ends, h), turn_of_normals(group, ends));
   if (located && turn > 2 * kMostTurn && h > kShortest * step_) return moving_.time() + h * kMostTurn / turn;
   std::vector<RigidBodyState> middle;
   std::vector<Touch> used = touches;
@@ -385,6 +391,23 @@ void LastingContacts::draw_apart(const std::vector<Pair>& pairs, std::vector<Rig
   counters_ = before;
 }
 
+// A ball has been carried by another to where nothing presses them together: no force in the step, and along the normal
+//   a_n = n . (g_a - g_b) + v_t^2 / R > 0,   R the distance of their centres, v_t their velocity along the surface.
+bool LastingContacts::flies_off(Pair pair, const std::vector<RigidBodyState>& states) const {
+  if (!are_balls(pair)) return false;
+  const auto pushes = [&](const ContactPoint& point) { return point.body_a == pair.first && point.body_b == pair.second; };
+  if (std::any_of(forces_.begin(), forces_.end(), pushes)) return false;
+  Vector3d gravity = Vector3d::Zero(), velocity = Vector3d::Zero();   // of the first against the second
+  for (const auto& [body, sign] : {std::pair{pair.first, 1.0}, std::pair{pair.second, -1.0}}) {
+    const WorldBody& b = moving_.world().bodies[body];
+    velocity += sign * (b.immovable() ? prescribed_velocity(b, moving_.time()) : Vector3d(b.inertia.inverse_mass * states[body].momentum_world));
+    if (!b.immovable() && moving_.world().gravity_world) gravity += sign * *moving_.world().gravity_world;
+  }
+  const Vector3d between = states[pair.first].com_world - states[pair.second].com_world, n = between.normalized();
+  const double normal_speed = n.dot(velocity);
+  return normal_speed > 0 && n.dot(gravity) + (velocity - normal_speed * n).squaredNorm() / between.norm() > 0;
+}
+
 bool LastingContacts::commit() {
   const StageTimer timer(counters_.contact_seconds);
   if (groups_.empty()) return true;
@@ -404,7 +427,8 @@ bool LastingContacts::commit() {
       const Pair& pair = group.near[k];
       if (!keeps(pair)) continue;
       const bool lasted = lasts(pair);
-      const double near = std::max(group.pile ? 2 * room_of(pair) : kApart * shell(pair), lasted ? rest_speed_ * step_ : 0.0);
+      const bool trembles = lasted && !flies_off(pair, states);   // what comes back need not begin anew
+      const double near = std::max(group.pile ? 2 * room_of(pair) : kApart * shell(pair), trembles ? rest_speed_ * step_ : 0.0);
       const bool touches = (group.pile ? gaps[k] : distance_of(pair, states, near)) <= near;
       if (touches == lasted) continue;
       const collision::Gap gap = gap_of(pair, states);

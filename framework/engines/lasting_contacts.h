@@ -29,6 +29,9 @@ namespace tumble::engines {
 /// An orientation after a turn, given as axis times angle in the world frame. [rad]
 Quaterniond turned(const Quaterniond& world_from_body, const Vector3d& turn_world);
 
+/// How far lasting contacts are kept apart, as a part of the smaller body's radius: far above rounding, far below what is seen or measured.
+inline constexpr double kContactMargin = 1e-10;
+
 class LastingContacts {
  public:
   using Pair = std::pair<int, int>;   // bodies, first < second
@@ -145,6 +148,10 @@ class LastingContacts {
   bool strike_what_is_down(const Group& group, const std::vector<Touch>& touches);
   bool strike(const Group& group, std::vector<Touch> down);
   bool is_curved(const Group& group) const;
+  bool are_balls(Pair pair) const;
+  bool flies_off(Pair pair, const std::vector<RigidBodyState>& states) const;
+  double same_within(Pair pair) const;
+  double turn_of_normals(const Group& group, const std::vector<RigidBodyState>& ends) const;
   double speed(const Group& group) const;
   std::optional<double> take_steps(double h);
   std::optional<double> take_step(const Group& group, double h);

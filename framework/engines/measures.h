@@ -19,6 +19,7 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 struct Finding {
   double value = 0.0;
   std::string detail;
+  double rounding = 0.0;   // what a value that should not be below a bound may be below it by, where it is
 
   /// Keeps the larger; NaN is worse than anything.
   void worst(double candidate, const std::string& where) {

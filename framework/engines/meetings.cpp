@@ -7,6 +7,7 @@
 
 #include "framework/collision/contact_patch.h"
 #include "framework/core/error.h"
+#include "framework/engines/start_overlaps.h"
 
 namespace tumble::engines {
 namespace {
@@ -30,20 +31,16 @@ std::optional<Earliest> Meetings::earliest(const std::vector<Pair>& pairs) {
   return found ? found : find_missed(pairs, moving_.target());
 }
 
-void Meetings::refuse_overlap(const std::string& where) const {
+void Meetings::refuse_overlap(const std::string& where, const scene::Scene& scene) const {
+  std::vector<StartPair> near;
   for (int i = 0; i < moving_.size(); ++i) {
     for (int j = i + 1; j < moving_.size(); ++j) {
       if (!moving_.may_collide(i, j)) continue;
-      const auto pose = [&](int k) { return moving_.motion_at(k, 0.0).pose; };
-      const double allowance = kTouching * collision::gap_scale(moving_.shape(i), pose(i), moving_.shape(j), pose(j));
-      if (!collision::overlapping(moving_.shape(i), pose(i), moving_.shape(j), pose(j), allowance)) continue;
-      const double depth = -collision::compute_gap(moving_.shape(i), pose(i), moving_.shape(j), pose(j)).distance;
-      throw UserError(where,
-                      depth > 0 ? fmt::format("bodies {} and {} overlap at the start, by about {:.3g} m", name(i), name(j), depth)
-                                : fmt::format("at the start one of the bodies {} and {} is inside the other", name(i), name(j)),
-                      "move one of them away (\"position_m\") until they are apart or just touch");
+      const collision::Pose pose_i = moving_.motion_at(i, 0.0).pose, pose_j = moving_.motion_at(j, 0.0).pose;
+      look_at_start(i, j, moving_.shape(i), pose_i, moving_.shape(j), pose_j, kTouching * collision::gap_scale(moving_.shape(i), pose_i, moving_.shape(j), pose_j), near);
     }
   }
+  refuse_overlaps(where, scene, near);
 }
 
 // Planes without end are in every box: whether the ball around a body reaches one is asked directly.

@@ -28,8 +28,8 @@ class Meetings {
 
   /// Whether there are bodies that may meet at all.
   bool any() const { return colliding_.size() > 1; }
-  /// @throws UserError naming two bodies that overlap at the start by more than roundings, and `where` they were asked for
-  void refuse_overlap(const std::string& where) const;
+  /// @throws OverlapAtStart (start_overlaps.h) naming two bodies that overlap at the start by more than roundings, and `where` they were asked for
+  void refuse_overlap(const std::string& where, const scene::Scene& scene) const;
 
   /// Pairs whose swept boxes meet in the step under way, sorted; none of bodies that both stand still.
   std::vector<Pair> candidates();
@@ -55,7 +55,7 @@ class Meetings {
   std::optional<Earliest> find_missed(const std::vector<Pair>& pairs, double target);
   double gap_on_path(Pair pair, double t);
   collision::Pose pose_of(int body) const { return {moving_.state(body).com_world, moving_.state(body).world_from_body}; }
-  std::string name(int body) const { return "'" + moving_.world().bodies[body].name + "'"; }
+  
 
   MovingWorld& moving_;
   const Laws& laws_;

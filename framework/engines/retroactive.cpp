@@ -320,7 +320,7 @@ void RetroactiveRun::tell_of_light_bodies() {
 
 void RetroactiveRun::run() {
   const std::string where = scene_.file.empty() ? scene_.name : scene_.file.string();
-  meetings_.refuse_overlap(where);
+  meetings_.refuse_overlap(where, scene_);
   refuse_unstable_steps(moving_.world(), laws_, {step_, duration_}, where, counters_.notices);
   for (const PointForce& force : moving_.world().point_forces) {
     switch_times_.insert(force.start);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -14,6 +16,8 @@
 #include "framework/engines/local_origin.h"
 #include "framework/engines/retroactive.h"
 #include "framework/engines/run_counters.h"
+#include "framework/engines/start_overlaps.h"
+#include "framework/engines/start_watch.h"
 #include "framework/engines/timewarp/taught_timewarp.h"
 
 namespace tumble::engines {
@@ -113,6 +117,26 @@ std::vector<Callback> guarded(const std::vector<Callback>& callbacks, const scen
   return all;
 }
 
+constexpr int kMostBeginnings = 20;   // moving bodies apart turns nothing, so that one shift does where contacts are flat
+
+/// Runs the engine. Where bodies overlap at the start by no more than the rounding of what a scene says, they are moved apart, the run
+/// begins again, and `watch` tells of it.
+void run_from_apart(const Engine& engine, const scene::Scene& scene, const Laws& laws, const RunOptions& options, StartWatch& watch, TrajectorySink& sink) {
+  scene::Scene apart;
+  const scene::Scene* now = &scene;
+  for (int beginning = 0; beginning < kMostBeginnings; ++beginning) {
+    try {
+      return engine(*now, laws, options, sink);
+    } catch (const OverlapAtStart& overlap) {
+      auto moved = overlap.is_explained() ? moved_apart(*now, overlap.near()) : std::nullopt;
+      if (!moved || beginning + 1 == kMostBeginnings) throw;
+      if (beginning == 0) watch.add(moved->notice);   // the first shift is what the scene's places are off by
+      apart = std::move(moved->scene);
+      now = &apart;
+    }
+  }
+}
+
 }  // namespace
 
 const std::vector<std::pair<std::string, std::string>>& engine_words() {
@@ -148,17 +172,21 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& as
   info.frame_rate_hz = options.frame_rate_hz;
   std::vector<TrajectoryBody> bodies;
   for (const scene::BodySpec& body : scene.bodies) bodies.push_back({body.name, body.immovable});
-  DiscontinuityCount counted(sink);
+  std::set<int> pushed;   // velocities at the start are what a callback has made of them
+  for (const Callback& callback : options.callbacks)
+    if (callback.time <= 0) pushed.insert(callback.bodies.begin(), callback.bodies.end());
+  StartWatch watch(scene, std::move(pushed), sink);
+  DiscontinuityCount counted(watch);
   counted.begin(info, bodies);
   const Vector3d origin_world = local_origin(scene);
   options.callbacks = guarded(asked.callbacks, scene, origin_world);
-  if (origin_world.isZero(0.0)) return engine(scene, laws, options, counted);
+  if (origin_world.isZero(0.0)) return run_from_apart(engine, scene, laws, options, watch, counted);
   const scene::Scene local = seen_from(origin_world, scene);
   double mass = 0.0;
   for (const WorldBody& body : build_world(local).bodies)
     if (!body.immovable()) mass += body.inertia.mass;
   WorldSink world(counted, origin_world, mass, scene.gravity_m_s2.value_or(Vector3d::Zero()));
-  engine(local, laws, options, world);
+  run_from_apart(engine, local, laws, options, watch, world);
 }
 
 }  // namespace tumble::engines

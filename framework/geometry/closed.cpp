@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/geometry/crossings.h"
 #include "framework/geometry/mass_properties.h"
 #include "framework/geometry/mesh_edges.h"
 #include "framework/geometry/open_surface.h"
@@ -26,6 +27,8 @@ constexpr double kNeedle = 1e-12;
 // What rounding may leave of an integral that is zero, against the largest moment: sums over a million faces of both signs, 1e4 eps. A
 // plate is thinner than that from a millionth of its width on.
 constexpr double kRoundedMoment = 1e-12;
+
+constexpr double kSingleSpacing = 0x1.0p-23;   // of float32 numbers, relative
 
 std::string plural(std::size_t n, const char* one, const char* many) { return fmt::format("{} {}", n, n == 1 ? one : many); }
 
@@ -63,25 +66,72 @@ TriangleMesh keep_faces(const TriangleMesh& mesh, Keep keep) {
   return kept;
 }
 
-// Faces on the same three vertices: a wall without thickness (looking both ways), or the same face twice.
-std::vector<Defect> find_coincident_faces(const TriangleMesh& mesh) {
-  std::map<Face, int> first_with;
-  std::size_t count = 0;
-  std::pair<int, int> first{-1, -1};
+// Faces on the same three vertices: the same face twice, or two back to back with nothing between them.
+struct CoincidentFaces {
+  std::size_t repeated = 0, back_to_back = 0;   // faces that could go
+  std::pair<int, int> first_repeated{-1, -1}, first_back_to_back{-1, -1};
+  std::vector<char> goes;                       // by face: without these each place has one face or none
+};
+
+/// Whether the face runs through its corners in ascending order, but for where it begins.
+bool runs_upward(const Face& f) { return (f[0] < f[1]) + (f[1] < f[2]) + (f[2] < f[0]) == 2; }
+
+CoincidentFaces find_coincident(const TriangleMesh& mesh) {
+  CoincidentFaces found;
+  found.goes.assign(mesh.faces.size(), 0);
+  std::map<Face, std::vector<int>> standing;   // by corners: faces that look the same way, one at most once all are looked at
   for (int f = 0; f < static_cast<int>(mesh.faces.size()); ++f) {
     Face sorted = mesh.faces[f];
     std::sort(sorted.begin(), sorted.end());
-    const auto [place, is_new] = first_with.try_emplace(sorted, f);
-    if (is_new) continue;
-    if (count++ == 0) first = {place->second, f};
+    std::vector<int>& here = standing[sorted];
+    if (here.empty()) {
+      here.push_back(f);
+      continue;
+    }
+    const bool is_same = runs_upward(mesh.faces[here.back()]) == runs_upward(mesh.faces[f]);
+    std::pair<int, int>& first = is_same ? found.first_repeated : found.first_back_to_back;
+    if (first.first < 0) first = {here.back(), f};
+    found.goes[f] = 1;
+    if (is_same) {
+      ++found.repeated;
+    } else {
+      found.goes[here.back()] = 1;
+      found.back_to_back += 2;
+      here.pop_back();
+    }
   }
-  if (count == 0) return {};
-  const auto& [a, b, c] = mesh.faces[first.first];
-  const Vector3d middle = (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3.0;
-  return {{DefectKind::kLampshade,
-           fmt::format("a wall one polygon thick, like a lampshade: {} on another, the first two are faces {} and {} at {}",
-                       plural(count, "face lies", "faces lie"), first.first, first.second, show_point(middle)),
-           "Give the wall a thickness, or remove one of its two layers."}};
+  return found;
+}
+
+std::string show_middle(const TriangleMesh& mesh, int face) {
+  const auto& [a, b, c] = mesh.faces[face];
+  return show_point((mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3.0);
+}
+
+/// @param lines  how many faces had lost their area before: two of their corners had become one
+std::vector<Defect> describe_coincident(const TriangleMesh& mesh, std::size_t lines) {
+  const CoincidentFaces found = find_coincident(mesh);
+  const auto& [same_a, same_b] = found.first_repeated;
+  const auto& [front, back] = found.first_back_to_back;
+  std::vector<Defect> defects;
+  if (found.repeated > 0)
+    defects.push_back({DefectKind::kRepeatedFace,
+                       fmt::format("{} there twice: face {} is face {} once more, at {}", plural(found.repeated, "face is", "faces are"), same_b, same_a, show_middle(mesh, same_a)),
+                       "Remove what stands twice (\"remove doubles\" in the modelling program)."});
+  if (found.back_to_back > 0 && lines > 0) {
+    const Bounds bounds = bounds_of(mesh);
+    const double far = std::max(bounds.low.cwiseAbs().maxCoeff(), bounds.high.cwiseAbs().maxCoeff());
+    defects.push_back({DefectKind::kMergedCorners,
+                       fmt::format("corners have become one: {} lost their area, and faces {} and {} lie on each other at {}; a .3ds file holds single precision, which at coordinates of {:.3g} m tells no less than "
+                                   "{:.2g} m apart", plural(lines, "face has", "faces have"), front, back, show_middle(mesh, front), far, kSingleSpacing * far),
+                       "Model it near the origin (a scene says where it stands: \"position_m\"), or make thin places thicker."});
+  } else if (found.back_to_back > 0) {
+    defects.push_back({DefectKind::kLampshade,
+                       fmt::format("a wall one polygon thick, like a lampshade: {} on another, the first two are faces {} and {} at {}",
+                                   plural(found.back_to_back / 2, "face lies", "faces lie"), front, back, show_middle(mesh, front)),
+                       "Give the wall a thickness, or remove one of its two layers."});
+  }
+  return defects;
 }
 
 std::vector<Defect> find_edges_of_many_faces(const TriangleMesh& mesh, const std::vector<EdgeUse>& uses) {
@@ -179,21 +229,23 @@ std::vector<Defect> find_impossible_mass(const TriangleMesh& closed_mesh) {
 }
 
 // The whole check of a mesh whose numbers are usable.
-ClosedReport examine(const TriangleMesh& mesh) {
+// @param lines  faces that named a vertex twice and were dropped
+ClosedReport examine(const TriangleMesh& mesh, std::size_t lines) {
   ClosedReport report;
   report.mesh = mesh;
   const std::vector<EdgeUse> uses = edge_uses(mesh);
   const std::vector<int> part_of_face = parts_by_edges(mesh, uses);
   report.parts = static_cast<int>(std::set<int>(part_of_face.begin(), part_of_face.end()).size());
 
-  append(report.defects, find_coincident_faces(mesh));
+  append(report.defects, describe_coincident(mesh, lines));
   if (report.defects.empty()) append(report.defects, find_edges_of_many_faces(mesh, uses));
   append(report.defects, describe_open_edges(mesh, uses, part_of_face));
   append(report.defects, find_disagreement(mesh, uses));
   if (!report.is_closed()) return report;
 
   report.mesh = double_pinched_vertices(mesh, uses, report.notices);
-  append(report.defects, orient_parts(part_of_face, report.mesh, report.notices));
+  append(report.defects, find_crossings(report.mesh, part_of_face, report.notices));
+  if (report.is_closed()) append(report.defects, orient_parts(part_of_face, report.mesh, report.notices));
   if (report.is_closed()) append(report.defects, find_impossible_mass(report.mesh));
   if (!report.is_closed()) report.mesh = mesh;
   return report;
@@ -213,14 +265,33 @@ ClosedReport check_closed(const TriangleMesh& mesh) {
     return {{{DefectKind::kNoFaces, "no face has an area", "Model a surface: lines and points bound no volume."}}, notices, mesh, 0};
   }
 
+  ClosedReport report = examine(triangles, lines);
+  // A face that is there twice, or two back to back: without them the rest may be a solid.
+  const CoincidentFaces coincident = find_coincident(triangles);
+  if (coincident.repeated + coincident.back_to_back > 0) {
+    TriangleMesh rest{triangles.vertices, {}};
+    for (std::size_t f = 0; f < triangles.faces.size(); ++f)
+      if (coincident.goes[f] == 0) rest.faces.push_back(triangles.faces[f]);
+    ClosedReport repaired = rest.faces.empty() ? ClosedReport{report} : examine(rest, lines);
+    if (repaired.is_closed()) {
+      const auto& [front, back] = coincident.first_back_to_back;
+      if (coincident.repeated > 0)
+        notices.push_back(fmt::format("dropped {} there twice, the first: face {}, which is face {} at {}", plural(coincident.repeated, "face that was", "faces that were"),
+                                      coincident.first_repeated.second, coincident.first_repeated.first, show_middle(triangles, coincident.first_repeated.first)));
+      if (coincident.back_to_back > 0)
+        notices.push_back(fmt::format("dropped {} back to back with nothing between them, the first: {} and {} at {}", plural(coincident.back_to_back, "face that lay", "faces that lay"), front, back, show_middle(triangles, front)));
+      repaired.notices.insert(repaired.notices.begin(), notices.begin(), notices.end());
+      return repaired;
+    }
+  }
+
   // Faces of zero area may close a seam (then they stay) or be in the way (then they go).
-  ClosedReport report = examine(triangles);
   const auto is_about_size = [](const Defect& d) { return d.kind == DefectKind::kZeroVolume || d.kind == DefectKind::kNeedle || d.kind == DefectKind::kSelfCrossing; };
   if (!report.is_closed() && !is_about_size(report.defects.front())) {
     const TriangleMesh solid_faces = keep_faces(triangles, [&](const Face& f) { return has_area(triangles, f); });
     const std::size_t flat = triangles.faces.size() - solid_faces.faces.size();
     if (flat > 0 && !solid_faces.faces.empty()) {
-      report = examine(solid_faces);
+      report = examine(solid_faces, lines + flat);
       notices.push_back(fmt::format("dropped {} of zero area", plural(flat, "face", "faces")));
     }
   }

@@ -15,7 +15,9 @@ enum class DefectKind {
   kSinglePolygon,     // open and flat
   kTerrain,           // open, and every face looks up
   kMissingFace,       // one or more holes in an otherwise closed surface
-  kLampshade,         // one polygon thick: a tube open at both ends, or two layers of faces lying on each other
+  kLampshade,         // one polygon thick: a tube open at both ends, or two layers of faces back to back
+  kRepeatedFace,      // the same face twice, looking the same way
+  kMergedCorners,     // corners that single precision has made one: faces without area, and others back to back
   kCrack,             // open edges that lie beside each other
   kEdgeOfManyFaces,   // three or more faces at an edge
   kOrientation,       // neighbours disagree on which side is outside
@@ -23,7 +25,7 @@ enum class DefectKind {
   kNestedOutward,     // a part inside another that is not its cavity: its volume would count twice
   kZeroVolume,
   kNeedle,            // so long and thin that double precision cannot tell how it turns about its length
-  kSelfCrossing,      // faces pass through each other so much that the centre of mass or the inertia is impossible
+  kSelfCrossing,      // shells pass through each other, or one through itself
 };
 
 /// One thing that is wrong with a surface.
@@ -43,9 +45,10 @@ struct ClosedReport {
 };
 
 /// Whether a mesh is a closed, orientable manifold that bounds a volume; every defect with its place.
-/// Several parts and cavities are legal. Repaired with a notice: a part that is inside out is turned; faces of zero area that
-/// stand in the way are dropped; a vertex at which two fans of faces touch is doubled; unused vertices are dropped.
-/// Not looked for: faces that pass through each other (their overlap counts twice in the volume).
+/// Several parts and cavities are legal; parts that touch are, and parts that pass through each other are refused by name (crossings.h).
+/// Repaired with a notice: a part that is inside out is turned; faces of zero area that stand in the way are dropped, and so is a face
+/// that is there twice; two that lie back to back go where the rest is a solid without them; a vertex at which two fans of faces touch
+/// is doubled; unused vertices are dropped.
 /// @param mesh  equal positions already share a vertex (geometry/load_3ds.h welds)
 /// @post  when is_closed(): report.mesh has every edge in exactly two faces, once in each direction, and positive volume
 /// Cost: O(n log n) in the faces, plus O(k n) for k parts inside each other's bounding boxes.

@@ -71,6 +71,8 @@ std::string record_of(const scene::Scene& scene, const std::vector<PlayedRun>& r
   std::string record;
   for (const std::string& part : {info.command, "Tumble " + info.version, "seed " + std::to_string(info.seed), "scene " + scene.name + " " + scene.hash})
     if (!part.empty()) record += (record.empty() ? "" : " · ") + html_escape(part);
+  for (const PlayedRun& played : runs)   // what the run had to say beside its numbers, such as start velocities that were changed
+    for (const std::string& notice : played.run.counters.notices) record += "<br>note" + (played.label.empty() ? "" : " (" + html_escape(played.label) + ")") + ": " + html_escape(notice);
   return record;
 }
 

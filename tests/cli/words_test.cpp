@@ -169,6 +169,20 @@ TEST_F(CommandLine, TruthsOfAnEmptyFolderAreAMistake) {
 }
 
 #ifdef TUMBLE_HAS_REFERENCE
+TEST_F(CommandLine, TruthsOfAFolderWithAnOddFileNameItAndCompareTheOthers) {
+  fs::create_directory(folder_ / "some");
+  std::ofstream(folder_ / "some" / "a_notes.json") << "{\"remarks\": []}\n";
+  std::ofstream(folder_ / "some" / "b_cut.json") << "{\"id\": \"x";
+  fs::copy_file(fs::path(TUMBLE_SOURCE_DIR) / "tests/truths/bouncing_ball__e0.5.json", folder_ / "some" / "c_ball.json");
+  const Said said = type("truths some");
+  EXPECT_EQ(said.code, 2) << said.out;
+  EXPECT_TRUE(holds(said.err, "a_notes.json") && holds(said.err, "b_cut.json")) << said.err;
+  EXPECT_TRUE(holds(said.out, "1 cases") && holds(said.out, "2 files could not be compared")) << said.out;
+  EXPECT_EQ(nlohmann::json::parse(type("truths some --json").out).at("odd_files").size(), 2u);
+}
+#endif
+
+#ifdef TUMBLE_HAS_REFERENCE
 TEST_F(CommandLine, ARunIsJudgedOnStdoutAndToldOnStderr) {
   const Said said = type("run t_handle --modules reference --png t.png --trajectory t.run");
   EXPECT_EQ(said.code, 0) << said.out << said.err;

@@ -242,5 +242,37 @@ TEST(Judge, DominoesFallInTheirOrder) {
   expect_value(made, check, 1.0);
 }
 
+/// At rest a hundred metres up: its energy trembles by roundings of m g z = 1962 J, and nothing else is there to compare that with.
+HandMade at_rest_high_up(double tremble_j) {
+  HandMade made(stays({0, 0, 100}), stays({0, 0, 50}));
+  made.scene.gravity_m_s2 = Vector3d(0, 0, -9.81);
+  made.scene.step_s = 0.01;
+  for (std::size_t k = 0; k < made.run.frames.size(); ++k) {
+    made.run.frames[k].kinetic_energy = 0.0;
+    made.run.frames[k].potential_energy = 2943.0 + (k % 2 == 0 ? 0.0 : tremble_j);
+    made.run.frames[k].smallest_gap = -9e-19;
+  }
+  return made;
+}
+
+TEST(Judge, RoundingOfLargeTermsIsNoRiseOfEnergy) {
+  // A spacing of doubles at 2943 J is 4.5e-13 J. A hundred steps may add up to some ten of these; a micro-joule is none of it.
+  for (const char* kind : {"energy", "energy_not_rising"}) {
+    HandMade rounded = at_rest_high_up(9e-13), wrong = at_rest_high_up(1e-6);
+    rounded.scene.checks = wrong.scene.checks = {check_of(kind, 1e-3)};
+    rounded.scene.checks[0].tolerance = wrong.scene.checks[0].tolerance = 0.0;
+    EXPECT_TRUE(judge_run(rounded.scene, rounded.run)[0].passed) << kind;
+    EXPECT_FALSE(judge_run(wrong.scene, wrong.run)[0].passed) << kind;
+  }
+}
+
+TEST(Judge, AGapBelowZeroByARoundingOfPlacesIsNone) {
+  HandMade made = at_rest_high_up(0.0);
+  made.scene.checks = {check_of("gap", 0.0)};
+  EXPECT_TRUE(judge_run(made.scene, made.run)[0].passed);
+  made.run.frames[3].smallest_gap = -1e-11;   // a hundred times the rounding of places of 100 m
+  EXPECT_FALSE(judge_run(made.scene, made.run)[0].passed);
+}
+
 }  // namespace
 }  // namespace tumble::engines

@@ -176,9 +176,82 @@ TriangleMesh three_links(double reach) {
 TEST(Closed, InertiaThatNoSolidHasIsRefused) {
   // int x^2 over the links: 85 - 2 * 2 (reach^4 / 4 - 4 reach^3 / 3 + 64 / 3) a metre of height: negative at 5.5, where all three moments of
   // inertia are still positive and the centre of mass is inside.
-  expect_refused(three_links(5.5), DefectKind::kSelfCrossing, "moments of inertia", "no solid has");
-  // At 4.5 it is 70: nothing that is measured is impossible, and crossing faces are not looked for.
-  EXPECT_TRUE(check_closed(three_links(4.5)).is_closed());
+  // At 4.5 it is 70, and nothing that is measured is impossible. Both are refused where their faces cross, before anything is measured.
+  for (const double reach : {4.5, 5.5}) expect_refused(three_links(reach), DefectKind::kSelfCrossing, "passes through itself", "faces ");
+}
+
+TEST(Closed, ShellsThatPassThroughEachOtherAreRefusedByName) {
+  // Two unit boxes, 0.28 m^3 of which lie in both: their volumes add up to 2, the solid has 1.72.
+  const TriangleMesh mesh = joined(unit_box(), models::box({0.3, 0.2, 0.5}, {1.3, 1.2, 1.5}));
+  expect_refused(mesh, DefectKind::kSelfCrossing, "two shells pass through each other: the part of 12 faces about (0.5, 0.5, 0.5) and the part of 12 faces about (0.8, 0.7, 1)", "faces ");
+}
+
+TEST(Closed, BoxesPushedIntoEachOtherAlongTheirFacesAreRefusedToo) {
+  // Faces lie on each other and pass through nothing: the second box is half in the first, sides in the planes of its sides.
+  expect_refused(joined(unit_box(), models::box({0.5, 0, 0}, {1.5, 1, 1})), DefectKind::kSelfCrossing, "two shells pass through each other", "(0.5, ");
+  expect_refused(joined(unit_box(), models::box({0.5, 0.5, 0}, {1.5, 1.5, 1})), DefectKind::kSelfCrossing, "two shells pass through each other", "");
+}
+
+TEST(Closed, ABarThroughABallIsRefusedAtAnySizeAndPlace) {
+  for (const double size : {1e-3, 1.0, 1e3})
+    for (const Vector3d& place : {Vector3d(0, 0, 0), Vector3d(50, -20, 7)}) {
+      TriangleMesh mesh = joined(subdivided_sphere(3), models::box({-2, -0.1, -0.1}, {2, 0.1, 0.1}));
+      for (Vector3d& vertex : mesh.vertices) vertex = size * (vertex + place);
+      expect_refused(mesh, DefectKind::kSelfCrossing, "two shells pass through each other", "the part of 1280 faces");
+    }
+}
+
+TEST(Closed, PartsThatTouchAreNotCrossing) {
+  // Face on face, edge on face, a corner on a face, edge on edge: apart by nothing, but not through each other.
+  const TriangleMesh diamond = [] {   // a corner down at the origin
+    TriangleMesh mesh = subdivided_sphere(0);
+    const Quaterniond down = Quaterniond::FromTwoVectors(mesh.vertices[0], -Vector3d::UnitZ());
+    for (Vector3d& vertex : mesh.vertices) vertex = down * vertex + Vector3d(0.4, 0.4, 2.0);
+    return mesh;
+  }();
+  for (const TriangleMesh& other : {models::box({0.25, 0.25, 1}, {0.75, 0.75, 2}), models::box({0.5, 0.5, 1}, {1.5, 1.5, 2}), models::box({1, 1, 0}, {2, 2, 1}), models::box({1, 0.3, 0.3}, {2, 0.8, 0.9}), diamond}) {
+    const ClosedReport report = check_closed(joined(unit_box(), other));
+    EXPECT_TRUE(report.is_closed()) << report.defects.front().problem;
+  }
+}
+
+TEST(Closed, AFaceThatIsThereTwiceIsDroppedWithItsPlace) {
+  TriangleMesh mesh = unit_box();
+  mesh.faces.push_back({mesh.faces[4][1], mesh.faces[4][2], mesh.faces[4][0]});
+  const ClosedReport report = check_closed(mesh);
+  ASSERT_TRUE(report.is_closed()) << report.defects.front().problem;
+  EXPECT_DOUBLE_EQ(signed_volume(report.mesh), 1.0);
+  ASSERT_EQ(report.notices.size(), 1u);
+  EXPECT_NE(report.notices[0].find("dropped 1 face that was there twice, the first: face 12, which is face 4"), std::string::npos) << report.notices[0];
+}
+
+TEST(Closed, AFaceThatIsThereTwiceOnAnOpenSurfaceIsNamedAsThat) {
+  TriangleMesh mesh = broken("missing_face");
+  mesh.faces.push_back(mesh.faces[2]);
+  expect_refused(mesh, DefectKind::kRepeatedFace, "1 face is there twice: face 10 is face 2 once more", "at (");
+}
+
+TEST(Closed, AFinWithoutThicknessIsDroppedWithItsPlace) {
+  TriangleMesh mesh = unit_box();   // both sides of a triangle between two corners and a point outside
+  mesh.vertices.push_back({2, 0.5, 0.5});
+  const int tip = static_cast<int>(mesh.vertices.size()) - 1, a = mesh.faces[0][0], b = mesh.faces[0][1];
+  mesh.faces.push_back({a, b, tip});
+  mesh.faces.push_back({b, a, tip});
+  const ClosedReport report = check_closed(mesh);
+  ASSERT_TRUE(report.is_closed()) << report.defects.front().problem;
+  EXPECT_DOUBLE_EQ(signed_volume(report.mesh), 1.0);
+  EXPECT_NE(report.notices.at(0).find("back to back"), std::string::npos);
+}
+
+TEST(Closed, CornersThatSinglePrecisionHasMergedAreNamedAsThat) {
+  // A plate 1 cm thick, 200 km from the origin: float32 numbers are 16 mm apart there, so its two sides fall together.
+  TriangleMesh mesh = models::box({0, 0, 0}, {1, 1, 0});
+  for (Face& face : mesh.faces)   // corners of the upper side are those of the lower
+    for (int& corner : face)
+      for (int v = 0; v < corner; ++v)
+        if (mesh.vertices[v] == mesh.vertices[corner]) corner = v;
+  for (Vector3d& vertex : mesh.vertices) vertex.z() += 2e5;
+  expect_refused(mesh, DefectKind::kMergedCorners, "corners have become one: 8 faces have lost their area", "2e+05 m tells no less than 0.024 m apart");
 }
 
 TEST(Closed, APlateAsThinAsARoundingIsNotTakenForACrossing) {

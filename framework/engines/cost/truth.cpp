@@ -18,6 +18,7 @@ namespace {
 
 constexpr double kTight = 1e-13;          // tolerance of the truth: a hundred roundings, below which no method gets better
 constexpr double kGoodFloor = 1e-6;       // of the scale: a truth worse than this is looked for over less time
+constexpr double kFineFloor = 1e-12;      // of the scale: where half the step makes the truth 16 times better it is made as good as this, for runs reach it
 constexpr double kPoorFloor = 1e-4;       // of the scale: one that is better than nothing
 constexpr double kRoundings = 16.0;       // two runs that agree to the last bit may both be off by some
 constexpr int kMostHalvings = 7;
@@ -235,9 +236,13 @@ bool take_either(const Pair& pair, const Window& window, CostTruth& truth) {
 void refine(const scene::Scene& scene, const Laws& laws, const Window& window, double until, Pair pair, bool& found, CostTruth& truth) {
   double price = pair.run.cpu_s;
   const bool by_chance = scene.contact.has_value();
+  // Between impacts a tolerance alone makes a run fine; where an impact is, hangs on the path within a step, whose error goes with its
+  // fourth power. So a truth with impacts that is good to a millionth is worse than the runs that it is to judge, and a few halvings mend it.
+  const bool pushed_once_a_step = by_chance || !scene.motors.empty() || !scene.rods.empty() || !scene.joints.empty();
+  const double good_floor = pushed_once_a_step ? kGoodFloor : kFineFloor;
   bool confirmed = !by_chance;
   for (long steps = 4 * steps_a_sample(scene, window);; steps *= 2) {
-    const bool is_good = confirmed && found && is_whole(truth, window) && truth.floor_m <= kGoodFloor * truth.scale_m;
+    const bool is_good = confirmed && found && is_whole(truth, window) && truth.floor_m <= good_floor * truth.scale_m;
     if (is_good || !pair.run.stopped_by.empty() || cpu_seconds() + kNextPrice * price > until) return;
     pair.older = std::move(pair.other.frames);
     pair.other = std::move(pair.run);

@@ -11,6 +11,7 @@
 #include "framework/collision/gap.h"
 #include "framework/collision/sweep.h"
 #include "framework/core/error.h"
+#include "framework/engines/start_overlaps.h"
 
 namespace tumble::engines {
 namespace {
@@ -106,15 +107,9 @@ void FlightWorld::refuse_overlap(const scene::Scene& scene) {
   std::erase_if(pairs, [&](const auto& pair) { return !may_collide(pair.first, pair.second); });
   near_at_start_ = pairs;
   const auto pose = [&](int k) { return collision::Pose{first_[k].com_world, first_[k].world_from_body}; };
-  for (const auto& [a, b] : pairs) {
-    const double allowance = kTouching * collision::gap_scale(shape(a), pose(a), shape(b), pose(b));
-    if (!collision::overlapping(shape(a), pose(a), shape(b), pose(b), allowance)) continue;
-    const double depth = -collision::compute_gap(shape(a), pose(a), shape(b), pose(b)).distance;
-    const std::string both = fmt::format("bodies '{}' and '{}'", world_.bodies[a].name, world_.bodies[b].name);
-    throw UserError(scene.file.empty() ? scene.name : scene.file.string(),
-                    depth > 0 ? fmt::format("{} overlap at the start, by about {:.3g} m", both, depth) : fmt::format("at the start one of the {} is inside the other", both),
-                    "move one of them away (\"position_m\") until they are apart or just touch");
-  }
+  std::vector<StartPair> near;
+  for (const auto& [a, b] : pairs) look_at_start(a, b, shape(a), pose(a), shape(b), pose(b), kTouching * collision::gap_scale(shape(a), pose(a), shape(b), pose(b)), near);
+  refuse_overlaps(scene.file.empty() ? scene.name : scene.file.string(), scene, near);
   for (int round = 0; round < kMostNudges && !scene.contact; ++round) {   // processes draw their members apart themselves
     bool clean = true;
     for (const auto& [a, b] : pairs) {

@@ -185,14 +185,64 @@ double rate_of(const Frame& frame) {
   return x.cross(v).z() / x.squaredNorm();
 }
 
+/// How the angle, its rate and the pivot's force at an instant answer to a relative rounding of angle and rate made on the way there: roots
+/// of the mean squares over the way (Quantity::growth). Angles are roundings of places of size d, so of 1 rad.
+struct Growth {
+  double angle = 0.0, rate = 0.0, force = 0.0;
+};
+
+/// The swing with its variations, theta'' = -w0^2 sin theta and Phi' = (0 1; -w0^2 cos theta 0) Phi: what a rounding at s becomes at t is
+/// Phi(t) Phi(s)^-1. Near the top it grows as e^(w0 (t - s)); a rounding of the energy at the bottom is worth 1/sin(theta0) of it at the turn.
+Growth growth_to(const CompoundPendulum& pendulum, double t) {
+  constexpr int kSteps = 4000;   // growth to a few per cent: more than a mark needs
+  const double h = t / kSteps, w2 = pendulum.rate() * pendulum.rate();
+  using State = Eigen::Matrix<double, 2, 3>;   // (theta, rate) and Phi
+  const auto slope = [&](const State& y) -> State {
+    State f;
+    f.row(0) = y.row(1);
+    f.row(1) = -w2 * std::cos(y(0, 0)) * y.row(0);
+    f(1, 0) = -w2 * std::sin(y(0, 0));
+    return f;
+  };
+  State y;
+  y << pendulum.angle, 1.0, 0.0, 0.0, 0.0, 1.0;
+  std::vector<State> way{y};
+  for (int k = 0; k < kSteps; ++k) {
+    const State k1 = slope(y), k2 = slope(y + 0.5 * h * k1), k3 = slope(y + 0.5 * h * k2), k4 = slope(y + h * k3);
+    y += h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
+    way.push_back(y);
+  }
+  // |F| of (theta, rate): along the rod m (g cos + d rate^2), across it m g sin (1 - m d^2 / I).
+  const auto force = [&](double angle, double rate) {
+    return std::hypot(pendulum.m * (pendulum.g * std::cos(angle) + pendulum.d * rate * rate), pendulum.m * pendulum.g * std::sin(angle) * (1.0 - pendulum.m * pendulum.d * pendulum.d / pendulum.I_pivot));
+  };
+  constexpr double kAside = 1e-6;
+  const double angle = y(0, 0), rate = y(1, 0);
+  const Eigen::RowVector2d of_force((force(angle + kAside, rate) - force(angle - kAside, rate)) / (2 * kAside), (force(angle, rate + kAside) - force(angle, rate - kAside)) / (2 * kAside));
+  Growth squares;
+  for (const State& at : way) {
+    const Eigen::Matrix2d later = y.rightCols<2>() * at.rightCols<2>().inverse();
+    const Eigen::Vector2d rounded(1.0, std::abs(at(1, 0)));
+    squares.angle += later.row(0).cwiseAbs2().dot(rounded.cwiseAbs2());
+    squares.rate += later.row(1).cwiseAbs2().dot(rounded.cwiseAbs2());
+    squares.force += (of_force * later).cwiseAbs2().dot(rounded.cwiseAbs2().transpose());
+  }
+  const auto mean = [&](double sum) { return std::sqrt(sum / static_cast<double>(way.size())); };
+  return {mean(squares.angle), mean(squares.rate), mean(squares.force)};
+}
+
 /// @param instant  as outputs call it: "t1", "at_0.25T"
 void compare_pendulum_at(const Case& truth, const CompoundPendulum& pendulum, const std::string& instant, double t, const Laws& laws, Comparison& comparison) {
   comparison.attempt("run to " + instant, [&] {
     const std::string force = "pivot_force_" + instant;
     // What the hinge measures is the size of the force.
     Quantity size{"|" + force + "|", of_last_frame(pivot_force), VectorXd::Constant(1, truth.output(force).vector().norm()), truth.floor(force), false};
-    const Quantity rate = quantity(truth, "thetadot_" + instant, of_last_frame(rate_of));
-    const Quantity angle = quantity(truth, "theta_" + instant, [pendulum](const Trajectory& run) { return VectorXd::Constant(1, angle_at_end(pendulum, run)); });
+    Quantity rate = quantity(truth, "thetadot_" + instant, of_last_frame(rate_of));
+    Quantity angle = quantity(truth, "theta_" + instant, [pendulum](const Trajectory& run) { return VectorXd::Constant(1, angle_at_end(pendulum, run)); });
+    const Growth growth = growth_to(pendulum, t);
+    angle.growth = growth.angle;
+    rate.growth = growth.rate;
+    size.growth = growth.force;
     // Half the scene's gravity beside it: a stage's swing is faster than small swings only by its own speed.
     compare_refined({pendulum.scene(truth.id), t, instant, 2.0 * pendulum.rate(), true}, laws, {angle, rate, size}, comparison);
   });

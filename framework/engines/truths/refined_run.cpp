@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -20,6 +21,9 @@ constexpr double kSettled = 0.05;                       // two successive orders
 constexpr double kFine = 1e6;                           // small enough: about 1e-10 of what is compared
 constexpr double kAboveRoundOff = 1e5;                  // known to a few per cent, its log2 to less than what the order may be off
 constexpr double kChance = 3.0;                         // of two runs' round-off: one may be as much larger than their difference
+// Roundings of a step of RK4 in each number of the state: four stages, their sum, the projection onto rods and joints; half an eps each, alike
+// in sign or not, and three deviations of their sum over the steps.
+constexpr double kRoundingsAStep = 8.0;
 constexpr double kTellsNothing = 1e-3;                  // of a quantity's size: a predicted error as large would pass what is wrong
 
 using Readings = std::vector<VectorXd>;
@@ -164,9 +168,12 @@ void compare_refined(const RefinedRun& run, const Laws& laws, const std::vector<
   compare_order(run, levels, comparison);
   for (std::size_t i = 0; i < quantities.size(); ++i) {
     const Quantity& q = quantities[i];
-    const double error = q.difference(levels.back().readings[i], q.expected), predicted = truncation(levels, i), rounding = std::max(kClosedFormFactor, round_off) * q.floor;
+    const double error = q.difference(levels.back().readings[i], q.expected), predicted = truncation(levels, i), 
+                 on_the_way = kRoundingsAStep * std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(levels.back().steps)) * q.growth,
+                 rounding = std::max(std::max(kClosedFormFactor, round_off) * q.floor, on_the_way);
     std::string note = fmt::format("predicted truncation error {:.1e} of {} steps", predicted, levels.back().steps);
-    if (round_off > kClosedFormFactor) note += fmt::format(", round-off {:.1e}", rounding);
+    if (on_the_way >= rounding) note += fmt::format(", roundings of all steps grow to {:.1e}", on_the_way);
+    else if (round_off > kClosedFormFactor) note += fmt::format(", round-off {:.1e}", rounding);
     double size = q.expected.size() > 0 ? q.expected.cwiseAbs().maxCoeff() : 0.0;
     for (const Level& level : levels) size = std::max(size, level.readings[i].size() > 0 ? level.readings[i].cwiseAbs().maxCoeff() : 0.0);
     if (predicted > rounding && predicted > kTellsNothing * size) {

@@ -22,6 +22,10 @@ struct Quantity {
   double floor = kUnset;
   bool is_state = true;                // its error shows the method's order; energies, which many methods keep better, do not
   Difference difference = largest_difference;
+  /// Where the family knows it: by how much the quantity at the end answers to a rounding of the state made on the way, root of the mean
+  /// square over the run of |d quantity / d state| |state| (absolute, a relative rounding of 1). Floors tell of roundings of the start
+  /// only; near an unstable equilibrium those made later grow by other factors.
+  double growth = 0.0;
 };
 
 /// A quantity that a case has as an output of this name.
@@ -45,7 +49,8 @@ struct RefinedRun {
 };
 
 /// Halves the step until the order has settled and what a halving changes is small, though still clear of round-off, or the time for it is
-/// used up. Then compares each quantity with the larger of 100 floors and the predicted truncation error, and the order with 4.
+/// used up. Then compares each quantity with the largest of 100 floors, the predicted truncation error and what roundings of all steps may
+/// grow to (8 eps sqrt(steps) `growth`), and the order with 4.
 void compare_refined(const RefinedRun& run, const Laws& laws, const std::vector<Quantity>& quantities, Comparison& comparison);
 
 }  // namespace tumble::truths

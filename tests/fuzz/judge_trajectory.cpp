@@ -1,0 +1,208 @@
+#include "tests/fuzz/judge_trajectory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "framework/collision/gap.h"
+#include "framework/dynamics/world.h"
+
+namespace tumble::fuzz {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+// Energy above the least before, as a part of what moves: methods of integration are off by their step, and a scene is not wrong for
+// that. One percent is what a viewer of a bouncing ball would begin to see (half a percent of a speed); real runaways grow without end.
+constexpr double kEnergyGrowth = 0.01;
+// A body that lies may be moved by roundings and position correction: by this part of its size, which nobody sees.
+constexpr double kStir = 1e-6;
+// Overlap as a part of the smaller body's size. Contacts are kept apart to roundings of sizes and places; this is above all of them.
+constexpr double kOverlap = 1e-8;
+// How far rods and joints may be open, as a part of the arms they hang on. Projection leaves 1e-10; a run that opens a joint leaves more.
+constexpr double kOpen = 1e-6;
+
+struct Judge {
+  const scene::Scene& scene;
+  const Trajectory& run;
+  World world;
+  std::vector<Fault> faults;
+
+  const BodyPose& pose(const Frame& frame, int body) const { return frame.poses[static_cast<std::size_t>(body)]; }
+  Vector3d place(const Frame& frame, const Anchor& anchor) const {
+    if (anchor.body < 0) return anchor.point_body;
+    const BodyPose& at = pose(frame, anchor.body);
+    return at.com_world + at.world_from_body * anchor.point_body;
+  }
+
+  bool is_finite();
+  void check_end();
+  void check_energy();
+  void check_gaps();
+  void check_links();
+};
+
+bool Judge::is_finite() {
+  for (const Frame& frame : run.frames)
+    for (std::size_t i = 0; i < frame.poses.size(); ++i) {
+      const BodyPose& at = frame.poses[i];
+      if (at.com_world.allFinite() && at.world_from_body.coeffs().allFinite() && at.velocity_world.allFinite() && at.omega_world.allFinite() && std::abs(at.world_from_body.norm() - 1.0) < 1e-9) continue;
+      faults.push_back({"number", fmt::format("body '{}' is not anywhere at t = {:.6g} s", run.bodies[i].name, frame.time)});
+      return false;
+    }
+  return true;
+}
+
+void Judge::check_end() {
+  const double end = run.frames.empty() ? 0.0 : run.frames.back().time;
+  if (run.frames.empty() || end < scene.duration_s - 1.0 / 60.0 - 1e-9) faults.push_back({"short", fmt::format("the last frame is at {:.6g} s of {:.6g} s", end, scene.duration_s)});
+}
+
+/// Energy of a frame, and how large the sums were that it came from.
+struct Energy {
+  double kinetic = 0.0, potential = 0.0, terms = 0.0;
+};
+
+Energy energy_of(const Judge& judge, const Frame& frame) {
+  Energy energy;
+  const auto add = [&](double& sum, double term) {
+    sum += term;
+    energy.terms += std::abs(term);
+  };
+  const World& world = judge.world;
+  for (std::size_t i = 0; i < world.bodies.size(); ++i) {
+    const WorldBody& body = world.bodies[i];
+    if (body.immovable()) continue;
+    const BodyPose& at = frame.poses[i];
+    const Vector3d omega_body = at.world_from_body.conjugate() * at.omega_world;
+    add(energy.kinetic, 0.5 * body.inertia.mass * at.velocity_world.squaredNorm());
+    add(energy.kinetic, 0.5 * omega_body.dot(body.inertia.inertia_body * omega_body));
+    if (world.gravity_world) add(energy.potential, -body.inertia.mass * world.gravity_world->dot(at.com_world));
+  }
+  for (const SpringLink& spring : world.springs) {
+    const double stretch = (judge.place(frame, spring.a) - judge.place(frame, spring.b)).norm() - spring.spring.rest_length;
+    add(energy.potential, 0.5 * spring.spring.stiffness * stretch * stretch);
+  }
+  return energy;
+}
+
+/// What constant forces have done from one frame to the next: force times the way of their point. Forces switch at frames.
+double work_of_point_forces(const Judge& judge, const Frame& from, const Frame& to) {
+  double work = 0.0;
+  for (const PointForce& force : judge.world.point_forces) {
+    if (!(to.time <= force.end + 1e-9 && from.time >= force.start - 1e-9)) continue;
+    const BodyPose &start = judge.pose(judge.run.frames.front(), force.body), &a = judge.pose(from, force.body), &b = judge.pose(to, force.body);
+    const Vector3d point_body = start.world_from_body.conjugate() * (force.point_world - start.com_world);   // all begin at 0
+    work += force.force_world.dot(b.com_world + b.world_from_body * point_body - a.com_world - a.world_from_body * point_body);
+  }
+  return work;
+}
+
+/// The most that motors can have done: their largest torque times how far the joint turned, twice for what frames do not show.
+double work_of_motors(const Judge& judge, const Frame& from, const Frame& to) {
+  double work = 0.0;
+  for (const Motor& motor : judge.world.motors) {
+    const JointLink& joint = judge.world.joints[static_cast<std::size_t>(motor.joint)];
+    const auto rate = [&](const Frame& frame) {
+      Vector3d omega = judge.pose(frame, joint.a.body).omega_world;
+      if (joint.b.body >= 0) omega -= judge.pose(frame, joint.b.body).omega_world;
+      return omega.norm();
+    };
+    work += 2.0 * motor.law.largest_torque_n_m * std::max(rate(from), rate(to)) * (to.time - from.time);
+  }
+  return work;
+}
+
+void Judge::check_energy() {
+  for (const WorldBody& body : world.bodies)   // a driven body does work that frames do not tell
+    if (body.immovable() && body.collides && (!body.motion.velocity_m_s.isZero(0) || !body.motion.amplitude_m.isZero(0))) return;
+  double stir = 0.0;   // what position correction may lift
+  for (const WorldBody& body : world.bodies)
+    if (!body.immovable() && world.gravity_world) stir += kStir * body.inertia.mass * world.gravity_world->norm() * bounding_radius(body.shape);
+  const Energy first = energy_of(*this, run.frames.front());
+  double work = 0.0, given = 0.0, least = first.kinetic + first.potential, fall = 0.0;
+  for (std::size_t k = 1; k < run.frames.size(); ++k) {
+    const Frame &before = run.frames[k - 1], &frame = run.frames[k];
+    const double done = work_of_point_forces(*this, before, frame), motors = work_of_motors(*this, before, frame);
+    work += done + motors;
+    given += std::abs(done) + motors;
+    const Energy now = energy_of(*this, frame);
+    fall = std::max(fall, first.potential - now.potential);
+    const double scale = first.kinetic + fall + given;
+    const double total = now.kinetic + now.potential - work;
+    // Sums of terms of this size, rounded once a frame and once a step by the engine.
+    const double rounding = 16.0 * kEps * now.terms * (1.0 + frame.time / scene.step_s);
+    const double gained = total - least - stir - rounding;
+    least = std::min(least, total);
+    if (gained > kEnergyGrowth * scale) {
+      faults.push_back({"energy", fmt::format("{:.4g} J more than before at t = {:.6g} s, where {:.4g} J are at work ({:.3g} of them)", gained, frame.time, scale, gained / scale)});
+      return;
+    }
+  }
+}
+
+void Judge::check_gaps() {
+  std::vector<collision::CollisionShape> shapes;
+  for (const WorldBody& body : world.bodies) shapes.emplace_back(body.shape);
+  double worst = 0.0;
+  std::string words;
+  for (int i = 0; i < static_cast<int>(world.bodies.size()); ++i)
+    for (int j = i + 1; j < static_cast<int>(world.bodies.size()); ++j) {
+      const WorldBody &a = world.bodies[static_cast<std::size_t>(i)], &b = world.bodies[static_cast<std::size_t>(j)];
+      if ((a.immovable() && b.immovable()) || !a.collides || !b.collides || (a.passes_movable && b.passes_movable)) continue;
+      if (std::binary_search(world.apart.begin(), world.apart.end(), std::pair(i, j))) continue;
+      const collision::CollisionShape &shape_a = shapes[static_cast<std::size_t>(i)], &shape_b = shapes[static_cast<std::size_t>(j)];
+      const double size = std::min(shape_a.is_half_space() ? kInfinity : shape_a.bounding_radius(), shape_b.is_half_space() ? kInfinity : shape_b.bounding_radius());
+      for (const Frame& frame : run.frames) {
+        const collision::Pose at_a{pose(frame, i).com_world, pose(frame, i).world_from_body}, at_b{pose(frame, j).com_world, pose(frame, j).world_from_body};
+        if (collision::least_gap(shape_a, at_a, shape_b, at_b) > 0) continue;
+        const double gap = collision::compute_gap(shape_a, at_a, shape_b, at_b).distance;
+        const double allowed = kOverlap * size + 16.0 * kEps * (collision::gap_scale(shape_a, at_a, shape_b, at_b) + at_a.com_world.norm() + at_b.com_world.norm());
+        if (gap >= -allowed || gap / size >= worst) continue;
+        worst = gap / size;
+        words = fmt::format("'{}' and '{}' overlap by {:.3g} m at t = {:.6g} s, {:.3g} of the smaller one", a.name, b.name, -gap, frame.time, -worst);
+      }
+    }
+  if (!words.empty()) faults.push_back({"overlap", words});
+}
+
+void Judge::check_links() {
+  // Without stabilisation, and with Baumgarte's, links drift by design; the scene says so.
+  if (!world.stabilisation || world.stabilisation->kind != scene::StabilisationKind::kProjection) return;
+  double worst = kOpen;
+  std::string words;
+  const auto look = [&](const std::string& name, double open, double arm, double far, double time) {
+    const double part = (open - 64.0 * kEps * far) / arm;
+    if (!(part > worst)) return;
+    worst = part;
+    words = fmt::format("'{}' is open by {:.3g} m at t = {:.6g} s, {:.3g} of its arms", name, open, time, part);
+  };
+  const auto arm_of = [&](const Anchor& anchor) { return anchor.body < 0 ? 0.0 : anchor.point_body.norm() + std::min(1e300, bounding_radius(world.bodies[static_cast<std::size_t>(anchor.body)].shape)); };
+  for (const Frame& frame : run.frames) {
+    for (const RodLink& rod : world.rods) {
+      const Vector3d a = place(frame, rod.a), b = place(frame, rod.b);
+      look(rod.name, std::abs((a - b).norm() - rod.length), rod.length, a.norm() + b.norm(), frame.time);
+    }
+    for (const JointLink& joint : world.joints) {
+      const Vector3d a = place(frame, joint.a), b = place(frame, joint.b);
+      look(joint.name, (a - b).norm(), arm_of(joint.a) + arm_of(joint.b), a.norm() + b.norm(), frame.time);
+    }
+  }
+  if (!words.empty()) faults.push_back({"open", words});
+}
+
+}  // namespace
+
+std::vector<Fault> faults_of(const scene::Scene& scene, const Trajectory& run) {
+  Judge judge{scene, run, build_world(scene), {}};
+  judge.check_end();
+  if (run.frames.empty() || !judge.is_finite()) return judge.faults;
+  judge.check_energy();
+  judge.check_gaps();
+  judge.check_links();
+  return judge.faults;
+}
+
+}  // namespace tumble::fuzz
