@@ -40,6 +40,7 @@ class MovingWorld {
   MovingWorld& operator=(const MovingWorld&) = delete;
 
   /// Stands at another time in other states; no step is under way.
+  /// @param states  by body; those of immovable bodies are not looked at: driven ones stand where they are at that time
   void stand_at(double time, const std::vector<RigidBodyState>& states);
   /// The forces that act, and the points of the bodies that they act on (by force of the world, body frame).
   void set_active_forces(std::vector<int> active, std::vector<Vector3d> points_body);
