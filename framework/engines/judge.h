@@ -28,6 +28,9 @@
 /// | falls            | the same; the smallest [rad]                                          | >= tolerance               |
 /// | order_of_falls   | how many of `bodies` lean by expected [rad] before the one before them, or never [-] | <= tolerance |
 ///
+/// Besides, whatever the scene asks: `impact_energy`, the kinetic energy of all that an impact changed, measured against what restitution and
+/// friction say (`Event::energy_excess`), over the kinetic energy before; seen from what is driven. It is reported where it is wrong only.
+///
 /// Energies are compared with the kinetic energy at `at_s` plus the deepest fall of the potential energy below its value there:
 /// what a run makes from nothing is not in it, so that it cannot widen its own pass mark.
 /// For energy, momentum, angular momentum, drift and tilt `at_s` is the instant from which on the quantity must stay (a push has ended by
@@ -54,7 +57,7 @@ struct CheckResult {
   std::string detail;      // where and when the worst was found
 };
 
-/// One result a check, in the scene's order. @throws UserError for a kind of check that is not known.
+/// One result a check, in the scene's order; one more where an impact changed the energy by what no law allows. @throws UserError for a kind of check that is not known.
 std::vector<CheckResult> judge_run(const scene::Scene& scene, const Trajectory& run);
 
 }  // namespace tumble::engines

@@ -85,7 +85,7 @@ class MovingWorld {
   double look();
   /// What springs, rods and joints pull with in these states.
   LinkForces measure_links(const std::vector<RigidBodyState>& states, double t);
-  /// After impacts or callbacks: velocities of the bodies joined to those that were hit or called back onto the constraints. @return whether there are any
+  /// After callbacks: velocities of the bodies joined to those that were called back onto the constraints. @return whether there are any
   bool keep_constraints(const std::vector<Event>& events);
   /// From here on to the step's target the body goes from `start` (at time(); its velocities may jump there) to `end`.
   void set_path(int body, const RigidBodyState& start, const RigidBodyState& end, SmoothPath::Momenta momenta = SmoothPath::Momenta::kOfPath);

@@ -83,9 +83,10 @@ struct Runaway {
 /// Looks on while a world moves: energy that nothing can have brought in is the method's, or a wrong law's.
 class EnergyWatch {
  public:
-  /// An impact has taken place: its impulse has done the work j (u + u') / 2.
+  /// An impact has taken place: what it did to the energy, as measured; else the work j (u + u') / 2 of its impulse.
   void note(const Event& event) {
-    if (event.kind == EventKind::kCollision) by_blows_ += 0.5 * event.impulse * (event.normal_velocity_before + event.normal_velocity_after);
+    if (event.kind != EventKind::kCollision) return;
+    by_blows_ += event.energy_change == event.energy_change ? event.energy_change : 0.5 * event.impulse * (event.normal_velocity_before + event.normal_velocity_after);
   }
   /// @return nothing while all is well, and for worlds that are driven (point forces, motors, moving walls)
   std::optional<Runaway> look(const World& world, const std::vector<RigidBodyState>& states);
