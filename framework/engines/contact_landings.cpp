@@ -3,6 +3,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "framework/engines/impact_bodies.h"
 #include "framework/engines/lasting_contacts.h"
 
 namespace tumble::engines {
@@ -15,13 +16,6 @@ constexpr double kNear = 1e-3;       // of the way that the rest speed goes in t
 constexpr int kMostBlows = 1000;     // at one instant
 constexpr double kTogether = 1e-6;   // of the smaller body
 constexpr double kStrikes = 1e-4;    // of the rest speed: what comes together more slowly is left to the step's impulses
-
-std::vector<Velocity> velocities_of(const ContactProblem& problem) {
-  std::vector<Velocity> result;
-  result.reserve(problem.bodies.size());
-  for (const PushedBody& body : problem.bodies) result.push_back({body.velocity_world, body.omega_world});
-  return result;
-}
 
 }  // namespace
 
@@ -137,6 +131,15 @@ bool LastingContacts::strike_what_is_down(const Group& group, const std::vector<
   return strike(group, std::move(down));
 }
 
+std::vector<int> LastingContacts::touched_bodies(const Group& group, const std::vector<Touch>& touches) {
+  std::vector<int> bodies = group.bodies;
+  for (const Touch& touch : touches) {
+    bodies.push_back(touch.pair.first);
+    bodies.push_back(touch.pair.second);
+  }
+  return bodies;
+}
+
 bool LastingContacts::strike(const Group& group, std::vector<Touch> down) {
   std::stable_sort(down.begin(), down.end(), [](const Touch& a, const Touch& b) { return a.pair < b.pair; });
   const ContactProblem problem = problem_of(group, down, moving_.states(), 0.0);
@@ -162,6 +165,14 @@ bool LastingContacts::strike(const Group& group, std::vector<Touch> down) {
     moving_.set_state(body, state);
   }
   ++counters_.contact_landings;
+  // The energy of all, which the first event stands for; not told where links end in, or bodies touch, what is driven in different ways.
+  const Vector3d driven = ImpactBodies(moving_, laws_).driven_velocity(touched_bodies(group, down)).value_or(Vector3d::Constant(kUnset));
+  EnergyOfImpact energy;
+  for (std::size_t k = 0; k < group.bodies.size(); ++k) {
+    const WorldBody& body = moving_.world().bodies[static_cast<std::size_t>(group.bodies[k])];
+    energy.add(body.inertia, moving_.state(group.bodies[k]).world_from_body, before[k], solution.velocities[k], driven);
+  }
+  double excess = energy.excess(solution.converged ? work_of(problem, solution.impulses_world, before, solution.velocities) : energy.change);   // unsolved: never more is all that can be asked
   for (std::size_t from = 0, to = 0; from < down.size(); from = to) {   // a pair's hardest blow stands for it
     std::size_t hardest = from;
     for (; to < down.size() && down[to].pair == down[from].pair; ++to)
@@ -170,7 +181,8 @@ bool LastingContacts::strike(const Group& group, std::vector<Touch> down) {
     if (!(speed > rest_speed_)) continue;
     const PushingContact& c = problem.contacts[hardest];
     sink_.event({moving_.time(), EventKind::kCollision, down[hardest].pair.first, down[hardest].pair.second, c.point_world, c.normal_b_to_a_world,
-                 solution.impulses_world[hardest].dot(c.normal_b_to_a_world), -speed, -approach(problem, hardest, solution.velocities)});
+                 solution.impulses_world[hardest].dot(c.normal_b_to_a_world), -speed, -approach(problem, hardest, solution.velocities), energy.change, excess});
+    energy.change = excess = 0.0;
   }
   return true;
 }

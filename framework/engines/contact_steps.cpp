@@ -72,30 +72,10 @@ int LastingContacts::place(int body, double t, std::map<int, int>& places, const
 // Rods and joints of the group. Velocities: what the free step has made of them stays. Places: their errors go.
 void LastingContacts::add_rows(const Group& group, const std::vector<RigidBodyState>& states, double t, const std::map<int, int>& places, bool of_places,
                                ContactProblem& problem) {
-  std::vector<double> targets;
-  for (const Constraint& held : problem.rows) targets.push_back(-held.row.value);
-  int fixed = -1;
-  for (const int index : group.linked) {
-    LinkedBodies& linked = moving_.linked_groups()[index];
-    for (Constraint row : linked.constraint_rows(states, t)) {
-      const auto place_of = [&](int local) {
-        if (local < linked.fixed_end()) return places.at(linked.bodies()[local]);
-        if (fixed < 0) {
-          fixed = static_cast<int>(problem.bodies.size());
-          problem.bodies.push_back({0.0, Matrix3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()});
-        }
-        return fixed;
-      };
-      row.body_a = place_of(row.body_a);
-      row.body_b = place_of(row.body_b);
-      const auto rate = [&](int body, const Vector6d& jacobian) {
-        return jacobian.head<3>().dot(problem.bodies[body].velocity_world) + jacobian.tail<3>().dot(problem.bodies[body].omega_world);
-      };
-      targets.push_back(of_places ? -row.row.value : rate(row.body_a, row.row.jacobian_a) + rate(row.body_b, row.row.jacobian_b));
-      problem.rows.push_back(row);
-    }
-  }
-  problem.row_targets = Eigen::Map<const VectorXd>(targets.data(), static_cast<Eigen::Index>(targets.size()));
+  for (const int index : group.linked) engines::add_rows(moving_.linked_groups()[static_cast<std::size_t>(index)], states, t, places, problem);
+  if (!of_places) return keep_rates(problem);
+  problem.row_targets.resize(static_cast<Eigen::Index>(problem.rows.size()));
+  for (std::size_t k = 0; k < problem.rows.size(); ++k) problem.row_targets[static_cast<Eigen::Index>(k)] = -problem.rows[k].row.value;
 }
 
 // Over a step of length h, which changes the velocities that the bodies would end with; with h = 0 those that they have now.

@@ -35,6 +35,9 @@
 /// | contact_unsolved | what impulses of contacts left of approach and slip, over the group's speed [-]        | never     |
 /// | energy_rises     | rise of E above its least value so far, where nothing brings energy in, over what there was to begin with [-] | never |
 ///
+/// Besides, whatever the scene asks: `impact_energy`, the kinetic energy of all that an impact changed, measured against what restitution and
+/// friction say (`Event::energy_excess`), over the kinetic energy before; seen from what is driven. It is reported where it is wrong only.
+///
 /// Energies are compared with the kinetic energy at `at_s` plus the deepest fall of the potential energy below its value there:
 /// what a run makes from nothing is not in it, so that it cannot widen its own pass mark.
 /// What rounding leaves of a sum is not held against a run: of an energy eps of its terms, times the root of the number of steps; of a gap
@@ -67,7 +70,7 @@ struct CheckResult {
 /// @throws UserError at the first check that names a unit which is not its kind's
 void refuse_other_units(const scene::Scene& scene);
 
-/// One result a check, in the scene's order, then one for each of the run's faults. @throws UserError for a kind of check that is not known.
+/// One result a check, in the scene's order, then one for each of the run's faults and one where an impact changed the energy by what no law allows. @throws UserError for a kind of check that is not known.
 std::vector<CheckResult> judge_run(const scene::Scene& scene, const Trajectory& run);
 
 }  // namespace tumble::engines

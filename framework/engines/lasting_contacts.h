@@ -147,6 +147,7 @@ class LastingContacts {
   std::optional<double> sort_out_landings(const Group& group, std::vector<Touch>& touches, double h);
   bool strike_what_is_down(const Group& group, const std::vector<Touch>& touches);
   bool strike(const Group& group, std::vector<Touch> down);
+  static std::vector<int> touched_bodies(const Group& group, const std::vector<Touch>& touches);
   bool is_curved(const Group& group) const;
   bool are_balls(Pair pair) const;
   bool flies_off(Pair pair, const std::vector<RigidBodyState>& states) const;

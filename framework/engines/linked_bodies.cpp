@@ -253,6 +253,31 @@ std::vector<Constraint> LinkedBodies::constraint_rows(const std::vector<RigidBod
   return all;
 }
 
+void add_rows(LinkedBodies& group, const std::vector<RigidBodyState>& states, double t, const std::map<int, int>& places, ContactProblem& problem) {
+  const int fixed = static_cast<int>(problem.bodies.size());
+  bool uses_fixed = false;
+  for (Constraint row : group.constraint_rows(states, t)) {
+    for (int* const body : {&row.body_a, &row.body_b}) {
+      uses_fixed = uses_fixed || *body >= group.fixed_end();
+      *body = *body < group.fixed_end() ? places.at(group.bodies()[static_cast<std::size_t>(*body)]) : fixed;
+    }
+    problem.rows.push_back(row);
+  }
+  if (uses_fixed) problem.bodies.push_back({0.0, Matrix3d::Zero(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::Zero()});
+}
+
+void keep_rates(ContactProblem& problem) {
+  const auto rate = [&](int body, const Vector6d& jacobian) {
+    const PushedBody& pushed = problem.bodies[static_cast<std::size_t>(body)];
+    return jacobian.head<3>().dot(pushed.velocity_world) + jacobian.tail<3>().dot(pushed.omega_world);
+  };
+  problem.row_targets.resize(static_cast<Eigen::Index>(problem.rows.size()));
+  for (std::size_t k = 0; k < problem.rows.size(); ++k) {
+    const auto& [a, b, row] = problem.rows[k];
+    problem.row_targets[static_cast<Eigen::Index>(k)] = rate(a, row.jacobian_a) + rate(b, row.jacobian_b);
+  }
+}
+
 VectorXd LinkedBodies::add_constraint_forces(const std::vector<Body>& bodies, const std::vector<RigidBodyState>& local, std::vector<Wrench>& wrenches) {
   const StageTimer timer(counters_.constraint_seconds);
   const std::vector<Constraint> all = rows(bodies);
@@ -333,23 +358,57 @@ double LinkedBodies::open_part(const std::vector<Body>& bodies, const std::vecto
   return worst == 0.0 ? 0.0 : worst / size;
 }
 
+std::vector<ConstrainedBody> LinkedBodies::constrained(const std::vector<Body>& bodies) {
+  std::vector<ConstrainedBody> result;
+  result.reserve(bodies.size());
+  for (const Body& body : bodies) result.push_back({body.inertia.inverse_mass, inverse_inertia_world(body), Vector6d::Zero()});
+  return result;
+}
+
+VectorXd LinkedBodies::correction(const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies, const VectorXd& error) {
+  ++counters_.constraint_corrections;
+  VectorXd change = laws_.constraint_correction(rows, bodies, error);
+  if (change.size() != 6 * static_cast<Eigen::Index>(bodies.size()))
+    throw StoppedRun("rods and joints (constraint_correction of " + laws_.constraint_source + ") returned " + std::to_string(change.size()) + " numbers instead of 6 a body");
+  return change;
+}
+
+LinkedBodies::Instant LinkedBodies::at_instant(const std::vector<RigidBodyState>& states, double t) try {
+  const std::vector<Body> bodies = place_bodies(take(states), t);
+  return {rows(bodies), constrained(bodies)};
+} catch (const OutOfTime&) {
+  throw;
+} catch (const StoppedRun& stop) {
+  throw StoppedRun(whose() + ": " + stop.what());
+}
+
+VectorXd LinkedBodies::reaction(const Instant& instant, const VectorXd& change) try {
+  const StageTimer timer(counters_.constraint_seconds);
+  const auto rate = [&](int body, const Vector6d& jacobian) { return jacobian.dot(change.segment<6>(6 * static_cast<Eigen::Index>(body))); };
+  VectorXd error(static_cast<Eigen::Index>(instant.rows.size()));
+  for (std::size_t k = 0; k < instant.rows.size(); ++k) {
+    const auto& [a, b, row] = instant.rows[k];
+    error[static_cast<Eigen::Index>(k)] = rate(a, row.jacobian_a) + rate(b, row.jacobian_b);
+  }
+  return correction(instant.rows, instant.bodies, error);
+} catch (const OutOfTime&) {
+  throw;
+} catch (const StoppedRun& stop) {
+  throw StoppedRun(whose() + ": " + stop.what());
+}
+
 void LinkedBodies::project_local(std::vector<RigidBodyState>& local, double t, bool places) try {
   const StageTimer timer(counters_.constraint_seconds);
-  const auto correction = [&](const std::vector<Body>& bodies, const std::vector<Constraint>& all, bool of_places) {
-    std::vector<ConstrainedBody> constrained;
-    for (const Body& body : bodies) constrained.push_back({body.inertia.inverse_mass, inverse_inertia_world(body), Vector6d::Zero()});
+  const auto correct = [&](const std::vector<Body>& bodies, const std::vector<Constraint>& all, bool of_places) {
     VectorXd error(static_cast<Eigen::Index>(all.size()));
     for (std::size_t k = 0; k < all.size(); ++k) error[static_cast<Eigen::Index>(k)] = of_places ? all[k].row.value : all[k].row.rate;
-    ++counters_.constraint_corrections;
-    const VectorXd change = laws_.constraint_correction(all, constrained, error);
-    if (change.size() != 6 * static_cast<Eigen::Index>(bodies.size())) throw StoppedRun("rods and joints (constraint_correction of " + laws_.constraint_source + ") returned " + std::to_string(change.size()) + " numbers instead of 6 a body");
-    return change;
+    return correction(all, constrained(bodies), error);
   };
   std::vector<Body> bodies = place_bodies(local, t);
   std::vector<Constraint> all = rows(bodies);
   for (int round = 0; places && round < kMostProjections; ++round) {
     if (open_part(bodies, all) <= kOnConstraint) break;
-    const VectorXd change = correction(bodies, all, true);
+    const VectorXd change = correct(bodies, all, true);
     for (std::size_t i = 0; i < local.size(); ++i) {
       const Eigen::Index at = 6 * static_cast<Eigen::Index>(i);
       // Momenta follow: the velocities stay, and with them, for a turned body, the angular velocity rather than its momentum.
@@ -363,7 +422,7 @@ void LinkedBodies::project_local(std::vector<RigidBodyState>& local, double t, b
     all = rows(bodies);
   }
   if (const double left = places ? open_part(bodies, all) : 0.0; !(left <= kProjected)) counters_.watch.note(RunWatch::Kind::kProjectionOpen, whose(), {left, kProjected, t, step_});
-  const VectorXd change = correction(bodies, all, false);
+  const VectorXd change = correct(bodies, all, false);
   for (std::size_t i = 0; i < local.size(); ++i) {
     const Eigen::Index at = 6 * static_cast<Eigen::Index>(i);
     local[i].momentum_world += bodies[i].inertia.mass * change.segment<3>(at);

@@ -7,10 +7,12 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "framework/dynamics/contact_problem.h"
 #include "framework/dynamics/laws.h"
 #include "framework/dynamics/world.h"
 #include "framework/engines/effects_built.h"
@@ -53,7 +55,18 @@ class LinkedBodies {
   /// States of bodies() after a step of the laws' method. @param states  by body of the world, at t
   std::vector<RigidBodyState> advance(const std::vector<RigidBodyState>& states, double t, double h);
 
-  /// Velocities onto the constraints (after an impact): the change that is smallest in the measure of the masses.
+  /// The rows of rods and joints at one instant, and the bodies between which they stand: bodies(), then fixed_ends().
+  struct Instant {
+    std::vector<Constraint> rows;
+    std::vector<ConstrainedBody> bodies;
+  };
+  Instant at_instant(const std::vector<RigidBodyState>& states, double t);
+  /// What rods and joints add to a sudden change of velocities: impulses of their own, after which their rates are what they were.
+  /// @param change  (6 a body of the instant): linear, angular, world [m/s, rad/s]
+  /// @return the same: smallest in the measure of the masses; 0 for fixed ends
+  VectorXd reaction(const Instant& instant, const VectorXd& change);
+
+  /// Velocities onto the constraints (where a callback or rounding left them off): the change that is smallest in the measure of the masses.
   void project_velocities(std::vector<RigidBodyState>& states, double t);
   /// Places, then velocities, onto the constraints.
   void project(std::vector<RigidBodyState>& states, double t);
@@ -95,6 +108,8 @@ class LinkedBodies {
   void measure_springs(const std::vector<Body>& bodies, LinkForces& measured);
   VectorXd add_constraint_forces(const std::vector<Body>& bodies, const std::vector<RigidBodyState>& local, std::vector<Wrench>& wrenches);
   VectorXd derivative(double t, const VectorXd& y);
+  static std::vector<ConstrainedBody> constrained(const std::vector<Body>& bodies);
+  VectorXd correction(const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies, const VectorXd& error);
   void project_local(std::vector<RigidBodyState>& local, double t, bool places);
   std::vector<RigidBodyState> take(const std::vector<RigidBodyState>& states) const;
   void put(const std::vector<RigidBodyState>& local, std::vector<RigidBodyState>& states) const;
@@ -112,6 +127,13 @@ class LinkedBodies {
   double time_of_stage_ = 0.0;
   double step_ = kUnset;   // the last that advance() took [s]
 };
+
+/// Adds the rows of a group's rods and joints, where its bodies stand, to a problem of impulses.
+/// @param places  of its movable bodies in the problem, by body of the world; all fixed ends become one body that cannot be pushed
+void add_rows(LinkedBodies& group, const std::vector<RigidBodyState>& states, double t, const std::map<int, int>& places, ContactProblem& problem);
+
+/// Rows are to have the rates afterwards that the problem's bodies give them before.
+void keep_rates(ContactProblem& problem);
 
 /// The groups of a world: movable bodies that links tie together, each with what its links need. Bodies without links are in none.
 std::vector<std::vector<int>> groups_of_linked_bodies(const World& world);

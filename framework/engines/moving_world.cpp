@@ -59,6 +59,9 @@ MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters, s
 void MovingWorld::stand_at(double time, const std::vector<RigidBodyState>& states) {
   time_ = target_ = time;
   states_ = states;
+  // Immovable bodies stand where their motion has taken them by then, whatever `states` says of them.
+  for (int i = 0; i < size(); ++i)
+    if (world_.bodies[i].immovable()) states_[i].com_world = prescribed_position(world_.bodies[i], time);
 }
 
 void MovingWorld::set_active_forces(std::vector<int> active, std::vector<Vector3d> points_body) {

@@ -40,6 +40,7 @@ class MovingWorld {
   MovingWorld& operator=(const MovingWorld&) = delete;
 
   /// Stands at another time in other states; no step is under way.
+  /// @param states  by body; those of immovable bodies are not looked at: driven ones stand where they are at that time
   void stand_at(double time, const std::vector<RigidBodyState>& states);
   /// The forces that act, and the points of the bodies that they act on (by force of the world, body frame).
   void set_active_forces(std::vector<int> active, std::vector<Vector3d> points_body);
@@ -89,7 +90,7 @@ class MovingWorld {
   void close_links(std::vector<RigidBodyState>& states, double t);
   /// At the end of a step of length h: notes rods and joints that have come apart.
   void watch_links(double h);
-  /// After impacts or callbacks: velocities of the bodies joined to those that were hit or called back onto the constraints. @return whether there are any
+  /// After callbacks: velocities of the bodies joined to those that were called back onto the constraints. @return whether there are any
   bool keep_constraints(const std::vector<Event>& events);
   /// From here on to the step's target the body goes from `start` (at time(); its velocities may jump there) to `end`.
   void set_path(int body, const RigidBodyState& start, const RigidBodyState& end, SmoothPath::Momenta momenta = SmoothPath::Momenta::kOfPath);

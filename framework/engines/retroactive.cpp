@@ -20,7 +20,6 @@ namespace {
 // A support that leans by less [rad] counts as level: in 100 s a ball would slide 5e-8 m.
 constexpr double kLevel = 1e-12;
 constexpr double kNoStep = 1e-9;         // of the step: a shorter last one is taken with the one before
-constexpr int kMostPassings = 100;        // of a blow to and fro between bodies that touch and bodies that are joined
 constexpr int kMostIdleSteps = 1000;      // in a row without progress of time
 constexpr int kMostImpactsAStep = 20000;  // of one pair: a Zeno sequence that needs a lasting contact
 
@@ -155,15 +154,8 @@ void RetroactiveRun::resolve_at(const std::vector<std::pair<int, int>>& pairs, s
     if (has_sleepers()) sleepers_->wake(pair);
   }
   const std::string subject = fmt::format("bodies {} and {}", name(trigger.first), name(trigger.second));
-  Resolution resolution = naming(subject, [&] { return impacts_.resolve(moving_, touching, trigger_index); });
+  const Resolution resolution = naming(subject, [&] { return impacts_.resolve(moving_, touching, trigger_index); });
   for (const Event& event : resolution.events) sink_.event(event);
-  // Rods and joints pass the blow on; where that makes bodies approach again they meet again, until neither changes anything.
-  for (int round = 0; round < kMostPassings && moving_.keep_constraints(resolution.events); ++round) {
-    const Resolution echo = naming(subject, [&] { return impacts_.resolve(moving_, touching, trigger_index); });
-    if (echo.events.empty()) break;
-    for (const Event& event : echo.events) sink_.event(event);
-    resolution.events.insert(resolution.events.end(), echo.events.begin(), echo.events.end());
-  }
   for (const Event& event : resolution.events) energy_watch_.note(event);
   if (!resolution.settled)
     stopped_by_ = fmt::format("at t = {:.6f} s, {}: collision (collision_impulse, apply_impulse of {}) left them approaching, however often it was "

@@ -5,7 +5,10 @@
 #include <limits>
 #include <set>
 
-#include "framework/dynamics/contact_problem.h"
+#include <fmt/format.h>
+
+#include "framework/dynamics/point_impact.h"
+#include "framework/engines/guarded_laws.h"
 
 namespace tumble::engines {
 namespace {
@@ -16,6 +19,9 @@ constexpr double kRoundOffOfSpeed = 1e-13;
 constexpr double kRoundOffOfSliding = 64 * std::numeric_limits<double>::epsilon();
 constexpr int kRoundsAmongContacts = 60;   // bodies in lasting contact pass a blow on in ever smaller parts
 constexpr int kMostRounds = 10000;  // restitution 0.99 in a row of 50 balls takes some hundred
+// Of K of the free bodies: what rounding leaves where rods and joints hold both bodies completely along the normal.
+constexpr double kImmovable = 1e-12;
+constexpr double kRoundOffOfEnergy = 1e-11;   // of the work of the impulses: what the tolerance of the contact problem leaves
 
 // Of the rest speed: pushes of touching pairs approach it together, each round by a part of what is missing.
 constexpr double kFastEnough = 0.5;
@@ -24,16 +30,16 @@ constexpr int kMostPushes = 200;
 Contact contact_of(const TouchingPair& pair, const Vector3d& point_world) { return {point_world, pair.gap.normal_b_to_a_world}; }
 
 struct Approach {
-  double velocity;      // [m/s], negative when approaching
-  Vector3d point_world;
+  double velocity;               // [m/s], negative when approaching
+  const Vector3d* point_world;   // of the pair's points
 };
 
 // The middle counts first, so that a flat landing does not tip over its corners in turn.
 Approach fastest_approach(const Laws& laws, const TouchingPair& pair, const Body& a, const Body& b, double threshold) {
-  Approach fastest{std::numeric_limits<double>::infinity(), pair.points_world[0]};
+  Approach fastest{std::numeric_limits<double>::infinity(), &pair.points_world[0]};
   for (const Vector3d& point : pair.points_world) {
     const double velocity = laws.relative_normal_velocity(contact_of(pair, point), a, b);
-    if (velocity < fastest.velocity) fastest = {velocity, point};
+    if (velocity < fastest.velocity) fastest = {velocity, &point};
     if (&point == &pair.points_world[0] && velocity < -threshold) break;
   }
   return fastest;
@@ -44,22 +50,9 @@ double speed_at(const Body& body, const Vector3d& point_world) {
   return body.velocity_world.norm() + body.omega_world.norm() * (point_world - body.com_world).norm();
 }
 
-// By how much a unit impulse at the point changes the velocity of the point along a direction. [1/kg]
-double compliance(const Vector3d& point_world, const Vector3d& direction_world, const Body& body) {
-  const Vector3d arm = point_world - body.com_world;
-  const Matrix3d R = body.world_from_body.toRotationMatrix();
-  const Vector3d turn_body = R.transpose() * arm.cross(direction_world);
-  return body.inertia.inverse_mass + turn_body.dot(body.inertia.inverse_inertia_body * turn_body);
-}
-
-Vector3d relative_velocity(const Vector3d& point_world, const Body& a, const Body& b) {
-  const auto of_point = [&](const Body& body) -> Vector3d { return body.velocity_world + body.omega_world.cross(point_world - body.com_world); };
-  return of_point(a) - of_point(b);
-}
-
 // Not by the law that is being judged: a record of what the impulse did.
 double normal_velocity(const Contact& contact, const Body& a, const Body& b) {
-  return contact.normal_b_to_a_world.dot(relative_velocity(contact.point_world, a, b));
+  return contact.normal_b_to_a_world.dot(relative_velocity(a, b, contact.point_world));
 }
 
 // The blows that pairs have struck at one instant as one each: all they gave, from the fastest approach on. A heap hands a blow to and fro ten
@@ -77,6 +70,8 @@ std::vector<Event> one_a_pair(const std::vector<Event>& events) {
     sum.impulse += event.impulse;
     sum.normal_velocity_before = std::min(sum.normal_velocity_before, event.normal_velocity_before);
     sum.normal_velocity_after = event.normal_velocity_after;
+    sum.energy_change += event.energy_change;
+    sum.energy_excess = std::max(sum.energy_excess, event.energy_excess);
   }
   return sums;
 }
@@ -87,37 +82,18 @@ double friction_of(const World& world, const TouchingPair& pair) { return !built
 }  // namespace
 
 struct SequentialImpacts::Work {
-  MovingWorld& moving;
-  std::map<int, Body> bodies;     // as they are between impulses
-  std::set<int> changed;
+  ImpactBodies bodies;            // as they are between impulses
   Resolution result;
+  std::map<const Vector3d*, ImpactBodies::Answer> answers;   // at points of pairs: places stay as they are
 
-  Body& body(int index) {
-    const auto found = bodies.find(index);
-    return found != bodies.end() ? found->second : bodies.emplace(index, moving.body_at_impact(index)).first->second;
-  }
+  Work(MovingWorld& moving, const Laws& laws) : bodies(moving, laws) {}
+  Body& body(int index) { return bodies.body(index); }
+  const World& world() { return bodies.moving().world(); }
 
-  // `impulse` along the direction on A, its opposite on B.
-  void push(const Laws& laws, const TouchingPair& pair, const Vector3d& point_world, const Vector3d& direction_world, double impulse) {
-    for (const auto& [index, size] : {std::pair{pair.a, impulse}, std::pair{pair.b, -impulse}}) {
-      Body& pushed = body(index);
-      if (pushed.inertia.inverse_mass == 0.0) continue;
-      if (moving.resting(index)) moving.wake(index);   // its mass was part of the impulse: it takes its share
-      const Velocity after = laws.apply_impulse(pushed, size * direction_world, point_world);
-      pushed.velocity_world = after.linear_world;
-      pushed.omega_world = after.angular_world;
-      changed.insert(index);
-    }
-  }
-
-  void write_back() {
-    for (const int index : changed) {
-      const Body& pushed = bodies.at(index);
-      RigidBodyState state = moving.state(index);
-      state.momentum_world = pushed.inertia.mass * pushed.velocity_world;
-      state.angular_momentum_world = angular_momentum_of(pushed.omega_world, pushed.world_from_body, pushed.inertia);
-      moving.set_state(index, state);
-    }
+  const ImpactBodies::Answer& answer(const TouchingPair& pair, const Vector3d& point, bool with_tangents) {
+    const auto [found, is_new] = answers.try_emplace(&point);
+    if (is_new || (with_tangents && found->second.directions.cols() == 1)) found->second = bodies.answer({pair.a, pair.b, point, pair.gap.normal_b_to_a_world}, with_tangents);
+    return found->second;
   }
 };
 
@@ -126,49 +102,129 @@ bool SequentialImpacts::stays(const World& world, const TouchingPair& pair, doub
   return contact_rest_speed_ && laws_.ends_in_contact(approach_speed, restitution, *contact_rest_speed_);
 }
 
+double SequentialImpacts::friction_at_impact(const World& world, const TouchingPair& pair) const {
+  return built::kFriction && contact_rest_speed_ ? friction_of(world, pair) : 0.0;
+}
+
 bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double threshold) {
   Body& a = work.body(pair.a);
   Body& b = work.body(pair.b);
-  const auto [approach, point_world] = fastest_approach(laws_, pair, a, b, threshold);
+  auto [approach, point] = fastest_approach(laws_, pair, a, b, threshold);
   if (!(approach < -threshold)) return false;
-  const Contact contact = contact_of(pair, point_world);
-  double restitution = restitution_of(work.moving.world(), pair);
-  if (stays(work.moving.world(), pair, -approach)) restitution = 0.0;
-  const double impulse = laws_.collision_impulse(contact, a, b, restitution);
-  work.push(laws_, pair, contact.point_world, contact.normal_b_to_a_world, impulse);
-  if (built::kFriction && contact_rest_speed_) rub(work, pair, contact, impulse);
+  const bool is_held = work.bodies.is_held(pair.a, pair.b);
+  if (is_held && work.bodies.put_on_constraints(pair.a, pair.b)) {
+    const Approach now = fastest_approach(laws_, pair, a, b, threshold);
+    approach = now.velocity;
+    point = now.point_world;
+    if (!(approach < -threshold)) return false;
+  }
+  const Contact contact = contact_of(pair, *point);
+  const TouchedPoint touched{pair.a, pair.b, contact.point_world, contact.normal_b_to_a_world};
+  const double restitution = stays(work.world(), pair, -approach) ? 0.0 : restitution_of(work.world(), pair);
+  const double friction = friction_at_impact(work.world(), pair);
+
+  // The law's impulse is that of the free bodies without friction: what holds them makes it smaller, friction at the point both.
+  double impulse = laws_.collision_impulse(contact, a, b, restitution), by_law = 0.5 * impulse * (1 - restitution) * approach;
+  Vector3d impulse_world = impulse * contact.normal_b_to_a_world;
+  static const ImpactBodies::Answer free_bodies;
+  const ImpactBodies::Answer* answer = &free_bodies;
+  if (is_held || friction > 0) {
+    answer = &work.answer(pair, *point, friction > 0);
+    const double free = answer->free_along(contact.normal_b_to_a_world), held = answer->held_normal();
+    if (!(held > kImmovable * free))
+      throw StoppedRun(fmt::format("they approach at {:.3g} m/s, and rods and joints hold both completely along the normal of the contact: no impulse can keep them apart. What drives them together (\"motion\") must leave them room",
+                                   -approach));
+    impulse *= free / held;
+    impulse_world = impulse * contact.normal_b_to_a_world;
+    by_law = 0.5 * impulse * (1 - restitution) * approach;
+    if (friction > 0) {
+      ++counters_.friction_points;
+      const Vector3d velocity = relative_velocity(a, b, contact.point_world);
+      const Matrix3d K = answer->held_world();
+      impulse_world = impulse_of({K, velocity, contact.normal_b_to_a_world, held * impulse, friction}).impulse_on_a_world;
+      impulse = impulse_world.dot(contact.normal_b_to_a_world);
+      by_law = energy_of(impulse_world, velocity, K);
+    }
+  }
+  const EnergyOfImpact energy = work.bodies.push(touched, *answer, impulse_world);
   ++counters_.impulses;
-  work.result.events.push_back({work.moving.time(), EventKind::kCollision, pair.a, pair.b, contact.point_world,
-                                contact.normal_b_to_a_world, impulse, approach, normal_velocity(contact, a, b)});
+  work.result.events.push_back({work.bodies.moving().time(), EventKind::kCollision, pair.a, pair.b, contact.point_world, contact.normal_b_to_a_world, impulse, approach,
+                                normal_velocity(contact, a, b), energy.change, energy.excess(by_law)});
   return true;
 }
 
-// Friction of an impact: against the sliding, at most what friction allows and at most what ends the sliding along its direction. It takes
-// energy, never gives any: w p^2 / 2 - |slip| p <= 0 for 0 <= p <= |slip| / w.
-void SequentialImpacts::rub(Work& work, const TouchingPair& pair, const Contact& contact, double impulse) {
-  const double friction = friction_of(work.moving.world(), pair);
-  if (!(friction > 0)) return;
-  ++counters_.friction_points;
-  const Vector3d relative = relative_velocity(contact.point_world, work.body(pair.a), work.body(pair.b)), &n = contact.normal_b_to_a_world;
-  const Vector3d slip = relative - relative.dot(n) * n;
-  const double speed = slip.norm();
-  if (!(speed > 0)) return;
-  const Vector3d along = slip / speed;
-  const double yielding = compliance(contact.point_world, along, work.body(pair.a)) + compliance(contact.point_world, along, work.body(pair.b));
-  work.push(laws_, pair, contact.point_world, along, -std::min(friction * impulse, speed / yielding));
+namespace {
+
+double size_of_work(const ContactProblem& problem, const ContactSolution& solution) {
+  double size = 0.0;
+  for (std::size_t i = 0; i < problem.contacts.size(); ++i)
+    for (const int body : {problem.contacts[i].body_a, problem.contacts[i].body_b})
+      size += solution.impulses_world[i].norm() * (problem.bodies[body].velocity_world.norm() + solution.velocities[body].linear_world.norm());
+  return size;
 }
 
-// Newton's law of restitution for all pairs at once: v_n' >= -e v_n where they approach, v_n' >= 0 elsewhere, with friction.
+}  // namespace
+
+// Newton's restitution at all contacts, as far as it creates no energy.
+ContactSolution SequentialImpacts::solve_without_gain(const ContactProblem& problem) {
+  const std::vector<Velocity> before = velocities_of(problem);
+  const auto solve = [&](const ContactProblem& asked) {
+    ++counters_.contact_solves;
+    return solve_contacts(asked);
+  };
+  ContactSolution whole = solve(problem);
+  const auto gains = [&](const ContactSolution& solution) { return work_of(problem, solution.impulses_world, before, solution.velocities) > kRoundOffOfEnergy * size_of_work(problem, solution); };
+  if (!gains(whole)) return whole;
+  ContactProblem less = problem;
+  for (PushingContact& contact : less.contacts) contact.friction = 0.0;
+  ContactSolution base = solve(less);
+  if (gains(base)) {
+    less = problem;
+    for (PushingContact& contact : less.contacts) contact.target = 0.0;
+    base = solve(less);
+  }
+  // On the line between the two all laws but Coulomb's on the slip hold as they do at both ends, and energy is a parabola.
+  const auto mixed = [](double share, const auto& from, const auto& to) { return (from + share * (to - from)).eval(); };
+  ContactSolution difference = whole;
+  std::vector<Velocity> change = whole.velocities;
+  for (std::size_t i = 0; i < whole.impulses_world.size(); ++i) difference.impulses_world[i] -= base.impulses_world[i];
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] = {change[i].linear_world - base.velocities[i].linear_world, change[i].angular_world - base.velocities[i].angular_world};
+  const std::vector<Velocity> none(change.size(), {Vector3d::Zero(), Vector3d::Zero()});
+  const double bend = work_of(problem, difference.impulses_world, none, change);
+  const double slope = work_of(problem, difference.impulses_world, before, base.velocities) + work_of(problem, base.impulses_world, none, change);
+  const double share = share_without_gain(work_of(problem, base.impulses_world, before, base.velocities), slope, bend);
+  for (std::size_t i = 0; i < whole.impulses_world.size(); ++i) whole.impulses_world[i] = mixed(share, base.impulses_world[i], whole.impulses_world[i]);
+  for (std::size_t i = 0; i < whole.velocities.size(); ++i)
+    whole.velocities[i] = {mixed(share, base.velocities[i].linear_world, whole.velocities[i].linear_world), mixed(share, base.velocities[i].angular_world, whole.velocities[i].angular_world)};
+  return whole;
+}
+
+// Newton's law of restitution for all pairs at once: v_n' >= -e v_n where they approach, v_n' >= 0 elsewhere, with friction, and with the
+// rows of what is linked to them.
 void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingPair>& pairs, double threshold, bool rebounds) {
+  const auto first_corner = [](const TouchingPair& pair) { return pair.points_world.size() > 1 ? 1u : 0u; };   // corners carry; the middle lies between them
+  const auto approach_at = [&](const TouchingPair& pair, std::size_t k) { return laws_.relative_normal_velocity(contact_of(pair, pair.points_world[k]), work.body(pair.a), work.body(pair.b)); };
+  const auto approaches = [&](const TouchingPair& pair) {
+    for (std::size_t k = first_corner(pair); k < pair.points_world.size(); ++k)
+      if (approach_at(pair, k) < -threshold) return true;
+    return false;
+  };
+  if (std::none_of(pairs.begin(), pairs.end(), approaches)) return;
+  for (const TouchingPair& pair : pairs) work.bodies.put_on_constraints(pair.a, pair.b);
+
+  // Bodies: those that touch, and what is linked to them.
+  MovingWorld& moving = work.bodies.moving();
   ContactProblem problem;
   std::map<int, int> places;
+  std::vector<int> held_groups;
   const auto place = [&](int index) {
     const auto [found, is_new] = places.try_emplace(index, static_cast<int>(problem.bodies.size()));
     if (!is_new) return found->second;
-    if (work.moving.resting(index)) work.moving.wake(index);
+    if (moving.resting(index)) moving.wake(index);
     const Body& body = work.body(index);
     const Matrix3d R = body.world_from_body.toRotationMatrix();
     problem.bodies.push_back({body.inertia.inverse_mass, R * body.inertia.inverse_inertia_body * R.transpose(), body.com_world, body.velocity_world, body.omega_world});
+    if (const int group = work.bodies.held_group(index); group >= 0 && std::find(held_groups.begin(), held_groups.end(), group) == held_groups.end()) held_groups.push_back(group);
     return found->second;
   };
   struct Met {
@@ -176,53 +232,60 @@ void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingP
     double approach;
   };
   std::vector<Met> met;
-  bool any = false;
-  for (const TouchingPair& pair : pairs) {
-    const std::size_t first = pair.points_world.size() > 1 ? 1 : 0;   // corners carry; the middle lies between them
-    for (std::size_t k = first; k < pair.points_world.size(); ++k) {
-      const double approach = laws_.relative_normal_velocity(contact_of(pair, pair.points_world[k]), work.body(pair.a), work.body(pair.b));
-      const double restitution = !rebounds || stays(work.moving.world(), pair, -approach) ? 0.0 : restitution_of(work.moving.world(), pair);
-      any = any || approach < -threshold;
-      problem.contacts.push_back({place(pair.a), place(pair.b), pair.points_world[k], pair.gap.normal_b_to_a_world, friction_of(work.moving.world(), pair),
+  for (const TouchingPair& pair : pairs)
+    for (std::size_t k = first_corner(pair); k < pair.points_world.size(); ++k) {
+      const double approach = approach_at(pair, k);
+      const double restitution = !rebounds || stays(work.world(), pair, -approach) ? 0.0 : restitution_of(work.world(), pair);
+      problem.contacts.push_back({place(pair.a), place(pair.b), pair.points_world[k], pair.gap.normal_b_to_a_world, friction_of(work.world(), pair),
                                   approach < 0 ? -restitution * approach : 0.0, Vector3d::Zero()});
       met.push_back({&pair, approach});
     }
-  }
-  if (!any) return;
-  const ContactSolution solution = solve_contacts(problem);
-  ++counters_.contact_solves;
+  for (const int group : held_groups)
+    for (const int member : moving.linked_groups()[static_cast<std::size_t>(group)].bodies()) place(member);
+  for (const int group : held_groups) add_rows(moving.linked_groups()[static_cast<std::size_t>(group)], moving.states(), moving.time(), places, problem);
+  keep_rates(problem);
+
+  const std::vector<Velocity> before = velocities_of(problem);
+  const ContactSolution solution = solve_without_gain(problem);
+  std::vector<int> all;
+  for (const auto& [index, at] : places) all.push_back(index);
+  const Vector3d driven = work.bodies.driven_velocity(all).value_or(Vector3d::Constant(kUnset));
+  EnergyOfImpact energy;
   for (const auto& [index, at] : places) {
-    Body& body = work.body(index);
+    const Body& body = work.body(index);
     if (body.inertia.inverse_mass == 0.0) continue;
-    body.velocity_world = solution.velocities[at].linear_world;
-    body.omega_world = solution.velocities[at].angular_world;
-    work.changed.insert(index);
+    energy.add(body.inertia, body.world_from_body, before[at], solution.velocities[at], driven);
+    work.bodies.set_velocity(index, solution.velocities[at]);
   }
+  const double excess = energy.excess(solution.converged ? work_of(problem, solution.impulses_world, before, solution.velocities) : energy.change);   // unsolved: never more is all that can be asked
+  bool is_first = true;
   for (std::size_t i = 0; i < met.size(); ++i) {
     const TouchingPair& pair = *met[i].pair;
     const double impulse = solution.impulses_world[i].dot(pair.gap.normal_b_to_a_world);
     if (!(impulse > 0)) continue;
     ++counters_.impulses;
     const Contact contact = contact_of(pair, problem.contacts[i].point_world);
-    work.result.events.push_back({work.moving.time(), EventKind::kCollision, pair.a, pair.b, contact.point_world, contact.normal_b_to_a_world, impulse, met[i].approach,
-                                  normal_velocity(contact, work.body(pair.a), work.body(pair.b))});
+    // The energy of all, which the first stands for.
+    work.result.events.push_back({moving.time(), EventKind::kCollision, pair.a, pair.b, contact.point_world, contact.normal_b_to_a_world, impulse, met[i].approach,
+                                  normal_velocity(contact, work.body(pair.a), work.body(pair.b)), is_first ? energy.change : 0.0, is_first ? excess : 0.0});
+    is_first = false;
   }
 }
 
 bool SequentialImpacts::push_pair_apart(Work& work, const TouchingPair& pair) {
-  const auto [rate, point_world] = fastest_approach(laws_, pair, work.body(pair.a), work.body(pair.b), rules_.rest_speed);
+  const auto [rate, point] = fastest_approach(laws_, pair, work.body(pair.a), work.body(pair.b), rules_.rest_speed);
   if (rate >= kFastEnough * rules_.rest_speed) return false;
-  const Contact contact = contact_of(pair, point_world);
-  const double yielding = compliance(contact.point_world, contact.normal_b_to_a_world, work.body(pair.a)) +
-                          compliance(contact.point_world, contact.normal_b_to_a_world, work.body(pair.b));
-  work.push(laws_, pair, contact.point_world, contact.normal_b_to_a_world, (rules_.rest_speed - rate) / yielding);
+  const Vector3d& n = pair.gap.normal_b_to_a_world;
+  const ImpactBodies::Answer& answer = work.answer(pair, *point, false);
+  if (!(answer.held_normal() > kImmovable * answer.free_along(n))) return false;   // links hold both where they are
+  work.bodies.push({pair.a, pair.b, *point, n}, answer, (rules_.rest_speed - rate) / answer.held_normal() * n);
   ++counters_.micro_impacts;
   return true;
 }
 
 void SequentialImpacts::push_apart(MovingWorld& moving, const std::vector<TouchingPair>& touching, const std::vector<TouchingPair>& micro_impacts) {
   if (micro_impacts.empty()) return;
-  Work work{moving, {}, {}, {}};
+  Work work(moving, laws_);
   const auto had_micro_impact = [&](const TouchingPair& pair) {
     return std::any_of(micro_impacts.begin(), micro_impacts.end(), [&](const TouchingPair& m) { return m.a == pair.a && m.b == pair.b; });
   };
@@ -230,13 +293,13 @@ void SequentialImpacts::push_apart(MovingWorld& moving, const std::vector<Touchi
   for (int round = 0; again && round < kMostPushes; ++round) {
     again = false;
     for (const TouchingPair& pair : touching)
-      if (had_micro_impact(pair) || work.changed.contains(pair.a) || work.changed.contains(pair.b)) again = push_pair_apart(work, pair) || again;
+      if (had_micro_impact(pair) || work.bodies.changed().contains(pair.a) || work.bodies.changed().contains(pair.b)) again = push_pair_apart(work, pair) || again;
   }
-  work.write_back();
+  work.bodies.write_back();
 }
 
 Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<TouchingPair>& pairs, std::size_t trigger) {
-  Work work{moving, {}, {}, {}};
+  Work work(moving, laws_);
   double fastest = 0.0, sliding = 0.0;
   for (const TouchingPair& pair : pairs)
     for (const Vector3d& point : pair.points_world) {
@@ -275,7 +338,7 @@ Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<Tou
     if (in_vain || soon_again) work.result.micro_impacts.push_back(pair);
     last->second = moving.time();
   }
-  work.write_back();
+  work.bodies.write_back();
   ++counters_.impacts;
   return work.result;
 }

@@ -5,6 +5,11 @@
 /// of that region that approaches fastest; the round is repeated until no pair approaches faster than round-off. For equal balls in a row
 /// and restitution 1 this is Newton's cradle. Where restitution is below 1 the outcome depends on the order, which is therefore
 /// part of the law.
+///
+/// Bodies on rods and joints: the impulse acts on the constrained system (impact_bodies.h). Its size is that of the laws' collision_impulse
+/// for the free bodies, times K_free / K_held, so that the normal velocity after the links' reactions is what restitution says.
+/// Friction is solved together with the normal impulse (dynamics/point_impact.h): neither spoils what the other is to reach, and no impact
+/// creates energy.
 #pragma once
 
 #include <functional>
@@ -13,6 +18,8 @@
 #include <utility>
 #include <vector>
 
+#include "framework/dynamics/contact_problem.h"
+#include "framework/engines/impact_bodies.h"
 #include "framework/engines/moving_world.h"
 
 namespace tumble::engines {
@@ -41,9 +48,11 @@ class SequentialImpacts {
   SequentialImpacts(const Laws& laws, ImpactRules rules, RunCounters& counters) : laws_(laws), rules_(rules), counters_(counters) {}
 
   /// Impacts that would rebound more slowly than the rest speed (laws' ends_in_contact) do not rebound: they begin a lasting contact.
-  /// Pairs with friction slide less after an impact: Coulomb's law for the impulse. With the simultaneous law all touching pairs are
+  /// Pairs with friction slide less after an impact: Coulomb's law for the impulse, against the slip that is left. With the simultaneous law all touching pairs are
   /// solved together (Newton's law of restitution as complementarity): a row of equal balls hit by one then leaves with
-  /// (-3/5, 2/5, 2/5, 2/5, 2/5) of its speed, not as Newton's cradle does.
+  /// (-3/5, 2/5, 2/5, 2/5, 2/5) of its speed, not as Newton's cradle does. Where restitution at several points would create energy (unequal
+  /// restitutions, friction), as much of it is taken as creates none: on the line from there to the answer without friction, or, where that
+  /// creates energy too, to the one without rebound.
   void use_contact_rules(double rest_speed, scene::ImpactLaw law) {
     contact_rest_speed_ = rest_speed;
     law_ = law;
@@ -69,7 +78,8 @@ class SequentialImpacts {
   struct Work;
   bool push_pair_apart(Work& work, const TouchingPair& pair);
   bool collide(Work& work, const TouchingPair& pair, double threshold);
-  void rub(Work& work, const TouchingPair& pair, const Contact& contact, double impulse);
+  double friction_at_impact(const World& world, const TouchingPair& pair) const;
+  ContactSolution solve_without_gain(const ContactProblem& problem);
   void collide_together(Work& work, const std::vector<TouchingPair>& pairs, double threshold, bool rebounds);
 
   const Laws& laws_;

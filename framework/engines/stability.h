@@ -104,9 +104,10 @@ class EnergyWatch {
   /// @param rest_speed  below which impacts may do as they like: so little energy is not asked for [m/s];  @param step  of the run [s]
   EnergyWatch(double rest_speed, double step) : rest_speed_(rest_speed), step_(step) {}
 
-  /// An impact has taken place: its impulse has done the work j (u + u') / 2.
+  /// An impact has taken place: what it did to the energy, as measured; else the work j (u + u') / 2 of its impulse.
   void note(const Event& event) {
-    if (event.kind == EventKind::kCollision) by_blows_ += 0.5 * event.impulse * (event.normal_velocity_before + event.normal_velocity_after);
+    if (event.kind != EventKind::kCollision) return;
+    by_blows_ += event.energy_change == event.energy_change ? event.energy_change : 0.5 * event.impulse * (event.normal_velocity_before + event.normal_velocity_after);
   }
   /// @return nothing while all is well, and for worlds that are driven (point forces, motors, moving walls)
   std::optional<Runaway> look(double time, const World& world, const std::vector<RigidBodyState>& states);

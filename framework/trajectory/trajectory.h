@@ -55,6 +55,9 @@ struct Event {
   double impulse;                  // [N s], along the normal
   double normal_velocity_before;   // [m/s], negative when approaching
   double normal_velocity_after = kUnset;   // [m/s], of the same point, when the impulse has been applied; the framework measures it
+  // Of an impact, measured; not kept in files. NaN where it was not measured, or where bodies driven in different ways took part.
+  double energy_change = kUnset;           // of the kinetic energy of all bodies that the impulse changed, seen from what is driven [J]
+  double energy_excess = kUnset;           // how far that is from what restitution and friction say, over the kinetic energy before [-]
 };
 
 /// A reason not to trust a run, which the framework found while it went (engines/run_watch.h). A run that has one is judged wrong.

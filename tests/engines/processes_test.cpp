@@ -48,7 +48,7 @@ TEST(Processes, LinkedInTheCoursesScenesCommitTheReferencesTrace) {
 
 TEST(Processes, InLastingContactInTheCoursesScenesCommitTheReferencesTrace) {
   expect_one_trace(course_scene("drop_a_box", 1.5), 4);
-  expect_one_trace(course_scene("dropped_on_a_hung_block", 0.6), 50);
+  expect_one_trace(course_scene("dropped_on_a_hung_block", 0.6), 30);
   expect_one_trace(course_scene("card_tent", 0.8), 4);
   expect_one_trace(course_scene("bounce_to_rolling", 1.0), 4);
   const scene::Scene dominoes = course_scene("dominoes", 0.4);
@@ -136,7 +136,7 @@ TEST(Processes, OnSeveralThreadsCommitTheReferencesTrace) {
 
 // Of rocks it is what a body has gone on that grows too long, of bobs, which swing on one flight, the steps that their passages keep.
 TEST(CapOfStates, OfEightIsKeptByProcessesAndChangesNothing) {
-  for (const scene::Scene& scene : {sized("avalanche", 24, 1.0), pendula_and_balls(5, 0.9)}) {
+  for (const scene::Scene& scene : {sized("avalanche", 24, 2.5), pendula_and_balls(5, 0.9)}) {
     const Trajectory reference = run_with("ordered", scene);
     ASSERT_EQ(reference.stopped_by, "") << scene.name;
     const auto run_capped = [&](int threads, int most_states) {

@@ -8,6 +8,7 @@
 
 #include "framework/collision/contact_patch.h"
 #include "framework/engines/guarded_laws.h"
+#include "framework/engines/impact_bodies.h"
 
 namespace tumble::engines {
 namespace {
@@ -23,8 +24,6 @@ constexpr double kSamePatch = 1e-9;
 constexpr double kNoTurn = 64 * kEpsilon;
 constexpr double kLevel = 1e-12;      // a support that leans by less [rad] counts as level: in 100 s a ball would slide 5e-8 m
 constexpr int kMostNudges = 20;
-
-Vector3d velocity_at(const Body& body, const Vector3d& point_world) { return body.velocity_world + body.omega_world.cross(point_world - body.com_world); }
 
 // Not by the law that is being judged: a record of what the impulse did.
 double normal_velocity(const Contact& contact, const Body& a, const Body& b) {
@@ -95,9 +94,15 @@ void MeetingOfFlights::collide(Work& work) const {
                                    "the wrong sign or too little size", laws_.impulse_source));
     const Contact contact = work.contact_at(point);
     const double impulse = laws_.collision_impulse(contact, work.a, work.b, restitution);
+    const Velocity before_a{work.a.velocity_world, work.a.omega_world}, before_b{work.b.velocity_world, work.b.omega_world};
     push(work, contact, impulse);
+    EnergyOfImpact energy;
+    const Vector3d driven = !world_.can_move(a) ? work.a.velocity_world : !world_.can_move(b) ? work.b.velocity_world : Vector3d(Vector3d::Zero());
+    if (world_.can_move(a)) energy.add(work.a.inertia, work.a.world_from_body, before_a, {work.a.velocity_world, work.a.omega_world}, driven);
+    if (world_.can_move(b)) energy.add(work.b.inertia, work.b.world_from_body, before_b, {work.b.velocity_world, work.b.omega_world}, driven);
     work.result.impulse += impulse;
-    work.record({work.result.key.time, EventKind::kCollision, a, b, contact.point_world, contact.normal_b_to_a_world, impulse, approach, normal_velocity(contact, work.a, work.b)});
+    work.record({work.result.key.time, EventKind::kCollision, a, b, contact.point_world, contact.normal_b_to_a_world, impulse, approach, normal_velocity(contact, work.a, work.b),
+                 energy.change, energy.excess(0.5 * impulse * (1 - restitution) * approach)});
   }
 }
 

@@ -12,7 +12,6 @@ namespace tumble::engines {
 namespace {
 
 constexpr double kMicroInterval = 0.01;   // of the step: a pair that meets again sooner, and slowly, is sent apart (as retroactive.cpp)
-constexpr int kMostPassings = 100;        // of a blow to and fro between bodies that touch and bodies that are joined
 constexpr double kTogether = 2.0;         // steps
 constexpr double kNear = 1e-6;            // of the sizes: pairs farther apart do not touch
 
@@ -304,7 +303,7 @@ ProcessWorld::Change ProcessWorld::collide(BodyPair pair, const ProcessState& st
   return {std::move(after), take_events()};
 }
 
-// As a world of all bodies does it (retroactive.cpp): everything that touches, then what rods and joints pass on, until neither changes anything.
+// As a world of all bodies does it (retroactive.cpp): everything that touches, and within the same impulses what rods and joints hold.
 // What lies on something touches it: within a step that says which pairs were kept apart, at an instant all lasting contacts.
 void ProcessWorld::resolve(const std::vector<BodyPair>& pairs, BodyPair trigger, bool is_in_step) {
   const StageTimer timer(counters_.impact_seconds);
@@ -317,12 +316,7 @@ void ProcessWorld::resolve(const std::vector<BodyPair>& pairs, BodyPair trigger,
     if (pair == trigger) trigger_index = touching.size();
     touching.push_back({pair.first, pair.second, gap, meetings_.touching_points(pair, gap)});
   }
-  Resolution resolution = impacts_.resolve(moving_, touching, trigger_index);
-  for (int round = 0; round < kMostPassings && moving_.keep_constraints(resolution.events); ++round) {
-    const Resolution echo = impacts_.resolve(moving_, touching, trigger_index);
-    if (echo.events.empty()) break;
-    resolution.events.insert(resolution.events.end(), echo.events.begin(), echo.events.end());
-  }
+  const Resolution resolution = impacts_.resolve(moving_, touching, trigger_index);
   for (const Event& event : resolution.events) collector_.event(event);
   if (!resolution.settled)
     throw StoppedRun(fmt::format("collision (collision_impulse, apply_impulse of {}) left them approaching, however often it was applied: the impulse has no effect, the wrong sign or too little "
