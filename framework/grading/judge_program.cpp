@@ -32,8 +32,8 @@ struct Words {
 
 // A person waits: the limits of a student's own check (test_program.cpp).
 void be_quick(Words& words) {
-  words.worker.call_wall_s = 2.0;
-  words.time = {.budget_s = 4.0, .full_timeouts = 1, .suspect_wall_s = 0.2};
+  words.worker.call_own_s = 2.0;
+  words.time = {.budget_s = 4.0, .full_timeouts = 1, .suspect_own_s = 0.2};
 }
 
 Words read_words(const char* id, int argc, char** argv) {
