@@ -13,6 +13,9 @@ namespace {
 // Of K of the free bodies: what holds bodies never lets them yield more than freely, nor backwards. Laws good to 1e-8 leave less.
 constexpr double kNoProjection = 1e-6;
 
+// m/s: bodies that lie still move by what roundings of forces and corrections leave, some 1e-15 m/s, and their impacts obey no law.
+constexpr double kQuiet = 1e-9;
+
 std::size_t place_in(const LinkedBodies& group, int body) {
   return static_cast<std::size_t>(std::lower_bound(group.bodies().begin(), group.bodies().end(), body) - group.bodies().begin());
 }
@@ -46,6 +49,7 @@ Matrix3d inverse_effective_mass(const Body& body, const Vector3d& point_world) {
 // As (v' - v) . (v' + v) / 2: the energies themselves would take the digits away.
 void EnergyOfImpact::add(const Inertia& inertia, const Quaterniond& q, const Velocity& from, const Velocity& to, const Vector3d& seen_from) {
   const Vector3d v = from.linear_world - seen_from, v_after = to.linear_world - seen_from;
+  mass += inertia.mass;
   before += 0.5 * inertia.mass * v.squaredNorm();
   change += 0.5 * inertia.mass * (to.linear_world - from.linear_world).dot(v + v_after);
   if (from.angular_world.isZero(0.0) && to.angular_world.isZero(0.0)) return;
@@ -55,7 +59,7 @@ void EnergyOfImpact::add(const Inertia& inertia, const Quaterniond& q, const Vel
 }
 
 double EnergyOfImpact::excess(double by_law) const {
-  const double size = before + std::abs(by_law);
+  const double size = before + std::abs(by_law) + 0.5 * mass * kQuiet * kQuiet;
   return size > 0 ? std::max(std::abs(change - by_law), change) / size : change;
 }
 

@@ -27,9 +27,10 @@ Matrix3d inverse_effective_mass(const Body& body, const Vector3d& point_world);
 /// Kinetic energy of bodies whose velocities jump, seen from a frame that moves with what is driven: there walls do no work.
 struct EnergyOfImpact {
   double before = 0.0, change = 0.0;   // [J]; NaN where bodies driven in different ways take part
+  double mass = 0.0;                   // of all that is moved [kg]
 
   void add(const Inertia& inertia, const Quaterniond& world_from_body, const Velocity& from, const Velocity& to, const Vector3d& seen_from_world);
-  /// How far the change is from what the law says, or above 0, over the energy before.
+  /// How far the change is from what the law says, or above 0, over the energy before; over that of kQuiet where there is less.
   double excess(double by_law) const;
 };
 

@@ -430,7 +430,7 @@ TEST(ImpactEnergy, IsJudgedAtEveryImpact) {
     for (const char* engine : kEngines) {
       EXPECT_TRUE(engines::judge_run(asked, run_by(engine, asked, {}, 60.0, laws())).empty()) << engine;
       const auto results = engines::judge_run(asked, run_by(engine, asked, {}, 60.0, wrong));
-      ASSERT_EQ(results.size(), 1u) << engine << ", " << law;
+      ASSERT_FALSE(results.empty()) << engine << ", " << law;   // the watch on energy may say it too
       EXPECT_EQ(results.front().kind, "impact_energy");
       EXPECT_EQ(results.front().subject, "a, b");
       EXPECT_FALSE(results.front().passed);

@@ -52,7 +52,7 @@ TEST(TaughtTimewarp, CommitsTheReferencesTraceOfGroupsInContact) {
   expect_the_references_trace_of(tower_and_projectile(5.0), 15);
   expect_the_references_trace_of(sized("dominoes_row", 4, 0.5), 5);
   expect_the_references_trace_of(sized("robots", 1, 0.5), 1);
-  expect_the_references_trace_of(sized("avalanche", 6, 0.4), 5);
+  expect_the_references_trace_of(sized("avalanche", 6, 0.6), 5);
 }
 
 TEST(TaughtTimewarp, CommitsTheReferencesTraceWithCallbacks) {

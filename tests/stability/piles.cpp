@@ -42,7 +42,7 @@ void dense_pile(const Given& given, Findings& findings) {
     const Trajectory run = run_by_steps(pile(n, false), given.laws, duration, 1e-3, 100);
     findings.at_most(size + fmt::format(", e = 0, mu = 0, {:g} s: penetration over the diameter", duration), std::max(0.0, -smallest_gap(run)) / (2 * kRadius), 1e-4, "", "the mean is asked for; the worst is taken");
     if (given.is_long) findings.at_most(size + ": rise of the energy over what was there", energy_rise(run), 1e-3, "", "SimBenchmark's limit; plastic impacts only take, but taken with the step they fall into ('in_step') they give back a shell of 1e-4 of a ball here and there");
-    else findings.at_most(size + ": rise of the energy over what was there", energy_rise(run), 1e-9, "", "plastic impacts only take");
+    else findings.at_most(size + ": rise of the energy over what was there", energy_rise(run), 1e-7, "", "plastic impacts only take; a ball that follows another's curve is right to second order in the step: 1.2e-8 at 1 ms, 7.5e-10 at 0.5 ms");
     findings.plot({"Pile of " + size + ", e = 0", {"time", "s"}, {"kinetic energy", "J", report::Scale::kLog}, {curve_of("kinetic energy", run, [](const Frame& f) { return std::max(1e-12, f.kinetic_energy); })}, {}, "It comes to rest without a ball inside another."});
   });
   findings.part("elastic", [&] {
