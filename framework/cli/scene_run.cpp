@@ -25,6 +25,7 @@
 #include "framework/grading/worker_connection.h"
 #include "framework/scene/load_scene.h"
 #include "framework/scene/sized_scenes.h"
+#include "framework/trajectory/run_progress.h"
 
 namespace tumble::cli {
 namespace {
@@ -271,7 +272,8 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   const double cpu_before = cpu_seconds();
   std::string ended;   // why a submission gave no answer
   try {
-    engines::run_scene(plan.scene, plan.laws, plan.options, recorder);
+    RunProgress progress(recorder, plan.options.duration_s.value_or(plan.scene.duration_s));
+    engines::run_scene(plan.scene, plan.laws, plan.options, progress);
   } catch (const grading::CallEnded& error) {
     ended = error.what();
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
 
 #include <nlohmann/json.hpp>
 
@@ -20,13 +21,31 @@ const Laws& laws() {
   return all;
 }
 
+/// Leaves a byte for each frame, for who watches from outside.
+class Footprints final : public TrajectorySink {
+ public:
+  Footprints(TrajectorySink& sink, const std::filesystem::path& file) : sink_(sink), file_(file, std::ios::trunc) {}
+  void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override { sink_.begin(info, bodies); }
+  void frame(const Frame& frame) override {
+    file_.put('.').flush();
+    sink_.frame(frame);
+  }
+  void event(const Event& event) override { sink_.event(event); }
+  void end(const Counters& counters, const std::string& stopped_by) override { sink_.end(counters, stopped_by); }
+
+ private:
+  TrajectorySink& sink_;
+  std::ofstream file_;
+};
+
 int run_and_tell(const std::filesystem::path& scene_file, const std::string& engine, const std::filesystem::path& record) {
   const scene::Scene scene = scene::load_scene(scene_file);
   engines::RunOptions options;
   options.engine = engine;
   options.timewarp = engines::fast_timewarp();
   TrajectoryRecorder recorder;
-  engines::run_scene(scene, laws(), options, recorder);
+  Footprints footprints(recorder, progress_of(record));
+  engines::run_scene(scene, laws(), options, footprints);
   const Trajectory& run = recorder.trajectory();
   nlohmann::ordered_json page{{"stopped_by", run.stopped_by}, {"notices", run.counters.notices}, {"checks", nlohmann::json::array()}};
   bool passed = run.stopped_by.empty();
@@ -42,6 +61,8 @@ int run_and_tell(const std::filesystem::path& scene_file, const std::string& eng
 }  // namespace
 
 void load_laws() { laws(); }
+
+std::filesystem::path progress_of(const std::filesystem::path& record) { return record.string() + ".progress"; }
 
 int run_here(const std::filesystem::path& scene_file, const std::string& engine, const std::filesystem::path& record) {
   try {

@@ -39,6 +39,14 @@ double cpu_of(pid_t process) {
   return static_cast<double>(user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }
 
+/// Lines of a run that say how far it is; that it stands still is a word, but none of progress.
+std::uintmax_t words_of_progress(const fs::path& err) {
+  std::ifstream in(err);
+  std::uintmax_t lines = 0;
+  for (std::string line; std::getline(in, line);) lines += line.find("no frame has come") == std::string::npos;
+  return lines;
+}
+
 struct Ended {
   int status = 0;
   bool hung = false, slow = false;
@@ -84,7 +92,7 @@ Ended run_and_watch(const fs::path& scene_file, const fs::path& record, const fs
     }
     const double cpu = cpu_of(child);
     std::error_code none;
-    const std::uintmax_t said = fs::file_size(out, none) + fs::file_size(err, none);
+    const std::uintmax_t said = fs::file_size(progress_of(record), none) + words_of_progress(err);
     if (said != heard) heard_at = cpu, heard = said;
     if (!ended.hung && !ended.slow && (cpu - heard_at > wish.silence_s || cpu > wish.most_cpu_s)) {
       (cpu - heard_at > wish.silence_s ? ended.hung : ended.slow) = true;
@@ -160,6 +168,7 @@ std::string word_of(Outcome outcome) {
 Verdict run_scene_file(const fs::path& scene_file, const RunWish& wish) {
   const fs::path record = wish.folder / "run.tumble", out = wish.folder / "out", err = wish.folder / "err";
   fs::remove(record);
+  fs::remove(progress_of(record));
   const Ended ended = run_and_watch(scene_file, record, out, err, wish);
   return verdict_of_end(ended, scene_file, record, contents_of(out), contents_of(err));
 }

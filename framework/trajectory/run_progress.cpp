@@ -1,0 +1,53 @@
+#include "framework/trajectory/run_progress.h"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+
+namespace tumble {
+namespace {
+
+double seconds_since(std::chrono::steady_clock::time_point start) { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); }
+
+}  // namespace
+
+RunProgress::RunProgress(TrajectorySink& sink, double duration_s, Pace pace) : sink_(sink), duration_(duration_s), pace_(pace), teller_([this] { tell_until_done(); }) {}
+
+RunProgress::~RunProgress() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_over_ = true;
+  }
+  ended_.notify_all();
+  teller_.join();
+}
+
+void RunProgress::frame(const Frame& frame) {
+  {
+    const std::lock_guard lock(mutex_);
+    time_ = frame.time;
+    came_s_ = seconds_since(begun_);
+  }
+  sink_.frame(frame);
+}
+
+void RunProgress::tell_until_done() {
+  std::unique_lock lock(mutex_);
+  for (double next = pace_.first_s;; next += pace_.every_s) {
+    if (ended_.wait_until(lock, begun_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(next)), [this] { return is_over_; })) return;
+    tell(next);
+  }
+}
+
+void RunProgress::tell(double now_s) {
+  std::string line = fmt::format("tumble: {:.4g} of {:.4g} s simulated", time_, duration_);
+  if (time_ == told_time_) {
+    line += fmt::format(", for {:.0f} s no frame has come: steps have become very short there. Ctrl-C ends the run; --duration-s {:.4g} shows what came before", now_s - came_s_, time_);
+  } else if (time_ > 0) {
+    line += fmt::format(", about {:.0f} s left", came_s_ / time_ * (duration_ - time_));
+  }
+  told_time_ = time_;
+  fmt::print(stderr, "{}\n", line);
+}
+
+}  // namespace tumble

@@ -1,0 +1,40 @@
+#include "framework/trajectory/run_progress.h"
+
+#include <chrono>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+namespace tumble {
+namespace {
+
+Frame frame_at(double time) {
+  Frame frame;
+  frame.time = time;
+  return frame;
+}
+
+/// What is said of a run that comes to 0.5 of 2 s at once, and then stands still for so long.
+std::string said_in(double wait_s, const RunProgress::Pace& pace) {
+  TrajectoryRecorder recorder;
+  testing::internal::CaptureStderr();
+  {
+    RunProgress progress(recorder, 2.0, pace);
+    progress.frame(frame_at(0.5));
+    std::this_thread::sleep_for(std::chrono::duration<double>(wait_s));
+  }
+  EXPECT_EQ(recorder.trajectory().frames.size(), 1u);   // handed on
+  return testing::internal::GetCapturedStderr();
+}
+
+TEST(RunProgress, AShortRunSaysNothing) { EXPECT_EQ(said_in(0.01, {100.0, 100.0}), ""); }
+
+TEST(RunProgress, ALongRunSaysHowFarItIsAndWhereItStandsStill) {
+  const std::string said = said_in(1.0, {0.05, 0.05});   // twenty lines on an idle machine, two on any
+  EXPECT_TRUE(said.starts_with("tumble: 0.5 of 2 s simulated, about 0 s left\n")) << said;
+  EXPECT_NE(said.find("0.5 of 2 s simulated, for "), std::string::npos) << said;
+  EXPECT_NE(said.find("no frame has come"), std::string::npos) << said;
+}
+
+}  // namespace
+}  // namespace tumble
