@@ -9,12 +9,16 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 #include "framework/engines/guarded_laws.h"
 #include "framework/engines/lasting_contacts.h"
 
 namespace tumble::engines {
 namespace {
 
+constexpr std::size_t kFew = 12;        // bodies: so many are solved to the last digit
+constexpr int kMostLocatedBlows = 2;    // of one heap in a step
 constexpr double kRoom = 1e-4;          // of the smaller body: the shell
 constexpr double kTooNear = 0.1;        // shells: nearer than this is taken back
 constexpr double kEnough = 1e-5;        // of the heap's speed
@@ -33,8 +37,29 @@ constexpr double kSamePlace = 0.05;     // of the shell: bodies that have moved 
 }  // namespace
 
 bool LastingContacts::is_pile(const Group& group) const {
-  constexpr std::size_t kFew = 12;   // bodies: so many are solved to the last digit
-  return rules_.plastic_impacts == scene::PlasticImpacts::kInStep && group.linked.empty() && group.bodies.size() > kFew;
+  if (!group.linked.empty()) return false;
+  if (!locates()) return group.bodies.size() > kFew;
+  const bool heaped = std::any_of(group.bodies.begin(), group.bodies.end(), [&](int body) { return heaped_.contains(body); });
+  return heaped && speed(group) > kMoves * rest_speed_;   // what comes to rest is let down to the last digit
+}
+
+void LastingContacts::tell_of_heaps() {
+  const std::string words = fmt::format("heaps of more than {} bodies that strike more than {} blows a step go in steps until they lie (heap_steps): right to first order in the step. "
+                                        "\"contact\": {{ \"plastic_impacts\": \"located\" }} finds every blow at its instant, and takes longer", kFew, kMostLocatedBlows);
+  if (std::find(counters_.notices.begin(), counters_.notices.end(), words) == counters_.notices.end()) counters_.notices.push_back(words);
+}
+
+// A blow is about to cut the step for this group: too many of them, and it is asked for in steps from now on, until it rests or falls apart.
+bool LastingContacts::becomes_heap(const Group& group) {
+  if (rules_.plastic_impacts != scene::PlasticImpacts::kAutomatic || !group.linked.empty() || group.bodies.size() <= kFew) return false;
+  if (!(moving_.time() < counted_from_ + step_)) {
+    counted_from_ = moving_.time();
+    blows_.clear();
+  }
+  if (++blows_[group.bodies.front()] <= kMostLocatedBlows) return false;
+  heaped_.insert(group.bodies.begin(), group.bodies.end());
+  tell_of_heaps();
+  return true;
 }
 
 double LastingContacts::room_of(Pair pair) const {
@@ -84,12 +109,19 @@ std::optional<double> LastingContacts::take_pile_step(const Group& group, double
   ContactOptions options;
   options.tolerance = kEnough;
   options.least_speed = kStill * rest_speed_;
-  options.largest_direct = 0;
   options.most_sweeps_alone = kSweeps;
+  if (locates()) {           // nobody has asked for steps: their problems are at least solved
+    options.enough = kEnough;
+    options.most_sweeps = kSweeps;
+  } else {
+    options.largest_direct = 0;
+  }
+  ++counters_.heap_steps;
   ++counters_.contact_solves;
   counters_.contact_points += problem.contacts.size();
   const ContactSolution solution = laws_.friction_impulses ? laws_.friction_impulses(problem, options) : solve_contacts(problem, options);
   counters_.contact_sweeps += static_cast<std::uint64_t>(solution.sweeps);
+  counters_.contact_factorisations += static_cast<std::uint64_t>(solution.factorisations);
   if (!solution.converged) ++counters_.contact_unsolved;
   require_numbers(group, solution);
   std::vector<RigidBodyState> ends = ends_of(group, problem, solution, h, true);

@@ -107,16 +107,23 @@ ContactProblem LastingContacts::problem_of(const Group& group, const std::vector
   return problem;
 }
 
-// The last step's impulses, each to the point that is nearest to where it acted.
+// What an earlier attempt at this step has found for the pair, or else the last step.
+const std::vector<LastingContacts::Warm>* LastingContacts::known_impulses(Pair pair) const {
+  for (const auto* store : {&tried_, &warm_})
+    if (const auto known = store->find(pair); known != store->end()) return &known->second;
+  return nullptr;
+}
+
+// Impulses that are known already, each to the point that is nearest to where it acted.
 void LastingContacts::give_guesses(const std::vector<Touch>& touches, const std::vector<RigidBodyState>& states, double h, double farthest, ContactProblem& problem) const {
   for (std::size_t from = 0, to = 0; from < touches.size(); from = to) {
     const Pair& pair = touches[from].pair;
     while (to < touches.size() && touches[to].pair == pair) ++to;
-    const auto warm = warm_.find(pair);
-    if (warm == warm_.end()) continue;
+    const std::vector<Warm>* const warm = known_impulses(pair);
+    if (!warm) continue;
     const RigidBodyState& a = states[pair.first];
     const double size = size_of(pair);
-    for (const Warm& known : warm->second) {
+    for (const Warm& known : *warm) {
       const Vector3d acted = a.com_world + a.world_from_body * known.point_body_a;
       PushingContact* nearest = nullptr;
       double least = farthest * size;

@@ -21,7 +21,6 @@ constexpr double kReach = 0.25;           // of the smaller body: points farther
 constexpr double kDeep = 0.01;            // of the smaller body: deeper than this no step leads, save in heaps; a point that is gets a second look
 constexpr double kDeeper = 1.1;           // of how far the two are in each other
 constexpr double kMostTurn = 0.05;        // rad: a group with contacts that turns twice as far gets shorter steps; what is left is of second order
-constexpr double kMoves = 10.0;             // rest speeds: what holds a group that is slower is an equilibrium, however it trembles
 constexpr double kSlips = 1e-4;           // of the rest speed: slower than this nothing slides, though friction may be all there can be
 constexpr double kTurns = 1e-5;           // rad: where nothing turns more in a step, forces of its start do for the whole; errors of energy go with this
 constexpr int kCurvedRounds = 2;          // where a curved surface touches at the step's end hangs on how it turns in it: a second look leaves a thirtieth of the error
@@ -81,7 +80,10 @@ double LastingContacts::friction(Pair pair) const {
 
 bool LastingContacts::is_dead(Pair pair) const { return std::min(moving_.world().bodies[pair.first].restitution, moving_.world().bodies[pair.second].restitution) == 0.0; }
 
-bool LastingContacts::plastic(Pair pair) const { return rules_.plastic_impacts == scene::PlasticImpacts::kInStep && is_dead(pair); }
+bool LastingContacts::plastic(Pair pair) const {
+  if (locates() && heaped_.empty()) return false;
+  return is_dead(pair) && (!locates() || heaped_.contains(pair.first) || heaped_.contains(pair.second));
+}
 
 double LastingContacts::size_of(Pair pair) const { return std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius()); }
 
@@ -195,7 +197,7 @@ std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidat
   groups_.clear();
   unsolved_ = {};
   std::vector<Pair> touching;
-  const bool in_step = rules_.plastic_impacts == scene::PlasticImpacts::kInStep;
+  const bool in_step = !locates() || !heaped_.empty();
   reaches_ = in_step ? speeds_about(candidates) : std::vector<double>{};
   for (const Pair& pair : candidates) {
     if (!lasting_.contains(pair) && !plastic(pair)) continue;
@@ -211,9 +213,12 @@ std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidat
   }
   if (touching.empty()) return std::nullopt;
   groups_ = groups(touching);
+  for (Group& group : groups_) group.pile = is_pile(group);
+  heaped_.clear();
+  for (const Group& group : groups_)
+    if (group.pile && locates()) heaped_.insert(group.bodies.begin(), group.bodies.end());
   if (in_step)
     for (Group& group : groups_) {
-      group.pile = is_pile(group);
       for (const Pair& pair : group.pairs) points_.emplace(pair, group.pile ? Points{} : points_at(pair, moving_.states(), reach(pair)));
     }
   note_near_pairs(candidates);
@@ -221,6 +226,7 @@ std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidat
   next_stuck_.clear();
   if (const auto earlier = take_steps(h)) return earlier;
   warm_ = std::move(next_warm_);
+  tried_.clear();
   stuck_ = std::move(next_stuck_);
   return std::nullopt;
 }
@@ -290,12 +296,14 @@ double LastingContacts::speed(const Group& group) const {
 // One group's step. @return an earlier target (or the same after a blow) to begin the step again with
 std::optional<double> LastingContacts::take_step(const Group& group, double h) {
   std::vector<Touch> touches = touches_of(group);
-  const bool located = rules_.plastic_impacts == scene::PlasticImpacts::kLocated, moves = located && speed(group) > kMoves * rest_speed_;
+  const bool located = locates(), moves = located && speed(group) > kMoves * rest_speed_;
   if (moves && strike_what_is_down(group, touches)) return moving_.target();
   ContactProblem problem = problem_of(group, touches, moving_.states(), h);
   ContactSolution solution = solve(group, problem, h);
+  remember(touches, problem, solution, h, tried_);
   bool landing = lands(touches, solution);
   if (moves && comes_down(group, touches, problem, solution, h)) {
+    if (becomes_heap(group)) return moving_.target();
     if (const auto again = sort_out_landings(group, touches, h)) return again;
     problem = problem_of(group, touches, moving_.states(), h);
     solution = solve(group, problem, h);
@@ -312,6 +320,7 @@ std::optional<double> LastingContacts::take_step(const Group& group, double h) {
     middle = moving_.states();
     used = touches_midway(group, touches, ends, middle);
     problem = problem_of(group, used, middle, h, &ends);
+    for (std::size_t i = 0; i < used.size(); ++i) problem.contacts[i].guess_world = solution.impulses_world[i];   // the same points, a little farther on
     solution = solve(group, problem, h);
     landing = lands(used, solution);
   }
@@ -338,13 +347,22 @@ void LastingContacts::require_numbers(const Group& group, const ContactSolution&
       throw StoppedRun("lasting contact: the impulses on body '" + moving_.world().bodies[group.bodies[k]].name + "' are not numbers");
 }
 
+// Puts a solution's impulses where the next problem of these pairs finds its guesses.
+void LastingContacts::remember(const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h, std::map<Pair, std::vector<Warm>>& store) const {
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    std::vector<Warm>& known = store[touches[i].pair];
+    if (i == 0 || touches[i].pair != touches[i - 1].pair) known.clear();
+    const RigidBodyState& a = moving_.state(touches[i].pair.first);
+    known.push_back({a.world_from_body.conjugate() * (problem.contacts[i].point_world - a.com_world), solution.impulses_world[i], h});
+  }
+}
+
 // What the next step remembers of this one's impulses.
 void LastingContacts::keep_warm(const Group& group, const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h) {
   note_unsolved(group, solution, h);
+  remember(touches, problem, solution, h, next_warm_);
   for (std::size_t i = 0; i < touches.size(); ++i) {
-    const RigidBodyState& a = moving_.state(touches[i].pair.first);
     const Vector3d force = solution.impulses_world[i] / h, point = problem.contacts[i].point_world;
-    next_warm_[touches[i].pair].push_back({a.world_from_body.conjugate() * (point - a.com_world), solution.impulses_world[i], h});
     const bool slides = solution.modes[i] == ContactMode::kSlide && !force.isZero(0.0) && slip_speed(problem, i, solution.velocities) > kSlips * rest_speed_;
     if (i == 0 || touches[i].pair != touches[i - 1].pair) next_stuck_.insert(touches[i].pair);
     if (slides) next_stuck_.erase(touches[i].pair);

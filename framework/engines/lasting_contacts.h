@@ -5,7 +5,8 @@
 /// would without each other (the laws' method, links included); then contact impulses, spread evenly over the step, keep what touches from
 /// approaching: v' = v_free + M^-1 J^T p, x' = x_free + h/2 M^-1 J^T p, which is exact for constant forces. Bodies that turn meet their
 /// contacts at the middle of the step, and fit the surfaces at its end. A point that comes down faster than the rest speed ends the step
-/// there and strikes a blow without rebound; a slower one is let down by the step's end. A pair that stops sliding ends the step there. Frictionless groups ask the laws' contact_forces; friction, links
+/// there and strikes a blow without rebound; a slower one is let down by the step's end. A heap that would cut a step more than twice for that
+/// goes in steps until it lies, unless the scene says "located". A pair that stops sliding ends the step there. Frictionless groups ask the laws' contact_forces; friction, links
 /// inside a group, and large groups the framework's solve_contacts. What turning leaves of an overlap is taken back by the smallest shift
 /// of the group. A lasting contact does not bounce; it ends when the bodies come apart.
 ///
@@ -111,6 +112,8 @@ class LastingContacts {
 
   // Of the longest step: ends of sliding that come sooner are taken with it.
   static constexpr double kShortest = 1e-6;
+  // Rest speeds: what holds a group that is slower is an equilibrium, however it trembles.
+  static constexpr double kMoves = 10.0;
 
   struct Locating {
     Pair pair;
@@ -120,6 +123,7 @@ class LastingContacts {
 
   bool is_dead(Pair pair) const;     // does not bounce
   bool plastic(Pair pair) const;
+  bool locates() const { return rules_.plastic_impacts != scene::PlasticImpacts::kInStep; }
   double size_of(Pair pair) const;   // radius about the smaller one [m]
   Vector3d point_of(Pair pair, const collision::NearPoint& point) const;
   double shell(Pair pair) const;
@@ -134,6 +138,8 @@ class LastingContacts {
   std::vector<Group> groups(const std::vector<Pair>& touching);
   void note_near_pairs(const std::vector<Pair>& candidates);
   std::vector<Touch> touches_of(const Group& group);
+  const std::vector<Warm>* known_impulses(Pair pair) const;
+  void remember(const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h, std::map<Pair, std::vector<Warm>>& store) const;
   ContactProblem problem_of(const Group& group, const std::vector<Touch>& touches, const std::vector<RigidBodyState>& states, double h,
                             const std::vector<RigidBodyState>* ends = nullptr);
   ContactSolution solve(const Group& group, const ContactProblem& problem, double h);
@@ -160,6 +166,8 @@ class LastingContacts {
   void note_unsolved(const Group& group, const ContactSolution& solution, double h);
   void draw_apart();
   bool is_pile(const Group& group) const;
+  bool becomes_heap(const Group& group);
+  void tell_of_heaps();
   double room_of(Pair pair) const;
   std::vector<RigidBodyState> middle_of(const Group& group, double h) const;
   std::vector<Touch> touches_of_pile(const Group& group, const std::vector<RigidBodyState>& middle, double h);
@@ -200,8 +208,12 @@ class LastingContacts {
   std::set<Pair> lasting_;
   std::map<Pair, Points> points_;                // of the step that has begun
   std::map<Pair, std::vector<Warm>> warm_, next_warm_;
+  std::map<Pair, std::vector<Warm>> tried_;      // found by attempts at the step that has begun
   std::set<Pair> stuck_, next_stuck_;            // pairs with friction that did not slide in the last step
   std::vector<Group> groups_;                    // of the step
+  std::set<int> heaped_;                         // bodies whose group strikes, or has struck since it last lay, too many blows a step to locate each
+  double counted_from_ = -1e300;                 // blows that cut a step were counted since, and how many of each group, by its first body
+  std::map<int, int> blows_;
   std::vector<ContactPoint> forces_;
   RunWatch unsolved_;                            // what the step that has begun leaves unsolved, until it is committed
   double struck_at_ = -1e300;                    // blows were struck last, and how many then

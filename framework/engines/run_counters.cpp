@@ -12,7 +12,7 @@ void RunCounters::add(const RunCounters& other) {
         &RunCounters::bodies_woken, &RunCounters::gravity_calls, &RunCounters::point_force_calls, &RunCounters::spring_calls, &RunCounters::rod_calls,
         &RunCounters::joint_calls, &RunCounters::drag_calls, &RunCounters::motor_calls, &RunCounters::callback_calls, &RunCounters::constraint_solves,
         &RunCounters::constraint_corrections, &RunCounters::contact_solves, &RunCounters::contact_points, &RunCounters::contact_sweeps,
-        &RunCounters::contact_factorisations, &RunCounters::contact_unsolved, &RunCounters::contacts_begun, &RunCounters::contacts_ended, &RunCounters::contact_landings,
+        &RunCounters::contact_factorisations, &RunCounters::contact_unsolved, &RunCounters::contacts_begun, &RunCounters::contacts_ended, &RunCounters::contact_landings, &RunCounters::heap_steps,
         &RunCounters::friction_points, &RunCounters::bodies_put_to_sleep, &RunCounters::body_steps_asleep, &RunCounters::passages_begun, &RunCounters::passages_let_go, &RunCounters::impacts_at_home, &RunCounters::impacts_across, &RunCounters::rounds, &RunCounters::held_back})
     this->*count += other.*count;
   for (const auto seconds :
@@ -66,6 +66,7 @@ Counters RunCounters::named() const {
                   {"contacts_begun", contacts_begun},
                   {"contacts_ended", contacts_ended},
                   {"contact_landings", contact_landings},
+                  {"heap_steps", heap_steps},
                   {"friction_points", friction_points},
                   {"bodies_put_to_sleep", bodies_put_to_sleep},
                   {"body_steps_asleep", body_steps_asleep},

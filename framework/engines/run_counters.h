@@ -20,7 +20,7 @@ struct RunCounters {
   std::uint64_t bodies_put_to_rest = 0, bodies_woken = 0, gravity_calls = 0, point_force_calls = 0;
   std::uint64_t spring_calls = 0, rod_calls = 0, joint_calls = 0, drag_calls = 0, motor_calls = 0, callback_calls = 0;
   std::uint64_t constraint_solves = 0, constraint_corrections = 0;
-  std::uint64_t contact_solves = 0, contact_points = 0, contact_sweeps = 0, contact_factorisations = 0, contact_unsolved = 0, contacts_begun = 0, contacts_ended = 0, contact_landings = 0, friction_points = 0;
+  std::uint64_t contact_solves = 0, contact_points = 0, contact_sweeps = 0, contact_factorisations = 0, contact_unsolved = 0, contacts_begun = 0, contacts_ended = 0, contact_landings = 0, heap_steps = 0, friction_points = 0;
   std::uint64_t pair_checks = 0, anti_messages = 0, states_kept = 0;   // states_kept: the most at any time
   std::uint64_t bodies_put_to_sleep = 0, body_steps_asleep = 0;
   std::uint64_t passages_begun = 0, passages_let_go = 0;   // of processes; fewer let go where the run ends on some, all by who goes back in time

@@ -82,8 +82,9 @@ Effect contact(const Scene& scene) {
     effect.note = "/contact asks for it, but no two bodies can meet";
     return effect;
   }
-  const bool simultaneous = scene.contact->impact_law == ImpactLaw::kSimultaneous, in_step = scene.contact->plastic_impacts == PlasticImpacts::kInStep;
-  effect.askers.push_back({"/contact", fmt::format("impacts {}, plastic ones {}", simultaneous ? "simultaneous" : "sequential", in_step ? "in their step" : "at their instant")});
+  const bool simultaneous = scene.contact->impact_law == ImpactLaw::kSimultaneous;
+  const PlasticImpacts plastic = scene.contact->plastic_impacts;
+  effect.askers.push_back({"/contact", fmt::format("impacts {}, plastic ones {}", simultaneous ? "simultaneous" : "sequential", plastic == PlasticImpacts::kInStep ? "in their step" : plastic == PlasticImpacts::kLocated ? "at their instant" : "at their instant, in busy heaps in their step")});
   return effect;
 }
 

@@ -79,7 +79,8 @@ void read_contact(const json& root, Scene& scene) {
   const json& value = root.at("contact");
   ContactSpec spec;
   if (value.value("impact_law", "sequential") == "simultaneous") spec.impact_law = ImpactLaw::kSimultaneous;
-  if (value.value("plastic_impacts", "located") == "in_step") spec.plastic_impacts = PlasticImpacts::kInStep;
+  const std::string plastic = value.value("plastic_impacts", "automatic");
+  spec.plastic_impacts = plastic == "in_step" ? PlasticImpacts::kInStep : plastic == "located" ? PlasticImpacts::kLocated : PlasticImpacts::kAutomatic;
   read(value, "sleep", spec.sleep);
   scene.contact = spec;
 }

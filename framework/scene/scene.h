@@ -126,12 +126,12 @@ struct MotorSpec {
 };
 
 enum class ImpactLaw { kSequential, kSimultaneous };      // several impacts at one instant: one after the other, or together
-enum class PlasticImpacts { kLocated, kInStep };          // impacts that do not bounce: at their instant, or with the step they fall into
+enum class PlasticImpacts { kAutomatic, kLocated, kInStep };   // impacts that do not bounce: at their instant, or with the step they fall into; or so in busy heaps only
 
 /// Lasting contact: bodies that lie, slide, roll and are stacked.
 struct ContactSpec {
   ImpactLaw impact_law = ImpactLaw::kSequential;
-  PlasticImpacts plastic_impacts = PlasticImpacts::kLocated;
+  PlasticImpacts plastic_impacts = PlasticImpacts::kAutomatic;
   bool sleep = false;               // bodies at rest are left alone until something touches them
 };
 
