@@ -133,7 +133,7 @@ EulerAngles euler_angles_from_rotation(const Matrix3d& world_from_body);
 //   kNoSignChange  (A2.10) does not hold: both ends open (no impact seen), or g(t_low) < 0 (overlap from the start).
 //                  time and residual are NaN; nothing but the two ends was evaluated
 //   kNotConverged  the search ended with a larger bracket; here the only cause is a g that gave NaN (there is no limit of
-//                  iterations). time and residual are those of the last a, or NaN where g(t_low) is NaN
+//                  iterations). time and residual are those of the last a (t_low, where g(t_high) is NaN), or NaN where g(t_low) is NaN
 // residual is g(time); evaluations counts the calls of g. An end that is exactly 0 is an impact: t_low is looked at first.
 // An even number of crossings inside the interval cannot be seen from its ends: choosing the interval is the caller's part.
 

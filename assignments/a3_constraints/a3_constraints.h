@@ -7,7 +7,8 @@
 /// Frames: `world` is inertial, right-handed, z up; `body` has its origin at the centre of mass and turns with the body.
 /// Six numbers of a body are (linear, angular), world frame: velocity u = (v, omega), force (F, tau about the centre of mass).
 /// Units SI. A body of infinite mass (the ceiling, the floor) has inverse mass 0 and zero inverse inertia: use these two and every
-/// formula below holds for it; it has a position and may move, but no force moves it.
+/// formula below holds for it; it has a position and may be driven (a lift: then its
+/// free_acceleration is the drive's), but no force moves it.
 /// Types: framework/dynamics/constraint.h and body.h.
 /// Sources, cited below by name:
 ///   Witkin    A. Witkin, "Constrained dynamics", SIGGRAPH course notes, 1997

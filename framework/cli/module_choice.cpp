@@ -18,6 +18,7 @@
 #include "framework/grading/laws_around.h"
 #include "framework/grading/run_program.h"
 #include "framework/modules/load.h"
+#include "framework/scene/model_scene.h"
 
 namespace tumble::cli {
 namespace {
@@ -170,6 +171,7 @@ bool is_own(const scene::Scene& scene, const ModuleKind& kind) {
 /// The word for a module that nobody named; empty: the scene does not need it.
 std::string default_word(const Context& context, const scene::Scene& scene, const ModuleKind& kind, bool scene_has_home) {
   if (is_own(scene, kind)) return "student";
+  if (scene::names_model(scene.file.string()) && !kind.methods.empty()) return best_available(context, kind.id);   // moves by what is written, or by the library
   if (std::find(scene.needs.begin(), scene.needs.end(), kind.id) == scene.needs.end()) return "";
   return scene_has_home ? best_available(context, kind.id) : "student";
 }

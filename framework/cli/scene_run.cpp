@@ -33,8 +33,9 @@ namespace {
 namespace fs = std::filesystem;
 using engines::CheckResult;
 
-std::string modules_line(const Laws& laws) {
-  const std::string line = fmt::format("impulses by {} · motion by {}", laws.impulse_source, laws.integrator_source);
+std::string modules_line(const scene::Scene& scene, const Laws& laws) {
+  std::string line = fmt::format("impulses by {} · motion by {}", laws.impulse_source, laws.integrator_source);
+  if (scene.contact || !scene.springs.empty() || !scene.rods.empty() || !scene.joints.empty()) line += " · springs, rods and contact by " + laws.constraint_source;
   return laws.scheduling ? line + " · scheduled by " + laws.scheduling_source : line;
 }
 
@@ -81,7 +82,7 @@ void print_summary(const scene::Scene& scene, const Laws& laws, const Trajectory
   fmt::print("{}\n", scene.title);
   if (!extra.empty()) fmt::print("  {}\n", extra);
   if (!scene.about.empty()) fmt::print("  {}\n", scene.about);
-  fmt::print("  laws     {}\n", modules_line(laws));
+  fmt::print("  laws     {}\n", modules_line(scene, laws));
   fmt::print("{}", searched);
   const double end = run.frames.empty() ? 0.0 : run.frames.back().time;
   fmt::print("  run      engine {}, step {:.6g} s, {:.6g} s simulated, {} bodies, {} frames\n", run.info.engine, run.info.step_s, end, run.bodies.size(), run.frames.size());
@@ -89,7 +90,7 @@ void print_summary(const scene::Scene& scene, const Laws& laws, const Trajectory
   for (const auto& [name, count] : count_events(run)) events += fmt::format("{}{} {}", events.empty() ? "" : " · ", name, count);
   fmt::print("  events   {}\n", events.empty() ? "none" : events);
   print_counts(run.counters.counts);
-  fmt::print("  w h      {:.3g}: discontinuities a body and largest step{}\n", engines::discontinuities_a_body_and_step(run),
+  fmt::print("  w h      {:.3g}: impacts and other sudden changes (w, a body and second) in the largest step (h); the larger, the more timewarp saves{}\n", engines::discontinuities_a_body_and_step(run),
              run.counters.counts.contains("sliding_changes") ? "; without the sliding changes above, for which no engine ends a step of all bodies" : "");
   for (const auto& notice : run.counters.notices) fmt::print("  note     {}\n", notice);
   if (!run.stopped_by.empty()) fmt::print("  STOPPED  {}\n", run.stopped_by);

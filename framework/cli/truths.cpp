@@ -1,4 +1,5 @@
 // tumble truths FOLDER: what this project computes, against reference values computed elsewhere at high precision.
+#include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <iterator>
@@ -105,6 +106,27 @@ struct OddFile {
   std::string file, problem;
 };
 
+/// A line on stderr every ten seconds: how many files are done, and how long the others will take.
+class Progress {
+ public:
+  explicit Progress(std::size_t count) : count_(count) {}
+  /// Before each file.
+  void tell() {
+    constexpr double kEvery = 10.0;   // s
+    const double now = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
+    if (now - told_ >= kEvery) {
+      std::fprintf(stderr, "tumble: %zu of %zu files, about %.0f s left\n", done_, count_, now / static_cast<double>(done_) * static_cast<double>(count_ - done_));
+      told_ = now;
+    }
+    ++done_;
+  }
+
+ private:
+  std::size_t count_, done_ = 0;
+  std::chrono::steady_clock::time_point begun_ = std::chrono::steady_clock::now();
+  double told_ = 0.0;   // [s]
+};
+
 ExitCode exit_code(const std::vector<CaseResult>& results, const std::vector<OddFile>& odd) {
   if (count_cases(results, Verdict::kWrong) > 0) return ExitCode::kCheckFailed;
   if (!odd.empty()) return ExitCode::kUserError;
@@ -119,7 +141,9 @@ ExitCode run_truths(const Context& context, const Options& options) {
   std::set<std::string> said;   // hints
   if (!options.json) print_truths_head();
   std::vector<OddFile> odd;
+  Progress progress(files.size());
   for (const auto& file : files) {
+    progress.tell();
     try {
       const Case truth = read_truth(file);
       const std::optional<CaseResult> result = compute(context, chosen, truth);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace tumble::collision {
 namespace {
@@ -156,31 +158,63 @@ Polygon region_of(const PlacedPolytope& a, const PlacedPolytope& b, const PlaneA
   return of_a.size() <= of_b.size() ? shared_region(of_a, of_b) : shared_region(of_b, of_a);
 }
 
-// Whether a plane through point i, or a little above it, leaves all other points above: some slope s with
-//   s . (p_j - p_i) <= height_j - height_i - tolerance  for all j.
-// Points are in the order of their heights: of two at one place the first is the lower.
-bool lies_below_others(const Polygon& points, const InlineVector<double, 16>& heights, int i, double same, double tolerance) {
-  constexpr double kSteepest = 1e3;   // steeper planes are walls
-  Polygon slopes, kept;
-  for (const Vector2d& corner : {Vector2d(-1, -1), Vector2d(1, -1), Vector2d(1, 1), Vector2d(-1, 1)}) slopes.push_back({kSteepest * corner, -1});
-  for (int j = 0; j < points.size(); ++j) {
-    const Vector2d d = points[j].p - points[i].p;
-    if (d.norm() <= same) {
-      if (j < i) return false;
-      continue;
-    }
-    const double room = heights[points[j].index] - heights[points[i].index] - tolerance;
-    kept.clear();
-    for (int k = 0; k < slopes.size(); ++k) {
-      const FlatPoint &q = slopes[k], &next = slopes[(k + 1) % slopes.size()];
+// The slopes s of planes that are still allowed: a convex polygon, and a circle about it.
+class Slopes {
+ public:
+  explicit Slopes(double steepest) {
+    for (const Vector2d& corner : {Vector2d(-1, -1), Vector2d(1, -1), Vector2d(1, 1), Vector2d(-1, 1)}) corners_.push_back({steepest * corner, -1});
+    find_circle();
+  }
+  /// Keeps those with  d . s <= room. @return whether any is left
+  bool keep(const Vector2d& d, double room) {
+    const double middle = d.dot(middle_) - room;
+    if (middle <= 0 && middle * middle >= square_ * d.squaredNorm()) return true;   // all of the circle
+    Polygon kept;
+    for (int k = 0; k < corners_.size(); ++k) {
+      const FlatPoint &q = corners_[k], &next = corners_[(k + 1) % corners_.size()];
       const double over = d.dot(q.p) - room, over_next = d.dot(next.p) - room;
       if (over <= 0) kept.push_back(q);
       if ((over < 0 && over_next > 0) || (over > 0 && over_next < 0)) kept.push_back({q.p + (over / (over - over_next)) * (next.p - q.p), -1});
     }
-    std::swap(slopes, kept);
-    if (slopes.empty()) return false;
+    corners_ = std::move(kept);
+    if (corners_.empty()) return false;
+    find_circle();
+    return true;
   }
-  return true;
+
+ private:
+  void find_circle() {
+    middle_.setZero();
+    for (const FlatPoint& q : corners_) middle_ += q.p / static_cast<double>(corners_.size());
+    square_ = 0.0;
+    for (const FlatPoint& q : corners_) square_ = std::max(square_, (q.p - middle_).squaredNorm());
+  }
+
+  Polygon corners_;
+  Vector2d middle_;
+  double square_ = 0.0;   // of the radius
+};
+
+// Whether a plane through point i, or a little above it, leaves all other points above: some slope s with
+//   s . (p_j - p_i) <= height_j - height_i - tolerance  for all j.
+// The nearest points leave few slopes, which most of the others allow at a glance.
+// Points are in the order of their heights: of two at one place the first is the lower.
+bool lies_below_others(const Polygon& points, const std::vector<double>& heights, int i, double same, double tolerance, std::vector<std::pair<double, int>>& others) {
+  constexpr double kSteepest = 1e3;   // steeper planes are walls
+  constexpr std::ptrdiff_t kNearest = 8;
+  others.clear();
+  for (int j = 0; j < points.size(); ++j) {
+    const double square = (points[j].p - points[i].p).squaredNorm();
+    if (square > same * same) others.emplace_back(square, j);
+    else if (j < i) return false;
+  }
+  const auto near = others.begin() + std::min(kNearest, static_cast<std::ptrdiff_t>(others.size()));
+  std::nth_element(others.begin(), near, others.end());
+  Slopes slopes(kSteepest);
+  return std::all_of(others.begin(), others.end(), [&](const auto& other) {
+    const std::size_t j = static_cast<std::size_t>(other.second);
+    return slopes.keep(points[other.second].p - points[i].p, heights[j] - heights[static_cast<std::size_t>(i)] - tolerance);
+  });
 }
 
 Vector2d middle_of(const Polygon& hull) {
@@ -258,8 +292,11 @@ InlineVector<int, 16> lower_corners(const Corners& points, const InlineVector<do
     outer[static_cast<std::size_t>(q.index)] = 1;
     size = std::max(size, (q.p - flat[0].p).norm());
   }
+  std::vector<double> ordered;
+  for (const FlatPoint& q : flat) ordered.push_back(heights[q.index]);
+  std::vector<std::pair<double, int>> others;
   for (int i = 0; i < flat.size(); ++i)
-    if (!outer[static_cast<std::size_t>(i)] && lies_below_others(flat, heights, i, 1e-12 * size, tolerance)) corners.push_back(flat[i].index);
+    if (!outer[static_cast<std::size_t>(i)] && lies_below_others(flat, ordered, i, 1e-12 * size, tolerance, others)) corners.push_back(flat[i].index);
   return corners;
 }
 

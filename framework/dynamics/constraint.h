@@ -44,11 +44,12 @@ struct Constraint {
   ConstraintRow row;
 };
 
-/// A body as constraints see it. One of infinite mass has inverse mass 0 and zero inverse inertia, and does not accelerate.
+/// A body as constraints see it. One of infinite mass has inverse mass 0 and zero inverse inertia: no constraint accelerates it, but it may be
+/// driven, and then free_acceleration is its drive's.
 struct ConstrainedBody {
   double inverse_mass = kUnset;                                    // [1/kg]
   Matrix3d inverse_inertia_world = Matrix3d::Constant(kUnset);     // (3,3), world [1/(kg m^2)]
-  Vector6d free_acceleration = Vector6d::Constant(kUnset);         // u' under all forces but the constraints' [m/s^2, rad/s^2]
+  Vector6d free_acceleration = Vector6d::Constant(kUnset);         // u' without the constraints' forces [m/s^2, rad/s^2]
 };
 
 }  // namespace tumble

@@ -18,7 +18,7 @@ namespace tumble::engines {
 namespace {
 
 constexpr std::size_t kFew = 12;        // bodies: so many are solved to the last digit
-constexpr int kMostLocatedBlows = 2;    // of one heap in a step
+constexpr int kMostLocatedBlows = 8;    // of one heap in a step
 constexpr double kRoom = 1e-4;          // of the smaller body: the shell
 constexpr double kTooNear = 0.1;        // shells: nearer than this is taken back
 constexpr double kEnough = 1e-5;        // of the heap's speed

@@ -355,7 +355,12 @@ std::vector<LastingContacts::Touch> LastingContacts::touches_midway(const Group&
   for (const Pair& pair : group.pairs) {
     std::size_t to = from;
     while (to < touches.size() && touches[to].pair == pair) ++to;
-    const double near = same_within(pair), reach = are_balls(pair) ? size_of(pair) : near;
+    double farthest = 0.0;   // no point of the contact can be farther off by the step's end
+    for (std::size_t i = from; i < to; ++i) farthest = std::max({farthest, touches[i].start_gap, touches[i].point.gap});
+    for (const int body : {pair.first, pair.second})
+      farthest += (ends[body].com_world - starts[body].com_world).norm() +
+                  (moving_.shape(body).is_half_space() ? 0.0 : moving_.shape(body).bounding_radius() * starts[body].world_from_body.angularDistance(ends[body].world_from_body));
+    const double near = same_within(pair), reach = are_balls(pair) ? size_of(pair) : std::min(near, farthest + shell(pair));
     const Points at_middle = points_at(pair, middle, reach), at_end = points_at(pair, ends, reach);
     for (std::size_t i = from; i < to; ++i) {
       Touch touch = touches[i];

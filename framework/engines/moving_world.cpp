@@ -40,8 +40,7 @@ MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters) :
 
 MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters, std::vector<const collision::CollisionShape*> shapes)
     : world_(std::move(world)), laws_(laws), counters_(counters), shapes_(std::move(shapes)), rests_(world_.bodies.size()), asleep_(world_.bodies.size(), 0), force_points_body_(world_.point_forces.size()),
-      paths_(world_.bodies.size()), told_of_shortening_(world_.bodies.size(), false),
-      told_of_aliasing_(world_.bodies.size(), false), principal_(world_.bodies.size()) {
+      paths_(world_.bodies.size()), told_of_shortening_(world_.bodies.size(), false), principal_(world_.bodies.size()) {
   for (const WorldBody& body : world_.bodies) states_.push_back(body.state);
   if (shapes_.empty()) {
     for (const WorldBody& body : world_.bodies) own_shapes_.emplace_back(body.shape);
@@ -439,7 +438,7 @@ void MovingWorld::commit(double t) {
     const StageTimer timer(counters_.integration_seconds);
     arrived.reserve(states_.size());
     for (int i = 0; i < size(); ++i) {
-      tell_of_aliasing(i, t - time_);
+      watch_turning(i, t - time_);
       arrived.push_back(path(i, t));
     }
   }

@@ -161,7 +161,7 @@ class MovingWorld {
   double turning_error(int body, double duration);
   bool bound_turning(int body, double duration, collision::MotionBounds& bounds);
   double resolved_duration(int body, double duration, bool measures_path);
-  void tell_of_aliasing(int body, double duration);
+  void watch_turning(int body, double duration);
   collision::MotionBounds work_out_bounds(int body);
   RigidBodyState still_state(int body, double t) const;
 
@@ -179,7 +179,7 @@ class MovingWorld {
   mutable PairCaches caches_;
   std::vector<LinkedBodies> linked_;
   std::vector<int> group_of_;                    // by body: place in linked_, -1
-  std::vector<bool> told_of_shortening_, told_of_aliasing_;   // by body
+  std::vector<bool> told_of_shortening_;   // by body
   double time_ = 0.0, target_ = 0.0;
   double path_bend_ = 1.0;   // how much of a constant acceleration the laws' integration puts into a path: 1 for order >= 2, 0 for Euler
   std::uint64_t integrations_in_step_ = 0;

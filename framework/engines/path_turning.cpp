@@ -106,14 +106,16 @@ double MovingWorld::resolved_duration(int body, double duration, bool measures_p
 }
 
 // Beyond half a turn a step cannot be told from a turn the other way round: a method of integration that samples it only there gives
-// some orientation.
-void MovingWorld::tell_of_aliasing(int body, double duration) {
-  if (told_of_aliasing_[body] || !can_move(body)) return;
+// some orientation. A ball that nothing hangs on looks the same however it turns, and moves the same.
+void MovingWorld::watch_turning(int body, double duration) {
+  if (!can_move(body)) return;
   const double turning = omega_of(states_[body], world_.bodies[body].inertia).norm() * duration;
-  if (!(turning > M_PI)) return;
-  told_of_aliasing_[body] = true;
-  counters_.notices.push_back(fmt::format("body '{}' turns {:.3g} rad a step of {:.3g} s, more than half a turn: its orientation is not to be trusted; a step of {:.2g} s turns it 1 rad",
-                                          world_.bodies[body].name, turning, duration, duration / turning));
+  if (turning <= kTurnResolved) return;
+  const bool is_alone = linked_group(body) < 0 && world_.springs.empty();
+  if (is_alone && flies_freely(body)) return;
+  if (!is_alone || !shapes_[body]->is_ball()) return counters_.watch.note(RunWatch::Kind::kTurnUnresolved, names_of(world_, {body}), {turning, kTurnResolved, time_, duration});
+  const std::string words = fmt::format("ball '{}' turns more than half a turn in a step: its orientation is not to be trusted, how it moves is", world_.bodies[body].name);
+  if (std::find(counters_.notices.begin(), counters_.notices.end(), words) == counters_.notices.end()) counters_.notices.push_back(words);
 }
 
 bool MovingWorld::shorten_step(const std::vector<std::pair<int, int>>& pairs, const std::function<bool(std::pair<int, int>)>& in_step) {

@@ -20,6 +20,7 @@ const Words& words_of(RunWatch::Kind kind) {
       {"projection_open", "the correction onto rods and joints ends on them: here it did not, and what follows is of another mechanism", "masses that differ less"},
       {"contact_unsolved", "impulses of contacts keep bodies apart and within friction: here none were found that do, by this part of the speed", "less friction, or masses that differ less"},
       {"energy_rises", "nothing in the scene brings energy in: what rises is made by the step, over all that the scene has to give", "another method (a2's rk4_step)"},
+      {"turn_unresolved", "beyond half a turn a step cannot be told from a turn the other way round: orientations, and what hangs on them, are not to be trusted", "a slower body, or --propagator auto where nothing but gravity acts on it"},
   };
   return kWords[static_cast<std::size_t>(kind)];
 }
@@ -28,6 +29,7 @@ const Words& words_of(RunWatch::Kind kind) {
 // half a step is the first to try.
 double likely_part(RunWatch::Kind kind, double times_what_is_allowed) {
   constexpr double kOrder = 4.0, kSafety = 0.8, kLeast = 0.01, kMost = 0.5;
+  if (kind == RunWatch::Kind::kTurnUnresolved) return 1.0 / (kTurnResolved * times_what_is_allowed);   // a radian a step
   if (kind != RunWatch::Kind::kEnergyRises) return kMost;
   return std::min(kMost, std::max(kLeast, kSafety * std::pow(times_what_is_allowed, -1.0 / kOrder)));
 }

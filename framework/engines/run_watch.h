@@ -1,4 +1,5 @@
-/// What a run must not keep to itself: links that come apart, projections and contact problems that end unsolved, energy that nothing brings in.
+/// What a run must not keep to itself: links that come apart, projections and contact problems that end unsolved, energy that nothing brings in,
+/// bodies that turn farther in a step than it can see.
 ///
 /// Every stage of every engine notes here what it could not do (the watch is part of RunCounters, which each stage has and which threads and
 /// processes add up); at the end the run's faults are judged as checks that failed (judge.h), so that they stand in the table, in --json and in
@@ -30,10 +31,12 @@ inline constexpr double kContactSolved = 1e-3;
 /// Energy may rise above the least it has been by this part of what the scene has to give (EnergyWatch): methods of order 4 whose step is within
 /// reach of the motion lose a thousandth.
 inline constexpr double kEnergyRises = 1e-2;
+/// A step may turn a body by half a turn [rad]: farther, what a method samples cannot be told from a turn the other way round.
+inline constexpr double kTurnResolved = 3.141592653589793;
 
 class RunWatch {
  public:
-  enum class Kind : std::uint8_t { kLinkOpen, kProjectionOpen, kContactUnsolved, kEnergyRises };
+  enum class Kind : std::uint8_t { kLinkOpen, kProjectionOpen, kContactUnsolved, kEnergyRises, kTurnUnresolved };
   struct Size {
     double found, allowed;         // relative, [rad] of an angle
     double time, step;             // [s]

@@ -34,8 +34,10 @@ std::string exit_story(int code, const std::string& last_call, bool in_call) {
 std::string timeout_story(double limit_s, const std::string& last_call, bool in_call) {
   char text[64];
   std::snprintf(text, sizeof text, "no answer within %g s", limit_s);
-  return text + place(last_call, in_call) + " (a loop that does not end?)";
+  return text + place(last_call, in_call) + " (a loop that does not end, or work that grows too fast with what it is given)";
 }
+
+std::string asked_words(const std::string& arguments) { return arguments.empty() ? "" : "\n  called with: " + arguments; }
 
 std::string busy_story(const std::string& last_call) {
   return "the machine was too busy" + (last_call.empty() ? std::string() : ", in " + last_call) + ": the code got too little of it to say anything. Run it again when less else runs";

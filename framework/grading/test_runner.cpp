@@ -188,7 +188,7 @@ void judge_death(TestResult& result, const CallLog& log, int status, const Answe
     result.story = log.story;
   } else if (answer.timed_out_s > 0.0) {
     result.verdict = Verdict::kOutOfResources;
-    result.story = timeout_story(answer.timed_out_s, log.last_call, log.in_call);
+    result.story = timeout_story(answer.timed_out_s, log.last_call, log.in_call) + (log.in_call ? asked_words(log.asked()) : "");
   } else if (answer.is_hopeless) {
     result.verdict = Verdict::kMachineBusy;
     result.story = busy_story(log.last_call);
@@ -196,6 +196,7 @@ void judge_death(TestResult& result, const CallLog& log, int status, const Answe
     result.verdict = Verdict::kCrashed;
     result.story = WIFSIGNALED(status) ? signal_story(WTERMSIG(status), log.last_call, log.in_call)
                                        : exit_story(WEXITSTATUS(status), log.last_call, log.in_call);
+    if (log.in_call) result.story += asked_words(log.asked());
   }
 }
 
@@ -220,6 +221,37 @@ void CallLog::begin(const char* function) {
   std::snprintf(last_call, sizeof last_call, "%s", function);
   ++calls;
   in_call = true;
+  argument_bytes = 0;
+}
+
+namespace {
+
+std::vector<detail::Describer>& describers() {
+  static std::vector<detail::Describer> all;
+  return all;
+}
+
+}  // namespace
+
+std::size_t detail::add_describer(Describer describer) {
+  describers().push_back(describer);
+  return describers().size() - 1;
+}
+
+void CallLog::keep(const modules::Bytes& bytes, std::size_t number) {
+  if (bytes.size() > kArguments) return;
+  std::copy(bytes.begin(), bytes.end(), arguments);
+  describer = number;
+  argument_bytes = bytes.size();
+}
+
+std::string CallLog::asked() const {
+  if (argument_bytes == 0 || describer >= describers().size()) return "";
+  try {
+    return describers()[describer](modules::Bytes(arguments, arguments + std::min(argument_bytes, kArguments)));
+  } catch (const std::exception&) {   // the process that wrote them broke them
+    return "";
+  }
 }
 
 void CallLog::note(Verdict what, const std::string& text) {

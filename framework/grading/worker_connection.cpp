@@ -142,6 +142,7 @@ Channel& WorkerConnection::begin_call(const char* function) {
   CallLog& log = call_log();
   if (log.noted) throw CallEnded("the test has its verdict already");
   log.begin(function);
+  asked_.clear();
   if (socket_ < 0) start();
   // Reading the kernel's numbers costs as much as a call, so an account that is younger than this is good enough to start from.
   if (calls_.empty() && Channel::Clock::now() - last_.when > kFresh) last_ = account();
@@ -235,7 +236,7 @@ void WorkerConnection::end_out_of_time(const char* function) {
 
 void WorkerConnection::end_at_limit(const char* function, double limit_s) {
   call_log().timed_out_s = limit_s;
-  end(Verdict::kOutOfResources, timeout_story(limit_s, function, true));
+  end(Verdict::kOutOfResources, timeout_story(limit_s, function, true) + asked_words(asked_));
 }
 
 void WorkerConnection::end(Verdict verdict, const std::string& story) {
@@ -250,10 +251,10 @@ void WorkerConnection::explain_death(const char* function) {
     case Ending::kSignal:
       if (outcome.code == SIGXCPU || (outcome.code == SIGKILL && outcome.cpu_s >= options_.session_own_s - 1.0))
         end_at_limit(function, options_.session_own_s);
-      end(Verdict::kCrashed, signal_story(outcome.code, function, true));
+      end(Verdict::kCrashed, signal_story(outcome.code, function, true) + asked_words(asked_));
     case Ending::kExited: {
       const std::string said = outcome.printed.empty() ? "" : "; it printed: " + outcome.printed.substr(0, 400);
-      end(Verdict::kCrashed, exit_story(outcome.code, function, true) + said);
+      end(Verdict::kCrashed, exit_story(outcome.code, function, true) + said + asked_words(asked_));
     }
     case Ending::kStalled:
     case Ending::kWallLimit:
@@ -282,7 +283,7 @@ void WorkerConnection::refuse(const char* function, const std::string& what) {
   stop(0.0);
   if (what.find("std::bad_alloc") != std::string::npos)
     end(Verdict::kOutOfResources, std::string(function) + " asked for more memory than it may have");
-  end(Verdict::kCrashed, std::string(function) + ' ' + what);
+  end(Verdict::kCrashed, std::string(function) + ' ' + what + asked_words(asked_));
 }
 
 void WorkerConnection::wrong_size(const char*, const std::string& story) {

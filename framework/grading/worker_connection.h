@@ -58,6 +58,7 @@ class WorkerConnection : public modules::Connection {
   modules::Channel& begin_call(const char* function) override;
   void end_call() override;
   void abandon_call() override { reset(); }
+  void note_arguments(const std::string& words) override { asked_ = words; }
   void count_callback() override;
   void resume_call() override;
   modules::Channel::Clock::time_point deadline() const override { return calls_.back().look; }
@@ -104,6 +105,7 @@ class WorkerConnection : public modules::Connection {
   pid_t plain_ = -1;
   int socket_ = -1;
   std::unique_ptr<modules::Channel> channel_;
+  std::string asked_;                   // by the call that failed, in words
   std::vector<Call> calls_;             // that have begun and not ended, the outermost first
   Account session_, last_;              // at the worker's start, and when it was looked at last
   std::optional<TimePoint> turn_;       // since when the worker has the word; nothing: the judge has it

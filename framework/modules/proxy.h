@@ -11,6 +11,7 @@
 #include "framework/core/not_implemented.h"
 #include "framework/modules/answer_sizes.h"
 #include "framework/modules/channel.h"
+#include "framework/modules/show_arguments.h"
 #include "framework/modules/wire.h"
 
 namespace tumble::modules {
@@ -31,6 +32,8 @@ class Connection {
   /// A callback has run and its answer is sent next: the worker goes on with the call.
   virtual void resume_call() {}
   virtual Channel::Clock::time_point deadline() const = 0;
+  /// What the call that is about to fail was asked, in words.
+  virtual void note_arguments(const std::string&) {}
   /// The worker's answer cannot be had: turn the transport error into a verdict. Must throw; the call is over.
   [[noreturn]] virtual void fail(const char* function, std::exception_ptr transport_error) = 0;
   /// The worker answered with an exception of its own, or with bytes that are no answer.
@@ -78,8 +81,10 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
     try {
       return action();
     } catch (const ChannelClosed&) {
+      connection.note_arguments(show_arguments(arguments...));
       connection.fail(name, std::current_exception());
     } catch (const ChannelTimeout&) {
+      connection.note_arguments(show_arguments(arguments...));
       connection.fail(name, std::current_exception());
     } catch (const WireError& error) {
       connection.refuse(name, std::string("answered with bytes that are no answer: ") + error.what());
@@ -128,6 +133,7 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
       }
       case MessageKind::kException: {
         const std::string what = transport([&] { std::string text; reader.value(text); return text; });
+        connection.note_arguments(show_arguments(arguments...));
         connection.refuse(name, "threw an exception: " + what);
         break;
       }

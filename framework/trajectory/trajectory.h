@@ -62,7 +62,7 @@ struct Event {
 
 /// A reason not to trust a run, which the framework found while it went (engines/run_watch.h). A run that has one is judged wrong.
 struct RunFault {
-  std::string kind;                // as a check's: "link_open", "projection_open", "contact_unsolved", "energy_rises"
+  std::string kind;                // as a check's: "link_open", "projection_open", "contact_unsolved", "energy_rises", "turn_unresolved"
   std::string subject;             // the bodies or links of the worst, by name
   double worst = 0.0, allowed = 0.0;
   std::string unit;                // of both

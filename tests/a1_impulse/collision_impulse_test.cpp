@@ -134,7 +134,11 @@ TEST(CollisionImpulse, TurnedBlockNeedsItsInertiaInTheWorldFrame) {
               {.scene = "the same fall, the block turned by 120 degrees about (1, 1, 1): moments 4, 1, 2 about world x, y, z",
                .slip = likely(found, {{6.0, "body inertia where world inertia belongs: I^-1 = R I_body^-1 R^T"},
                                       {8.0, "R and R^T swapped: I^-1 = R I_body^-1 R^T"},
-                                      {12.0, "the rotation term of the denominator is missing"}},
+                                      {12.0, "the rotation term of the denominator is missing"},
+                                      {8.0 / 3.0, kForgotOnePlusE},
+                                      {4.0 / 3.0, kOnlyE},
+                                      {10.0 / 3.0, kSquaredE},
+                                      {-4.0, kWrongSign}},
                               "world inertia: I^-1 = R I_body^-1 R^T"),
                .handout = equation("9")});
 }

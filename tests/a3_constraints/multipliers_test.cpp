@@ -110,14 +110,16 @@ TEST(ConstraintMultipliers, ProductsOfInertiaCount) {
   Random random(306);
   for (int i = 0; i < 5; ++i) {
     const Rig rig = random_rig(random, 5, 3);
-    Rig diagonal = rig, still = rig;
+    Rig diagonal = rig, still = rig, slow = rig;
+    for (Constraint& c : slow.rows) c.row.velocity_product = 0.0;
     for (ConstrainedBody& body : diagonal.bodies) body.inverse_inertia_world = Matrix3d(Vector3d(body.inverse_inertia_world.diagonal()).asDiagonal());
     for (Constraint& c : still.rows) c.row.jacobian_a.tail<3>().setZero(), c.row.jacobian_b.tail<3>().setZero();
     const VectorXd found = rig.multipliers(), expected = dense_multipliers(rig);
     expect_near(found, expected, 1e-10 * (1 + expected.cwiseAbs().maxCoeff()), "N",
                 {.scene = rig.scene + ", number " + std::to_string(i),
                  .slip = likely(found, Slips<VectorXd>{{dense_multipliers(diagonal), "the diagonal of the tensor alone: products of inertia count, so use the whole inverse_inertia_world"},
-                                                       {dense_multipliers(still), "the turning part is left out of A: inverse_inertia_world and the last three numbers of J"}},
+                                                       {dense_multipliers(still), "the turning part is left out of A: inverse_inertia_world and the last three numbers of J"},
+                                                       {dense_multipliers(slow), "the right-hand side lacks each row's velocity_product, J' u"}},
                                 "A_ij = J_i M^-1 J_j^T over every body that rows i and j share"),
                  .handout = equation(7),
                  .iterates = true});

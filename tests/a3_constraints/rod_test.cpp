@@ -95,7 +95,13 @@ TEST(RodRow, DrivenBodiesMoveToo) {
                       .slip = likely(row.rate, Slips<double>{{n.dot(wall_is_a ? Vector3d(-of_b) : of_a), "an immovable body taken to be at rest: infinite mass says nothing about its velocity"}}, "C' = n . (p_a' - p_b'), with omega x r in both"),
                       .handout = equation(4)};
     expect_near(row.rate, rate, kRoundoff * 50, "m/s (C')", story);
-    expect_near(row.velocity_product, velocity_product, kRoundoff * 300, "m/s^2 (J' u)", story);
+    const double across = (d_rate - rate * n).squaredNorm() / d.norm();
+    Story of_product = story;
+    of_product.slip = likely(row.velocity_product, Slips<double>{{across, "the anchors' centripetal accelerations w x (w x r) are missing"},
+                                                                 {n.dot(centripetal), "what turning the rod adds is missing: (d'^2 - (n . d')^2) / |d|"},
+                                                                 {across - n.dot(centripetal), "the sign of the centripetal accelerations: + n . (w x (w x r)) of A, - of B"}},
+                             "J' u = n . (a_centripetal_a - a_centripetal_b) + what turning the rod adds");
+    expect_near(row.velocity_product, velocity_product, kRoundoff * 300, "m/s^2 (J' u)", of_product);
   }
 }
 

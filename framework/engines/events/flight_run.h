@@ -12,8 +12,9 @@
 
 namespace tumble::engines {
 
-/// Events at one instant, each caused by the last, before a run is stopped: no chain of touching bodies is as long.
-constexpr std::uint32_t kMostGenerations = 100000;
+/// Events at one instant, each caused by the last, before a run is stopped: no chain of touching bodies is as long. A timewarp looks at all
+/// that a body flew at its instant, so the price of finding out goes with the square.
+constexpr std::uint32_t kMostGenerations = 4000;
 
 class FlightRun {
  public:

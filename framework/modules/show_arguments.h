@@ -1,0 +1,111 @@
+/// The arguments of a call in words, derived from their types as on the wire: for the story of a call that never came back.
+///   (0, 0, 5) for vectors, {..., ...} for structs, [n: ..., ...] for lists, "f" for functions
+#pragma once
+
+#include <cstdio>
+#include <functional>
+#include <string>
+#include <tuple>
+
+#include "framework/modules/wire.h"
+
+namespace tumble::modules {
+
+namespace detail {
+
+inline constexpr std::size_t kArgumentsShown = 600;   // characters
+inline constexpr int kItemsShown = 4;                 // of a list, of a vector without fixed size
+
+inline void show(std::string& text, double x) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.6g", x);
+  text += digits;
+}
+
+// Items between brackets, the first few of many.
+template <class Item>
+void show_items(std::string& text, const char* brackets, Eigen::Index count, Eigen::Index shown, const Item& item) {
+  text += brackets[0];
+  if (shown < count) text += std::to_string(count) + ": ";
+  for (Eigen::Index i = 0; i < std::min(count, shown); ++i) {
+    if (i > 0) text += ", ";
+    item(i);
+  }
+  if (shown < count) text += ", ...";
+  text += brackets[1];
+}
+
+template <class T>
+void show_argument(std::string& text, const T& x) {
+  if (text.size() > kArgumentsShown) return;
+  if constexpr (is_function<T>::value) {
+    text += "f";
+  } else if constexpr (std::is_same_v<T, bool>) {
+    text += x ? "true" : "false";
+  } else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
+    show(text, static_cast<double>(x));
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    text += '"' + x + '"';
+  } else if constexpr (std::is_same_v<T, Quaterniond>) {
+    show_argument(text, Eigen::Vector4d(x.w(), x.x(), x.y(), x.z()));
+  } else if constexpr (is_optional<T>::value) {
+    if (x) show_argument(text, *x);
+    else text += "nothing";
+  } else if constexpr (is_vector<T>::value) {
+    show_items(text, "[]", static_cast<Eigen::Index>(x.size()), kItemsShown, [&](Eigen::Index i) { show_argument(text, x[static_cast<std::size_t>(i)]); });
+  } else if constexpr (is_matrix<T>) {
+    const Eigen::Index shown = T::SizeAtCompileTime == Eigen::Dynamic ? 2 * kItemsShown : x.rows();
+    if (x.cols() == 1) show_items(text, "()", x.rows(), shown, [&](Eigen::Index i) { show(text, static_cast<double>(x(i, 0))); });
+    else show_items(text, "()", x.rows(), shown, [&](Eigen::Index i) { show_items(text, "()", x.cols(), shown, [&](Eigen::Index k) { show(text, static_cast<double>(x(i, k))); }); });
+  } else {
+    static_assert(std::is_aggregate_v<T>);
+    bool is_first = true;
+    text += '{';
+    boost::pfr::for_each_field(x, [&](const auto& field) {
+      if (!is_first) text += ", ";
+      is_first = false;
+      show_argument(text, field);
+    });
+    text += '}';
+  }
+}
+
+}  // namespace detail
+
+/// "{(0, 0, 5), (0, 0, -1)}, {(0, 0, 0), (1, 0, 0), (0, 1, 0)}"; what is too long ends with "..."
+template <class... A>
+std::string show_arguments(const A&... arguments) {
+  std::string text;
+  const auto show_one = [&text](const auto& a) {
+    if (!text.empty()) text += ", ";
+    detail::show_argument(text, a);
+  };
+  (show_one(arguments), ...);
+  if (text.size() > detail::kArgumentsShown) {
+    text.resize(detail::kArgumentsShown);
+    text += " ...";
+  }
+  return text;
+}
+
+/// The arguments as bytes, functions left out, and back as words: for a call that ends with its process.
+template <class... A>
+void write_arguments(Writer& writer, const A&... arguments) {
+  const auto write = [&writer](const auto& a) {
+    if constexpr (!is_function<std::decay_t<decltype(a)>>::value) writer.value(a);
+  };
+  (write(arguments), ...);
+}
+
+template <class... A>
+std::string show_written_arguments(const Bytes& bytes) {
+  Reader reader(bytes);
+  std::tuple<std::decay_t<A>...> arguments;
+  const auto read = [&reader](auto& a) {
+    if constexpr (!is_function<std::decay_t<decltype(a)>>::value) reader.value(a);
+  };
+  std::apply([&](auto&... a) { (read(a), ...); }, arguments);
+  return std::apply([](const auto&... a) { return show_arguments(a...); }, arguments);
+}
+
+}  // namespace tumble::modules
