@@ -260,9 +260,9 @@ void WorkerConnection::explain_death(const char* function) {
     case Ending::kWallLimit:
       end(Verdict::kMachineBusy, busy_story(function));
     case Ending::kOutputLimit:
-      end(Verdict::kOutOfResources, "printed more than " + std::to_string(job_.limits.output_bytes / 1024) + " KiB, in " + function);
+      end(Verdict::kOutOfResources, "printed more than " + std::to_string(job_.limits.output_bytes / 1024) + " KiB, in " + function + asked_words(asked_));
     case Ending::kStopped:
-      end(Verdict::kCrashed, std::string("closed its line to the judge instead of returning from ") + function);
+      end(Verdict::kCrashed, std::string("closed its line to the judge instead of returning from ") + function + asked_words(asked_));
     case Ending::kNotStarted: break;
   }
   end(Verdict::kGraderFault, "the sandbox did not start: " + outcome.printed);
@@ -282,7 +282,7 @@ void WorkerConnection::fail(const char* function, std::exception_ptr transport_e
 void WorkerConnection::refuse(const char* function, const std::string& what) {
   stop(0.0);
   if (what.find("std::bad_alloc") != std::string::npos)
-    end(Verdict::kOutOfResources, std::string(function) + " asked for more memory than it may have");
+    end(Verdict::kOutOfResources, std::string(function) + " asked for more memory than it may have" + asked_words(asked_));
   end(Verdict::kCrashed, std::string(function) + ' ' + what + asked_words(asked_));
 }
 

@@ -87,6 +87,7 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
       connection.note_arguments(show_arguments(arguments...));
       connection.fail(name, std::current_exception());
     } catch (const WireError& error) {
+      connection.note_arguments(show_arguments(arguments...));
       connection.refuse(name, std::string("answered with bytes that are no answer: ") + error.what());
     }
     throw;  // unreachable: fail and refuse throw
@@ -138,6 +139,7 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
         break;
       }
       default:
+        connection.note_arguments(show_arguments(arguments...));
         connection.refuse(name, "answered with a message of unknown kind");
     }
   }

@@ -20,6 +20,7 @@ void expect_end(const std::string& what, Verdict verdict, const std::string& sto
   EXPECT_STREQ(words(victim.verdict()), words(verdict)) << victim.story();
   EXPECT_TRUE(holds(victim.story(), story_part)) << victim.story();
   EXPECT_TRUE(holds(victim.story(), "attack")) << "the story names the call: " << victim.story();
+  EXPECT_TRUE(holds(victim.story(), "called with: \"" + what + '"')) << "and what it was asked: " << victim.story();
   call_log() = CallLog{};
   EXPECT_EQ(victim.module().twice(21.0), 42.0) << "the next test gets a fresh worker";
   victim.connection().reset();

@@ -49,6 +49,20 @@ TEST(Wire, EveryKindOfValueComesBackBitForBit) {
   EXPECT_TRUE(std::signbit(back.inner[1].point.y()));
 }
 
+// What a crash's story says of its call; functions are not on the wire.
+TEST(Arguments, AreShownAsTheyWereAndAsBytesBringThemBack) {
+  const std::vector<waist::Inner> list(6, {true, waist::Colour::kBlue, 0.25, Vector3d(1, -2, 0.5)});
+  const std::function<double(double)> f = [](double x) { return x; };
+  const Eigen::VectorXd long_vector = Eigen::VectorXd::LinSpaced(20, 1, 20);
+  const std::string shown = modules::show_arguments(f, -3, std::string("a"), Quaterniond(0.5, -0.5, 0.5, -0.5), long_vector, list);
+  EXPECT_EQ(shown.substr(0, 85), "f, -3, \"a\", (0.5, -0.5, 0.5, -0.5), (20: 1, 2, 3, 4, 5, 6, 7, 8, ...), [6: {true, 7, ") << shown;
+  modules::Writer writer;
+  modules::write_arguments(writer, f, -3, std::string("a"), Quaterniond(0.5, -0.5, 0.5, -0.5), long_vector, list);
+  using Function = std::function<double(double)>;
+  EXPECT_EQ((modules::show_written_arguments<const Function&, int, const std::string&, const Quaterniond&, const Eigen::VectorXd&, const std::vector<waist::Inner>&>(writer.bytes)), shown);
+  EXPECT_LT(modules::show_arguments(std::string(5000, 'x')).size(), 700u);   // a story is read by people
+}
+
 TEST(Wire, MessageCutAnywhereIsRefused) {
   const Bytes bytes = bytes_of(sample());
   for (std::size_t size = 0; size < bytes.size(); ++size) {
