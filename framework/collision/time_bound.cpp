@@ -38,6 +38,7 @@ void collect_lines(const PlacedPolytope& piece, const MotionState& state, const 
 
 double lowest_at(const VertexLines& lines, double t, const VertexLine*& line) {
   double lowest = kInfinity;
+  line = lines.begin();   // of a motion that is no longer finite none is lowest
   for (const VertexLine& candidate : lines) {
     const double value = candidate.at(t);
     if (value < lowest) {
@@ -58,7 +59,7 @@ double duration_of_lines(double gap, double rate, double half_acceleration, cons
   half_acceleration = std::min(half_acceleration, 0.0);
   double t = horizon;
   while (t > 0) {
-    const VertexLine *va = nullptr, *vb = nullptr;
+    const VertexLine *va, *vb;
     if (gap + lowest_at(a, t, va) + lowest_at(b, t, vb) + (rate + half_acceleration * t) * t > 0) return t;
     const double root = first_root_of_quadratic(gap + va->height + vb->height, rate + va->rate + vb->rate,
                                                 half_acceleration - va->bend - vb->bend);

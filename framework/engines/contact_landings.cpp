@@ -44,18 +44,26 @@ bool LastingContacts::is_down(const Touch& touch) const {
   return touch.point.gap - thickness <= thickness + kNear * rest_speed_ * step_;
 }
 
-std::vector<Velocity> LastingContacts::velocities_now(const Group& group, const ContactProblem& problem) const {
+// At the step's start; the problem's own are those of its end, of driven bodies too.
+std::vector<Velocity> LastingContacts::velocities_now(const Group& group, const std::vector<Touch>& touches, const ContactProblem& problem) const {
   std::vector<Velocity> now = velocities_of(problem);
   for (std::size_t k = 0; k < group.bodies.size(); ++k) {   // the problem's first bodies are the group's
     const Body body = moving_.body_at_impact(group.bodies[k]);
     now[k] = {body.velocity_world, body.omega_world};
+  }
+  const auto set_driven = [&](int body, int place) {
+    if (moving_.is_driven(body)) now[static_cast<std::size_t>(place)].linear_world = prescribed_velocity(moving_.world().bodies[static_cast<std::size_t>(body)], moving_.time());
+  };
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    set_driven(touches[i].pair.first, problem.contacts[i].body_a);
+    set_driven(touches[i].pair.second, problem.contacts[i].body_b);
   }
   return now;
 }
 
 // Does a point that is apart press, or would its path be under the surface, with this answer?
 bool LastingContacts::comes_down(const Group& group, const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h) const {
-  const std::vector<Velocity> now = velocities_now(group, problem);
+  const std::vector<Velocity> now = velocities_now(group, touches, problem);
   for (std::size_t i = 0; i < touches.size(); ++i) {
     if (!touches[i].lands) continue;
     const double way = 0.5 * h * (approach(problem, i, now) + approach(problem, i, solution.velocities));
@@ -70,7 +78,7 @@ std::vector<LastingContacts::Landing> LastingContacts::predict_landings(const Gr
   std::vector<Touch> held;
   std::copy_if(touches.begin(), touches.end(), std::back_inserter(held), [](const Touch& touch) { return !touch.lands; });
   const ContactProblem problem = problem_of(group, touches, moving_.states(), h);
-  const std::vector<Velocity> now = velocities_now(group, problem);
+  const std::vector<Velocity> now = velocities_now(group, touches, problem);
   std::vector<Velocity> then = velocities_of(problem);
   if (!held.empty() || !problem.rows.empty()) {
     const ContactSolution free = solve(group, problem_of(group, held, moving_.states(), h), h);

@@ -469,6 +469,20 @@ double LastingContacts::add_shifts(const Group& group, const std::vector<Pair>& 
   return wrong;
 }
 
+// A shift is no motion: where masses differ by more than a solver's digits bear, the lightest count as heavier ones.
+void limit_ratios(ContactProblem& problem) {
+  constexpr double kMostRatio = 1e4;
+  double least = std::numeric_limits<double>::infinity();   // inverse mass of what moves
+  for (const PushedBody& body : problem.bodies)
+    if (body.inverse_mass > 0) least = std::min(least, body.inverse_mass);
+  for (PushedBody& body : problem.bodies) {
+    if (!(body.inverse_mass > kMostRatio * least)) continue;
+    const double factor = kMostRatio * least / body.inverse_mass;
+    body.inverse_mass *= factor;
+    body.inverse_inertia_world *= factor;
+  }
+}
+
 // The smallest shift (in the measure of the masses) that leaves no gap of these pairs below its shell, and no rod or joint open; held
 // points come to lie at their shell.
 // @return whether it was found
@@ -480,6 +494,7 @@ bool LastingContacts::keep_apart(const Group& group, const std::vector<Pair>& pa
     ContactProblem problem;
     std::map<int, int> places;
     for (const int body : group.bodies) place(body, t, places, states, nullptr, problem);
+    limit_ratios(problem);
     const double wrong = add_shifts(group, pairs, states, t, round < kHeldRounds ? held : std::vector<Held>{}, reach, places, problem);
     if (kShiftReach * wrong > reach) {   // what a shift this long may bring together has to be in it
       reach = 2 * kShiftReach * wrong;

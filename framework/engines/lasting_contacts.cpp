@@ -262,6 +262,12 @@ std::optional<double> LastingContacts::take_steps(double h) {
   return earliest;
 }
 
+std::string LastingContacts::who_asked_last() const {
+  for (const Group& group : groups_)
+    if (std::binary_search(group.bodies.begin(), group.bodies.end(), asked_last_)) return names_of(moving_.world(), group.bodies);
+  return "bodies";
+}
+
 void LastingContacts::note_near_pairs(const std::vector<Pair>& candidates) {
   std::vector<Group*> group_of(moving_.size(), nullptr);
   for (Group& group : groups_)

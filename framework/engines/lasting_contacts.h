@@ -54,6 +54,8 @@ class LastingContacts {
   bool empty() const { return points_.empty(); }
   /// Whether the last advance() has kept the two apart, so that no impact is looked for.
   bool keeps(Pair pair) const { return points_.contains(pair); }
+  /// The bodies whose contacts last asked for a shorter step, in words.
+  std::string who_asked_last() const;
 
   /// Whether a blow between the two is dealt with in the step it falls into, not at its instant.
   bool deals_in_step(Pair pair) const { return plastic(pair); }
@@ -147,7 +149,7 @@ class LastingContacts {
   static double approach(const ContactProblem& problem, std::size_t contact, const std::vector<Velocity>& velocities);
   static double slip_speed(const ContactProblem& problem, std::size_t contact, const std::vector<Velocity>& velocities);
   bool is_down(const Touch& touch) const;
-  std::vector<Velocity> velocities_now(const Group& group, const ContactProblem& problem) const;
+  std::vector<Velocity> velocities_now(const Group& group, const std::vector<Touch>& touches, const ContactProblem& problem) const;
   bool comes_down(const Group& group, const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h) const;
   std::vector<Landing> predict_landings(const Group& group, const std::vector<Touch>& touches, double h);
   std::optional<double> sort_out_landings(const Group& group, std::vector<Touch>& touches, double h);

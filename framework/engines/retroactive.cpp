@@ -21,7 +21,8 @@ namespace {
 constexpr double kLevel = 1e-12;
 constexpr double kNoStep = 1e-9;         // of the step: a shorter last one is taken with the one before
 constexpr int kMostIdleSteps = 1000;      // in a row without progress of time
-constexpr int kMostImpactsAStep = 20000;  // of one pair: a Zeno sequence that needs a lasting contact
+constexpr int kMostCutsABody = 100;       // of a step, by contacts that ask for shorter ones, without an impact between
+constexpr int kMostImpactsABody = 200;    // in a step: a Zeno sequence that needs a lasting contact
 
 class RetroactiveRun {
  public:
@@ -76,6 +77,7 @@ class RetroactiveRun {
   const Laws laws_;   // guarded
   TrajectorySink& sink_;
   double step_, duration_;
+  int cuts_ = 0;            // of the step under way, since the last impact
   RunCounters counters_;
   MovingWorld moving_;
   Meetings meetings_;
@@ -231,6 +233,9 @@ void RetroactiveRun::watch_for_trouble() {
 // @return all pairs that may meet on the new paths, where there are any
 std::vector<std::pair<int, int>> RetroactiveRun::keep_contacts(std::vector<std::pair<int, int>>& pairs) {
   while (const auto earlier = contacts_->advance(pairs)) {
+    if (++cuts_ > kMostCutsABody * moving_.size())
+      throw StoppedRun(fmt::format("{}: their contacts ask for more than {} steps within one of {:.3g} s. Masses or sizes that differ less, or a shorter \"step_s\", may help",
+                                   contacts_->who_asked_last(), kMostCutsABody * moving_.size(), step_));
     moving_.begin_step_again(*earlier);
     pairs = meetings_.candidates();
   }
@@ -261,6 +266,7 @@ std::vector<std::pair<int, int>> RetroactiveRun::pairs_in_step() {
 
 void RetroactiveRun::advance_to(double target) {
   int idle = 0, impacts = 0;
+  cuts_ = 0;
   while (stopped_by_.empty() && moving_.time() < target) {
     moving_.begin_step(target);
     ++counters_.steps;
@@ -294,7 +300,8 @@ void RetroactiveRun::advance_to(double target) {
     ++counters_.rollbacks;
     resolve_at(near.empty() ? pairs : near, pairs[earliest->pair]);
     idle = reached > before ? 0 : idle + 1;
-    if (idle > kMostIdleSteps || ++impacts > kMostImpactsAStep) {
+    cuts_ = 0;
+    if (idle > kMostIdleSteps || ++impacts > kMostImpactsABody * moving_.size()) {
       const auto [a, b] = pairs[earliest->pair];
       stopped_by_ = fmt::format("at t = {:.6f} s, bodies {} and {}: time stands still, they meet again and again; a lasting contact is needed "
                                 "there, or a larger \"rest_speed_m_s\"", moving_.time(), name(a), name(b));

@@ -42,7 +42,8 @@ void RunProgress::tell_until_done() {
 void RunProgress::tell(double now_s) {
   std::string line = fmt::format("tumble: {:.4g} of {:.4g} s simulated", time_, duration_);
   if (time_ == told_time_) {
-    line += fmt::format(", for {:.0f} s no frame has come: steps have become very short there. Ctrl-C ends the run; --duration-s {:.4g} shows what came before", now_s - came_s_, time_);
+    line += fmt::format(", for {:.0f} s no frame has come: steps have become very short there. Ctrl-C ends the run", now_s - came_s_);
+    if (time_ > 0) line += fmt::format("; --duration-s {:.4g} shows what came before", time_);
   } else if (time_ > 0) {
     line += fmt::format(", about {:.0f} s left", came_s_ / time_ * (duration_ - time_));
   }

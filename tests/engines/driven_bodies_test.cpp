@@ -176,6 +176,23 @@ TEST(DrivenBodies, ATrainMovesAsTheStation) {
     }
 }
 
+// Two small balls, one on the other, on a floor that shakes with less than g: what does not bounce stays on it. The floor's speed changes by twice
+// the rest speed in a step, so that who takes it for that of the step's end sees the ball come down on it for ever.
+TEST(DrivenFloors, SmallBallsStayOnAFloorThatShakesGently) {
+  const double radius = 0.006, amplitude = 6e-4, frequency = 85.0, duration = 0.2;   // m, rad/s: a w^2 = 4.3 m/s^2
+  scene::Scene scene = with_contact({driven_plane("floor", Vector3d::Zero(), {0, 0, amplitude}, frequency), ball("low", radius, 1e-3, {0, 0, radius + 1e-3}, Vector3d::Zero()),
+                                     ball("high", radius, 2e-3, {0, 0, 3 * radius + 1.5e-3}, Vector3d::Zero())},
+                                    duration, 0.5, 0.0);
+  scene.step_s = 0.001;
+  for (const char* engine : kEngines) {
+    const Trajectory run = run_in(engine, scene);
+    EXPECT_LT(run.counters.counts.at("steps"), 1000u) << engine;   // 200, and some for each impact
+    const double floor = amplitude * std::sin(frequency * run.frames.back().time);
+    EXPECT_NEAR(run.frames.back().poses[1].com_world.z(), floor + radius, 5e-8) << engine;   // m: the floor bends by a w^3 h^3 / 12 = 3e-8 from the parabola of a step
+    EXPECT_NEAR(run.frames.back().poses[2].com_world.z(), floor + 3 * radius, 5e-8) << engine;
+  }
+}
+
 // Boxes on floors that rise and shake. Engines part by what a step leaves; timewarp is the ordered reference to the last bit.
 TEST(DrivenBodies, AllEnginesMeetAsStepsGoToZero) {
   scene::BodySpec plate = box("plate", {0.22, 0.35, 0.01}, 0.06, {0, 0, 0.6}, {0.1, 0, 0});
