@@ -350,6 +350,11 @@ void RetroactiveRun::run_to_the_end() {
   meetings_.separate(all);
   if (has_contacts()) contacts_->begin_where_touching(all);
   run_callbacks();
+  const auto watch_energy = [&] {
+    if (!callbacks_.empty()) return;   // they bring energy in
+    if (const auto runaway = energy_watch_.look(moving_.time(), moving_.world(), moving_.states())) stop_for(*runaway);
+  };
+  watch_energy();   // what the first step does counts, too
   record([&] { recorder_.record_committed(moving_); });
   while (stopped_by_.empty() && moving_.time() < duration_) {
     next_look_ = moving_.look();
@@ -360,8 +365,7 @@ void RetroactiveRun::run_to_the_end() {
     if (target >= static_cast<double>(grid_index_ + 1) * step_) ++grid_index_;
     switch_forces();
     run_callbacks();
-    if (callbacks_.empty())   // they bring energy in
-      if (const auto runaway = energy_watch_.look(moving_.time(), moving_.world(), moving_.states())) stop_for(*runaway);
+    watch_energy();
     record([&] { recorder_.record_committed(moving_); });
     if (has_sleepers()) sleepers_->look(touching_);
   }

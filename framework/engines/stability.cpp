@@ -282,7 +282,7 @@ std::optional<Runaway> EnergyWatch::look(double time, const World& world, const 
   if (std::isnan(first_energy_)) begin(world, states, sums);
   lowest_potential_ = std::min(lowest_potential_, sums.potential_energy);
   note_rise(time, energy, world, states);
-  if (energy - first_energy_ <= kRunaway * available() + kRoundingOfRest * std::abs(first_energy_)) return std::nullopt;
+  if (energy - first_energy_ <= kRunaway * available() + unseen_ + kRoundingOfRest * std::abs(first_energy_)) return std::nullopt;
   if (available() == 0.0 && first_energy_ == 0.0 && !(sums.kinetic_energy > 0)) return std::nullopt;
   return Runaway{body_with_most_energy(world, states), energy, first_energy_, by_blows_};
 }

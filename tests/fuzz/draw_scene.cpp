@@ -79,7 +79,7 @@ Vector3d SceneMaker::direction() {
 }
 
 Json SceneMaker::draw_shape(Drawn& drawn) {
-  const double scale = size_ * log_between(1.0 / spread_, spread_);
+  const double scale = std::clamp(size_ * log_between(1.0 / spread_, spread_), 1e-3, 100.0);
   const int kind = among(0, 9);
   if (kind <= 3) {
     const double radius = decimals(scale / 2) > 0 ? decimals(scale / 2) : scale / 2;
@@ -111,7 +111,8 @@ Json SceneMaker::draw_shape(Drawn& drawn) {
 
 void SceneMaker::draw_mass(Drawn& drawn) {
   drawn.mass = std::clamp(typical_mass_ * log_between(1.0 / spread_, spread_), 1e-3, 1e4);
-  if (chance(0.2)) drawn.body["density_kg_m3"] = log_between(100.0, 8000.0);
+  const double density = log_between(100.0, 8000.0), mass = density * std::pow(2.0 * drawn.reach, 3);
+  if (chance(0.2) && mass > 1e-3 && mass < 1e4) drawn.body["density_kg_m3"] = density;
   else drawn.body["mass_kg"] = drawn.mass;
 }
 

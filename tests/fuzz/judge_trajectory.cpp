@@ -65,7 +65,7 @@ void Judge::check_end() {
 
 /// Energy of a frame, and how large the sums were that it came from.
 struct Energy {
-  double kinetic = 0.0, potential = 0.0, terms = 0.0;
+  double kinetic = 0.0, potential = 0.0, in_springs = 0.0, terms = 0.0;
 };
 
 Energy energy_of(const Judge& judge, const Frame& frame) {
@@ -87,6 +87,7 @@ Energy energy_of(const Judge& judge, const Frame& frame) {
   for (const SpringLink& spring : world.springs) {
     const double stretch = (judge.place(frame, spring.a) - judge.place(frame, spring.b)).norm() - spring.spring.rest_length;
     add(energy.potential, 0.5 * spring.spring.stiffness * stretch * stretch);
+    energy.in_springs += 0.5 * spring.spring.stiffness * stretch * stretch;
   }
   return energy;
 }
@@ -123,24 +124,31 @@ void Judge::check_energy() {
     if (body.immovable() && body.collides && (!body.motion.velocity_m_s.isZero(0) || !body.motion.amplitude_m.isZero(0))) return;
   double stir = 0.0;   // what position correction may lift
   for (const WorldBody& body : world.bodies)
+    if (!body.immovable()) stir += body.inertia.mass * scene.rest_speed_m_s * scene.rest_speed_m_s;   // what does not bounce is sent off at it
+  for (const WorldBody& body : world.bodies)
     if (!body.immovable() && world.gravity_world) stir += kStir * body.inertia.mass * world.gravity_world->norm() * bounding_radius(body.shape);
   const Energy first = energy_of(*this, run.frames.front());
-  double work = 0.0, given = 0.0, least = first.kinetic + first.potential, fall = 0.0;
+  std::vector<Energy> energies{first};
+  std::vector<double> work{0.0};
+  double given = 0.0, fall = 0.0;
   for (std::size_t k = 1; k < run.frames.size(); ++k) {
     const Frame &before = run.frames[k - 1], &frame = run.frames[k];
     const double done = work_of_point_forces(*this, before, frame), motors = work_of_motors(*this, before, frame);
-    work += done + motors;
+    work.push_back(work.back() + done + motors);
     given += std::abs(done) + motors;
-    const Energy now = energy_of(*this, frame);
-    fall = std::max(fall, first.potential - now.potential);
-    const double scale = first.kinetic + fall + given;
-    const double total = now.kinetic + now.potential - work;
+    energies.push_back(energy_of(*this, frame));
+    fall = std::max(fall, first.potential - energies.back().potential);
+  }
+  const double scale = first.kinetic + first.in_springs + fall + given;   // all that the run has to give
+  double least = first.kinetic + first.potential;
+  for (std::size_t k = 1; k < run.frames.size(); ++k) {
+    const double total = energies[k].kinetic + energies[k].potential - work[k];
     // Sums of terms of this size, rounded once a frame and once a step by the engine.
-    const double rounding = 16.0 * kEps * now.terms * (1.0 + frame.time / scene.step_s);
+    const double rounding = 16.0 * kEps * energies[k].terms * (1.0 + run.frames[k].time / scene.step_s);
     const double gained = total - least - stir - rounding;
     least = std::min(least, total);
     if (gained > kEnergyGrowth * scale) {
-      faults.push_back({"energy", fmt::format("{:.4g} J more than before at t = {:.6g} s, where {:.4g} J are at work ({:.3g} of them)", gained, frame.time, scale, gained / scale)});
+      faults.push_back({"energy", fmt::format("{:.4g} J more than before at t = {:.6g} s, where {:.4g} J are at work ({:.3g} of them)", gained, run.frames[k].time, scale, gained / scale)});
       return;
     }
   }
