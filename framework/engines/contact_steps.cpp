@@ -166,6 +166,7 @@ ContactSolution LastingContacts::solve(const Group& group, const ContactProblem&
       if (again.residual < solution.residual) solution = std::move(again);
     }
     counters_.contact_sweeps += static_cast<std::uint64_t>(solution.sweeps);
+    sweeps_ += static_cast<std::uint64_t>(solution.sweeps);
     counters_.contact_factorisations += static_cast<std::uint64_t>(solution.factorisations);
     if (!solution.converged) ++counters_.contact_unsolved;
     return solution;
@@ -518,6 +519,7 @@ bool LastingContacts::keep_apart(const Group& group, const std::vector<Pair>& pa
     options.tolerance = std::max(kRounding, kMissed * part);
     options.enough = std::max(kRounding, kMissedAtMost * part);
     const ContactSolution shift = solve_contacts(problem, options);
+    sweeps_ += static_cast<std::uint64_t>(shift.sweeps);
     for (std::size_t k = 0; k < group.bodies.size(); ++k) apply_shift(group.bodies[k], shift.velocities[k], states);
   }
   return false;

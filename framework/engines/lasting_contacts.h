@@ -54,6 +54,8 @@ class LastingContacts {
   bool empty() const { return points_.empty(); }
   /// Whether the last advance() has kept the two apart, so that no impact is looked for.
   bool keeps(Pair pair) const { return points_.contains(pair); }
+  /// Of the contact solver so far, for impulses and for shifts.
+  std::uint64_t sweeps() const { return sweeps_; }
   /// The bodies whose contacts last asked for a shorter step, in words.
   std::string who_asked_last() const;
 
@@ -223,6 +225,7 @@ class LastingContacts {
   double searched_from_ = -1e300;                // ends of sliding were looked for since, and how often
   int searches_ = 0;
   std::optional<Locating> locating_;             // the end of sliding that is being looked for
+  std::uint64_t sweeps_ = 0;
   int asked_last_ = -1;                          // body of the group that last asked for an earlier target
 };
 

@@ -22,6 +22,7 @@ constexpr double kLevel = 1e-12;
 constexpr double kNoStep = 1e-9;         // of the step: a shorter last one is taken with the one before
 constexpr int kMostIdleSteps = 1000;      // in a row without progress of time
 constexpr int kMostCutsABody = 100;       // of a step, by contacts that ask for shorter ones, without an impact between
+constexpr std::uint64_t kMostSweepsAStep = 300'000;   // of the contact solver: some 200 problems of a step that all stayed unsolved
 constexpr int kMostImpactsABody = 200;    // in a step: a Zeno sequence that needs a lasting contact
 
 class RetroactiveRun {
@@ -29,7 +30,7 @@ class RetroactiveRun {
   RetroactiveRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink)
       : scene_(scene), laws_(guarded(laws)), sink_(sink), step_(options.step_s.value_or(scene.step_s)),
         duration_(options.duration_s.value_or(scene.duration_s)), moving_(build_world(scene), laws_, counters_), meetings_(moving_, laws_, counters_),
-        impacts_(laws_, {scene.rest_speed_m_s, step_ / 100}, counters_), callbacks_(options.callbacks), recorder_(options.frame_rate_hz, duration_, sink), energy_watch_(scene.rest_speed_m_s, step_) {
+        impacts_(laws_, {scene.rest_speed_m_s, step_ / 100}, counters_), callbacks_(options.callbacks), recorder_(options.frame_rate_hz, duration_, sink), energy_watch_(scene.rest_speed_m_s, step_, true) {
     if (options.propagator == "auto") moving_.go_in_closed_form();
     if (!built::kContact || !moving_.world().contact) return;
     contacts_.emplace(moving_, laws_, *moving_.world().contact, scene.rest_speed_m_s, counters_, sink);
@@ -78,6 +79,7 @@ class RetroactiveRun {
   TrajectorySink& sink_;
   double step_, duration_;
   int cuts_ = 0;            // of the step under way, since the last impact
+  std::uint64_t sweeps_before_ = 0;   // of the contact solver, when it began
   RunCounters counters_;
   MovingWorld moving_;
   Meetings meetings_;
@@ -233,6 +235,9 @@ void RetroactiveRun::watch_for_trouble() {
 // @return all pairs that may meet on the new paths, where there are any
 std::vector<std::pair<int, int>> RetroactiveRun::keep_contacts(std::vector<std::pair<int, int>>& pairs) {
   while (const auto earlier = contacts_->advance(pairs)) {
+    if (contacts_->sweeps() - sweeps_before_ > kMostSweepsAStep)
+      throw StoppedRun(fmt::format("{}: what their contacts, rods and joints ask for together stays unsolved, also in the shortest parts of a step of {:.3g} s. They may contradict each other; masses or sizes that differ less, or a shorter \"step_s\", may help",
+                                   contacts_->who_asked_last(), step_));
     if (++cuts_ > kMostCutsABody * moving_.size())
       throw StoppedRun(fmt::format("{}: their contacts ask for more than {} steps within one of {:.3g} s. Masses or sizes that differ less, or a shorter \"step_s\", may help",
                                    contacts_->who_asked_last(), kMostCutsABody * moving_.size(), step_));
@@ -267,6 +272,7 @@ std::vector<std::pair<int, int>> RetroactiveRun::pairs_in_step() {
 void RetroactiveRun::advance_to(double target) {
   int idle = 0, impacts = 0;
   cuts_ = 0;
+  if (has_contacts()) sweeps_before_ = contacts_->sweeps();
   while (stopped_by_.empty() && moving_.time() < target) {
     moving_.begin_step(target);
     ++counters_.steps;

@@ -18,6 +18,7 @@ namespace {
 constexpr double kRoundOffOfSpeed = 1e-13;
 constexpr double kRoundOffOfSliding = 64 * std::numeric_limits<double>::epsilon();
 constexpr int kRoundsAmongContacts = 60;   // bodies in lasting contact pass a blow on in ever smaller parts
+constexpr std::size_t kToldAPair = 64;   // impulses at one instant: more are told as one a pair
 constexpr int kMostRounds = 10000;  // restitution 0.99 in a row of 50 balls takes some hundred
 // Of K of the free bodies: what rounding leaves where rods and joints hold both bodies completely along the normal.
 constexpr double kImmovable = 1e-12;
@@ -318,6 +319,8 @@ Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<Tou
   if (again && contact_rest_speed_) {   // what is left of a blow that many bodies in contact hand to and fro is taken from all at once
     collide_together(work, pairs, threshold, false);
     again = false;
+    work.result.events = one_a_pair(work.result.events);
+  } else if (work.result.events.size() > kToldAPair * pairs.size()) {
     work.result.events = one_a_pair(work.result.events);
   }
   work.result.settled = !again;

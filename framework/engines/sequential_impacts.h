@@ -33,7 +33,7 @@ struct TouchingPair {
 
 /// What one resolution did.
 struct Resolution {
-  std::vector<Event> events;    // one an impulse, in order; of a blow that a heap hands to and fro one a pair
+  std::vector<Event> events;    // one an impulse, in order; of a blow that bodies hand to and fro many times one a pair
   bool settled = true;          // false: the rounds did not end
   std::vector<TouchingPair> micro_impacts;   // pairs that meet again at once, or met without an impulse: see push_apart
 };

@@ -274,11 +274,43 @@ void EnergyWatch::tell(const World& world, RunWatch& watch) const {
     watch.note(RunWatch::Kind::kEnergyRises, fmt::format("'{}'", world.bodies[static_cast<std::size_t>(rise.body)].name), {rise.size / whole, kEnergyRises, rise.time, step_});
 }
 
+// What point forces have done since the last look (force times the way of their point, exact where they are constant), and the most that motors can
+// have done: their largest torque over how far the hinge turned at the faster of its two rates, twice for what lies between.
+double EnergyWatch::work_since(double time, const World& world, const std::vector<RigidBodyState>& states) {
+  double work = 0.0;
+  pushed_body_.resize(world.point_forces.size(), unset_vector());
+  pushed_world_.resize(world.point_forces.size(), unset_vector());
+  for (std::size_t k = 0; k < world.point_forces.size(); ++k) {
+    const PointForce& force = world.point_forces[k];
+    if (time < force.start) continue;
+    const RigidBodyState& state = states[static_cast<std::size_t>(force.body)];
+    if (std::isnan(pushed_body_[k].x())) pushed_body_[k] = state.world_from_body.conjugate() * (force.point_world - state.com_world);
+    const Vector3d now = state.com_world + state.world_from_body * pushed_body_[k];
+    if (!std::isnan(pushed_world_[k].x()) && time <= force.end) work += force.force_world.dot(now - pushed_world_[k]);
+    pushed_world_[k] = now;
+  }
+  double most = 0.0;
+  turning_.resize(world.motors.size(), 0.0);
+  for (std::size_t k = 0; k < world.motors.size(); ++k) {
+    const JointLink& joint = world.joints[static_cast<std::size_t>(world.motors[k].joint)];
+    const auto omega = [&](int body) { return body < 0 ? Vector3d(Vector3d::Zero()) : omega_of(states[static_cast<std::size_t>(body)], world.bodies[static_cast<std::size_t>(body)].inertia); };
+    const double now = (omega(joint.a.body) - omega(joint.b.body)).norm();
+    most += 2.0 * world.motors[k].law.largest_torque_n_m * std::max(now, turning_[k]) * (time - last_look_);
+    turning_[k] = now;
+  }
+  last_look_ = time;
+  given_ += std::abs(work) + most;
+  return work + most;
+}
+
 std::optional<Runaway> EnergyWatch::look(double time, const World& world, const std::vector<RigidBodyState>& states) {
   const auto driven = [](const WorldBody& b) { return b.immovable() && !(b.motion.velocity_m_s.isZero(0.0) && b.motion.amplitude_m.isZero(0.0)); };
-  if (!world.point_forces.empty() || !world.motors.empty() || std::any_of(world.bodies.begin(), world.bodies.end(), driven)) return std::nullopt;
+  const auto is_unlimited = [](const Motor& motor) { return !std::isfinite(motor.law.largest_torque_n_m); };
+  if (std::any_of(world.motors.begin(), world.motors.end(), is_unlimited)) return std::nullopt;
+  if ((!sees_switches_ && (!world.point_forces.empty() || !world.motors.empty())) || std::any_of(world.bodies.begin(), world.bodies.end(), driven)) return std::nullopt;
   const Invariants sums = invariants_of(world, states);
-  const double energy = sums.kinetic_energy + sums.potential_energy;
+  work_ += work_since(time, world, states);
+  const double energy = sums.kinetic_energy + sums.potential_energy - work_;
   if (std::isnan(first_energy_)) begin(world, states, sums);
   lowest_potential_ = std::min(lowest_potential_, sums.potential_energy);
   note_rise(time, energy, world, states);

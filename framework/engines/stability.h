@@ -102,14 +102,15 @@ struct Runaway {
 class EnergyWatch {
  public:
   /// @param rest_speed  below which impacts may do as they like: so little energy is not asked for [m/s];  @param step  of the run [s]
-  EnergyWatch(double rest_speed, double step) : rest_speed_(rest_speed), step_(step) {}
+  /// @param sees_switches  whether it looks at each instant at which a point force begins or ends: else worlds with such forces, and with motors, go unwatched
+  EnergyWatch(double rest_speed, double step, bool sees_switches) : rest_speed_(rest_speed), step_(step), sees_switches_(sees_switches) {}
 
   /// An impact has taken place: what it did to the energy, as measured; else the work j (u + u') / 2 of its impulse.
   void note(const Event& event) {
     if (event.kind != EventKind::kCollision) return;
     by_blows_ += event.energy_change == event.energy_change ? event.energy_change : 0.5 * event.impulse * (event.normal_velocity_before + event.normal_velocity_after);
   }
-  /// @return nothing while all is well, and for worlds that are driven (point forces, motors, moving walls)
+  /// @return nothing while all is well, and for worlds that moving walls, or motors without a largest torque, drive
   std::optional<Runaway> look(double time, const World& world, const std::vector<RigidBodyState>& states);
   /// Notes what energy has risen by above the least it has been, where that is more than steps leave of all that the world had to give.
   void tell(const World& world, RunWatch& watch) const;
@@ -120,10 +121,15 @@ class EnergyWatch {
     int body;                      // that had most of the world's energy then
   };
   void begin(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums);
+  double work_since(double time, const World& world, const std::vector<RigidBodyState>& states);
   void note_rise(double time, double energy, const World& world, const std::vector<RigidBodyState>& states);
-  double available() const { return scale_ + (first_potential_ - lowest_potential_); }
+  double available() const { return scale_ + given_ + (first_potential_ - lowest_potential_); }
 
   double rest_speed_, step_;
+  bool sees_switches_;
+  std::vector<Vector3d> pushed_body_, pushed_world_;   // of each point force, where it acts: body frame, and where that was at the last look [m]
+  std::vector<double> turning_;                        // of each motor's hinge at the last look [rad/s]
+  double last_look_ = 0.0, work_ = 0.0, given_ = 0.0;  // [s]; what forces and, at most, motors have brought in, and without its sign [J]
   double first_energy_ = kUnset, scale_ = 0.0, first_potential_ = 0.0, lowest_potential_ = 0.0, by_blows_ = 0.0;   // [J]
   double least_energy_ = 0.0, unseen_ = 0.0;   // the least so far; what the model itself is free to make [J]
   std::vector<Rise> rises_;        // each larger than the one before

@@ -35,7 +35,7 @@ struct Words {
   int shrunk_a_family = 1;          // failures of a family that are made small
   fs::path out = "out/fuzz", program, judge;
   std::uint64_t print = 0;
-  double silence_s = 20.0;
+  double silence_s = 60.0;   // of CPU without a frame; tumble run says how far it is after 5 s, and every 10 s from then on
 };
 
 Words parse(int argc, char** argv) {

@@ -18,7 +18,7 @@ constexpr double kMicroInterval = 0.01;   // of the step: a pair that meets agai
 FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink)
     : laws_(guarded(laws)), step_(options.step_s.value_or(scene.step_s)), duration_(options.duration_s.value_or(scene.duration_s)), rate_(options.frame_rate_hz),
       world_(scene, options.engine, laws_, {step_, scene.rest_speed_m_s}), impacts_(world_, laws_.find_impact_time, step_),
-      meetings_(world_, laws_, {scene.rest_speed_m_s, kMicroInterval * step_}), sink_(sink), on_membership_(options.on_membership), callbacks_(options.callbacks), energy_watch_(scene.rest_speed_m_s, step_) {
+      meetings_(world_, laws_, {scene.rest_speed_m_s, kMicroInterval * step_}), sink_(sink), on_membership_(options.on_membership), callbacks_(options.callbacks), energy_watch_(scene.rest_speed_m_s, step_, false) {
   for (std::size_t k = 0; k < callbacks_.size(); ++k) callback_keys_.push_back({callbacks_[k].time, static_cast<std::uint32_t>(k), EventClass::kCallback, callbacks_[k].bodies.front(), -1});
   if (!world_.processes()) return;
   refuse_unstable_steps(world_.world(), laws_, {step_, duration_}, scene.file.empty() ? scene.name : scene.file.string(), counters.notices);
@@ -31,7 +31,7 @@ FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptio
 Meeting FlightRun::meet(const EventKey& key, const Flight& f, const Flight& g, RunCounters& counters) const {
   if (f.passage >= 0 || g.passage >= 0 || (world_.processes() && world_.processes()->holds_contacts())) return meet_as_processes(key, f, g, counters);
   const auto subject = [&] { return fmt::format("bodies {} and {}", name(key.body_a), name(key.body_b)); };
-  if (key.generation > kMostGenerations)
+  if (key.generation > most_generations(world_.size()))
     throw StoppedRun(fmt::format("at t = {:.6f} s, {}: time stands still, impacts cause each other without end; a lasting contact is needed there, or a larger \"rest_speed_m_s\"", key.time, subject()));
   try {
     ++counters.impacts;
@@ -70,7 +70,7 @@ Meeting finished(const EventKey& key, std::vector<BegunFlight> begun, const std:
 
 Meeting FlightRun::meet_as_processes(const EventKey& key, const Flight& f, const Flight& g, RunCounters& counters) const {
   const int a = key.body_a, b = key.body_b;
-  if (key.generation > kMostGenerations)
+  if (key.generation > most_generations(world_.size()))
     throw StoppedRun(fmt::format("at t = {:.6f} s, bodies {} and {}: time stands still, impacts cause each other without end; a larger \"rest_speed_m_s\" is needed", key.time, name(a), name(b)));
   Processes& processes = *world_.processes();
   ++counters.impacts;
@@ -90,7 +90,7 @@ std::optional<EventKey> FlightRun::own_end(int body, const Flight& flight, doubl
 }
 
 Meeting FlightRun::end_of_passage(const EventKey& key, const Flight& flight) const {
-  if (key.generation > kMostGenerations) throw StoppedRun(fmt::format("at t = {:.6f} s, body {}: time stands still among the bodies that touch it", key.time, name(key.body_a)));
+  if (key.generation > most_generations(world_.size())) throw StoppedRun(fmt::format("at t = {:.6f} s, body {}: time stands still among the bodies that touch it", key.time, name(key.body_a)));
   const PassageEnd* end = world_.processes()->passages().end_by(flight.passage, key.time);
   require(end != nullptr, "a passage ends where own_end said");
   return finished(key, world_.processes()->sort(end->after), end->events);
