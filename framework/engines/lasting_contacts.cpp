@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "framework/collision/gap.h"
 #include "framework/engines/body_groups.h"
 #include "framework/engines/guarded_laws.h"
@@ -266,6 +268,11 @@ std::string LastingContacts::who_asked_last() const {
   for (const Group& group : groups_)
     if (std::binary_search(group.bodies.begin(), group.bodies.end(), asked_last_)) return names_of(moving_.world(), group.bodies);
   return "bodies";
+}
+
+std::string LastingContacts::told_contradiction() const {
+  return fmt::format("{}: what their contacts, rods and joints ask for together stays unsolved, also in the shortest parts of a step of {:.3g} s. They may contradict each other; masses or "
+                     "sizes that differ less, or a shorter \"step_s\", may help", who_asked_last(), step_);
 }
 
 void LastingContacts::note_near_pairs(const std::vector<Pair>& candidates) {

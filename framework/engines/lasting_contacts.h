@@ -33,6 +33,11 @@ Quaterniond turned(const Quaterniond& world_from_body, const Vector3d& turn_worl
 /// How far lasting contacts are kept apart, as a part of the smaller body's radius: far above rounding, far below what is seen or measured.
 inline constexpr double kContactMargin = 1e-10;
 
+/// In a step, a body: more impacts are a Zeno sequence that needs a lasting contact.
+inline constexpr long kMostImpactsABody = 200;
+/// Sweeps of the contact solver in a step: some 200 problems that all stayed unsolved.
+inline constexpr std::uint64_t kMostSweepsAStep = 300'000;
+
 class LastingContacts {
  public:
   using Pair = std::pair<int, int>;   // bodies, first < second
@@ -58,6 +63,8 @@ class LastingContacts {
   std::uint64_t sweeps() const { return sweeps_; }
   /// The bodies whose contacts last asked for a shorter step, in words.
   std::string who_asked_last() const;
+  /// What is said of a step in which nearly every problem stayed unsolved.
+  std::string told_contradiction() const;
 
   /// Whether a blow between the two is dealt with in the step it falls into, not at its instant.
   bool deals_in_step(Pair pair) const { return plastic(pair); }

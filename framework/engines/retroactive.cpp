@@ -22,8 +22,6 @@ constexpr double kLevel = 1e-12;
 constexpr double kNoStep = 1e-9;         // of the step: a shorter last one is taken with the one before
 constexpr int kMostIdleSteps = 1000;      // in a row without progress of time
 constexpr int kMostCutsABody = 100;       // of a step, by contacts that ask for shorter ones, without an impact between
-constexpr std::uint64_t kMostSweepsAStep = 300'000;   // of the contact solver: some 200 problems of a step that all stayed unsolved
-constexpr int kMostImpactsABody = 200;    // in a step: a Zeno sequence that needs a lasting contact
 
 class RetroactiveRun {
  public:
@@ -236,8 +234,7 @@ void RetroactiveRun::watch_for_trouble() {
 std::vector<std::pair<int, int>> RetroactiveRun::keep_contacts(std::vector<std::pair<int, int>>& pairs) {
   while (const auto earlier = contacts_->advance(pairs)) {
     if (contacts_->sweeps() - sweeps_before_ > kMostSweepsAStep)
-      throw StoppedRun(fmt::format("{}: what their contacts, rods and joints ask for together stays unsolved, also in the shortest parts of a step of {:.3g} s. They may contradict each other; masses or sizes that differ less, or a shorter \"step_s\", may help",
-                                   contacts_->who_asked_last(), step_));
+      throw StoppedRun(contacts_->told_contradiction());
     if (++cuts_ > kMostCutsABody * moving_.size())
       throw StoppedRun(fmt::format("{}: their contacts ask for more than {} steps within one of {:.3g} s. Masses or sizes that differ less, or a shorter \"step_s\", may help",
                                    contacts_->who_asked_last(), kMostCutsABody * moving_.size(), step_));
@@ -270,7 +267,8 @@ std::vector<std::pair<int, int>> RetroactiveRun::pairs_in_step() {
 }
 
 void RetroactiveRun::advance_to(double target) {
-  int idle = 0, impacts = 0;
+  int idle = 0;
+  long impacts = 0;
   cuts_ = 0;
   if (has_contacts()) sweeps_before_ = contacts_->sweeps();
   while (stopped_by_.empty() && moving_.time() < target) {
@@ -307,7 +305,7 @@ void RetroactiveRun::advance_to(double target) {
     resolve_at(near.empty() ? pairs : near, pairs[earliest->pair]);
     idle = reached > before ? 0 : idle + 1;
     cuts_ = 0;
-    if (idle > kMostIdleSteps || ++impacts > kMostImpactsABody * moving_.size()) {
+    if (idle > kMostIdleSteps || ++impacts > kMostImpactsABody * static_cast<long>(moving_.size())) {
       const auto [a, b] = pairs[earliest->pair];
       stopped_by_ = fmt::format("at t = {:.6f} s, bodies {} and {}: time stands still, they meet again and again; a lasting contact is needed "
                                 "there, or a larger \"rest_speed_m_s\"", moving_.time(), name(a), name(b));

@@ -139,12 +139,23 @@ void FlightRun::pass(const EventKey& key) {
 void FlightRun::commit(const EventKey& key, const Event& first, const std::vector<Event>& more) {
   pass(key);
   commit_switches(std::nextafter(key.time, 2 * key.time + 1));
+  require_progress(key, first);
   sink_.event(first);
   energy_watch_.note(first);
   for (const Event& event : more) {
     sink_.event(event);
     energy_watch_.note(event);
   }
+}
+
+// Impacts that come ever sooner after each other go on for ever in exact numbers, and for hours in these.
+void FlightRun::require_progress(const EventKey& key, const Event& event) {
+  if (event.kind != EventKind::kCollision) return;
+  const double step = std::floor(key.time / step_);
+  impacts_in_step_ = step == step_of_impacts_ ? impacts_in_step_ + 1 : 0;
+  step_of_impacts_ = step;
+  if (impacts_in_step_ > kMostImpactsABody * static_cast<long>(world_.size()))
+    throw StoppedRun(fmt::format("at t = {:.6f} s, bodies {} and {}: time stands still, they meet again and again; a lasting contact is needed there, or a larger \"rest_speed_m_s\"", key.time, name(event.body_a), name(event.body_b)));
 }
 
 void FlightRun::commit_frame(const FlightOf& flight_of) {

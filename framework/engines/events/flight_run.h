@@ -67,12 +67,15 @@ class FlightRun {
 
  private:
   Meeting meet_as_processes(const EventKey& key, const Flight& f, const Flight& g, RunCounters& counters) const;
+  void require_progress(const EventKey& key, const Event& event);
   void commit_switches(double until);
   double frame_time(long k) const { return static_cast<double>(k) / rate_; }
   std::string name(int body) const { return body < 0 ? "itself" : "'" + world_.world().bodies[body].name + "'"; }
 
   const Laws laws_;   // guarded
   double step_, duration_, rate_;
+  double step_of_impacts_ = -1.0;   // of the grid: the one that the last impact fell into
+  long impacts_in_step_ = 0;
   FlightWorld world_;
   ImpactsOfFlights impacts_;
   MeetingOfFlights meetings_;

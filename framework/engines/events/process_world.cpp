@@ -199,6 +199,8 @@ ProcessWorld::Outcome ProcessWorld::step(ProcessState& start, double due) {
   ProcessState from = start.without_memory();
   save_controls(from);
   ++counters_.steps;
+  if (has_contacts() && due != due_) sweeps_before_ = contacts_->sweeps();
+  due_ = due;
   begin_step(std::min({due, next_look, next_switch}));
   std::vector<BodyPair> pairs, near;
   if (has_contacts()) {
@@ -232,6 +234,7 @@ ProcessWorld::Outcome ProcessWorld::step(ProcessState& start, double due) {
 bool ProcessWorld::keep_contacts(std::vector<BodyPair>& pairs) {
   while (const auto earlier = contacts_->advance(pairs)) {
     if (!collector_.events.empty()) return true;
+    if (contacts_->sweeps() - sweeps_before_ > kMostSweepsAStep) throw StoppedRun(contacts_->told_contradiction());
     begin_step(*earlier);
     pairs = meetings_.candidates();
   }

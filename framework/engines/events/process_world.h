@@ -138,6 +138,8 @@ class ProcessWorld {
   Meetings meetings_;
   SequentialImpacts impacts_;
   Collector collector_;
+  double due_ = -1.0;                   // of the last step [s]
+  std::uint64_t sweeps_before_ = 0;     // of the contact solver, before the first step that was due then
   std::optional<LastingContacts> contacts_;
 };
 
