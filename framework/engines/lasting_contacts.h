@@ -34,7 +34,7 @@ Quaterniond turned(const Quaterniond& world_from_body, const Vector3d& turn_worl
 inline constexpr double kContactMargin = 1e-10;
 
 /// In a step, a body: more impacts are a Zeno sequence that needs a lasting contact.
-inline constexpr long kMostImpactsABody = 200;
+inline constexpr long kMostImpactsABody = 500;
 /// Sweeps of the contact solver in a step: some 200 problems that all stayed unsolved.
 inline constexpr std::uint64_t kMostSweepsAStep = 300'000;
 

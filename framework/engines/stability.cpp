@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <functional>
 #include <numeric>
 
@@ -241,17 +242,22 @@ int body_with_most_energy(const World& world, const std::vector<RigidBodyState>&
 
 }  // namespace
 
+double EnergyWatch::scale_of(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums) {
+  double scale = sums.kinetic_energy;
+  for (const SpringLink& link : world.springs) {
+    const double stretch = (anchor_point(link.a, states) - anchor_point(link.b, states)).norm() - link.spring.rest_length;
+    scale += 0.5 * link.spring.stiffness * stretch * stretch;
+  }
+  return scale;
+}
+
 // What the world has to give: its kinetic energy, what its springs hold, and (available()) how far it falls.
 void EnergyWatch::begin(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums) {
   // Of the size of a body: lying bodies are let down and lifted by less where they are kept apart.
   constexpr double kLifted = 1e-3;
   first_energy_ = least_energy_ = sums.kinetic_energy + sums.potential_energy;
   lowest_potential_ = first_potential_ = sums.potential_energy;
-  scale_ = sums.kinetic_energy;
-  for (const SpringLink& link : world.springs) {
-    const double stretch = (anchor_point(link.a, states) - anchor_point(link.b, states)).norm() - link.spring.rest_length;
-    scale_ += 0.5 * link.spring.stiffness * stretch * stretch;
-  }
+  scale_ = scale_of(world, states, sums);
   const double gravity = world.gravity_world ? world.gravity_world->norm() : 0.0;
   for (const WorldBody& body : world.bodies) {
     if (body.immovable()) continue;
@@ -312,6 +318,10 @@ std::optional<Runaway> EnergyWatch::look(double time, const World& world, const 
   work_ += work_since(time, world, states);
   const double energy = sums.kinetic_energy + sums.potential_energy - work_;
   if (std::isnan(first_energy_)) begin(world, states, sums);
+  else if (std::exchange(is_first_step_, false)) {   // methods whose energy swings, as symplectic ones' does, have begun to by now: that is no runaway
+    first_energy_ = std::max(first_energy_, energy);
+    scale_ = std::max(scale_, scale_of(world, states, sums));
+  }
   lowest_potential_ = std::min(lowest_potential_, sums.potential_energy);
   note_rise(time, energy, world, states);
   if (energy - first_energy_ <= kRunaway * available() + unseen_ + kRoundingOfRest * std::abs(first_energy_)) return std::nullopt;

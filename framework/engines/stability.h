@@ -121,12 +121,13 @@ class EnergyWatch {
     int body;                      // that had most of the world's energy then
   };
   void begin(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums);
+  static double scale_of(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums);
   double work_since(double time, const World& world, const std::vector<RigidBodyState>& states);
   void note_rise(double time, double energy, const World& world, const std::vector<RigidBodyState>& states);
   double available() const { return scale_ + given_ + (first_potential_ - lowest_potential_); }
 
   double rest_speed_, step_;
-  bool sees_switches_;
+  bool sees_switches_, is_first_step_ = true;
   std::vector<Vector3d> pushed_body_, pushed_world_;   // of each point force, where it acts: body frame, and where that was at the last look [m]
   std::vector<double> turning_;                        // of each motor's hinge at the last look [rad/s]
   double last_look_ = 0.0, work_ = 0.0, given_ = 0.0;  // [s]; what forces and, at most, motors have brought in, and without its sign [J]

@@ -153,6 +153,30 @@ TEST(RunWatch, EnergyThatAMethodMakesIsAFault) {
   for (const std::string& engine : kEngines) EXPECT_EQ(said(run_by(engine, scene)), "") << engine;
 }
 
+// A ball on a spring, pushed by a constant force: what the force brings in is no fault, what the method makes beside it is. The first step counts.
+TEST(RunWatch, WhatAForceBringsInIsNoFault) {
+  scene::Scene scene = scene_of({ball("ball", 0.1, 1.0, {1, 0, 0}, Vector3d::Zero())}, 1.0, Vector3d::Zero());
+  scene::SpringSpec spring;
+  spring.a.body = "ball";
+  spring.b.point_m = Vector3d(0, 0, 0);
+  spring.stiffness_n_m = 100.0;
+  spring.rest_length_m = 0.5;
+  scene.springs.push_back(spring);
+  scene.point_forces.push_back({"ball", {50, 0, 0}, {1, 0, 0}, 0.0, 0.5});
+  scene.step_s = 0.01;
+  EXPECT_FALSE(has_fault(run_by("rd", scene), "energy_rises"));
+  Laws laws = reference_laws();
+  laws.integrate_step = [](const OdeFunction& f, double t, const VectorXd& y, double h) -> VectorXd { return y + h * f(t, y); };
+  EXPECT_TRUE(has_fault(run_by("rd", scene, laws), "energy_rises"));   // (w h)^2 / 2 = 0.5 % of the swing a step
+  laws.integrate_step = [](const OdeFunction& f, double t, const VectorXd& y, double h) -> VectorXd {
+    const Laws right = reference_laws();
+    const VectorXd next = right.integrate_step(f, t, y, h);
+    return t == 0.0 ? VectorXd(next + 0.5 * (next - y)) : next;
+  };
+  scene.point_forces.clear();
+  EXPECT_TRUE(has_fault(run_by("rd", scene, laws), "energy_rises"));
+}
+
 // A hinge's motor that overshoots spins a light body as fast as numbers go. No search for impacts follows that.
 TEST(RunWatch, WhatTurnsTooFarInAStepIsStoppedInTime) {
   for (const std::string& engine : {std::string("rd"), std::string("ordered")}) {
