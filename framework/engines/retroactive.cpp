@@ -21,7 +21,7 @@ namespace {
 constexpr double kLevel = 1e-12;
 constexpr double kNoStep = 1e-9;         // of the step: a shorter last one is taken with the one before
 constexpr int kMostIdleSteps = 1000;      // in a row without progress of time
-constexpr int kMostCutsABody = 100;       // of a step, by contacts that ask for shorter ones, without an impact between
+constexpr int kMostCutsABody = 1000;      // of a step, by contacts that ask for shorter ones, without an impact between
 
 class RetroactiveRun {
  public:
