@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPrivate = "solutions_private";
-constexpr const char* kStudentsReadme = "README_students.md";   // in the place of README.md
+constexpr const char* kStudentsReadme = "assignments/README.md";   // in the place of README.md
 
 struct Options {
   std::string folder;

@@ -39,6 +39,20 @@ Matrix3d inverse_inertia_world(const WorldBody& body, const Quaterniond& q) {
   return R * body.inertia.inverse_inertia_body * R.transpose();
 }
 
+// A shift is no motion: where masses differ by more than a solver's digits bear, the lightest count as heavier ones.
+void limit_ratios(ContactProblem& problem) {
+  constexpr double kMostRatio = 1e4;
+  double least = std::numeric_limits<double>::infinity();   // inverse mass of what moves
+  for (const PushedBody& body : problem.bodies)
+    if (body.inverse_mass > 0) least = std::min(least, body.inverse_mass);
+  for (PushedBody& body : problem.bodies) {
+    if (!(body.inverse_mass > kMostRatio * least)) continue;
+    const double factor = kMostRatio * least / body.inverse_mass;
+    body.inverse_mass *= factor;
+    body.inverse_inertia_world *= factor;
+  }
+}
+
 }  // namespace
 
 Quaterniond turned(const Quaterniond& q, const Vector3d& turn) {
@@ -468,20 +482,6 @@ double LastingContacts::add_shifts(const Group& group, const std::vector<Pair>& 
     }
   }
   return wrong;
-}
-
-// A shift is no motion: where masses differ by more than a solver's digits bear, the lightest count as heavier ones.
-void limit_ratios(ContactProblem& problem) {
-  constexpr double kMostRatio = 1e4;
-  double least = std::numeric_limits<double>::infinity();   // inverse mass of what moves
-  for (const PushedBody& body : problem.bodies)
-    if (body.inverse_mass > 0) least = std::min(least, body.inverse_mass);
-  for (PushedBody& body : problem.bodies) {
-    if (!(body.inverse_mass > kMostRatio * least)) continue;
-    const double factor = kMostRatio * least / body.inverse_mass;
-    body.inverse_mass *= factor;
-    body.inverse_inertia_world *= factor;
-  }
 }
 
 // The smallest shift (in the measure of the masses) that leaves no gap of these pairs below its shell, and no rod or joint open; held

@@ -34,7 +34,7 @@
 /// | projection_open  | what a correction onto rods and joints left of their errors, over the group's size [-] | never     |
 /// | contact_unsolved | what impulses of contacts left of approach and slip, over the group's speed [-]        | never     |
 /// | turn_unresolved  | how far a body turned in a step of a method that samples [rad]            | never                 |
-/// | energy_rises     | rise of E above its least value so far, where nothing brings energy in, over what there was to begin with [-] | never |
+/// | energy_rises     | rise of E above its least value so far, without what point forces and motors bring in, over what there was to begin with [-] | never |
 ///
 /// Besides, whatever the scene asks: `impact_energy`, the kinetic energy of all that an impact changed, measured against what restitution and
 /// friction say (`Event::energy_excess`), over the kinetic energy before; seen from what is driven. It is reported where it is wrong only.

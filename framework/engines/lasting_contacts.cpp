@@ -19,6 +19,8 @@ constexpr double kBand = 8.0;             // shells: nearer than this two touch
 constexpr double kUnseenRoom = 1e-9;      // of the way in a step: what the tolerance of the impulses leaves between bodies that touch
 constexpr double kApart = 32.0;           // shells: farther than this, and than the rest speed goes in a step, a contact has ended
 constexpr double kAssembled = 1e-6;       // of the smaller body: a scene's models have single precision; what does not bounce and is this near at the start stands on each other
+constexpr long kMostCutsABody = 1000;     // of a step, by contacts that ask for shorter ones
+constexpr std::uint64_t kMostSweeps = 300'000;   // of the contact solver in a step: some 200 problems that all stayed unsolved
 constexpr double kReach = 0.25;           // of the smaller body: points farther away are not looked at
 constexpr double kDeep = 0.01;            // of the smaller body: deeper than this no step leads, save in heaps; a point that is gets a second look
 constexpr double kDeeper = 1.1;           // of how far the two are in each other
@@ -226,7 +228,10 @@ std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidat
   note_near_pairs(candidates);
   next_warm_.clear();
   next_stuck_.clear();
-  if (const auto earlier = take_steps(h)) return earlier;
+  if (const auto earlier = take_steps(h)) {
+    require_progress();
+    return earlier;
+  }
   warm_ = std::move(next_warm_);
   tried_.clear();
   stuck_ = std::move(next_stuck_);
@@ -264,15 +269,24 @@ std::optional<double> LastingContacts::take_steps(double h) {
   return earliest;
 }
 
-std::string LastingContacts::who_asked_last() const {
-  for (const Group& group : groups_)
-    if (std::binary_search(group.bodies.begin(), group.bodies.end(), asked_last_)) return names_of(moving_.world(), group.bodies);
-  return "bodies";
-}
-
-std::string LastingContacts::told_contradiction() const {
-  return fmt::format("{}: what their contacts, rods and joints ask for together stays unsolved, also in the shortest parts of a step of {:.3g} s. They may contradict each other; masses or "
-                     "sizes that differ less, or a shorter \"step_s\", may help", who_asked_last(), step_);
+// A step has been cut once more: contacts that ask for ever shorter ones, or whose problems all stay unsolved, would take hours.
+void LastingContacts::require_progress() {
+  const double t = moving_.time();
+  if (!(cut_since_ <= t && t < cut_since_ + step_)) {
+    cut_since_ = t;
+    cuts_ = 0;
+    sweeps_ = 0;
+  }
+  ++cuts_;
+  const auto who = [&] {
+    const auto asked = std::find_if(groups_.begin(), groups_.end(), [&](const Group& group) { return std::binary_search(group.bodies.begin(), group.bodies.end(), asked_last_); });
+    return asked == groups_.end() ? std::string("bodies") : names_of(moving_.world(), asked->bodies);
+  };
+  constexpr const char* kRemedy = "masses or sizes that differ less, or a shorter \"step_s\", may help";
+  if (sweeps_ > kMostSweeps)
+    throw StoppedRun(fmt::format("{}: what their contacts, rods and joints ask for together stays unsolved, also in the shortest parts of a step of {:.3g} s. They may contradict each other; {}", who(), step_, kRemedy));
+  if (cuts_ > kMostCutsABody * static_cast<long>(moving_.size()))
+    throw StoppedRun(fmt::format("{}: their contacts ask for more than {} steps within one of {:.3g} s; {}", who(), cuts_ - 1, step_, kRemedy));
 }
 
 void LastingContacts::note_near_pairs(const std::vector<Pair>& candidates) {

@@ -5,7 +5,7 @@
 /// would without each other (the laws' method, links included); then contact impulses, spread evenly over the step, keep what touches from
 /// approaching: v' = v_free + M^-1 J^T p, x' = x_free + h/2 M^-1 J^T p, which is exact for constant forces. Bodies that turn meet their
 /// contacts at the middle of the step, and fit the surfaces at its end. A point that comes down faster than the rest speed ends the step
-/// there and strikes a blow without rebound; a slower one is let down by the step's end. A heap that would cut a step more than twice for that
+/// there and strikes a blow without rebound; a slower one is let down by the step's end. A heap that would cut a step many times for that
 /// goes in steps until it lies, unless the scene says "located". A pair that stops sliding ends the step there. Frictionless groups ask the laws' contact_forces; friction, links
 /// inside a group, and large groups the framework's solve_contacts. What turning leaves of an overlap is taken back by the smallest shift
 /// of the group. A lasting contact does not bounce; it ends when the bodies come apart.
@@ -33,11 +33,6 @@ Quaterniond turned(const Quaterniond& world_from_body, const Vector3d& turn_worl
 /// How far lasting contacts are kept apart, as a part of the smaller body's radius: far above rounding, far below what is seen or measured.
 inline constexpr double kContactMargin = 1e-10;
 
-/// In a step, a body: more impacts are a Zeno sequence that needs a lasting contact.
-inline constexpr long kMostImpactsABody = 500;
-/// Sweeps of the contact solver in a step: some 200 problems that all stayed unsolved.
-inline constexpr std::uint64_t kMostSweepsAStep = 300'000;
-
 class LastingContacts {
  public:
   using Pair = std::pair<int, int>;   // bodies, first < second
@@ -59,12 +54,6 @@ class LastingContacts {
   bool empty() const { return points_.empty(); }
   /// Whether the last advance() has kept the two apart, so that no impact is looked for.
   bool keeps(Pair pair) const { return points_.contains(pair); }
-  /// Of the contact solver so far, for impulses and for shifts.
-  std::uint64_t sweeps() const { return sweeps_; }
-  /// The bodies whose contacts last asked for a shorter step, in words.
-  std::string who_asked_last() const;
-  /// What is said of a step in which nearly every problem stayed unsolved.
-  std::string told_contradiction() const;
 
   /// Whether a blow between the two is dealt with in the step it falls into, not at its instant.
   bool deals_in_step(Pair pair) const { return plastic(pair); }
@@ -148,6 +137,7 @@ class LastingContacts {
   double least_gap_of(Pair pair, const std::vector<RigidBodyState>& states) const;
   std::vector<Group> groups(const std::vector<Pair>& touching);
   void note_near_pairs(const std::vector<Pair>& candidates);
+  void require_progress();
   std::vector<Touch> touches_of(const Group& group);
   const std::vector<Warm>* known_impulses(Pair pair) const;
   void remember(const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h, std::map<Pair, std::vector<Warm>>& store) const;
@@ -232,6 +222,8 @@ class LastingContacts {
   double searched_from_ = -1e300;                // ends of sliding were looked for since, and how often
   int searches_ = 0;
   std::optional<Locating> locating_;             // the end of sliding that is being looked for
+  double cut_since_ = -1e300;                    // how often the step was cut since, and sweeps of the contact solver, for impulses and for shifts
+  long cuts_ = 0;
   std::uint64_t sweeps_ = 0;
   int asked_last_ = -1;                          // body of the group that last asked for an earlier target
 };

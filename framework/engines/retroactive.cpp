@@ -13,6 +13,7 @@
 #include "framework/engines/sequential_impacts.h"
 #include "framework/engines/sleeping.h"
 #include "framework/engines/stability.h"
+#include "framework/engines/step_limits.h"
 
 namespace tumble::engines {
 namespace {
@@ -20,8 +21,6 @@ namespace {
 // A support that leans by less [rad] counts as level: in 100 s a ball would slide 5e-8 m.
 constexpr double kLevel = 1e-12;
 constexpr double kNoStep = 1e-9;         // of the step: a shorter last one is taken with the one before
-constexpr int kMostIdleSteps = 1000;      // in a row without progress of time
-constexpr int kMostCutsABody = 1000;      // of a step, by contacts that ask for shorter ones, without an impact between
 
 class RetroactiveRun {
  public:
@@ -76,8 +75,6 @@ class RetroactiveRun {
   const Laws laws_;   // guarded
   TrajectorySink& sink_;
   double step_, duration_;
-  int cuts_ = 0;            // of the step under way, since the last impact
-  std::uint64_t sweeps_before_ = 0;   // of the contact solver, when it began
   RunCounters counters_;
   MovingWorld moving_;
   Meetings meetings_;
@@ -233,11 +230,6 @@ void RetroactiveRun::watch_for_trouble() {
 // @return all pairs that may meet on the new paths, where there are any
 std::vector<std::pair<int, int>> RetroactiveRun::keep_contacts(std::vector<std::pair<int, int>>& pairs) {
   while (const auto earlier = contacts_->advance(pairs)) {
-    if (contacts_->sweeps() - sweeps_before_ > kMostSweepsAStep)
-      throw StoppedRun(contacts_->told_contradiction());
-    if (++cuts_ > kMostCutsABody * moving_.size())
-      throw StoppedRun(fmt::format("{}: their contacts ask for more than {} steps within one of {:.3g} s. Masses or sizes that differ less, or a shorter \"step_s\", may help",
-                                   contacts_->who_asked_last(), kMostCutsABody * moving_.size(), step_));
     moving_.begin_step_again(*earlier);
     pairs = meetings_.candidates();
   }
@@ -269,8 +261,6 @@ std::vector<std::pair<int, int>> RetroactiveRun::pairs_in_step() {
 void RetroactiveRun::advance_to(double target) {
   int idle = 0;
   long impacts = 0;
-  cuts_ = 0;
-  if (has_contacts()) sweeps_before_ = contacts_->sweeps();
   while (stopped_by_.empty() && moving_.time() < target) {
     moving_.begin_step(target);
     ++counters_.steps;
@@ -304,11 +294,9 @@ void RetroactiveRun::advance_to(double target) {
     ++counters_.rollbacks;
     resolve_at(near.empty() ? pairs : near, pairs[earliest->pair]);
     idle = reached > before ? 0 : idle + 1;
-    cuts_ = 0;
-    if (idle > kMostIdleSteps || ++impacts > kMostImpactsABody * static_cast<long>(moving_.size())) {
+    if (idle > kMostIdleSteps || ++impacts > most_impacts(moving_.size())) {
       const auto [a, b] = pairs[earliest->pair];
-      stopped_by_ = fmt::format("at t = {:.6f} s, bodies {} and {}: time stands still, they meet again and again; a lasting contact is needed "
-                                "there, or a larger \"rest_speed_m_s\"", moving_.time(), name(a), name(b));
+      stopped_by_ = told_endless_impacts(moving_.time(), fmt::format("bodies {} and {}", name(a), name(b)));
     }
   }
 }

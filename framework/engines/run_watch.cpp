@@ -19,7 +19,7 @@ const Words& words_of(RunWatch::Kind kind) {
       {"link_open", "rods and joints hold together: farther apart than this part of their size they are another mechanism", "masses that differ less"},
       {"projection_open", "the correction onto rods and joints ends on them: here it did not, and what follows is of another mechanism", "masses that differ less"},
       {"contact_unsolved", "impulses of contacts keep bodies apart and within friction: here none were found that do, by this part of the speed", "less friction, or masses that differ less"},
-      {"energy_rises", "nothing in the scene brings energy in: what rises is made by the step, over all that the scene has to give", "another method (a2's rk4_step)"},
+      {"energy_rises", "beside what forces and motors bring in, nothing does: what rises is made by the step, over all that the scene has to give", "another method (a2's rk4_step)"},
       {"turn_unresolved", "beyond half a turn a step cannot be told from a turn the other way round: orientations, and what hangs on them, are not to be trusted", "a slower body, or --propagator auto where nothing but gravity acts on it"},
   };
   return kWords[static_cast<std::size_t>(kind)];

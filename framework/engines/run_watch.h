@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <map>
+#include <numbers>
 #include <set>
 #include <string>
 #include <vector>
@@ -32,7 +33,7 @@ inline constexpr double kContactSolved = 1e-3;
 /// reach of the motion lose a thousandth.
 inline constexpr double kEnergyRises = 1e-2;
 /// A step may turn a body by half a turn [rad]: farther, what a method samples cannot be told from a turn the other way round.
-inline constexpr double kTurnResolved = 3.141592653589793;
+inline constexpr double kTurnResolved = std::numbers::pi;
 
 class RunWatch {
  public:

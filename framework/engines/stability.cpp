@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 #include <functional>
 #include <numeric>
+#include <utility>
 
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
@@ -240,9 +240,8 @@ int body_with_most_energy(const World& world, const std::vector<RigidBodyState>&
   return fastest;
 }
 
-}  // namespace
-
-double EnergyWatch::scale_of(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums) {
+// What moves, and what springs hold. [J]
+double energy_at_work(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums) {
   double scale = sums.kinetic_energy;
   for (const SpringLink& link : world.springs) {
     const double stretch = (anchor_point(link.a, states) - anchor_point(link.b, states)).norm() - link.spring.rest_length;
@@ -251,13 +250,15 @@ double EnergyWatch::scale_of(const World& world, const std::vector<RigidBodyStat
   return scale;
 }
 
+}  // namespace
+
 // What the world has to give: its kinetic energy, what its springs hold, and (available()) how far it falls.
 void EnergyWatch::begin(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums) {
   // Of the size of a body: lying bodies are let down and lifted by less where they are kept apart.
   constexpr double kLifted = 1e-3;
   first_energy_ = least_energy_ = sums.kinetic_energy + sums.potential_energy;
   lowest_potential_ = first_potential_ = sums.potential_energy;
-  scale_ = scale_of(world, states, sums);
+  scale_ = energy_at_work(world, states, sums);
   const double gravity = world.gravity_world ? world.gravity_world->norm() : 0.0;
   for (const WorldBody& body : world.bodies) {
     if (body.immovable()) continue;
@@ -320,7 +321,7 @@ std::optional<Runaway> EnergyWatch::look(double time, const World& world, const 
   if (std::isnan(first_energy_)) begin(world, states, sums);
   else if (std::exchange(is_first_step_, false)) {   // methods whose energy swings, as symplectic ones' does, have begun to by now: that is no runaway
     first_energy_ = std::max(first_energy_, energy);
-    scale_ = std::max(scale_, scale_of(world, states, sums));
+    scale_ = std::max(scale_, energy_at_work(world, states, sums));
   }
   lowest_potential_ = std::min(lowest_potential_, sums.potential_energy);
   note_rise(time, energy, world, states);
@@ -350,8 +351,9 @@ std::string told_runaway(double time, const World& world, const Runaway& runaway
     });
   if (runaway.by_blows >= 0.5 * (runaway.energy - runaway.first_energy)) effect = fmt::format("collision (collision_impulse, apply_impulse of {})", laws.impulse_source);
   else if (effect.empty()) effect = fmt::format("integration (integrate_step, state_derivative of {})", laws.integrator_source);
-  return fmt::format("at t = {:.6f} s, body '{}': runaway energy: the world has {:.4g} J, it began with {:.4g} J and nothing brings energy in. Most likely it comes from {}; a shorter step or another method "
-                     "(here {}) is needed, or that is wrong", time, world.bodies[static_cast<std::size_t>(runaway.body)].name, runaway.energy, runaway.first_energy, effect, laws.integrator_source);
+  return fmt::format("at t = {:.6f} s, body '{}': runaway energy: the world has {:.4g} J, it began with {:.4g} J{}. Most likely it comes from {}; a shorter step or another method "
+                     "(here {}) is needed, or that is wrong", time, world.bodies[static_cast<std::size_t>(runaway.body)].name, runaway.energy, runaway.first_energy,
+                     world.point_forces.empty() && world.motors.empty() ? " and nothing brings energy in" : ", without what forces and motors bring in", effect, laws.integrator_source);
 }
 
 }  // namespace tumble::engines

@@ -121,7 +121,6 @@ class EnergyWatch {
     int body;                      // that had most of the world's energy then
   };
   void begin(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums);
-  static double scale_of(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums);
   double work_since(double time, const World& world, const std::vector<RigidBodyState>& states);
   void note_rise(double time, double energy, const World& world, const std::vector<RigidBodyState>& states);
   double available() const { return scale_ + given_ + (first_potential_ - lowest_potential_); }

@@ -1,11 +1,15 @@
 #include "framework/grading/output_folder.h"
 
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/file.h>
 #include <unistd.h>
 
 #include <array>
+#include <cerrno>
+#include <cstdlib>
 #include <fstream>
+#include <string>
 
 #include <nlohmann/json.hpp>
 
@@ -75,6 +79,14 @@ void refuse_foreign_in(const fs::path& folder) {
   }
 }
 
+// Whether the process that took this lock, whose number it wrote into it, is still there.
+bool holder_lives(int lock) {
+  char text[24] = {};
+  if (::pread(lock, text, sizeof text - 1, 0) <= 0) return false;
+  const int holder = std::atoi(text);
+  return holder > 0 && (::kill(holder, 0) == 0 || errno == EPERM);
+}
+
 }  // namespace
 
 std::string draft_name(const std::string& folder) { return kDraft + folder; }
@@ -101,7 +113,9 @@ OutputFolder::OutputFolder(const fs::path& out, const fs::path& submissions, con
 }
 
 OutputFolder::~OutputFolder() {
-  if (lock_ >= 0) ::close(lock_);
+  if (lock_ < 0) return;
+  if (::ftruncate(lock_, 0) != 0) {}   // a number that stays is one of a process that is gone: no harm
+  ::close(lock_);
 }
 
 void OutputFolder::read_manifest() {
@@ -142,13 +156,17 @@ void OutputFolder::lock() {
   const fs::path file = path_ / kLock;
   lock_ = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0600);
   if (lock_ < 0) throw UserError(shown(file), "cannot be opened", "Give --out a folder that you may write to.");
-  // flock: held by this process and those that it forks, let go when the last of them ends, however it ends. Those of a run that was
-  // killed need a moment to die.
-  constexpr int kTries = 100, kPauseUs = 20'000;
+  // flock: held by this process and those that it forks, let go when the last of them ends, however it ends. Who waits reads in the file who
+  // took the lock: one that lives is told of at once, the children of one that was killed need a while to die (seconds, on a busy machine).
+  constexpr int kTries = 3000, kTriesBesideALiving = 100, kPauseUs = 20'000;
   for (int i = 0; ::flock(lock_, LOCK_EX | LOCK_NB) != 0; ++i) {
-    if (i == kTries) throw UserError(shown(path_), "another grading writes there at this moment", "Wait for its end, or give --out another folder.");
+    if (i == kTries || (i >= kTriesBesideALiving && holder_lives(lock_)))
+      throw UserError(shown(path_), "another grading writes there at this moment", "Wait for its end, or give --out another folder.");
     ::usleep(kPauseUs);
   }
+  const std::string holder = std::to_string(::getpid()) + '\n';
+  if (::ftruncate(lock_, 0) != 0 || ::pwrite(lock_, holder.data(), holder.size(), 0) != static_cast<ssize_t>(holder.size()))
+    throw UserError(shown(file), "cannot be written", "Is the disk full?");
 }
 
 void OutputFolder::sweep_drafts() const {

@@ -2,6 +2,7 @@
 ///   (0, 0, 5) for vectors, {..., ...} for structs, [n: ..., ...] for lists, "f" for functions
 #pragma once
 
+#include <algorithm>
 #include <cstdio>
 #include <functional>
 #include <string>

@@ -5,6 +5,7 @@
 
 #include <fcntl.h>
 #include <signal.h>
+#include <sys/file.h>
 #include <sys/wait.h>
 
 #include "tests/cli/grading_fixture.h"
@@ -191,6 +192,28 @@ TEST_F(GradeAttack, TwoGradingsDoNotMeetInOneFolderAndAKilledOneLeavesItFree) {
   const ProgramOutcome third = grade("out");
   EXPECT_EQ(third.code, 0) << third.printed;
   EXPECT_FALSE(fs::exists(root / "out/.making-alice"));
+}
+
+TEST_F(GradeAttack, ChildrenOfAKilledGradingThatDieSlowlyAreWaitedFor) {
+  put("alice/a1_impulse.cpp", text_of(kStub));
+  EXPECT_EQ(grade("out").code, 0);
+  // A process that holds the lock of a run that is gone, for longer than a living one is waited for.
+  const pid_t gone = ::fork();
+  if (gone == 0) ::_exit(0);
+  ::waitpid(gone, nullptr, 0);
+  const fs::path file = root / "out/.tumble-lock";
+  write_whole(file, std::to_string(gone) + "\n");
+  const int lock = ::open(file.c_str(), O_RDWR);
+  ASSERT_EQ(::flock(lock, LOCK_EX), 0);
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::sleep(5);
+    ::_exit(0);
+  }
+  ::close(lock);
+  const ProgramOutcome outcome = grade("out");
+  EXPECT_EQ(outcome.code, 0) << outcome.printed;
+  ::waitpid(child, nullptr, 0);
 }
 
 TEST_F(GradeAttack, MediaMadeBeforeStayWithoutMedia) {

@@ -161,8 +161,8 @@ TEST_F(Release, HoldsNoPrivateFolderAndNoBuild) {
 
 TEST_F(Release, TheReadmeIsTheStudents) {
   const std::string readme = contents_of(folder_ / "README.md");
-  EXPECT_EQ(readme, contents_of(kRoot / "README_students.md"));
-  EXPECT_FALSE(fs::exists(folder_ / "README_students.md"));
+  EXPECT_EQ(readme, contents_of(kRoot / "assignments/README.md"));
+  EXPECT_FALSE(fs::exists(folder_ / "assignments/README.md"));
   EXPECT_LT(readme.find("./tumble check a1"), 800u) << "what to type first does not come first";
   for (const char* of_others : {"./tumble demo", "./tumble grade", "./tumble audit", "./tumble release", "reference,", "=reference"})
     EXPECT_EQ(readme.find(of_others), std::string::npos) << of_others;

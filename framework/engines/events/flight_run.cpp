@@ -7,6 +7,7 @@
 #include "framework/core/error.h"
 #include "framework/engines/guarded_laws.h"
 #include "framework/engines/stability.h"
+#include "framework/engines/step_limits.h"
 
 namespace tumble::engines {
 namespace {
@@ -148,14 +149,14 @@ void FlightRun::commit(const EventKey& key, const Event& first, const std::vecto
   }
 }
 
-// Impacts that come ever sooner after each other go on for ever in exact numbers, and for hours in these.
+// Impacts that come ever sooner after each other would go on for hours.
 void FlightRun::require_progress(const EventKey& key, const Event& event) {
   if (event.kind != EventKind::kCollision) return;
   const double step = std::floor(key.time / step_);
   impacts_in_step_ = step == step_of_impacts_ ? impacts_in_step_ + 1 : 0;
   step_of_impacts_ = step;
-  if (impacts_in_step_ > kMostImpactsABody * static_cast<long>(world_.size()))
-    throw StoppedRun(fmt::format("at t = {:.6f} s, bodies {} and {}: time stands still, they meet again and again; a lasting contact is needed there, or a larger \"rest_speed_m_s\"", key.time, name(event.body_a), name(event.body_b)));
+  if (impacts_in_step_ > most_impacts(world_.size()))
+    throw StoppedRun(told_endless_impacts(key.time, fmt::format("bodies {} and {}", name(event.body_a), name(event.body_b))));
 }
 
 void FlightRun::commit_frame(const FlightOf& flight_of) {

@@ -12,10 +12,6 @@
 
 namespace tumble::engines {
 
-/// Events at one instant, each caused by the last, before a run is stopped: a blow goes through a chain of touching bodies in as many as it has.
-/// A timewarp looks at all that a body flew at its instant, so the price of finding out goes with the square.
-inline std::uint32_t most_generations(int bodies) { return 1000 + 10 * static_cast<std::uint32_t>(bodies); }
-
 class FlightRun {
  public:
   /// @throws UserError where the scene has what no flight follows

@@ -6,11 +6,11 @@
 #include <fmt/format.h>
 
 #include "framework/engines/guarded_laws.h"
+#include "framework/engines/step_limits.h"
 
 namespace tumble::engines {
 namespace {
 
-constexpr int kMostIdleSteps = 1000;     // in a row without progress of time
 constexpr double kNoStep = 1e-9;         // of the step: a shorter rest of it is taken with the next one
 
 }  // namespace

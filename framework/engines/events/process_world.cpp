@@ -199,9 +199,6 @@ ProcessWorld::Outcome ProcessWorld::step(ProcessState& start, double due) {
   ProcessState from = start.without_memory();
   save_controls(from);
   ++counters_.steps;
-  if (due != due_) sweeps_of_steps_ = 0;
-  due_ = due;
-  if (has_contacts()) sweeps_before_ = contacts_->sweeps();
   begin_step(std::min({due, next_look, next_switch}));
   std::vector<BodyPair> pairs, near;
   if (has_contacts()) {
@@ -224,7 +221,6 @@ ProcessWorld::Outcome ProcessWorld::step(ProcessState& start, double due) {
     if (!pairs.empty() && !meetings_.apart_at_target()) meetings_.separate(pairs);
     if (!contacts_->commit()) meetings_.separate(near);
     if (earliest) resolve(near.empty() ? pairs : near, pairs[earliest->pair], true);
-    sweeps_of_steps_ += contacts_->sweeps() - sweeps_before_;
   }
   if (!earliest) moving_.watch_links(reached - step.from.time);
   ProcessState after = save();
@@ -236,7 +232,6 @@ ProcessWorld::Outcome ProcessWorld::step(ProcessState& start, double due) {
 bool ProcessWorld::keep_contacts(std::vector<BodyPair>& pairs) {
   while (const auto earlier = contacts_->advance(pairs)) {
     if (!collector_.events.empty()) return true;
-    if (sweeps_of_steps_ + contacts_->sweeps() - sweeps_before_ > kMostSweepsAStep) throw StoppedRun(contacts_->told_contradiction());
     begin_step(*earlier);
     pairs = meetings_.candidates();
   }

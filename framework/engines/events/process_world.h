@@ -138,8 +138,6 @@ class ProcessWorld {
   Meetings meetings_;
   SequentialImpacts impacts_;
   Collector collector_;
-  double due_ = -1.0;                   // of the last step [s]
-  std::uint64_t sweeps_before_ = 0, sweeps_of_steps_ = 0;   // of the contact solver: before this step, and in those before it that were due then
   std::optional<LastingContacts> contacts_;
 };
 

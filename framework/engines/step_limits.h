@@ -1,0 +1,26 @@
+/// How much may happen while time stands still, or nearly so, before a run is stopped with words: what goes on for ever looks like a hang.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace tumble::engines {
+
+/// In a row without progress of time.
+inline constexpr int kMostIdleSteps = 1000;
+
+/// Impacts in a step of a world of so many bodies: more are a Zeno sequence. A ball between walls a nanometre apart meets them 1,000 times in 2 us.
+inline constexpr long most_impacts(int bodies) { return 500L * bodies; }
+
+/// Events at one instant, each caused by the last: a blow goes through a chain of touching bodies in as many as it has. A timewarp looks at all that
+/// a body flew at its instant, so the price of finding out goes with the square.
+inline constexpr std::uint32_t most_generations(int bodies) { return 1000 + 10 * static_cast<std::uint32_t>(bodies); }
+
+/// @param bodies  names, as "bodies 'a' and 'b'"
+inline std::string told_endless_impacts(double time, const std::string& bodies) {
+  return fmt::format("at t = {:.6f} s, {}: time stands still, they meet again and again; a lasting contact is needed there, or a larger \"rest_speed_m_s\"", time, bodies);
+}
+
+}  // namespace tumble::engines
