@@ -72,7 +72,9 @@ std::vector<RunFault> RunWatch::faults() const {
   double step = std::numeric_limits<double>::infinity();
   for (const auto& [kind, incident] : incidents_)
     if (incident.worst.step > 0) step = std::min(step, likely_part(kind, incident.worst.found / incident.worst.allowed) * incident.worst.step);
-  if (named_step_ < step) step = named_step_;   // what a criterion of stability asks for
+  // A criterion of stability that the step breaks explains all that follows, and its step is computed, not a guess from a size.
+  if (std::isfinite(named_step_)) step = named_step_;
+  const std::string said = std::isfinite(named_step_) ? fmt::format("{:.4g}", step) : fmt::format("{:.2g}", step);
   for (const auto& [kind, incident] : incidents_) {
     const Words& words = words_of(kind);
     RunFault fault;
@@ -85,7 +87,7 @@ std::vector<RunFault> RunWatch::faults() const {
     fault.worst_s = incident.worst.time;
     fault.count = incident.count;
     fault.meaning = words.meaning;
-    fault.remedy = std::isfinite(step) ? fmt::format("a step of at most {:.2g} s (\"step_s\"), or {}", step, words.remedy) : words.remedy;
+    fault.remedy = std::isfinite(step) ? fmt::format("a step of at most {} s (\"step_s\"), or {}", said, words.remedy) : words.remedy;
     faults.push_back(std::move(fault));
   }
   return faults;
