@@ -7,6 +7,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "framework/core/error.h"
@@ -88,6 +89,27 @@ PrivateFolder::~PrivateFolder() {
   std::error_code ignored;
   std::filesystem::remove_all(path_, ignored);
   if (alive_ >= 0) ::close(alive_);
+}
+
+std::optional<std::string> read_plain_file(const std::filesystem::path& file, std::uint64_t most_bytes, std::string& why) {
+  const int fd = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  struct stat about {};
+  const bool opened = fd >= 0;
+  if (!opened) why = errno == ELOOP ? "is a link; hand in the file itself" : "cannot be read";
+  else if (::fstat(fd, &about) != 0 || !S_ISREG(about.st_mode)) why = "is not a file";
+  else if (static_cast<std::uint64_t>(about.st_size) > most_bytes) why = "is larger than " + std::to_string(most_bytes >> 10) + " KiB";
+  std::string text(why.empty() ? static_cast<std::size_t>(about.st_size) : 0, '\0');
+  std::size_t got = 0;
+  while (got < text.size()) {
+    const ssize_t n = ::read(fd, text.data() + got, text.size() - got);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) break;
+    got += static_cast<std::size_t>(n);
+  }
+  if (opened) ::close(fd);
+  if (!why.empty()) return std::nullopt;
+  text.resize(got);
+  return text;
 }
 
 }  // namespace tumble

@@ -1,8 +1,10 @@
 /// Files written whole or not at all.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -16,6 +18,11 @@ void make_whole(const std::filesystem::path& file, const std::function<void(cons
 /// The same, for bytes at hand.
 /// @throws UserError when the file cannot be written
 void write_whole(const std::filesystem::path& file, std::string_view bytes);
+
+/// The bytes of a plain file: no link (it would show what the one who follows it may see), no device, no pipe that waits for a writer.
+/// @param why  what stands in the way, after the file's name: "is a link; hand in the file itself"
+/// @return nothing where `why` says why not
+std::optional<std::string> read_plain_file(const std::filesystem::path& file, std::uint64_t most_bytes, std::string& why);
 
 /// A folder that only this user can enter (mode 0700, a name nobody can foresee), gone with this object. For whatever passes
 /// between two of our processes: in a shared /tmp, a file under a name that can be guessed is anybody's to write. What a killed process

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "framework/core/error.h"
+#include "framework/core/files.h"
 #include "framework/grading/sandbox.h"
 
 namespace tumble::grading {
@@ -35,28 +36,6 @@ constexpr const char* kScript = "cd /submission && /usr/bin/g++ " TUMBLE_SUBMISS
 std::string text_of(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
-// The bytes of a plain file: no link (it would show the compiler what the one who follows it may see), no device, no pipe.
-std::optional<std::string> plain_file(const fs::path& file, std::uint64_t most_bytes, std::string& why) {
-  const int fd = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-  struct stat about {};
-  const bool opened = fd >= 0;
-  if (!opened) why = errno == ELOOP ? "is a link; hand in the file itself" : "cannot be read";
-  else if (::fstat(fd, &about) != 0 || !S_ISREG(about.st_mode)) why = "is not a file";
-  else if (static_cast<std::uint64_t>(about.st_size) > most_bytes) why = "is larger than " + std::to_string(most_bytes >> 10) + " KiB";
-  std::string text(why.empty() ? static_cast<std::size_t>(about.st_size) : 0, '\0');
-  std::size_t got = 0;
-  while (got < text.size()) {
-    const ssize_t n = ::read(fd, text.data() + got, text.size() - got);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) break;
-    got += static_cast<std::size_t>(n);
-  }
-  if (opened) ::close(fd);
-  if (!why.empty()) return std::nullopt;
-  text.resize(got);
-  return text;
 }
 
 // Headers of the tree that a text includes, directly or not: those that students have, and of them only what is asked for.
@@ -155,7 +134,7 @@ Compiled compile_submission(const CompileJob& job) {
   if (!fs::exists(job.root / job.header)) throw UserError((job.root / job.header).string(), "there is no such header", "It tells what the module is.");
   const std::string name = job.source.filename().string();
   std::string why;
-  const auto source = plain_file(job.source, job.limits.source_bytes, why);
+  const auto source = read_plain_file(job.source, job.limits.source_bytes, why);
   if (!source) return {Outcome::kRefused, name + ": " + why};
   if (const std::string no_text = why_no_text(*source); !no_text.empty()) return {Outcome::kRefused, name + ":1:1: error: the file " + no_text};
 

@@ -57,6 +57,8 @@ std::string digest(std::string_view bytes) {
 }
 
 std::string digest_of_file(const std::filesystem::path& file) {
+  std::error_code failed;
+  if (!std::filesystem::is_regular_file(file, failed)) return "missing";   // a pipe would wait for a writer
   std::ifstream in(file, std::ios::binary);
   if (!in) return "missing";
   Sha256 hash;

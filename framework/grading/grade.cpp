@@ -28,7 +28,7 @@ struct ObjectFile {
 };
 
 std::ptrdiff_t not_run(const Grade& grade) {
-  return std::count_if(grade.tests.begin(), grade.tests.end(), [](const ScoredTest& t) { return t.result.not_run; });
+  return std::count_if(grade.tests.begin(), grade.tests.end(), [](const ScoredTest& t) { return t.result.not_run && t.result.verdict == Verdict::kOutOfResources; });
 }
 
 void judge(const Course& course, const std::string& id, const Submission& submission, const Rubric& rubric, const ObjectFile& object, double budget_s, Grade& grade) {

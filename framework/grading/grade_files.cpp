@@ -1,6 +1,8 @@
 #include "framework/grading/grade_files.h"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <fstream>
 #include <limits>
 
@@ -171,13 +173,26 @@ std::string gradescope_json(const Grade& grade) {
   return dumped(page);
 }
 
+namespace {
+
+bool is_points_row(std::string name) {
+  const auto first = name.find_first_not_of(" \t"), last = name.find_last_not_of(" \t");
+  if (first == std::string::npos) return false;
+  name = name.substr(first, last - first + 1);
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return name == "points possible";
+}
+
+}  // namespace
+
 std::string gradebook_csv(const std::string& assignment_title, const std::vector<Grade>& grades) {
   std::string text = "Student,ID,SIS Login ID,Section," + csv_cell(assignment_title) + "\n";
   double possible = 0.0;
   for (const Grade& grade : grades) possible = std::max(possible, grade.possible);
   text += "    Points Possible,,,," + points_text(possible) + "\n";
   for (const Grade& grade : grades) {
-    const std::string name = csv_cell(grade.name);
+    // A student of this name would be read as the row of points.
+    const std::string name = csv_cell(is_points_row(grade.name) ? "folder " + grade.name : grade.name);
     text += name + "," + grade.student_id + "," + name + ",," + (grade.has_score() ? points_text(grade.score) : "") + "\n";
   }
   return text;

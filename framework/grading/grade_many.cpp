@@ -13,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/core/files.h"
+#include "framework/grading/compile.h"
 #include "framework/grading/digest.h"
 #include "framework/grading/grade.h"
 #include "framework/grading/grade_files.h"
@@ -52,7 +53,8 @@ class Batch {
     if (!key_.notice.empty()) notice(key_.notice);
   }
 
-  std::vector<Grade> run(const std::vector<Submission>& submissions) {
+  std::vector<Grade> run(std::vector<Submission> submissions) {
+    read_once(submissions);
     plan(submissions);
     grade_open_ones();
     return write_overview();
@@ -71,6 +73,20 @@ class Batch {
     if (options_.notice) options_.notice(sentence);
   }
 
+  // A file may change while others are graded: what is digested, compared and compiled is one copy, read here.
+  void read_once(std::vector<Submission>& submissions) {
+    std::size_t number = 0;
+    for (Submission& submission : submissions) {
+      if (submission.source.empty()) continue;
+      std::string why;
+      const auto text = read_plain_file(submission.source, CompileLimits{}.source_bytes, why);
+      const fs::path copy = sources_.path() / std::to_string(number++) / submission.source.filename();
+      if (text) write_whole(copy, *text);
+      else submission.problem = plain_name(submission.source.filename().string()) + ' ' + why;
+      submission.source = text ? copy : fs::path();
+    }
+  }
+
   // Takes over what is whole, signed and unchanged.
   void plan(const std::vector<Submission>& submissions) {
     const std::string judging = grader_digest(course_, id_, options_.budget_s), pictures = pictures_digest(course_, id_, options_);
@@ -85,6 +101,7 @@ class Batch {
     }
     output_->claim(folders);
     remark_equal_files();
+    tell_doubles();
     tell_distrusted();
     for (Work& work : work_) {
       if (is_current(work)) {
@@ -106,6 +123,17 @@ class Batch {
       for (Work* work : equal)
         for (const Work* other : equal)
           if (other != work) work->remarks.push_back("the same file, byte for byte, as that of " + plain_name(other->submission->name));
+  }
+
+  // A folder and a flat file of one name, say: two rows of one student, of which a grade book keeps the last.
+  void tell_doubles() {
+    std::map<std::pair<std::string, std::string>, std::vector<Work*>> by_student;
+    for (Work& work : work_) by_student[{work.submission->name, work.submission->student_id}].push_back(&work);
+    for (const auto& [student, works] : by_student) {
+      if (works.size() < 2) continue;
+      notice(fmt::format("{}: {} submissions of that name: the grade book has a row for each, and a system that reads it may keep the last. Leave one.", plain_name(student.first), works.size()));
+      for (Work* work : works) work->remarks.push_back(fmt::format("one of {} submissions of this name", works.size()));
+    }
   }
 
   void tell_distrusted() const {
@@ -143,6 +171,7 @@ class Batch {
   void clear_drafts() const {
     std::error_code ignored;
     for (const Work& work : work_) fs::remove_all(draft_of(work), ignored);
+    for (const fs::path& folder : {course_.build, sources_.path()}) fs::remove_all(folder, ignored);   // this process ends by the signal, without its destructors
     fmt::print(stderr, "stopped: {} of {} submissions are graded; the same command goes on from here\n", done_, work_.size());
   }
 
@@ -300,6 +329,7 @@ class Batch {
   }
 
   const CourseSnapshot snapshot_;
+  const PrivateFolder sources_;
   const Course& course_;
   const std::string id_;
   const modules::ModuleKind& kind_;

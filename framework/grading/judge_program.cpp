@@ -18,9 +18,19 @@
 namespace tumble::grading {
 namespace {
 
-// s, of what a test of ours computes itself: tests take at most a few, so past this the judge itself hangs. Its wall clock ends after
-// kPatience times as much, later than that of its worker.
+// s, of what a test of ours computes itself: tests take at most a few, so past this it works on answers that give it too much to do. Its wall
+// clock ends after kPatience times as much, later than that of its worker.
 constexpr double kJudgesOwn = 60.0;
+constexpr int kMostBusy = 2;   // tests that a busy machine ended: the rest would wait as long, and none of it counts
+
+TestResult not_run_for_busy(const std::string& test) {
+  TestResult result;
+  result.test = test;
+  result.verdict = Verdict::kMachineBusy;
+  result.not_run = true;
+  result.story = "not run: the machine was too busy in " + std::to_string(kMostBusy) + " tests before it";
+  return result;
+}
 
 struct Words {
   WorkerOptions worker;
@@ -80,9 +90,15 @@ int run(const char* id, const std::function<void(modules::Connection&)>& attach,
   limits.memory_bytes = 4ull << 30;
   TimeBudget budget(words.time);
   std::vector<TestResult> results;
+  int busy = 0;
   for (const std::string& test : chosen_tests(linked_tests(), words.filter)) {
     connection.suspect(budget.suspects());
+    if (busy >= kMostBusy) {
+      results.push_back(not_run_for_busy(test));
+      continue;
+    }
     results.push_back(budget.is_used_up() ? budget.not_run(test) : run_isolated(test, limits, Process::kGraders));
+    if (results.back().verdict == Verdict::kMachineBusy) ++busy;
     if (!results.back().not_run) budget.charge(results.back());
   }
   while (::waitpid(-1, nullptr, 0) > 0 || errno == EINTR) {}

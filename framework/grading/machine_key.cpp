@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include "framework/core/error.h"
 #include "framework/grading/digest.h"
 
 namespace tumble::grading {
@@ -70,13 +71,15 @@ MachineKey machine_key() {
   key.file = machine_key_file();
   Found found = key.file.empty() ? Found{} : read_key(key.file);
   if (!found.bytes.empty()) return key.bytes = found.bytes, key;
-  const std::string why = found.problem.empty() ? "there was none" : "the old one " + found.problem;
-  if (!found.problem.empty()) ::unlink(key.file.c_str());
+  // What is no key of ours may be somebody's file: it is never touched.
+  if (!found.problem.empty())
+    throw UserError(key.file.string(), "shall hold the key that signs results of this machine, and " + found.problem,
+                    "Name a file that is not there yet in TUMBLE_GRADER_KEY, or move this one away: a new key is made, and earlier results are graded again.");
   const std::string fresh = random_bytes(kKeyBytes);
   if (!key.file.empty() && keep(key.file, fresh)) found = read_key(key.file);
   if (!found.bytes.empty()) {
     key.bytes = found.bytes;
-    key.notice = "a new key of this machine was made in " + key.file.string() + " (" + why + "): results of earlier runs are graded again";
+    key.notice = "a new key of this machine was made in " + key.file.string() + " (there was none): results of earlier runs are graded again";
   } else {
     key.notice = "no key of this machine can be kept" + (key.file.empty() ? std::string() : " in " + key.file.string()) +
                  ", so the next run grades everything again. Name a file that you may write in TUMBLE_GRADER_KEY.";

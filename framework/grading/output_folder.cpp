@@ -79,6 +79,11 @@ void refuse_foreign_in(const fs::path& folder) {
   }
 }
 
+// A folder of this folder: what folder_of() makes, and what may be joined to a path and removed.
+bool is_one_component(const std::string& name) {
+  return !name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos && name.find('\0') == std::string::npos;
+}
+
 // Whether the process that took this lock, whose number it wrote into it, is still there.
 bool holder_lives(int lock) {
   char text[24] = {};
@@ -128,7 +133,10 @@ void OutputFolder::read_manifest() {
     const auto manifest = nlohmann::json::parse(in);
     const std::string other = manifest.at("assignment");
     if (other != id_) throw UserError(shown(path_), "holds results of " + plain_name(other) + ", not of " + id_, kElsewhere);
-    for (const std::string folder : manifest.at("folders")) folders_.insert(folder);
+    for (const std::string folder : manifest.at("folders")) {
+      if (!is_one_component(folder)) refuse_foreign(file);   // written by hand: it would lead out of this folder
+      folders_.insert(folder);
+    }
   } catch (const nlohmann::json::exception&) {
     refuse_foreign(file);
   }

@@ -36,6 +36,9 @@ using Clock = std::chrono::steady_clock;
 
 CallLog* shared_log = nullptr;
 
+constexpr double kFreeJudging = 10.0;   // s of CPU: tests of ours take at most a few
+std::string fmt_seconds(double s) { return std::to_string(std::lround(s)) + " s"; }
+
 constexpr std::size_t kPrinted = 4000;     // bytes kept of what a test's process printed
 constexpr std::size_t kStory = 16'000;     // bytes of a failure's words, and of all of them: a huge answer is not written out
 constexpr rlim_t kPrintedFile = 1u << 20;  // bytes it may print at all
@@ -308,9 +311,15 @@ TestResult run_isolated(const std::string& test, const TestLimits& limits, Proce
     else judge_death(result, log, status, answer);
     result.timed_out_s = log.noted ? log.timed_out_s : answer.timed_out_s;
     const double wall_s = std::chrono::duration<double>(Clock::now() - start).count();
-    result.charged_s = owner == Process::kGraders ? log.own_s : own_time({}, answer.times, wall_s);
+    // What a test of ours computes is on its account, beyond what right answers cost.
+    const double judges_s = std::max(0.0, answer.times.cpu_s - kFreeJudging);
+    result.charged_s = owner == Process::kGraders ? log.own_s + judges_s : own_time({}, answer.times, wall_s);
     const bool is_judged = result.verdict == Verdict::kRight || result.verdict == Verdict::kWrong || result.verdict == Verdict::kMachineBusy;
-    if (owner == Process::kGraders && !log.noted && !is_judged) {
+    if (owner == Process::kGraders && !log.noted && answer.timed_out_s > 0.0) {
+      // Right answers give a test of ours a few seconds of work.
+      result.verdict = Verdict::kOutOfResources;
+      result.story = fmt_seconds(answer.timed_out_s) + " of the judge's own work did not come to the end of what this submission answered, last " + log.last_call + ": answers that ask for too much";
+    } else if (owner == Process::kGraders && !log.noted && !is_judged) {
       result.verdict = Verdict::kGraderFault;
       result.story = "the judge's own test process ended without a verdict: " + result.story;
     }

@@ -5,6 +5,8 @@
 #include <ostream>
 #include <sstream>
 
+#include "framework/grading/plain_text.h"
+
 namespace tumble::grading {
 namespace {
 
@@ -65,8 +67,8 @@ void print_story(std::ostream& out, const Line& line, bool colours) {
   const TestResult& r = *line.result;
   out << '\n' << (colours ? colour(r.verdict) : "") << words(r.verdict) << (colours ? "\033[0m" : "") << ": " << title_of(line);
   if (line.item != nullptr) out << "  [" << r.test << ']';
-  out << '\n' << indented(r.story, "    ");
-  if (!r.printed.empty()) out << "    your code printed:\n" << indented(r.printed, "      | ");
+  out << '\n' << indented(plain_text(r.story), "    ");
+  if (!r.printed.empty()) out << "    your code printed:\n" << indented(plain_text(r.printed), "      | ");
 }
 
 void print_count(std::ostream& out, const std::vector<TestResult>& results, const Rubric& rubric) {
@@ -98,12 +100,12 @@ void print_verdicts(std::ostream& out, const std::vector<TestResult>& results, c
   std::string missing;
   for (const Line& line : lines) {
     if (line.result->verdict == Verdict::kNotAttempted) {
-      const std::string story = "    " + line.result->story + "\n";
+      const std::string story = "    " + plain_text(line.result->story) + "\n";
       if (missing.find(story) == std::string::npos) missing += story;
     } else if (line.result->verdict != Verdict::kRight) {
       print_story(out, line, colours);
     } else if (!line.result->printed.empty()) {
-      out << "\nright: " << title_of(line) << "\n    your code printed:\n" << indented(line.result->printed, "      | ");
+      out << "\nright: " << title_of(line) << "\n    your code printed:\n" << indented(plain_text(line.result->printed), "      | ");
     }
   }
   if (!missing.empty()) out << "\nnot attempted\n" << missing;

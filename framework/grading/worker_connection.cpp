@@ -87,8 +87,9 @@ WorkerConnection::WorkerConnection(WorkerOptions options) : options_(std::move(o
   job_.limits.wall_s = kPatience * options_.session_own_s + 5.0;  // the deadlines of calls come first; this one is for a judge that died
   job_.limits.cpu_s = static_cast<std::uint64_t>(std::ceil(options_.session_own_s));
   job_.limits.memory_bytes = options_.memory_bytes;
-  // Process 1, the worker, and two that it may make: memory is limited for each of them, so that few bound the sum.
-  job_.limits.processes = 4;
+  // Process 1 and the worker: memory is limited for each, and what a second process or thread takes from the worker would look like the delay
+  // of a busy machine (own_time.h).
+  job_.limits.processes = 2;
 }
 
 WorkerConnection::~WorkerConnection() { reset(); }
@@ -192,6 +193,11 @@ void WorkerConnection::end_turn() {
 
 double WorkerConnection::turns_s() const { return past_turns_s_ + (turn_ ? seconds_of(Channel::Clock::now() - *turn_) : 0.0); }
 
+void WorkerConnection::charge_wait(double wait_s) {
+  own_before_s_ += wait_s;
+  call_log().own_s = own_before_s_;
+}
+
 pid_t WorkerConnection::worker() {
   if (worker_ < 0 && sandbox_) worker_ = sandbox_->program();
   return worker_;
@@ -245,8 +251,10 @@ void WorkerConnection::end(Verdict verdict, const std::string& story) {
 }
 
 void WorkerConnection::explain_death(const char* function) {
-  constexpr double kGrace = 5.0;  // s: for a process that closed its line by dying, to be seen dead, on a loaded machine too
+  constexpr double kGrace = 2.0;  // s: for a process that closed its line by dying, to be seen dead, on a loaded machine too
+  const auto before = Channel::Clock::now();
   const SandboxOutcome outcome = stop(kGrace);
+  if (outcome.ending == Ending::kStopped) charge_wait(seconds_of(Channel::Clock::now() - before));   // it lived on without its line
   switch (outcome.ending) {
     case Ending::kSignal:
       if (outcome.code == SIGXCPU || (outcome.code == SIGKILL && outcome.cpu_s >= options_.session_own_s - 1.0))

@@ -91,6 +91,7 @@ class WorkerConnection : public modules::Connection {
   TimePoint look_at_time(TimePoint passed);
   void start();
   SandboxOutcome stop(double grace_s);
+  void charge_wait(double wait_s);
   [[noreturn]] void explain_death(const char* function);
   [[noreturn]] void end(Verdict verdict, const std::string& story);
   [[noreturn]] void end_out_of_time(const char* function);

@@ -1,5 +1,7 @@
 #include "tests/a3_constraints/a3_fixtures.h"
 
+#include <Eigen/QR>
+
 namespace tumble::a3_testing {
 
 Body resting_at(const Vector3d& com_world) {
@@ -133,17 +135,6 @@ VectorXd accelerations_of_rows(const Rig& rig, const VectorXd& lambda) {
   return result;
 }
 
-double size_of_terms(const Rig& rig, const VectorXd& lambda) {
-  double size = 1.0;
-  for (std::size_t i = 0; i < rig.bodies.size(); ++i) size = std::max(size, rig.bodies[i].free_acceleration.cwiseAbs().maxCoeff());
-  if (lambda.size() != rig.size()) return size;
-  for (Eigen::Index i = 0; i < rig.size(); ++i) {
-    const Constraint& c = rig.rows[static_cast<std::size_t>(i)];
-    size = std::max({size, std::abs(lambda[i]) * rig.bodies[static_cast<std::size_t>(c.body_a)].inverse_mass, std::abs(lambda[i]) * rig.bodies[static_cast<std::size_t>(c.body_b)].inverse_mass});
-  }
-  return size;
-}
-
 MatrixXd dense_matrix(const Rig& rig) {
   MatrixXd J = MatrixXd::Zero(rig.size(), 6 * static_cast<Eigen::Index>(rig.bodies.size())), W = J;
   for (Eigen::Index i = 0; i < rig.size(); ++i) {
@@ -153,6 +144,18 @@ MatrixXd dense_matrix(const Rig& rig) {
     W.row(i) = accelerated(rig, J.row(i).transpose()).transpose();
   }
   return J * W.transpose();
+}
+
+double size_of_terms(const Rig& rig) {
+  double size = 1.0;
+  for (std::size_t i = 0; i < rig.bodies.size(); ++i) size = std::max(size, rig.bodies[i].free_acceleration.cwiseAbs().maxCoeff());
+  if (rig.size() == 0) return size;
+  const VectorXd lambda = dense_matrix(rig).completeOrthogonalDecomposition().solve(rig.wanted - accelerations_of_rows(rig, VectorXd::Zero(rig.size())));
+  for (Eigen::Index i = 0; i < rig.size(); ++i) {
+    const Constraint& c = rig.rows[static_cast<std::size_t>(i)];
+    size = std::max({size, std::abs(lambda[i]) * rig.bodies[static_cast<std::size_t>(c.body_a)].inverse_mass, std::abs(lambda[i]) * rig.bodies[static_cast<std::size_t>(c.body_b)].inverse_mass});
+  }
+  return size;
 }
 
 }  // namespace tumble::a3_testing

@@ -93,8 +93,9 @@ Rig random_rig(Random& random, int bodies, int extra_rows);
 VectorXd forces_on_bodies(const Rig& rig, const VectorXd& lambda);
 /// C'' of each row when the multipliers act, (m), computed body by body.
 VectorXd accelerations_of_rows(const Rig& rig, const VectorXd& lambda);
-/// Largest |term| in any row's sum: what round-off is measured by.
-double size_of_terms(const Rig& rig, const VectorXd& lambda);
+/// Largest |term| in any row's sum, for the smallest multipliers that fulfil the rows: what round-off is measured by, whatever a submission answers.
+/// Cost: O(rows^3)
+double size_of_terms(const Rig& rig);
 /// J M^-1 J^T, dense.
 MatrixXd dense_matrix(const Rig& rig);
 

@@ -216,6 +216,30 @@ TEST_F(GradeAttack, ChildrenOfAKilledGradingThatDieSlowlyAreWaitedFor) {
   ::waitpid(child, nullptr, 0);
 }
 
+TEST_F(GradeAttack, AFileThatChangesMeanwhileIsGradedAsItWas) {
+  put("alice/a1_impulse.cpp", stub_that("for (volatile int never = 0; !never;) {}"));   // takes a while
+  put("bob/a1_impulse.cpp", "int x = ;\n");
+  const pid_t grading = start_grading("out");
+  wait_for(root / "out/.making-alice/alice");
+  put("bob/a1_impulse.cpp", text_of(kStub));
+  int status = 0;
+  ::waitpid(grading, &status, 0);
+  EXPECT_EQ(results("bob")["extra_data"]["state"], "does not compile");
+  put("bob/a1_impulse.cpp", "int x = ;\n");
+  const ProgramOutcome again = grade("out");
+  EXPECT_TRUE(says(again, "unchanged since the last run")) << again.printed;
+}
+
+TEST_F(GradeAttack, TwoSubmissionsOfOneNameAreSaid) {
+  put("alice/a1_impulse.cpp", "int x = ;\n");
+  put("alice.cpp", "int x = ;\n");
+  put("Points Possible/a1_impulse.cpp", "int x = ;\n");
+  const ProgramOutcome outcome = grade("out");
+  EXPECT_TRUE(says(outcome, "alice: 2 submissions of that name")) << outcome.printed;
+  const std::string book = text_of(root / "out/gradebook.csv");
+  EXPECT_NE(book.find("\nfolder Points Possible,"), std::string::npos) << book;
+}
+
 TEST_F(GradeAttack, MediaMadeBeforeStayWithoutMedia) {
   put("alice/a1_impulse.cpp", text_of(kStub));
   grade("out");

@@ -60,8 +60,22 @@ TEST_F(RunAttack, CallsWithoutEndAreOutOfTime) {
 TEST_F(RunAttack, ForkBombIsOutOfTimeAndLeavesNobody) { expect_end("fork bomb", Verdict::kOutOfResources, "no answer"); }
 
 TEST_F(RunAttack, ProcessesAreFew) {
-  // Four with process 1 and the worker, whoever else runs as this user: memory is limited for each, so this bounds the sum.
-  EXPECT_EQ(reached("children"), "2");
+  // Process 1 and the worker, whoever else runs as this user: memory is limited for each, so this bounds the sum; and what a second one
+  // takes from the worker would look like a busy machine.
+  EXPECT_EQ(reached("children"), "0");
+}
+
+TEST_F(RunAttack, NobodyMakesHimselfSlow) {
+  // Time without a core is not charged: a worker must not choose to have none.
+  for (const char* what : {"own core", "idle class", "nice"}) EXPECT_EQ(reached(what), "Operation not permitted") << what;
+}
+
+TEST_F(RunAttack, WaitingForOneThatHungUpIsCharged) {
+  Victim victim(attack_object("in_call.cpp"));
+  victim.attack("hang up");
+  EXPECT_STREQ(words(victim.verdict()), "crashed") << victim.story();
+  EXPECT_TRUE(holds(victim.story(), "closed its line")) << victim.story();
+  EXPECT_GE(call_log().own_s, 1.9);   // s: the grace that is given to a process that dies is 2 s
 }
 
 TEST_F(RunAttack, MemoryBlowUpIsOutOfMemory) {
@@ -112,7 +126,7 @@ TEST_F(RunAttack, ForgedAnswerIsWorthNoMoreThanAnAnswer) {
 TEST_F(RunAttack, PrintedResultsAreNoResults) { EXPECT_EQ(reached("fake lines"), "answer"); }
 
 TEST_F(RunAttack, WhatIsLeftBehindDiesWithTheWorker) {
-  EXPECT_EQ(reached("thread left"), "answer");
+  expect_end("thread left", Verdict::kCrashed, "Resource temporarily unavailable");
   EXPECT_EQ(reached("child left"), "answer");
 }
 

@@ -17,6 +17,9 @@ void TaughtTimewarp::roll_back(const std::vector<Rollback>& first, const std::st
   std::vector<Effect> effects;
   for (const Executed& executed : executed_) effects.push_back(executed.effect);
   const std::vector<Rollback> plan = decide_.plan_rollback(effects, first);
+  // A process goes back once: a longer plan would take its length times the queue's to follow.
+  if (plan.size() > first.size() + static_cast<std::size_t>(world().size()))
+    throw StoppedRun(fmt::format("{}, and plan_rollback sends back {} processes of {}", why, plan.size(), world().size()));
   for (const Rollback& rollback : plan) {
     if (rollback.body < 0 || rollback.body >= world().size() || !world().can_move(rollback.body))
       throw StoppedRun(fmt::format("{}, and plan_rollback sends back {}, which is no process", why, name(rollback.body)));

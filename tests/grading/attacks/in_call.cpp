@@ -3,6 +3,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <netinet/in.h>
+#include <sched.h>
 #include <signal.h>
 #include <sys/mman.h>
 #include <sys/ptrace.h>
@@ -150,7 +151,7 @@ const std::map<std::string, Attack>& attacks() {
       {"abort", []() -> std::string { std::abort(); }},
       {"throw", []() -> std::string { throw std::runtime_error("I give up"); }},
       {"throw int", []() -> std::string { throw 7; }},
-      {"terminate", []() -> std::string { std::thread([] { throw 7; }).join(); return ""; }},
+      {"terminate", []() noexcept -> std::string { throw 7; }},
       {"thread left", [] { std::thread([] { for (;;) sink = sink + 1; }).detach(); return std::string("answer"); }},
       {"child left", [] { if (::fork() == 0) { ::setsid(); for (;;) ::pause(); } return std::string("answer"); }},
       {"connect", [] { return outcome(connect_out()); }},
@@ -164,6 +165,10 @@ const std::map<std::string, Attack>& attacks() {
       {"pipe by name", [] { return outcome(::mkfifo("/tmp/x", 0600)); }},
       {"more processes", [] { return outcome(raised_processes()); }},
       {"long answer", [] { return std::string(64u << 20, 'x'); }},
+      {"own core", [] { cpu_set_t one; CPU_ZERO(&one); CPU_SET(0, &one); return outcome(::sched_setaffinity(0, sizeof one, &one)); }},
+      {"idle class", [] { const sched_param none{}; return outcome(::sched_setscheduler(0, SCHED_IDLE, &none)); }},
+      {"nice", [] { return outcome(::setpriority(PRIO_PROCESS, 0, 19)); }},
+      {"hang up", []() -> std::string { ::close(3); for (;;) ::pause(); }},
       {"nap", [] { ::usleep(400'000); return std::string("0.4 s"); }},
       {"environment", environment},
       {"descriptors", descriptors},
