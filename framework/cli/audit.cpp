@@ -16,7 +16,7 @@ namespace {
 
 using grading::AuditResult;
 
-struct Words {
+struct AuditWords {
   std::string id, mutants;
   std::vector<std::string> only;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
@@ -70,7 +70,7 @@ void print_json(const std::vector<AuditResult>& results) {
   fmt::print("{}\n", page.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
-void audit(Context& context, const Words& words) {
+void audit(Context& context, const AuditWords& words) {
   const grading::Course course{context.root, context.build, &context.registry, context.command_line};
   const auto candidates = grading::only(grading::find_candidates(course, words.id, words.mutants), words.only);
   grading::judge_of(course, words.id);
@@ -99,7 +99,7 @@ void audit(Context& context, const Words& words) {
 }  // namespace
 
 void add_audit(CLI::App& app, Context& context) {
-  auto words = std::make_shared<Words>();
+  auto words = std::make_shared<AuditWords>();
   Verb verb(app, "audit", "Judge every known-wrong solution: which test catches which, and does its story name the slip");
   verb.option("assignment", words->id, "Which, e.g. a1").required().type_name("ID");
   verb.option("--mutants", words->mutants, "Known-wrong solutions to judge instead of the assignment's own").type_name("FOLDER");

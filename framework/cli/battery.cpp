@@ -11,6 +11,7 @@
 #include "framework/cli/module_choice.h"
 #include "framework/cli/read_truth.h"
 #include "framework/cli/verb.h"
+#include "framework/core/text.h"
 #include "framework/grading/laws_around.h"
 #include "framework/report/battery_page.h"
 
@@ -22,20 +23,15 @@ using report::BatteryRow;
 using report::Measure;
 using report::Outcome;
 
-struct Options {
+struct BatteryOptions {
   bool is_long = false, each = false;
   std::vector<std::string> only;
   std::string out = "out", modules;
 };
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 bool is_wanted(const battery::Case& a_case, const std::vector<std::string>& only) {
   return only.empty() || std::any_of(only.begin(), only.end(), [&](const std::string& word) {
-           return word == std::to_string(a_case.row) || (!std::isdigit(static_cast<unsigned char>(word[0])) && lower(a_case.name).find(lower(word)) != std::string::npos);
+           return word == std::to_string(a_case.row) || (!std::isdigit(static_cast<unsigned char>(word[0])) && lowercase(a_case.name).find(lowercase(word)) != std::string::npos);
          });
 }
 
@@ -52,14 +48,8 @@ void provide(const Context& context, const std::string& word, battery::Given& gi
 }
 
 // Cut in the middle, where names say least.
-std::string fit(const std::string& text, std::size_t width) {
-  if (text.size() <= width) return text;
-  const std::size_t head = (width - 2) / 2;
-  return text.substr(0, head) + ".." + text.substr(text.size() - (width - 2 - head));
-}
-
 void print_measure(const std::string& name, const Measure& m) {
-  fmt::print("{:<24} {:<50} {:>15} {:>15} {:>9}  {}\n", fit(name, 24), fit(m.what, 50), report::shown_value(m), report::shown_threshold(m),
+  fmt::print("{:<24} {:<50} {:>15} {:>15} {:>9}  {}\n", without_middle(name, 24), without_middle(m.what, 50), report::shown_value(m), report::shown_threshold(m),
              report::shown_margin(m), report::word_of(report::outcome_of(m)));
   const std::string note = !m.error.empty() ? m.error : !m.not_run.empty() ? m.not_run : report::outcome_of(m) == Outcome::kShort ? m.shortfall : "";
   if (!note.empty()) fmt::print("{:<24}   {}\n", "", note);
@@ -70,7 +60,7 @@ void print_row(const BatteryRow& row, bool each) {
   const std::string name = fmt::format("{:>2} {}", row.row, row.name);
   const Measure* worst = report::tightest(row);
   if (worst == nullptr) {
-    fmt::print("{:<24} not part of the battery yet: {}\n", fit(name, 24), row.not_part);
+    fmt::print("{:<24} not part of the battery yet: {}\n", without_middle(name, 24), row.not_part);
   } else {
     print_measure(name, *worst);
     for (const Measure& m : row.measures)
@@ -79,7 +69,7 @@ void print_row(const BatteryRow& row, bool each) {
   std::fflush(stdout);
 }
 
-void run_battery(Context& context, const Options& options) {
+void run_battery(Context& context, const BatteryOptions& options) {
   const fs::path truths = context.root / "tests" / "truths";
   battery::Given given;
   provide(context, options.modules, given);
@@ -114,7 +104,7 @@ void run_battery(Context& context, const Options& options) {
 }  // namespace
 
 void add_battery(CLI::App& app, Context& context) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<BatteryOptions>();
   Verb verb(app, "battery", "Run the cases that are known to break simulations, against thresholds derived beforehand");
   verb.flag("--long", options->is_long, "Whole lengths: stacks of 60 s, a million steps, an hour of timewarp (half an hour, most of it houses of cards that fall)");
   verb.option("--only", options->only, "Cases by number, or by a word of the name");

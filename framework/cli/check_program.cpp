@@ -59,11 +59,6 @@ ExitCode run_tests(const Context& context, const CheckWords& words, std::vector<
 
 // ---- the student's own file: the build knows how ----
 
-std::string contents_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
 /// What the compiler said of the file when it last compiled it. Warnings stay until they are mended, though a file that
 /// has not changed is not compiled again: words older than the object are not of it, and it is compiled once more.
 class KeptWords {
@@ -77,7 +72,7 @@ class KeptWords {
   /// @param said  what the build printed just now: nothing where there was nothing to do
   std::string after_build(const std::string& said) const {
     if (!are_of_object()) write_whole(words_, said);
-    return contents_of(words_);
+    return text_of(words_);
   }
 
  private:

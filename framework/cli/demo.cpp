@@ -18,10 +18,10 @@ namespace {
 namespace fs = std::filesystem;
 using grading::Grade;
 
-constexpr const char* kPrivate = "solutions_private";
+constexpr const char* kPrivateFolder = "solutions_private";
 constexpr const char* kEngines = "engines";   // folder of the comparison
 
-struct Options {
+struct DemoOptions {
   std::string out = "out/demo";
   int jobs = 2;
 };
@@ -34,7 +34,7 @@ struct Graded {
 enum { kReference, kStarter, kFlawed };
 
 grading::FoundSubmissions submissions_of(const Context& context, const modules::ModuleKind& kind) {
-  const fs::path file = kind.folder + ".cpp", ours = context.root / kPrivate / kind.folder;
+  const fs::path file = kind.folder + ".cpp", ours = context.root / kPrivateFolder / kind.folder;
   return {ours,
           {{"reference", ours / file, "", {}},
            {"starter", context.root / "assignments" / kind.folder / file, "", {}},
@@ -116,8 +116,8 @@ int print_table(const std::vector<Graded>& all) {
   return surprises;
 }
 
-void demo(Context& context, const Options& options) {
-  if (!fs::exists(context.root / kPrivate))
+void demo(Context& context, const DemoOptions& options) {
+  if (!fs::exists(context.root / kPrivateFolder))
     throw UserError("tumble demo", "grades the reference solutions, and this tree has none", "It is the instructor's command; a student starts with: ./tumble check a1");
   const fs::path out = fs::absolute(options.out);
   grading::Course course{context.root, context.build, &context.registry, context.command_line};
@@ -144,7 +144,7 @@ void demo(Context& context, const Options& options) {
 }  // namespace
 
 void add_demo(CLI::App& app, Context& context) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<DemoOptions>();
   Verb verb(app, "demo", "Grade three submissions of each assignment and draw every scene: the whole path on one page");
   verb.option("--out", options->out, "Folder of the report").shows_default();
   verb.option("--jobs", options->jobs, "Submissions graded at the same time").between(1, 64).shows_default();

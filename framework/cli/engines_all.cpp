@@ -44,9 +44,9 @@ constexpr double kPlayedRate = 60.0, kEnergyRate = 10.0;   // frames a second: o
 constexpr int kWidth = 960, kHeight = 540;
 
 /// Says what is being done and how long the rest may take.
-class Progress {
+class TableProgress {
  public:
-  explicit Progress(double total) : total_(total), begun_(std::chrono::steady_clock::now()) {}
+  explicit TableProgress(double total) : total_(total), begun_(std::chrono::steady_clock::now()) {}
   void begin(const std::string& what) const {
     const double spent = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
     const std::string left = done_ > 0 ? fmt::format(" · about {:.0f} s left", std::ceil(spent / done_ * (total_ - done_))) : "";
@@ -222,7 +222,7 @@ void engines_of_all(Context& context, const EnginesWords& words) {
   const double ladder_share = words.full ? kPaperLadderShare : kLadderShare;
   double total = ladder_share + kPongShare;
   for (const Shown& shown : all) total += share_of(shown);
-  Progress progress(total);
+  TableProgress progress(total);
   report::EnginesIndex index;
   index.record = context.command_line;
   index.is_full = words.full;

@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Words {
+struct GradeWords {
   std::string id, folder, out;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   double budget_s = grading::GradeOptions{}.budget_s;
@@ -53,7 +53,7 @@ void print_table(const std::vector<grading::Grade>& grades) {
   }
 }
 
-void grade(Context& context, const Words& words) {
+void grade(Context& context, const GradeWords& words) {
   const modules::ModuleKind& kind = context.registry.find(words.id);
   const grading::Course course{context.root, context.build, &context.registry, context.command_line};
   grading::judge_of(course, words.id);  // refused before anything is looked at
@@ -79,7 +79,7 @@ void grade(Context& context, const Words& words) {
 }  // namespace
 
 void add_grade(CLI::App& app, Context& context) {
-  auto words = std::make_shared<Words>();
+  auto words = std::make_shared<GradeWords>();
   Verb verb(app, "grade", "Grade a folder of submissions: scores, stories, pictures, a gradebook");
   verb.option("assignment", words->id, "Which, e.g. a1").required().type_name("ID");
   verb.option("folder", words->folder, "One submission a sub-folder").required().type_name("FOLDER");

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct HandoutsOptions {
   std::string out = "out/handouts";
   bool pdf = true;
 };
@@ -100,7 +100,7 @@ void run_pandoc(const Context& context, const Handout& handout, const fs::path& 
   if (done.code != 0) throw UserError(handout.file.string(), "could not be built; pandoc said:\n" + done.printed, "Mend what it names.");
 }
 
-void write_index(const Context& context, const std::vector<Handout>& handouts, const Options& options, const fs::path& out) {
+void write_index(const Context& context, const std::vector<Handout>& handouts, const HandoutsOptions& options, const fs::path& out) {
   report::Page page("Handouts", "as pages and for paper");
   report::Table table;
   table.columns = {{"Handout"}, {"For paper"}};
@@ -113,7 +113,7 @@ void write_index(const Context& context, const std::vector<Handout>& handouts, c
   page.write(out / "index.html");
 }
 
-void build_handouts(Context& context, const Options& options) {
+void build_handouts(Context& context, const HandoutsOptions& options) {
   const fs::path out = fs::absolute(options.out), figures = out / "figures", folder = context.root / "handouts";
   if (fs::weakly_canonical(out) == fs::weakly_canonical(folder)) throw UserError("--out " + options.out, "is where the handouts themselves stand", "Name another folder, for example out/handouts.");
   const std::vector<Handout> handouts = read_handouts(folder);
@@ -135,7 +135,7 @@ void build_handouts(Context& context, const Options& options) {
 }  // namespace
 
 void add_handouts(CLI::App& app, Context& context) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<HandoutsOptions>();
   Verb verb(app, "handouts", "Build every handout as a page and as a PDF, with figures drawn now");
   verb.option("--out", options->out, "Folder of the pages").shows_default();
   verb.flag("!--no-pdf", options->pdf, "Pages only");

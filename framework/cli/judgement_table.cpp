@@ -13,15 +13,15 @@ struct Row {
   std::string verdict, quantity, found, allowed, why;
 };
 
-std::string number(double value) { return fmt::format("{:.3g}", value == 0.0 ? 0.0 : value); }   // no "-0"
+std::string short_number(double value) { return fmt::format("{:.3g}", value == 0.0 ? 0.0 : value); }   // no "-0"
 
 Row row_of(const engines::CheckResult& check) {
   const std::string unit = check.unit.empty() ? "" : ' ' + check.unit;
   Row row;
   row.verdict = check.passed ? "right" : "WRONG";
   row.quantity = check.kind + (check.subject == "all" ? "" : " of " + check.subject);
-  row.found = number(check.value) + unit;
-  row.allowed = (check.at_least ? ">= " : "<= ") + number(check.threshold) + unit;
+  row.found = short_number(check.value) + unit;
+  row.allowed = (check.at_least ? ">= " : "<= ") + short_number(check.threshold) + unit;
   row.why = check.why;
   const bool is_telling = !check.passed || check.kind == "flips" || check.kind == "event_count";
   if (is_telling && !check.detail.empty()) row.why = "[" + check.detail + "] " + row.why;

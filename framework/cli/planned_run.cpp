@@ -22,7 +22,7 @@ using engines::CostWay;
 
 constexpr double kMostSearch = 40.0;          // s of CPU, of a search for an error
 constexpr double kSearchOverBudget = 4.0;     // of a search for a time: so many times as long as that
-constexpr double kLeastSearch = 5.0;          // s
+constexpr double kLeastPlannedSearch = 5.0;          // s
 constexpr double kFrameRate = 60.0;           // Hz: as RunOptions records
 
 std::string asked_of(const RunWords& words) { return words.accuracy_m ? fmt::format("--accuracy {:g}", *words.accuracy_m) : fmt::format("--budget-s {:g}", *words.budget_s); }
@@ -118,7 +118,7 @@ PlannedRun::Search look(const Context& context, const scene::Scene& scene, const
   check_with_files(context, scene, chosen.laws, search.truth);
   if (words.accuracy_m && search.truth.floor_m > *words.accuracy_m)
     throw UserError(asked_of(words), fmt::format("the truth itself is known to {:.1e} m only, over {:.3g} s ({})", search.truth.floor_m, search.truth.duration_s, search.truth.what), fmt::format("Ask for {:.0e} or more, or for less time with --duration-s.", 2.0 * search.truth.floor_m));
-  const double most = words.accuracy_m ? kMostSearch : std::max(kLeastSearch, kSearchOverBudget * *words.budget_s), until = cpu_seconds() + most;
+  const double most = words.accuracy_m ? kMostSearch : std::max(kLeastPlannedSearch, kSearchOverBudget * *words.budget_s), until = cpu_seconds() + most;
   const engines::CostChoices found = engines::choose_way(scene, ways_for(context, scene, chosen, words), search.truth, search.wish, most, options, [&](const CostChoice& trial) {
     const std::string result = trial.rung.stopped_by.empty() ? fmt::format("error {:.1e} m, {}", trial.rung.error_m, price_of(trial)) : "does not get through";
     fmt::print(stderr, "  {:<32} {:<40} {:<28} at most {:.0f} s of looking left\n", trial.way.name, fineness_of(trial), result, std::max(0.0, until - cpu_seconds()));

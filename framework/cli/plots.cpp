@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct PlotsOptions {
   std::string page, out;
   int width_px = 1280;
   bool svg = false;
@@ -36,7 +36,7 @@ void draw(const fs::path& svg, const fs::path& png, int width_px) {
   });
 }
 
-void write_plots(const Options& options) {
+void write_plots(const PlotsOptions& options) {
   const std::vector<report::PlotDocument> plots = report::plots_in(read_page(options.page));
   if (plots.empty()) throw UserError(options.page, "holds no plots", "Pages with plots are those of cost, engines, battery and grade.");
   const fs::path out = options.out.empty() ? fs::path(options.page).parent_path() / "plots" : fs::path(options.out);
@@ -53,7 +53,7 @@ void write_plots(const Options& options) {
 }  // namespace
 
 void add_plots(CLI::App& app, Context&) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<PlotsOptions>();
   Verb verb(app, "plots", "The plots of a page as PNG or SVG, for handouts, slides and papers");
   verb.option("page", options->page, "A page with plots, as cost, engines, battery or grade wrote it").required().type_name("PAGE");
   verb.option("--out", options->out, "Folder of the pictures (default: plots beside the page)");

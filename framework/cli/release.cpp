@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 constexpr const char* kPrivate = "solutions_private";
 constexpr const char* kStudentsReadme = "assignments/README.md";   // in the place of README.md
 
-struct Options {
+struct ReleaseOptions {
   std::string folder;
   std::vector<std::string> publish;
   bool build = true;
@@ -66,11 +66,6 @@ std::vector<fs::path> project_files(const fs::path& root) {
   return files;
 }
 
-std::string contents_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
 // The source of a published reference replaces the stub of the same name.
 void publish_solution(const Context& context, const std::string& id, const fs::path& release) {
   const modules::ModuleKind& kind = context.registry.find(id);
@@ -97,7 +92,7 @@ std::vector<grading::PrivateFile> private_files(const Context& context, const st
     // Once a reference is public, so is what its wrong and other versions share with it.
     const bool of_published = std::any_of(published.begin(), published.end(), [&](const std::string& id) { return *std::next(file.begin()) == context.registry.find(id).folder; });
     if (of_published && (folder == "mutants" || folder == "alternatives")) continue;
-    files.push_back({file, contents_of(entry.path()), folder == "tests" || folder == "support"});
+    files.push_back({file, text_of(entry.path()), folder == "tests" || folder == "support"});
   }
   return files;
 }
@@ -120,7 +115,7 @@ void refuse_what_is_no_stub(const Context& context, const fs::path& release, con
   for (const modules::ModuleKind* kind : context.registry.all()) {
     if (std::find(published.begin(), published.end(), kind->id) != published.end()) continue;
     const fs::path file = fs::path("assignments") / kind->folder / (kind->folder + ".cpp");
-    refuse(grading::what_is_no_stub(file.string(), contents_of(release / file), kind->functions), "Students write this file: take out what is written in it.");
+    refuse(grading::what_is_no_stub(file.string(), text_of(release / file), kind->functions), "Students write this file: take out what is written in it.");
   }
 }
 
@@ -137,12 +132,12 @@ void build_and_check(const Context& context, const fs::path& release, const std:
     const bool is_stub = std::find(published.begin(), published.end(), kind->id) == published.end();
     const int code = launch("check " + kind->id), expected = static_cast<int>(is_stub ? ExitCode::kNotAttempted : ExitCode::kFine);
     if (code != expected)
-      throw UserError("tumble check " + kind->id, "exits with " + std::to_string(code) + " in the released tree, not " + std::to_string(expected) + ":\n" + contents_of(folder.path() / "said"),
+      throw UserError("tumble check " + kind->id, "exits with " + std::to_string(code) + " in the released tree, not " + std::to_string(expected) + ":\n" + text_of(folder.path() / "said"),
                       is_stub ? "Each test of a stub must be \"not attempted\". Nothing was released." : "The published reference must pass its tests. Nothing was released.");
   }
 }
 
-void release(Context& context, const Options& options) {
+void release(Context& context, const ReleaseOptions& options) {
   const fs::path target = fs::absolute(options.folder);
   if (fs::exists(target) && !(fs::is_directory(target) && fs::is_empty(target)))
     throw UserError(target.string(), "exists already", "Name a new folder, or remove this one first.");
@@ -181,7 +176,7 @@ void release(Context& context, const Options& options) {
 }  // namespace
 
 void add_release(CLI::App& app, Context& context) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<ReleaseOptions>();
   Verb verb(app, "release", "Write the starter tree for students: everything but the solutions");
   verb.option("folder", options->folder, "Where to write it (must not exist yet)").required();
   verb.option("--publish", options->publish, "Assignments whose reference replaces the stub, e.g. after a deadline").separated_by(',');

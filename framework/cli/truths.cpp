@@ -19,7 +19,7 @@ using truths::Case;
 using truths::Comparison;
 using truths::Verdict;
 
-struct Options {
+struct TruthsOptions {
   std::filesystem::path folder;
   std::string modules;  // as after --modules; empty: the reference where this tree has one, else the student
   bool each = false;
@@ -133,7 +133,7 @@ ExitCode exit_code(const std::vector<CaseResult>& results, const std::vector<Odd
   return count_cases(results, Verdict::kNotAttempted) > 0 ? ExitCode::kNotAttempted : ExitCode::kFine;
 }
 
-ExitCode run_truths(const Context& context, const Options& options) {
+ExitCode run_truths(const Context& context, const TruthsOptions& options) {
   const std::vector<std::filesystem::path> files = find_truths(options.folder);
   const Chosen chosen = load_modules(context, options.modules);
   std::vector<CaseResult> results;
@@ -175,7 +175,7 @@ ExitCode run_truths(const Context& context, const Options& options) {
 }  // namespace
 
 void add_truths(CLI::App& app, Context& context) {
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<TruthsOptions>();
   Verb verb(app, "truths", "Compare what is computed here with reference values of high precision");
   verb.option("folder", options->folder, "Folder of truth files, or one file (tests/truths)").required();
   verb.option("--modules", options->modules, "student, reference, PATH.cpp, PATH.so, a folder of them; or a1=WORD,a2=WORD").default_text("reference where this tree has one, else student");

@@ -1,4 +1,5 @@
 #include "framework/cli/truths_table.h"
+#include "framework/core/text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,14 +24,8 @@ std::string show(double x) {
 }
 
 /// Cut in the middle, where names say least.
-std::string fit(const std::string& text, std::size_t width) {
-  if (text.size() <= width) return text;
-  const std::size_t head = (width - 2) / 2;
-  return text.substr(0, head) + ".." + text.substr(text.size() - (width - 2 - head));
-}
-
 void print_row(const std::string& name, const std::string& output, const Line& line, const std::string& verdict) {
-  std::printf("%-40s %-20s %7s %7s %7s  %s\n", fit(name, kCaseWidth).c_str(), fit(output, kOutputWidth).c_str(), show(line.error).c_str(),
+  std::printf("%-40s %-20s %7s %7s %7s  %s\n", without_middle(name, kCaseWidth).c_str(), without_middle(output, kOutputWidth).c_str(), show(line.error).c_str(),
               show(line.floor).c_str(), show(line.pass_mark).c_str(), verdict.c_str());
 }
 

@@ -4,18 +4,18 @@
 #include <cmath>
 
 #include "framework/collision/inline_vector.h"
+#include "framework/core/numbers.h"
 
 namespace tumble::collision {
 namespace {
 
-constexpr double kRoundOff = 2.220446049250313e-16;
 // Edges more parallel than this (rad) span no axis of their own: faces and other edges cover them.
 constexpr double kParallel = 1e-9;
 
 // Keeps the best axis offered. Cheap refusals first: any corner of A - B that is known bounds the separation along every axis.
 class Search {
  public:
-  Search(const PlacedPolytope& a, const PlacedPolytope& b, double size) : a_(a), b_(b), handicap_(16 * kRoundOff * size) {}
+  Search(const PlacedPolytope& a, const PlacedPolytope& b, double size) : a_(a), b_(b), handicap_(16 * kEpsilon * size) {}
 
   void offer_face_of_a(int face) {
     const Vector3d m = a_.query_from_body * a_.polytope->face_normals[face];

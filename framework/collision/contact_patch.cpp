@@ -6,7 +6,7 @@ namespace tumble::collision {
 namespace {
 
 // Pieces whose normal leans more than this (rad) from the pair's own touch elsewhere, with a contact of their own.
-constexpr double kSameNormal = 1e-6;
+constexpr double kSamePlane = 1e-6;
 
 std::vector<Vector3d> lowest_vertices(const CollisionShape& shape, const Pose& pose, const Vector3d& n, double tolerance) {
   const Matrix3d R = pose.world_from_body.toRotationMatrix();
@@ -36,7 +36,7 @@ FlatHull contact_patch(const CollisionShape& a, const Pose& pose_a, const Collis
       for (const auto& [i, j] : pieces_within(query, reach, nullptr)) {
       const PlacedPolytope placed_a = query.piece_of_a(i), placed_b = query.piece_of_b(j);
       const PolytopeGap found = polytope_gap(placed_a, placed_b, query.size, reach, Points::kUnwanted);
-      if (found.beyond || found.distance > reach || (found.normal_b_to_a - n).norm() > kSameNormal) continue;
+      if (found.beyond || found.distance > reach || (found.normal_b_to_a - n).norm() > kSamePlane) continue;
       for (const Vector3d& p : facing_region(placed_a, placed_b, n, tolerance)) points.push_back(pose_b.com_world + p);
     }
   }

@@ -4,10 +4,11 @@
 #include <array>
 #include <cmath>
 
+#include "framework/core/numbers.h"
+
 namespace tumble::collision {
 namespace {
 
-constexpr double kRoundOff = 2.220446049250313e-16;
 // A tetrahedron with less of the volume that its edges could span is too flat to expand from.
 constexpr double kFlat = 1e-9;
 constexpr int kMostPoints = 96, kMostFacets = 192;   // living ones, at any time: 2 x points - 4
@@ -58,7 +59,7 @@ class Expansion {
   }
 
   std::optional<Axis> run(const PlacedPolytope& a, const PlacedPolytope& b, double size) {
-    const double rounding = 8 * kRoundOff * size;
+    const double rounding = 8 * kEpsilon * size;
     while (whole_) {
       const Facet nearest = *std::min_element(facets_.begin(), facets_.begin() + facet_count_, [](const Facet& f, const Facet& g) { return f.height < g.height; });
       const Vector3d corner = lowest_difference(a, b, -nearest.outward).difference;

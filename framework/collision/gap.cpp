@@ -5,11 +5,11 @@
 
 #include "framework/collision/ellipsoid.h"
 #include "framework/collision/piece_pairs.h"
+#include "framework/core/numbers.h"
 
 namespace tumble::collision {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRounding = 1e-14;   // of the query's size: what a search may miss a limit by
 
 Gap flipped(Gap gap) {

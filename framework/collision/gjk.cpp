@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/core/numbers.h"
+
 namespace tumble::collision {
 namespace {
 
-constexpr double kRoundOff = 2.220446049250313e-16;
 // The plane of a triangle with a smaller sine between its sides is known no better than the nearest point.
 constexpr double kSliver = 1e-6;
 constexpr int kMostRounds = 200;   // polytopes of a thousand vertices take about thirty
@@ -49,7 +50,7 @@ GjkResult gjk(const PlacedPolytope& a, const PlacedPolytope& b, double size, dou
   simplex.points[0] = lowest_difference(a, b, a.translation - b.translation);
   simplex.size = 1;
   settle(reduce_to_nearest(simplex), result);
-  const double touching = 8 * kRoundOff * size;
+  const double touching = 8 * kEpsilon * size;
   for (int round = 0; round < kMostRounds && result.distance > touching; ++round) {
     const DifferencePoint next = lowest_difference(a, b, result.normal);
     // The plane through `next` bounds the distance from below: where it meets the nearest point, that is the answer.
@@ -58,7 +59,7 @@ GjkResult gjk(const PlacedPolytope& a, const PlacedPolytope& b, double size, dou
       result.verdict = Apartness::kBeyond;
       return result;
     }
-    if (result.distance - result.lower_bound <= kRoundOff * size) break;
+    if (result.distance - result.lower_bound <= kEpsilon * size) break;
     if (holds(simplex, next)) break;
     const GjkResult before = result;
     simplex.points[simplex.size++] = next;

@@ -6,11 +6,11 @@
 #include "framework/collision/edge_on_edge.h"
 #include "framework/collision/patch.h"
 #include "framework/collision/piece_pairs.h"
+#include "framework/core/numbers.h"
 
 namespace tumble::collision {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Pieces of a surface that is not convex push along a normal of their own if it is that of one of their faces, to this (rad).
 constexpr double kOfAFace = 1e-6;

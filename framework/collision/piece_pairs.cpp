@@ -4,11 +4,11 @@
 #include <cmath>
 
 #include "framework/collision/inline_vector.h"
+#include "framework/core/numbers.h"
 
 namespace tumble::collision {
 namespace {
 
-constexpr double kRoundOff = 2.220446049250313e-16;
 // Bounds are rounded too. With as much room a pair is never passed over that another order of looking would have found.
 constexpr double kRoundings = 64;
 // Of the smaller solid: how much farther than asked the cache looks, so that it serves while the two move as far.
@@ -16,7 +16,7 @@ constexpr double kSkin = 0.02;
 // Questions for which a cache is left alone that was filled in vain, its solids moving fast.
 constexpr int kPause = 8;
 
-double rounding(const Query& query) { return kRoundings * kRoundOff * query.size; }
+double rounding(const Query& query) { return kRoundings * kEpsilon * query.size; }
 
 // Bounds from below how far nodes of the two trees are apart: by their balls, and by their boxes along the axes of either.
 class NodeDistance {

@@ -6,11 +6,11 @@
 #include "framework/collision/expanding.h"
 #include "framework/collision/gjk.h"
 #include "framework/collision/patch.h"
+#include "framework/core/numbers.h"
 
 namespace tumble::collision {
 namespace {
 
-constexpr double kRoundOff = 2.220446049250313e-16;
 // Below this part of the size, the direction between the nearest points carries fewer than ten digits: axes take over.
 constexpr double kNearZone = 1e-6;
 // Vertices within this part of the size of the foremost face the other body together: a face that leans by 1e-9 lies flat.
@@ -53,7 +53,7 @@ Axis axis_of_overlap(const PlacedPolytope& a, const PlacedPolytope& b, const Sim
   if (const auto bound = expand(a, b, simplex, size)) {
     for (const double look : kLooks) {
       const Axis axis = best_axis_near(a, b, bound->normal_b_to_a, look, size);
-      if (axis.separation >= bound->separation - 32 * kRoundOff * size) return axis;
+      if (axis.separation >= bound->separation - 32 * kEpsilon * size) return axis;
     }
   }
   return best_axis(a, b, size);
@@ -68,9 +68,9 @@ PolytopeGap polytope_gap(const PlacedPolytope& a, const PlacedPolytope& b, doubl
     const PolytopeGap gap = from_simplex(a, b, found);
     if (gap.distance > kNearZone * size) return gap;
     // What rounding has made of the direction between the nearest points.
-    const double angle = std::min(1e-2, std::max(1e-7, 16 * kRoundOff * size / gap.distance));
+    const double angle = std::min(1e-2, std::max(1e-7, 16 * kEpsilon * size / gap.distance));
     const Axis axis = best_axis_near(a, b, gap.normal_b_to_a, angle, size);
-    if (axis.separation * (1 + 1e-9) + 16 * kRoundOff * size >= gap.distance) return from_axis(a, b, axis, size, points);
+    if (axis.separation * (1 + 1e-9) + 16 * kEpsilon * size >= gap.distance) return from_axis(a, b, axis, size, points);
     // Corner against corner, or corner against edge: no axis of faces and edges measures their distance, the algorithm does.
     if (gap.distance > kTrusted * size) return gap;
   }

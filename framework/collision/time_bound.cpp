@@ -7,11 +7,11 @@
 #include "framework/collision/ellipsoid.h"
 #include "framework/collision/inline_vector.h"
 #include "framework/collision/piece_pairs.h"
+#include "framework/core/numbers.h"
 
 namespace tumble::collision {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // One vertex of (E.1): height over the supporting plane, rate along the normal, and half the bound on its acceleration.
 struct VertexLine {

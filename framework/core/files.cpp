@@ -91,6 +91,11 @@ PrivateFolder::~PrivateFolder() {
   if (alive_ >= 0) ::close(alive_);
 }
 
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
 std::optional<std::string> read_plain_file(const std::filesystem::path& file, std::uint64_t most_bytes, std::string& why) {
   const int fd = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   struct stat about {};

@@ -19,6 +19,9 @@ void make_whole(const std::filesystem::path& file, const std::function<void(cons
 /// @throws UserError when the file cannot be written
 void write_whole(const std::filesystem::path& file, std::string_view bytes);
 
+/// All bytes of a file; none where it cannot be read.
+std::string text_of(const std::filesystem::path& file);
+
 /// The bytes of a plain file: no link (it would show what the one who follows it may see), no device, no pipe that waits for a writer.
 /// @param why  what stands in the way, after the file's name: "is a link; hand in the file itself"
 /// @return nothing where `why` says why not

@@ -2,10 +2,11 @@
 
 #include <limits>
 
+#include "framework/core/numbers.h"
+
 namespace tumble::contacts {
 namespace {
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr int kMostNewtonSteps = 60;  // bisection alone needs 52 to the last bit; Newton's iteration about 5
 
 /// p(s) of (C.5), tangents along the eigenvectors of S.
@@ -40,10 +41,10 @@ SlidingImpulse slide(const SlidingProblem& problem, double friction, double high
   for (int i = 0; i < kMostNewtonSteps; ++i) {
     const double bound = friction * p.normal, excess = p.length - bound;
     (excess > 0 ? low : high) = s;
-    if (std::abs(excess) <= 4 * kEps * p.length || high - low <= 2 * kEps * high) break;
+    if (std::abs(excess) <= 4 * kEpsilon * p.length || high - low <= 2 * kEpsilon * high) break;
     const double slope = friction * (p.normal * p.length_slope - p.normal_slope * p.length);  // of excess / length, times length^2
     double next = slope < 0 ? s - excess * p.length / slope : -1.0;
-    if (std::abs(next - s) <= 4 * kEps * s) break;   // nearer to it no s is
+    if (std::abs(next - s) <= 4 * kEpsilon * s) break;   // nearer to it no s is
     if (!(next > low && next < high)) next = low > 0 ? std::sqrt(low) * std::sqrt(high) : 0.5 * high;
     s = next;
     p = problem.at(s);

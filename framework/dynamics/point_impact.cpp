@@ -5,12 +5,13 @@
 #include <limits>
 #include <optional>
 
+#include "framework/core/numbers.h"
+
 namespace tumble {
 namespace {
 
 using Eigen::Matrix2d;
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 // Of the largest inverse mass: what rounding leaves of a direction in which nothing can be moved. Links of some hundred bodies leave 1e-14.
 constexpr double kRigid = 1e-12;
 constexpr double kNoSlip = 1e-12;      // of the speed: what rounding leaves of no slip

@@ -12,7 +12,7 @@ namespace {
 constexpr double kCut = 0.99;        // of the way down: the step ends before the point lands, a second, short one takes it all the way
 constexpr double kShort = 1e-3;      // of the longest step: what comes this soon is predicted to its third power, below a shell
 constexpr double kSame = 1e-6;       // of the step: a landing this near to its end lands at its end
-constexpr double kNear = 1e-3;       // of the way that the rest speed goes in the longest step: nearer than this a point is down
+constexpr double kNearLanding = 1e-3;       // of the way that the rest speed goes in the longest step: nearer than this a point is down
 constexpr int kMostBlows = 1000;     // at one instant
 constexpr double kTogether = 1e-6;   // of the smaller body
 constexpr double kStrikes = 1e-4;    // of the rest speed: what comes together more slowly is left to the step's impulses
@@ -41,7 +41,7 @@ double LastingContacts::slip_speed(const ContactProblem& problem, std::size_t co
 
 bool LastingContacts::is_down(const Touch& touch) const {
   const double thickness = shell(touch.pair);
-  return touch.point.gap - thickness <= thickness + kNear * rest_speed_ * step_;
+  return touch.point.gap - thickness <= thickness + kNearLanding * rest_speed_ * step_;
 }
 
 // At the step's start; the problem's own are those of its end, of driven bodies too.

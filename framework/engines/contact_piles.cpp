@@ -21,15 +21,15 @@ constexpr std::size_t kFew = 12;        // bodies: so many are solved to the las
 constexpr int kMostLocatedBlows = 8;    // of one heap in a step
 constexpr double kRoom = 1e-4;          // of the smaller body: the shell
 constexpr double kTooNear = 0.1;        // shells: nearer than this is taken back
-constexpr double kEnough = 1e-5;        // of the heap's speed
+constexpr double kPileAtRest = 1e-5;        // of the heap's speed
 constexpr double kStill = 1e-3;         // of the rest speed: nor better than this
 constexpr double kRestored = 0.2;       // of the shell, in a step: what errors have taken from it comes back without a shift
 constexpr int kSweeps = 40;             // from the last step's impulses
 constexpr int kShiftSweeps = 40;
 constexpr double kShiftTolerance = 1e-2;   // of the farthest: the next round takes the rest
-constexpr int kMostShifts = 24;         // rounds
-constexpr double kShiftReach = 1.5;     // shifts: points this far apart may come together by them
-constexpr double kDeeper = 1.1, kAsDeep = 0.9;   // of an overlap: a point this deep is no part of it; none that deep has missed it
+constexpr int kMostPileShifts = 24;         // rounds
+constexpr double kPileReach = 1.5;     // shifts: points this far apart may come together by them
+constexpr double kDeeperInPile = 1.1, kAsDeep = 0.9;   // of an overlap: a point this deep is no part of it; none that deep has missed it
 constexpr double kGoOn = 2.0;           // likewise, in what two bodies have moved by the last shift: levers make it long
 constexpr double kMeasured = 10.0;      // shells: of gaps larger than this, and than the rest speed goes in a step, a bound will do
 constexpr double kSamePlace = 0.05;     // of the shell: bodies that have moved less since are faced as they were
@@ -107,11 +107,11 @@ std::optional<double> LastingContacts::take_pile_step(const Group& group, double
   const std::vector<Touch> touches = touches_of_pile(group, middle, h);
   const ContactProblem problem = problem_of(group, touches, middle, h);
   ContactOptions options;
-  options.tolerance = kEnough;
+  options.tolerance = kPileAtRest;
   options.least_speed = kStill * rest_speed_;
   options.most_sweeps_alone = kSweeps;
   if (locates()) {           // nobody has asked for steps: their problems are at least solved
-    options.enough = kEnough;
+    options.enough = kPileAtRest;
     options.most_sweeps = kSweeps;
   } else {
     options.largest_direct = 0;
@@ -149,7 +149,7 @@ bool LastingContacts::keep_pile_apart(const Group& group, const std::vector<Pair
     if (moving_.world().bodies[i].immovable()) states[i].com_world = prescribed_position(moving_.world().bodies[i], t);
   std::vector<double> way(states.size(), 0.0);
   std::vector<Faced> faced(pairs.size());
-  for (int round = 0; round < kMostShifts; ++round) {
+  for (int round = 0; round < kMostPileShifts; ++round) {
     double wrong = 0.0;
     for (std::size_t k = 0; k < pairs.size(); ++k) {
       const double least = kTooNear * room_of(pairs[k]);
@@ -177,7 +177,7 @@ bool LastingContacts::keep_pile_apart(const Group& group, const std::vector<Pair
 LastingContacts::Points LastingContacts::points_of_overlap(Pair pair, const std::vector<RigidBodyState>& states, double reach, double gap) const {
   Points points = points_at(pair, states, reach);
   if (gap >= 0.0) return points;
-  std::erase_if(points, [&](const collision::NearPoint& p) { return p.gap < kDeeper * gap; });
+  std::erase_if(points, [&](const collision::NearPoint& p) { return p.gap < kDeeperInPile * gap; });
   if (std::any_of(points.begin(), points.end(), [&](const collision::NearPoint& p) { return p.gap < kAsDeep * gap; })) return points;
   const collision::Gap deepest = gap_of(pair, states);
   points.push_back({deepest.point_a_world, deepest.point_b_world, deepest.normal_b_to_a_world, deepest.distance});
@@ -189,7 +189,7 @@ ContactProblem LastingContacts::shifts_of(const Group& group, const std::vector<
   std::map<int, int> places;
   for (const int body : group.bodies) place(body, t, places, states, nullptr, problem);
   for (std::size_t k = 0; k < pairs.size(); ++k) {
-    const double reach = std::max(kShiftReach * wrong, kGoOn * (way[pairs[k].first] + way[pairs[k].second]));
+    const double reach = std::max(kPileReach * wrong, kGoOn * (way[pairs[k].first] + way[pairs[k].second]));
     if (gaps[k] >= reach) continue;
     if (!(faced[k].reach >= reach && faced[k].moved <= kSamePlace * room_of(pairs[k]))) faced[k] = {points_of_overlap(pairs[k], states, reach, gaps[k]), reach, 0.0};
     for (const collision::NearPoint& point : faced[k].points) {

@@ -22,7 +22,7 @@ constexpr int kHeldRounds = 5;            // of these, in which points that push
 constexpr double kHeldReach = 1e-3;       // of the smaller body: what turning may leave between points that push
 constexpr double kShiftReach = 4.0;       // shifts: how far apart points may be to matter
 constexpr double kMissed = 1e-6, kMissedAtMost = 1e-3;   // shifts: of what is missing a round may leave, and what it is taken with where it does not get so far
-constexpr double kRounding = 1e-13;       // relative, of a solver's answer
+constexpr double kSolverRounding = 1e-13;       // relative, of a solver's answer
 constexpr double kNotYet = 1e3;           // shells: a point farther away at the start has come down in the step
 constexpr double kMoving = 10.0;          // rest speeds
 constexpr int kMostOfStudents = 64;       // contacts of a group that the laws' contact_forces is asked for: it is given a dense matrix
@@ -516,8 +516,8 @@ bool LastingContacts::keep_apart(const Group& group, const std::vector<Pair>& pa
       part = wrong / largest;
     }
     ContactOptions options;   // the next round takes the rest
-    options.tolerance = std::max(kRounding, kMissed * part);
-    options.enough = std::max(kRounding, kMissedAtMost * part);
+    options.tolerance = std::max(kSolverRounding, kMissed * part);
+    options.enough = std::max(kSolverRounding, kMissedAtMost * part);
     const ContactSolution shift = solve_contacts(problem, options);
     sweeps_ += static_cast<std::uint64_t>(shift.sweeps);
     for (std::size_t k = 0; k < group.bodies.size(); ++k) apply_shift(group.bodies[k], shift.velocities[k], states);

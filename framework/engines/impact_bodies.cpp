@@ -14,7 +14,7 @@ namespace {
 constexpr double kNoProjection = 1e-6;
 
 // m/s: bodies that lie still move by what roundings of forces and corrections leave, some 1e-15 m/s, and their impacts obey no law.
-constexpr double kQuiet = 1e-9;
+constexpr double kQuietImpact = 1e-9;
 
 std::size_t place_in(const LinkedBodies& group, int body) {
   return static_cast<std::size_t>(std::lower_bound(group.bodies().begin(), group.bodies().end(), body) - group.bodies().begin());
@@ -59,7 +59,7 @@ void EnergyOfImpact::add(const Inertia& inertia, const Quaterniond& q, const Vel
 }
 
 double EnergyOfImpact::excess(double by_law) const {
-  const double size = before + std::abs(by_law) + 0.5 * mass * kQuiet * kQuiet;
+  const double size = before + std::abs(by_law) + 0.5 * mass * kQuietImpact * kQuietImpact;
   return size > 0 ? std::max(std::abs(change - by_law), change) / size : change;
 }
 

@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
+#include "framework/core/numbers.h"
 #include "framework/dynamics/world.h"
 #include "framework/engines/lasting_contacts.h"
 #include "framework/engines/measures.h"

@@ -7,13 +7,13 @@
 #include <fmt/format.h>
 
 #include "framework/collision/gap.h"
+#include "framework/core/numbers.h"
 #include "framework/engines/body_groups.h"
 #include "framework/engines/guarded_laws.h"
 
 namespace tumble::engines {
 namespace {
 
-constexpr double kEpsilon = 2.220446049250313e-16;
 constexpr double kRounding = 64;          // of coordinates far from the origin, in the shell
 constexpr double kBand = 8.0;             // shells: nearer than this two touch
 constexpr double kUnseenRoom = 1e-9;      // of the way in a step: what the tolerance of the impulses leaves between bodies that touch

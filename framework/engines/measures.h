@@ -13,7 +13,6 @@ namespace tumble::engines {
 using scene::CheckSpec;
 using scene::Scene;
 
-inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The worst that a check found.
 struct Finding {

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "framework/core/numbers.h"
 #include "framework/engines/measures.h"
 
 namespace tumble::engines {

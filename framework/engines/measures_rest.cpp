@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <fmt/format.h>
 
+#include "framework/core/numbers.h"
 #include "framework/dynamics/world.h"
 #include "framework/engines/measures.h"
 

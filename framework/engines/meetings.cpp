@@ -7,12 +7,12 @@
 
 #include "framework/collision/contact_patch.h"
 #include "framework/core/error.h"
+#include "framework/core/numbers.h"
 #include "framework/engines/start_overlaps.h"
 
 namespace tumble::engines {
 namespace {
 
-constexpr double kEpsilon = 2.220446049250313e-16;
 // Corners of two solids that touch belong to the touch within this part of the size: a face that leans by 1e-9 rad lies flat.
 constexpr double kSamePatch = 1e-9;
 

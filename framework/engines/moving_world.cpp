@@ -16,7 +16,7 @@ namespace tumble::engines {
 namespace {
 
 // Of a body's radius: so far apart lasting contacts are kept at most, ten shells of lasting_contacts.cpp.
-constexpr double kContactMargin = 1e-9;
+constexpr double kNeighbourMargin = 1e-9;
 
 // What the laws' integration makes of a constant acceleration a: x(h) = x0 + v h + bend a h^2 / 2. Asked once, so that bounds hold
 // for whichever method a student wrote.
@@ -420,7 +420,7 @@ collision::SweptBox MovingWorld::swept_box(int body) {
     bulge = m.amplitude_m.cwiseAbs() * std::min(1.0, std::pow(m.angular_frequency_rad_s * h, 2) / 8);
   }
   constexpr double kRounding = 1e-14;  // of coordinates, so that bodies that just touch stay candidates
-  const double shell = built::kContact && world_.contact && std::isfinite(radius) ? kContactMargin * radius : 0.0;
+  const double shell = built::kContact && world_.contact && std::isfinite(radius) ? kNeighbourMargin * radius : 0.0;
   const Vector3d margin =
       bulge + Vector3d::Constant(radius + shell) + kRounding * (start.cwiseAbs() + end.cwiseAbs() + Vector3d::Constant(std::isfinite(radius) ? radius : 0.0));
   const collision::SweptBox box{start.cwiseMin(end) - margin, start.cwiseMax(end) + margin, can_move(body) || is_driven(body)};

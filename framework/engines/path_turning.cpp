@@ -28,7 +28,7 @@ constexpr double kMostDrift = 0.1;
 constexpr double kLook = 1e-3;
 // What is seen there, against the largest in the step: at most 1.8 times in 2e4 tops with moments as far apart as 1 : 1e8, by Euler,
 // midpoint, Heun, Kutta and Runge-Kutta of orders 4 and 5, within the two limits above.
-constexpr double kUnseen = 2.0;
+constexpr double kUnseenTurn = 2.0;
 
 constexpr int kMostHalvings = 12;      // a method whose error does not shrink with the step is not helped by shorter ones
 constexpr double kMostParts = 1e5;     // of a step: beyond, a run would take hours and look like a hang
@@ -73,7 +73,7 @@ double MovingWorld::turning_error(int body, double duration) {
   // An error that is zero at both looks shows in the angle, which two half steps give with another error.
   const RigidBodyState twice_half = integrate(body, 0.5 * duration, time_ + 0.5 * duration, pack(half));
   const double drift = twice_half.world_from_body.angularDistance(end.world_from_body);
-  path.turning_error = kUnseen * std::max({error_before(0.5 * duration, half), error_before(duration, end), 3.0 * drift / duration});
+  path.turning_error = kUnseenTurn * std::max({error_before(0.5 * duration, half), error_before(duration, end), 3.0 * drift / duration});
   path.measured_duration = duration;
   return path.turning_error;
 }

@@ -19,7 +19,7 @@ namespace tumble::engines {
 namespace {
 
 // A support that leans by less [rad] counts as level: in 100 s a ball would slide 5e-8 m.
-constexpr double kLevel = 1e-12;
+constexpr double kLevelSupport = 1e-12;
 constexpr double kNoStep = 1e-9;         // of the step: a shorter last one is taken with the one before
 
 class RetroactiveRun {
@@ -182,7 +182,7 @@ void RetroactiveRun::begin_contacts(const std::vector<TouchingPair>& touching, c
 bool RetroactiveRun::stays_on(const TouchingPair& pair, int body, const Vector3d& up) const {
   const Vector3d& gravity = *moving_.world().gravity_world;
   const double radius = moving_.shape(body).bounding_radius(), rounding = meetings_.touching_distance({pair.a, pair.b});
-  const double level = std::max(kLevel, radius > rounding ? rounding / radius : 0.0);   // the normal's own rounding
+  const double level = std::max(kLevelSupport, radius > rounding ? rounding / radius : 0.0);   // the normal's own rounding
   if (!(gravity.dot(up) < 0) || (gravity - gravity.dot(up) * up).norm() > level * gravity.norm()) return false;
   for (const int index : moving_.active_forces())
     if (moving_.world().point_forces[index].body == body) return false;

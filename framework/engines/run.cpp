@@ -98,7 +98,7 @@ Engine engine_of(const RunOptions& options, const Laws& laws) {
 }
 
 // What a callback sees and may do is the same in every engine: places of the world, of which none is moved; and what goes wrong names it and the body.
-std::vector<Callback> guarded(const std::vector<Callback>& callbacks, const scene::Scene& scene, const Vector3d& origin_world) {
+std::vector<Callback> guarded_callbacks(const std::vector<Callback>& callbacks, const scene::Scene& scene, const Vector3d& origin_world) {
   std::vector<Callback> all = callbacks;
   for (Callback& callback : all)
     callback.act = [act = callback.act, time = callback.time, &scene, origin_world](int body, RigidBodyState& state) {
@@ -179,7 +179,7 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& as
   DiscontinuityCount counted(watch);
   counted.begin(info, bodies);
   const Vector3d origin_world = local_origin(scene);
-  options.callbacks = guarded(asked.callbacks, scene, origin_world);
+  options.callbacks = guarded_callbacks(asked.callbacks, scene, origin_world);
   if (origin_world.isZero(0.0)) return run_from_apart(engine, scene, laws, options, watch, counted);
   const scene::Scene local = seen_from(origin_world, scene);
   double mass = 0.0;

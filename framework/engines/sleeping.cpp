@@ -15,7 +15,7 @@ constexpr double kMean = 0.01;           // of the rest speed, on the average: t
 constexpr double kMeanSliding = 1e-4;    // likewise, where something slides
 constexpr double kSameTorque = 1e-6;     // of the largest torque: what the rates of bodies at rest change in it
 constexpr double kSameAngle = 1e-9;      // rad: likewise, by a motor's stiffness
-constexpr double kRoom = 1e-8;           // of the smaller body: lasting contacts are kept nearer
+constexpr double kSleepRoom = 1e-8;           // of the smaller body: lasting contacts are kept nearer
 
 }  // namespace
 
@@ -155,7 +155,7 @@ bool Sleepers::would_touch(Pair pair) {
     const double radius = moving_.shape(body).is_half_space() ? 0.0 : moving_.shape(body).bounding_radius();
     return h * (std::max(start.velocity_world.norm(), end.velocity_world.norm()) + std::max(start.omega_world.norm(), end.omega_world.norm()) * radius);
   };
-  const double room = kRoom * std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius());
+  const double room = kSleepRoom * std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius());
   const auto pose = [&](int body) { return moving_.motion_at(body, moving_.time()).pose; };
   ++counters_.collision.gap_evaluations;
   const double near = way(pair.first) + way(pair.second) + room;

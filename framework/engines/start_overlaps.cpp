@@ -12,9 +12,9 @@ namespace {
 
 constexpr double kSingle = 0x1.0p-23;    // spacing of float32 numbers, relative
 constexpr double kUnseen = 1e-4;         // of the smaller body: a shift that nobody sees
-constexpr double kNear = 4.0;            // of what rounding explains: pairs as near as that are kept apart when others are moved
+constexpr double kNearInRoundings = 4.0;            // of what rounding explains: pairs as near as that are kept apart when others are moved
 constexpr int kMostSweeps = 1000;        // over the pairs: stacks take one, grids some tens
-constexpr double kRoom = 0x1.0p-50;      // of a place: what a shift is rounded by, left as room
+constexpr double kShiftRoom = 0x1.0p-50;      // of a place: what a shift is rounded by, left as room
 
 double extent(const collision::CollisionShape& shape) { return shape.is_half_space() ? 0.0 : shape.bounding_radius(); }
 
@@ -71,10 +71,10 @@ bool OverlapAtStart::is_explained() const {
 void look_at_start(int a, int b, const collision::CollisionShape& shape_a, const collision::Pose& pose_a, const collision::CollisionShape& shape_b, const collision::Pose& pose_b, double touching,
                    std::vector<StartPair>& near) {
   const double explained = explained_overlap(shape_a, pose_a, shape_b, pose_b);
-  if (collision::least_gap(shape_a, pose_a, shape_b, pose_b) > kNear * explained) return;
+  if (collision::least_gap(shape_a, pose_a, shape_b, pose_b) > kNearInRoundings * explained) return;
   const bool overlaps = collision::overlapping(shape_a, pose_a, shape_b, pose_b, touching);
   const collision::Gap gap = collision::compute_gap(shape_a, pose_a, shape_b, pose_b);
-  if (overlaps || gap.distance <= kNear * explained) near.push_back({a, b, gap.distance, explained, overlaps, gap.normal_b_to_a_world});
+  if (overlaps || gap.distance <= kNearInRoundings * explained) near.push_back({a, b, gap.distance, explained, overlaps, gap.normal_b_to_a_world});
 }
 
 void refuse_overlaps(const std::string& where, const scene::Scene& scene, const std::vector<StartPair>& near) {
@@ -95,7 +95,7 @@ std::optional<MovedApart> moved_apart(const scene::Scene& scene, const std::vect
     for (const StartPair& pair : pairs) {
       const auto a = static_cast<std::size_t>(pair.body_a), b = static_cast<std::size_t>(pair.body_b);
       const bool moves_a = !scene.bodies[a].immovable && (steps[a] > steps[b] || scene.bodies[b].immovable);
-      const double room = kRoom * (scene.bodies[a].position_m.cwiseAbs().maxCoeff() + scene.bodies[b].position_m.cwiseAbs().maxCoeff());
+      const double room = kShiftRoom * (scene.bodies[a].position_m.cwiseAbs().maxCoeff() + scene.bodies[b].position_m.cwiseAbs().maxCoeff());
       const double missing = -pair.gap - pair.normal_b_to_a_world.dot(shift[a] - shift[b]);
       if (!(missing > 0)) continue;
       is_settled = false;

@@ -11,6 +11,9 @@ namespace tumble::engines {
 /// In a row without progress of time.
 inline constexpr int kMostIdleSteps = 1000;
 
+/// Of the step: a pair that meets again sooner than this, and more slowly than the rest speed, is sent apart (micro-collisions, Mirtich 1996).
+inline constexpr double kMicroInterval = 0.01;
+
 /// Impacts in a step of a world of so many bodies: more are a Zeno sequence. A ball between walls a nanometre apart meets them 1,000 times in 2 us.
 inline constexpr long most_impacts(int bodies) { return 500L * bodies; }
 

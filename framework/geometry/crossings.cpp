@@ -15,15 +15,15 @@
 namespace tumble {
 namespace {
 
-constexpr int kLeafFaces = 4;
+constexpr int kCrossingLeaf = 4;
 // Spacing of float32 coordinates relative to the largest, with a factor 2 for a transform after rounding (as in solid.cpp).
-constexpr double kRounding = 0x1.0p-22;
+constexpr double kCrossingRounding = 0x1.0p-22;
 // Planes whose normals differ by less [rad] have no line in common that rounding leaves where it is.
 constexpr double kParallel = 1e-6;
 constexpr double kAside = 16.0;              // roundings: so far before and behind a face it is asked what is inside
 constexpr std::size_t kMostNamed = 3;        // pairs of parts: a heap of leaves needs no thousand messages
-constexpr std::size_t kMostCompared = 20'000'000;   // pairs of faces, 2 s: a bundle of needles through one place is not looked through beyond that
-constexpr double kMostSolidAngles = 5e7;     // about 5 s: parts that lie on each other are not looked through beyond that
+constexpr std::size_t kMostFacePairs = 20'000'000;   // pairs of faces, 2 s: a bundle of needles through one place is not looked through beyond that
+constexpr double kMostCrossingAngles = 5e7;     // about 5 s: parts that lie on each other are not looked through beyond that
 
 struct Interval {
   double low, high;
@@ -95,7 +95,7 @@ class CrossingSearch {
  public:
   CrossingSearch(const TriangleMesh& mesh, const std::vector<int>& part_of_face) : mesh_(mesh), part_of_face_(part_of_face) {
     const Bounds bounds = bounds_of(mesh);
-    tolerance_ = kRounding * std::max(bounds.low.cwiseAbs().maxCoeff(), bounds.high.cwiseAbs().maxCoeff());
+    tolerance_ = kCrossingRounding * std::max(bounds.low.cwiseAbs().maxCoeff(), bounds.high.cwiseAbs().maxCoeff());
     for (int f = 0; f < static_cast<int>(mesh.faces.size()); ++f) {
       order_.push_back(f);
       plates_.emplace_back(mesh, mesh.faces[f], tolerance_);
@@ -109,7 +109,7 @@ class CrossingSearch {
   /// What rounding of coordinates leaves between faces. [m]
   double tolerance() const { return tolerance_; }
   /// Whether all faces that may cross were compared.
-  bool is_complete() const { return compared_ < kMostCompared; }
+  bool is_complete() const { return compared_ < kMostFacePairs; }
   /// Pairs of different parts with faces in each other's boxes.
   const std::map<PairOfParts, bool>& close() const { return close_; }
 
@@ -128,7 +128,7 @@ class CrossingSearch {
         node.high = node.high.cwiseMax(corner);
       }
     nodes_.push_back(node);
-    if (count <= kLeafFaces) return index;
+    if (count <= kCrossingLeaf) return index;
     Eigen::Index axis = 0;
     (node.high - node.low).maxCoeff(&axis);
     const auto middle = [&](int face) {
@@ -145,7 +145,7 @@ class CrossingSearch {
 
   void search() {
     std::vector<std::pair<int, int>> to_do{{0, 0}};
-    while (!to_do.empty() && compared_ < kMostCompared) {
+    while (!to_do.empty() && compared_ < kMostFacePairs) {
       const auto [i, j] = to_do.back();
       to_do.pop_back();
       const Node &a = nodes_[i], &b = nodes_[j];
@@ -259,7 +259,7 @@ std::vector<Defect> find_crossings(const TriangleMesh& mesh, const std::vector<i
     if (search.crossings().contains(parts)) continue;
     const TriangleMesh a = faces_of(parts.first, mesh, part_of_face), b = faces_of(parts.second, mesh, part_of_face);
     work += 2.0 * static_cast<double>(a.faces.size()) * static_cast<double>(b.faces.size());
-    if (work > kMostSolidAngles) {
+    if (work > kMostCrossingAngles) {
       is_complete = false;
       break;
     }

@@ -14,7 +14,7 @@ namespace tumble {
 namespace {
 
 // Volume below this times area^1.5 is flat: a plate of relative thickness 1e-10 is 500 times thinner than float32 can tell.
-constexpr double kFlat = 1e-10;
+constexpr double kFlatPart = 1e-10;
 constexpr double kMostSolidAngles = 5e7;  // about 5 s; a file of thousands of parts inside each other is not looked through
 
 struct Part {
@@ -105,7 +105,7 @@ std::vector<Defect> find_without_volume(const std::vector<Part>& parts) {
   std::vector<Defect> defects;
   for (const Part& part : parts) {
     const std::string what = parts.size() == 1 ? "the surface is closed but" : place_of(part);
-    if (std::abs(part.volume) <= kFlat * std::pow(area_of(part.mesh), 1.5)) {
+    if (std::abs(part.volume) <= kFlatPart * std::pow(area_of(part.mesh), 1.5)) {
       defects.push_back({DefectKind::kZeroVolume, what + " encloses no volume: it is flat", "Give it a thickness, or remove it."});
     } else if (std::abs(part.volume) <= rounding_of_volume(part)) {
       defects.push_back({DefectKind::kNeedle,

@@ -4,15 +4,15 @@
 #include <cmath>
 
 #include "framework/core/error.h"
+#include "framework/core/numbers.h"
 
 namespace tumble {
 namespace {
 
 constexpr int kLeafFaces = 4;
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 // Roundings between a corner and its sheared coordinates (a difference, a product, a difference) and in the slab test (a difference, a
 // quotient), each at most eps times the distance: 5, doubled for the three axes together and rounded up.
-constexpr double kBoxRounding = 16 * kEps;
+constexpr double kBoxRounding = 16 * kEpsilon;
 
 }  // namespace
 
@@ -45,7 +45,7 @@ struct RayTree::Shear {
       if (near > enter) enter = near;
       if (far < leave) leave = far;
     }
-    return enter <= leave * (1.0 + 4.0 * kEps) ? enter : std::numeric_limits<double>::infinity();
+    return enter <= leave * (1.0 + 4.0 * kEpsilon) ? enter : std::numeric_limits<double>::infinity();
   }
 
   Vector3d origin, direction;

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include "framework/core/files.h"
+#include "framework/core/text.h"
 #include "framework/core/nearest_word.h"
 #include "framework/grading/build_submission.h"
 #include "framework/grading/compiler_words.h"
@@ -39,11 +40,6 @@ Candidate read_mutant(const fs::path& file) {
   if (!first.starts_with(kMutant) || dash == std::string::npos || !second.starts_with(kCaughtBy))
     throw UserError(file.string(), "does not say which slip it makes", "Its first two lines are:  // mutant: NAME - slip   and   // caught-by: words of the story that names it");
   return {first.substr(kMutant.size(), dash - kMutant.size()), file, false, first.substr(dash + 3), second.substr(kCaughtBy.size())};
-}
-
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
 }
 
 bool is_caught(const TestResult& result) {
@@ -96,11 +92,11 @@ AuditResult read_result(const Rubric& rubric, const Candidate& candidate, const 
     result.possible += test.item.points;
     if (!is_final_verdict(test.result.verdict)) result.fault = test.item.test + ": " + test.result.story;
   }
-  const std::string keyword = lower(candidate.keyword);
+  const std::string keyword = lowercase(candidate.keyword);
   for (const TestResult& test : tests) {
     if (!is_caught(test)) continue;
     result.caught_by.push_back(test);
-    const bool names = !keyword.empty() && lower(test.story).find(keyword) != std::string::npos;
+    const bool names = !keyword.empty() && lowercase(test.story).find(keyword) != std::string::npos;
     if (result.best.empty() || (names && !result.is_named)) result.best = test.test;
     result.is_named = result.is_named || names;
   }

@@ -33,11 +33,6 @@ constexpr const char* kScript = "cd /submission && /usr/bin/g++ " TUMBLE_SUBMISS
                                 " -Wall -Wextra -Wno-unused-parameter -fdiagnostics-color=never -fmax-errors=20 -I /headers -isystem " TUMBLE_EIGEN_INCLUDE
                                 " -include /headers/precompiled.h -x c++ \"$1\" -x none -shared -Wl,-z,defs -o /tmp/module.so && exec cat /tmp/module.so >&3";
 
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
-
 // Headers of the tree that a text includes, directly or not: those that students have, and of them only what is asked for.
 void collect_headers(const fs::path& root, const std::string& text, std::set<std::string>& found) {
   std::istringstream in(text);

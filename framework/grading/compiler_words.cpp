@@ -1,4 +1,5 @@
 #include "framework/grading/compiler_words.h"
+#include "framework/core/files.h"
 
 #include <algorithm>
 #include <cctype>
@@ -38,11 +39,6 @@ struct Diagnostic {
   std::vector<std::string> excerpt;
   std::optional<Place> required_from;   // the student's line, where the message itself stands in a library
 };
-
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
 
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;

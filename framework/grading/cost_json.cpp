@@ -10,11 +10,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 // JSON has no NaN: a plot breaks its line there either way.
-double number_of(const Json& json) { return json.is_null() ? std::nan("") : json.get<double>(); }
+double number_or_nan(const Json& json) { return json.is_null() ? std::nan("") : json.get<double>(); }
 
 std::vector<double> numbers_of(const Json& json) {
   std::vector<double> numbers;
-  for (const Json& number : json) numbers.push_back(number_of(number));
+  for (const Json& number : json) numbers.push_back(number_or_nan(number));
   return numbers;
 }
 
@@ -31,7 +31,7 @@ Json plot_json(const report::Plot& plot) {
 report::Plot plot_of(const Json& json) {
   report::Plot plot{json.at("title"), axis_of(json.at("x")), axis_of(json.at("y")), {}, {}, json.at("caption")};
   for (const Json& c : json.at("curves")) plot.curves.push_back({c.at("name"), numbers_of(c.at("x")), numbers_of(c.at("y")), c.at("marks")});
-  for (const Json& limit : json.at("limits")) plot.limits.push_back({number_of(limit.at("y")), limit.at("name")});
+  for (const Json& limit : json.at("limits")) plot.limits.push_back({number_or_nan(limit.at("y")), limit.at("name")});
   return plot;
 }
 

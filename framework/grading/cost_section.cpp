@@ -25,7 +25,6 @@ using modules::AnyModule;
 using modules::ModuleKind;
 
 constexpr double kCoarsest = 1.0 / 8.0;   // s: of the ladder
-constexpr std::size_t kReferenceStyles = 8;   // report/plot.h: the second eight curves
 constexpr int kRungs = 8;                 // halvings down to 1/1024 s
 
 struct Measured {
@@ -93,7 +92,7 @@ CostLine line_of(const Measured& measured, const CostTruth& truth) {
 report::Plot plot_of(const std::vector<Measured>& all, const CostTruth& truth, report::Axis across, const std::string& title, double (*x)(const CostRung&), const std::string& caption) {
   report::Plot plot{title, std::move(across), {"error of places", "m", report::Scale::kLog}, {}, {}, caption};
   for (const Measured& measured : all) {
-    if (measured.is_reference) plot.curves.resize(std::max(plot.curves.size(), kReferenceStyles));   // the submission's colours again, with hollow marks
+    if (measured.is_reference) plot.curves.resize(std::max(plot.curves.size(), report::kReferenceStyles));   // the submission's colours again, with hollow marks
     const auto fit = engines::order_of(measured.way, measured.rungs, truth);
     report::Curve curve{fit ? fmt::format("{}, order {:.2f}", measured.way.name, fit->order) : measured.way.name, {}, {}, true};
     for (const CostRung& rung : measured.rungs) {

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "framework/core/error.h"
+#include "framework/core/text.h"
 #include "framework/grading/digest.h"
 #include "framework/grading/grade.h"
 #include "framework/grading/plain_text.h"
@@ -26,12 +27,7 @@ struct Found {
   bool cut = false, is_deep = false;
 };
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
-bool ends_in(const fs::path& file, const std::set<std::string>& endings) { return endings.contains(lower(file.extension().string())); }
+bool ends_in(const fs::path& file, const std::set<std::string>& endings) { return endings.contains(lowercase(file.extension().string())); }
 bool is_archive(const fs::path& file) { return ends_in(file, {".zip", ".gz", ".tgz", ".xz", ".bz2", ".7z", ".rar", ".tar"}); }
 bool is_source(const fs::path& file) { return ends_in(file, {".cpp", ".cc", ".cxx", ".c++"}); }
 bool is_header(const fs::path& file) { return ends_in(file, {".h", ".hh", ".hpp", ".hxx"}); }
@@ -48,7 +44,7 @@ bool is_tools_folder(const std::string& name) {
 
 // A file, by what its name says. Canvas and browsers number copies: "a1_impulse-1.cpp", "a1_impulse (1).cpp" (by `name`, without it).
 void sort_in(const fs::path& path, const std::string& name, const std::string& wanted, Found& found) {
-  if (lower(name) == lower(wanted)) found.named.push_back(path);
+  if (lowercase(name) == lowercase(wanted)) found.named.push_back(path);
   else if (is_source(name)) found.sources.push_back(path);
   else if (is_archive(name)) found.archives.push_back(path);
   else if (is_header(name)) found.headers.push_back(path);
@@ -123,7 +119,7 @@ void choose_source(Found found, const std::string& wanted, const fs::path& folde
     submission.source = found.named.empty() ? found.sources[0] : found.named[0];
     const std::string name = submission.source.filename().string();
     if (found.named.empty()) note("its only source is named " + name + ", not " + wanted + "; it was taken");
-    else if (lower(name) == lower(wanted) && name != wanted) note("its file is named " + name + ", not " + wanted + "; it was taken");
+    else if (lowercase(name) == lowercase(wanted) && name != wanted) note("its file is named " + name + ", not " + wanted + "; it was taken");
     if (!found.named.empty() && !found.sources.empty()) note("other sources were not compiled: " + listed(found.sources, folder));
     if (!found.headers.empty()) note("headers beside it were not used: " + listed(found.headers, folder) + ". Only the one file is compiled, with the course's own headers");
     submission.problem = why_not(submission.source);

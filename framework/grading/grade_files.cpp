@@ -65,7 +65,7 @@ Json media_json(const SceneMedia& media) {
 }
 
 // JSON has no infinities: they became null.
-double number_of(const Json& json) { return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>(); }
+double number_or_infinity(const Json& json) { return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>(); }
 
 SceneMedia media_of(const Json& json) {
   SceneMedia media;
@@ -78,7 +78,7 @@ SceneMedia media_of(const Json& json) {
   media.attempted = json.at("attempted");
   media.page = json.value("page", std::string());
   for (const Json& c : json.at("checks"))
-    media.checks.push_back({c.at("kind"), c.at("subject"), number_of(c.at("value")), number_of(c.at("threshold")), c.at("unit"), c.at("passed"), c.at("why"),
+    media.checks.push_back({c.at("kind"), c.at("subject"), number_or_infinity(c.at("value")), number_or_infinity(c.at("threshold")), c.at("unit"), c.at("passed"), c.at("why"),
                             c.at("at_least"), c.at("detail")});
   return media;
 }

@@ -28,7 +28,7 @@ constexpr std::array kSignals = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 constexpr const char* kLoading = "its global and static variables";
 
 /// What one thread is in. Written by it, read by the watch and by a signal's handler.
-struct Place {
+struct CallPlace {
   std::atomic<const char*> function{nullptr};   // the innermost guarded one; null: in none
   std::atomic<const char*> file{nullptr};       // that it stands in
   std::atomic<unsigned long> outermost{0};      // counts calls that are in no other
@@ -37,9 +37,9 @@ struct Place {
 };
 
 constexpr std::size_t kThreads = 256;   // more run unguarded
-Place places[kThreads];
+CallPlace places[kThreads];
 std::atomic<std::size_t> threads{0};
-thread_local Place* here = nullptr;
+thread_local CallPlace* here = nullptr;
 char signal_words[kSignals.size()][256];   // made before they are needed: a handler may not ask for memory
 
 void say(const char* text) { [[maybe_unused]] const ssize_t n = ::write(STDERR_FILENO, text, std::strlen(text)); }
@@ -70,7 +70,7 @@ void on_signal(int signal) {
   for (;;) {
     std::this_thread::sleep_for(kLook);
     for (std::size_t i = 0; i < std::min(threads.load(), kThreads); ++i) {
-      Place& place = places[i];
+      CallPlace& place = places[i];
       const char* function = place.function.load();
       const unsigned long call = place.outermost.load();
       if (function == nullptr || call != place.seen) place.looks = 0;

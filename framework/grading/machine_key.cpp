@@ -20,16 +20,16 @@ namespace fs = std::filesystem;
 constexpr std::size_t kKeyBytes = 32;   // as many as SHA-256 gives: more adds nothing (RFC 2104, section 3)
 
 // What stands in the file, and what is wrong with it.
-struct Found {
+struct FoundKey {
   std::string bytes;     // empty: no key that can be used
   std::string problem;   // empty where there is no file
 };
 
-Found read_key(const fs::path& file) {
+FoundKey read_key(const fs::path& file) {
   const int fd = ::open(file.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
   if (fd < 0) return {"", errno == ENOENT ? "" : errno == ELOOP ? "is a symbolic link" : std::string("cannot be read (") + std::strerror(errno) + ")"};
   struct stat about {};
-  Found found;
+  FoundKey found;
   if (::fstat(fd, &about) != 0 || !S_ISREG(about.st_mode)) found.problem = "is no file";
   else if (about.st_uid != ::geteuid()) found.problem = "belongs to another user";
   else if ((about.st_mode & 077) != 0) found.problem = "can be read or written by others";
@@ -69,7 +69,7 @@ fs::path machine_key_file() {
 MachineKey machine_key() {
   MachineKey key;
   key.file = machine_key_file();
-  Found found = key.file.empty() ? Found{} : read_key(key.file);
+  FoundKey found = key.file.empty() ? FoundKey{} : read_key(key.file);
   if (!found.bytes.empty()) return key.bytes = found.bytes, key;
   // What is no key of ours may be somebody's file: it is never touched.
   if (!found.problem.empty())

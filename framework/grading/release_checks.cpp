@@ -1,4 +1,5 @@
 #include "framework/grading/release_checks.h"
+#include "framework/core/files.h"
 
 #include <algorithm>
 #include <array>
@@ -23,11 +24,6 @@ constexpr std::size_t kSolutionTokens = 50, kTestTokens = 200;
 // Three lines of code in a row are somebody's work; fewer are the idiom of a language, shorter than a line of text anybody's.
 constexpr std::size_t kLinesInARow = 3, kLeastCharacters = 80;
 constexpr std::size_t kMostBytes = 4u << 20;   // of a file that is text
-
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-}
 
 bool is_text(const std::string& bytes) { return bytes.size() < kMostBytes && bytes.find('\0') == std::string::npos; }
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }

@@ -26,14 +26,13 @@ using modules::ModuleKind;
 // Each decision of a submission crosses to the sandbox and back, so that scenes are small.
 constexpr int kSizes[] = {6, 12, 24};
 constexpr double kSizedDuration = 0.5;        // s
-constexpr std::size_t kReferenceStyles = 8;   // report/plot.h: the second eight curves
 
 double percent(double part) { return 100.0 * part; }
 
 /// The reference comes last, in the submission's colours with hollow marks.
 void place(const SchedulerCurve& whose, report::Curve curve, report::Plot& plot) {
   if (curve.x.empty()) curve.name.clear();   // its place stays, so that colours mean the same in both
-  if (whose.is_reference && plot.curves.size() < kReferenceStyles) plot.curves.resize(kReferenceStyles);
+  if (whose.is_reference && plot.curves.size() < report::kReferenceStyles) plot.curves.resize(report::kReferenceStyles);
   plot.curves.push_back(std::move(curve));
 }
 

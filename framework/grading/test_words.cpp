@@ -6,6 +6,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/nearest_word.h"
+#include "framework/core/text.h"
 
 namespace tumble::grading {
 namespace {
@@ -16,19 +17,14 @@ bool matches(const char* pattern, const char* text) {
   return *text != '\0' && (*pattern == '?' || *pattern == *text) && matches(pattern + 1, text + 1);
 }
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 // What a person meant who wrote this pattern: suite or name, whichever is nearer, without the stars.
 std::size_t distance_of(const std::string& test, std::string pattern) {
   std::erase_if(pattern, [](char c) { return c == '*' || c == '?'; });
   while (pattern.ends_with('.')) pattern.pop_back();
   const std::size_t dot = test.find('.');
-  const std::string wanted = lower(pattern);
-  if (!wanted.empty() && lower(test).find(wanted) != std::string::npos) return 0;
-  return std::min({edit_distance(lower(test), wanted), edit_distance(lower(test.substr(0, dot)), wanted), edit_distance(lower(test.substr(dot + 1)), wanted)});
+  const std::string wanted = lowercase(pattern);
+  if (!wanted.empty() && lowercase(test).find(wanted) != std::string::npos) return 0;
+  return std::min({edit_distance(lowercase(test), wanted), edit_distance(lowercase(test.substr(0, dot)), wanted), edit_distance(lowercase(test.substr(dot + 1)), wanted)});
 }
 
 }  // namespace

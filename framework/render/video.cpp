@@ -13,7 +13,7 @@
 namespace tumble::render {
 namespace {
 
-constexpr int kSeam = 2;   // between views side by side [pixels]
+constexpr int kViewSeam = 2;   // between views side by side [pixels]
 
 // What has been painted of one of the views.
 struct Part {
@@ -44,7 +44,7 @@ void write_side_by_side_video(const std::filesystem::path& mp4, const scene::Sce
     end = std::max(end, painters.back()->end_s());
   }
   const int count = static_cast<int>(runs.size());
-  Image whole(count * options.width + (count - 1) * kSeam, options.height);
+  Image whole(count * options.width + (count - 1) * kViewSeam, options.height);
   make_whole(mp4, [&](const std::filesystem::path& draft) {
     VideoWriter video(draft, whole.width, whole.height, options.video_rate_hz);
     std::vector<std::optional<std::size_t>> shown(painters.size());   // frame
@@ -58,7 +58,7 @@ void write_side_by_side_video(const std::filesystem::path& mp4, const scene::Sce
       }
       if (before.valid()) before.get();
       before = std::async(std::launch::async, [&, fresh = std::move(fresh)]() mutable {
-        for (Part& part : fresh) paste(painters[part.view]->with_words(std::move(part.painted)), static_cast<int>(part.view) * (options.width + kSeam), 0, whole);
+        for (Part& part : fresh) paste(painters[part.view]->with_words(std::move(part.painted)), static_cast<int>(part.view) * (options.width + kViewSeam), 0, whole);
         video.add(whole);
       });
     }

@@ -12,7 +12,7 @@
 namespace tumble::report {
 namespace {
 
-constexpr std::size_t kMostPoints = 240;   // of a curve: a plot that stands still is 500 pixels wide
+constexpr std::size_t kMostStillPoints = 240;   // of a curve: a plot that stands still is 500 pixels wide
 constexpr std::size_t kMostEvents = 40;
 
 struct Wanted {
@@ -22,7 +22,7 @@ constexpr Wanted kWanted[] = {{"energy", "Energy", "energy"}, {"drift", "Change 
 
 Curve curve_of(const Series& series, const std::vector<double>& times_s, const std::string& name) {
   Curve curve{name, {}, {}};
-  const std::size_t stride = std::max<std::size_t>(1, times_s.size() / kMostPoints);
+  const std::size_t stride = std::max<std::size_t>(1, times_s.size() / kMostStillPoints);
   for (std::size_t i = 0; i < times_s.size(); i += stride) {
     curve.x.push_back(times_s[i]);
     curve.y.push_back(series.values[i]);

@@ -14,6 +14,9 @@
 
 namespace tumble::report {
 
+/// From this curve on, styles are those of the first eight again, dashed, thinner and with hollow marks: of a reference beside what is compared with it.
+inline constexpr std::size_t kReferenceStyles = 8;
+
 enum class Scale { kLinear, kLog };
 
 struct Axis {

@@ -20,7 +20,7 @@ constexpr double kGravity = 9.81;                    // m/s^2
 constexpr double kFieldOfView = 36.0;                // degrees, vertical
 constexpr double kMargin = 1.25;                     // of the model's radius: what the picture shows
 constexpr double kSmallest = 5e-3, kLargest = 50.0;  // m: beyond these a model's unit is probably not the metre
-constexpr double kSpin = 1.2;                        // rad/s: a turn in five seconds
+constexpr double kModelSpin = 1.2;                        // rad/s: a turn in five seconds
 constexpr double kFreeDuration = 8.0, kFreeStep = 1.0 / 240.0;   // s: 0.005 rad a step
 
 /// An object of the file, about its centre of mass.
@@ -85,7 +85,7 @@ void add_bodies(const std::vector<Object>& objects, const std::filesystem::path&
 
 /// Nothing acts: momentum, angular momentum and energy stay.
 void set_free(const std::vector<Object>& objects, const ModelSceneOptions& options, Scene& scene) {
-  const Vector3d spin = options.turns ? Vector3d(kSpin * Vector3d(0.25, 0.35, 0.9).normalized()) : Vector3d(Vector3d::Zero());
+  const Vector3d spin = options.turns ? Vector3d(kModelSpin * Vector3d(0.25, 0.35, 0.9).normalized()) : Vector3d(Vector3d::Zero());
   double angular = 0.0, mass = 0.0;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     scene.bodies[i].omega_world_rad_s = spin;

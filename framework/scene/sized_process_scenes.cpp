@@ -253,10 +253,10 @@ constexpr double kRockApart = 0.7;       // of rocks at the start [m]
 constexpr double kFirstRow = 5.6;        // uphill of the valley [m]
 constexpr double kSteep = 0.7;           // tangent of the slope
 constexpr double kRelief = 1.45;         // how high the ground reaches above the even slope, with its step, and some room [m]
-constexpr double kMargin = 2.2;          // of ground beside the outermost rocks, both sides together [m]
+constexpr double kGround = 2.2;          // of ground beside the outermost rocks, both sides together [m]
 
 void add_mountain(double width, Scene& scene) {
-  const int pieces = std::max(1, static_cast<int>(std::ceil((width + kMargin) / kMountainWide)));
+  const int pieces = std::max(1, static_cast<int>(std::ceil((width + kGround) / kMountainWide)));
   for (int k = 0; k < pieces; ++k) {
     BodySpec piece;
     piece.name = fmt::format("mountain_{}", k + 1);

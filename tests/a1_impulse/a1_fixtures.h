@@ -16,6 +16,9 @@
 
 namespace tumble::testing {
 
+inline constexpr double kRoundoff = 20 * kEps;   // times the largest number involved: at most 40 roundings of eps / 2 each
+inline const Vector3d kUp = Vector3d::UnitZ();
+
 inline const a1::Module& student() { return modules::under_test<a1::Module>(); }
 
 /// Handout anchor of equation (A1.n).

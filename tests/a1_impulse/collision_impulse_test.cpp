@@ -6,9 +6,8 @@ namespace {
 
 // At most 30 roundings, each of relative size eps / 2, none amplified (no cancellation in these scenes): every correct order
 // of evaluation passes. The nearest slip is off by a tenth or more.
-constexpr double kRoundoff = 15 * kEps;
+constexpr double kImpulseRoundoff = 15 * kEps;
 
-const Vector3d kUp = Vector3d::UnitZ();
 const std::string kForgotOnePlusE = "the (1 + e) is missing";
 const std::string kOnlyE = "e where (1 + e) belongs";
 const std::string kSquaredE = "1 + e^2 where 1 + e belongs: e is a ratio of speeds, e^2 one of energies";
@@ -22,7 +21,7 @@ TEST(ImpulseWithoutRotation, HeadOnHitSharesTheBlowByInverseMasses) {
   b.velocity_world = {0, 0, 2};
   const double found = student().collision_impulse_without_rotation({{0, 0, 0.5}, kUp}, a, b, 0.5);
   // Exact: 1.5 * 3 / (1/2 + 1/6) = 6.75.
-  expect_near(found, 6.75, kRoundoff * 6.75, "N s",
+  expect_near(found, 6.75, kImpulseRoundoff * 6.75, "N s",
               {.scene = "A, 2 kg at -1 m/s, meets B, 6 kg at +2 m/s, along n = +z; e = 0.5",
                .slip = likely(found, {{4.5, kForgotOnePlusE}, {2.25, kOnlyE}, {-6.75, kWrongSign}, {5.625, kSquaredE}, {0.0, kCalledSeparating},
                                       {36.0, "1/(m_a + m_b) where 1/m_a + 1/m_b belongs"}},
@@ -34,7 +33,7 @@ TEST(ImpulseWithoutRotation, WallIsABodyOfInfiniteMass) {
   Body a = ball(2.0, 0.5, {0, 0, 0.5});
   a.velocity_world = {0, 0, -3};
   const double found = student().collision_impulse_without_rotation({{0, 0, 0}, kUp}, a, wall({0, 0, 0}), 0.5);
-  expect_near(found, 9.0, kRoundoff * 9.0, "N s",
+  expect_near(found, 9.0, kImpulseRoundoff * 9.0, "N s",
               {.scene = "a 2 kg ball at 3 m/s hits an immovable wall, e = 0.5",
                .slip = likely(found, {{6.0, kForgotOnePlusE}, {3.0, kOnlyE}, {7.5, kSquaredE}, {-9.0, kWrongSign}, {0.0, kCalledSeparating}},
                               "infinite mass: its inverse mass is 0"),
@@ -46,7 +45,7 @@ TEST(ImpulseWithoutRotation, TakesNoNoticeOfSpin) {
   a.velocity_world = {0, 0, -4};
   a.omega_world = {0, 3, 0};
   const double found = student().collision_impulse_without_rotation({{6, 3, 0}, kUp}, a, wall({0, 0, 0}), 0.5);
-  expect_near(found, 12.0, kRoundoff * 12.0, "N s",
+  expect_near(found, 12.0, kImpulseRoundoff * 12.0, "N s",
               {.scene = "a spinning 2 kg block at 4 m/s hits a wall off centre; equation (A1.8) knows points only; e = 0.5",
                .slip = likely(found, {{8.0, kForgotOnePlusE}, {4.0, kOnlyE}, {10.0, kSquaredE}, {-12.0, kWrongSign}, {0.0, kCalledSeparating}},
                               "rotation taken into account: v_a - v_b is of the centres of mass here, and no inertia tensor occurs"),
@@ -70,7 +69,7 @@ TEST(ImpulseWithoutRotation, DrivenWallsMoveToo) {
     driven.velocity_world = {0, 0, 2};
     const Contact contact{{0, 0, 0}, wall_is_a ? Vector3d(-kUp) : kUp};
     const double found = student().collision_impulse_without_rotation(contact, wall_is_a ? driven : struck, wall_is_a ? struck : driven, 0.5);
-    expect_near(found, 6.0, kRoundoff * 6.0, "N s",
+    expect_near(found, 6.0, kImpulseRoundoff * 6.0, "N s",
                 {.scene = std::string("a floor that rises at 2 m/s meets a resting 2 kg ball, e = 0.5; the floor is ") + (wall_is_a ? "A" : "B"),
                  .slip = likely(found, {{0.0, "an immovable body taken to be at rest: infinite mass says nothing about its velocity"}, {4.0, kForgotOnePlusE}, {2.0, kOnlyE}, {5.0, kSquaredE}, {-6.0, kWrongSign}},
                                 "inverse masses or relative velocity"),
@@ -82,11 +81,11 @@ TEST(ImpulseWithoutRotation, IsRightInEveryUnit) {
   Body a = ball(2.0, 0.5, {0, 0, 1}), b = ball(6.0, 0.5, {0, 0, 0});
   a.velocity_world = {0, 0, -1};
   b.velocity_world = {0, 0, 2};
-  const bool plain = std::abs(student().collision_impulse_without_rotation({{0, 0, 0.5}, kUp}, a, b, 0.5) - 6.75) <= kRoundoff * 6.75;
+  const bool plain = std::abs(student().collision_impulse_without_rotation({{0, 0, 0.5}, kUp}, a, b, 0.5) - 6.75) <= kImpulseRoundoff * 6.75;
   for (const Units& units : changes_of_unit()) {
     const Encounter e = scaled({{{0, 0, 0.5}, kUp}, a, b}, units.length, units.mass, units.time);
     const double size = units.mass * units.length / units.time, found = student().collision_impulse_without_rotation(e.contact, e.a, e.b, 0.5);
-    expect_near(found, 6.75 * size, kRoundoff * 6.75 * size, "N s",
+    expect_near(found, 6.75 * size, kImpulseRoundoff * 6.75 * size, "N s",
                 {.scene = "A, 2 kg at -1 m/s, meets B, 6 kg at +2 m/s, along n = +z; e = 0.5; " + show(units),
                  .slip = slip_of_units(plain, "an absolute threshold: bodies approach where u_n < 0, and both are of infinite mass where 1/m_a + 1/m_b is exactly 0"),
                  .handout = equation("8")});
@@ -98,7 +97,7 @@ TEST(CollisionImpulse, CentralHitReversesVelocityScaledByRestitution) {
   a.velocity_world = {0, 0, -3};
   const double found = student().collision_impulse({{0, 0, 0}, kUp}, a, wall({0, 0, -1}), 0.5);
   // Exact: j = (1 + e) m |v| = 1.5 * 2 * 3 = 9 N s. The arm is along n, so rotation adds nothing.
-  expect_near(found, 9.0, kRoundoff * 9.0, "N s",
+  expect_near(found, 9.0, kImpulseRoundoff * 9.0, "N s",
               {.scene = "a 2 kg ball at 3 m/s hits a wall, e = 0.5",
                .slip = likely(found, {{6.0, kForgotOnePlusE}, {3.0, kOnlyE}, {7.5, kSquaredE}, {-9.0, kWrongSign}, {0.0, kCalledSeparating}},
                               "inverse mass or relative velocity"),
@@ -110,7 +109,7 @@ TEST(CollisionImpulse, OffCentreHitTurnsPartOfTheBlow) {
   a.velocity_world = {0, 0, -4};
   const double found = student().collision_impulse({{6, 3, 0}, kUp}, a, wall({0, 0, 0}), 0.5);
   // r = (1, 0, -1), r x n = (0, -1, 0), so the denominator is 1/2 + 1/2 and j = 1.5 * 4 / 1.
-  expect_near(found, 6.0, kRoundoff * 6.0, "N s",
+  expect_near(found, 6.0, kImpulseRoundoff * 6.0, "N s",
               {.scene = "a 2 kg block, moments 1, 2, 4 kg m^2, falls at 4 m/s and lands 1 m off centre on a floor, e = 0.5",
                .slip = likely(found, {{12.0, "the rotation term of the denominator is missing"},
                                       {4.0, kForgotOnePlusE},
@@ -130,7 +129,7 @@ TEST(CollisionImpulse, TurnedBlockNeedsItsInertiaInTheWorldFrame) {
   a.velocity_world = {0, 0, -4};
   const double found = student().collision_impulse({{6, 3, 0}, kUp}, a, wall({0, 0, 0}), 0.5);
   // About the world's y the block now has the moment of its own x, 1 kg m^2: denominator 1/2 + 1.
-  expect_near(found, 4.0, kRoundoff * 4.0, "N s",
+  expect_near(found, 4.0, kImpulseRoundoff * 4.0, "N s",
               {.scene = "the same fall, the block turned by 120 degrees about (1, 1, 1): moments 4, 1, 2 about world x, y, z",
                .slip = likely(found, {{6.0, "body inertia where world inertia belongs: I^-1 = R I_body^-1 R^T"},
                                       {8.0, "R and R^T swapped: I^-1 = R I_body^-1 R^T"},
@@ -148,7 +147,7 @@ TEST(CollisionImpulse, SpinAloneCanCauseACollision) {
   a.omega_world = {0, 3, 0};
   const double found = student().collision_impulse({{6, 3, 0}, kUp}, a, wall({0, 0, 0}), 0.5);
   // w x r = (-3, 0, -3): u_n = -3, denominator 1.
-  expect_near(found, 4.5, kRoundoff * 4.5, "N s",
+  expect_near(found, 4.5, kImpulseRoundoff * 4.5, "N s",
               {.scene = "a block that hovers but spins at 3 rad/s touches the floor with a corner 1 m off centre, e = 0.5",
                .slip = likely(found, {{0.0, "relative velocity without rotation, or r x w for w x r: the touching point moves at v + w x r"},
                                       {3.0, kForgotOnePlusE},
@@ -164,7 +163,7 @@ TEST(CollisionImpulse, BothBodiesYield) {
   const Body b = ball(2.0, 1.0, {6, 3, -1});
   a.velocity_world = {0, 0, -4};
   const double found = student().collision_impulse({{6, 3, 0}, kUp}, a, b, 0.5);
-  expect_near(found, 4.0, kRoundoff * 4.0, "N s",
+  expect_near(found, 4.0, kImpulseRoundoff * 4.0, "N s",
               {.scene = "the block falls at 4 m/s, 1 m off its centre, on top of a resting 2 kg ball, e = 0.5",
                .slip = likely(found, {{6.0, "the other body's share of the denominator is missing"},
                                       {-4.0, kWrongSign},
@@ -176,8 +175,8 @@ TEST(CollisionImpulse, BothBodiesYield) {
                .handout = equation("9")});
 }
 
-// Rounding: u_n is a sum of twelve products of up to 3 m/s that is -5 m/s, the denominator one of nine times nine; kRoundoff * 10 times j.
-constexpr double kSkewRoundoff = 10 * kRoundoff;
+// Rounding: u_n is a sum of twelve products of up to 3 m/s that is -5 m/s, the denominator one of nine times nine; kImpulseRoundoff * 10 times j.
+constexpr double kSkewRoundoff = 10 * kImpulseRoundoff;
 
 TEST(CollisionImpulse, TwoTurnedBodiesMeetOnASkewNormal) {
   const Encounter e = skew_encounter();

@@ -4,8 +4,6 @@
 namespace tumble::testing {
 namespace {
 
-constexpr double kRoundoff = 20 * kEps;  // times the largest number involved: at most 40 roundings of eps / 2 each
-const Vector3d kUp = Vector3d::UnitZ();
 
 TEST(RelativeNormalVelocity, IsNegativeWhenTheyApproach) {
   Body a = ball(2.0, 0.5, {0, 0, 1}), b = ball(6.0, 0.5, {0, 0, 0});

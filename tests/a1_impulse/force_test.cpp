@@ -4,7 +4,6 @@
 namespace tumble::testing {
 namespace {
 
-constexpr double kRoundoff = 20 * kEps;  // times the largest number involved: at most 40 roundings of eps / 2 each
 
 TEST(PointForce, TorqueIsArmCrossForce) {
   const Wrench found = student().wrench_of_point_force({0, 0, 5}, {1, 2, 3}, {0, 0, 0});

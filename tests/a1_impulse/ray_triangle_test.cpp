@@ -5,7 +5,7 @@ namespace tumble::testing {
 namespace {
 
 // Inputs here are small dyadic numbers, so that products and sums are exact; only a division or two rounds.
-constexpr double kRoundoff = 8 * kEps;
+constexpr double kRayRoundoff = 8 * kEps;
 const std::string kHandout = equation("1");
 
 const Triangle kRightAngled{{0, 0, 0}, {4, 0, 0}, {0, 2, 0}};  // in the plane z = 0, seen counter-clockwise from above
@@ -19,9 +19,9 @@ void expect_hit(const std::optional<RayHit>& found, double t, const Vector3d& we
   }
   const std::string words = story.slip;
   story.slip = likely(found->t, t_slips, words);
-  expect_near(found->t, t, kRoundoff * std::abs(t), "lengths of d", story);
+  expect_near(found->t, t, kRayRoundoff * std::abs(t), "lengths of d", story);
   story.slip = likely(found->barycentric, weight_slips, words);
-  expect_near(found->barycentric, weights, kRoundoff, "(weights of a, b, c)", story);
+  expect_near(found->barycentric, weights, kRayRoundoff, "(weights of a, b, c)", story);
 }
 
 void expect_miss(const Ray& ray, const Triangle& triangle, const Story& story) {

@@ -4,8 +4,6 @@
 namespace tumble::testing {
 namespace {
 
-constexpr double kRoundoff = 20 * kEps;  // times the largest number involved: at most 40 roundings of eps / 2 each
-const Vector3d kUp = Vector3d::UnitZ();
 
 TEST(ApplyImpulse, ThroughTheCentreChangesTheVelocity) {
   Body body = block({5, 3, 1});

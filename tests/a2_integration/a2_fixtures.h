@@ -17,6 +17,8 @@
 
 namespace tumble::a2_testing {
 
+inline constexpr double kRoundoff = 20 * testing::kEps;   // relative: at most 20 roundings in any correct order of evaluation
+
 using namespace tumble::testing;
 
 /// The module under test, whichever of its three bodies is behind it.

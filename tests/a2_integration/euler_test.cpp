@@ -4,7 +4,7 @@
 namespace tumble::a2_testing {
 namespace {
 
-const std::string kRead = equation(1);
+const std::string kReadEuler = equation(1);
 
 TEST(EulerStep, GoesAlongTheTangent) {
   Diary diary;
@@ -17,7 +17,7 @@ TEST(EulerStep, GoesAlongTheTangent) {
                                                      {vector({4, -2}), "the slope is not multiplied by h"},
                                                      {vector({0.25, 3}), "the sign of h f"}},
                               "y + h f(t, y)"),
-               .handout = kRead});
+               .handout = kReadEuler});
 }
 
 TEST(EulerStep, AsksForOneSlopeAtTheStart) {
@@ -26,7 +26,7 @@ TEST(EulerStep, AsksForOneSlopeAtTheStart) {
   const Story story{.scene = "one step from t = 5 s, y = 1, h = 0.25 s",
                     .slip = diary.calls() == 1 ? "the slope is taken elsewhere than at the start of the step"
                                                : "the derivative is called more often than needed: keep its value in a variable",
-                    .handout = kRead};
+                    .handout = kReadEuler};
   expect_near(static_cast<double>(diary.calls()), 1.0, 0.0, "call of the derivative", story);
   if (diary.calls() != 1) return;
   expect_near(diary.times[0], 5.0, 0.0, "s", story);

@@ -4,7 +4,6 @@
 namespace tumble::a2_testing {
 namespace {
 
-constexpr double kRoundoff = 20 * kEps;  // relative; the numbers are small and exact, at most 20 roundings
 
 TEST(InertiaInWorld, TurnsWithTheBody) {
   const Matrix3d found = a2_module().inertia_in_world(Vector3d(1, 2, 4).asDiagonal(), third_turn());

@@ -4,8 +4,7 @@
 namespace tumble::a2_testing {
 namespace {
 
-const std::string kRead = equation(2);
-constexpr double kRoundoff = 20 * kEps;  // relative: at most 20 roundings in any correct order of evaluation
+const std::string kReadRk4 = equation(2);
 
 // Slopes chosen so that every known slip gives another answer. With h = 0.5 every stage is exact in binary.
 std::vector<VectorXd> slopes() { return {vector({1}), vector({2}), vector({5}), vector({9})}; }
@@ -20,7 +19,7 @@ TEST(Rk4Step, AsksForFourSlopes) {
                        : diary.calls() == 1 ? "this is Euler's method: one slope"
                        : diary.calls() == 2 ? "this is a midpoint or Heun method: two slopes"
                                             : "slopes are missing: k1, k2, k3, k4",
-               .handout = kRead});
+               .handout = kReadRk4});
 }
 
 TEST(Rk4Step, BuildsEachStageOnTheSlopeBefore) {
@@ -42,7 +41,7 @@ TEST(Rk4Step, BuildsEachStageOnTheSlopeBefore) {
               {.scene = kScript,
                .slip = diary.calls() < 4 ? "slopes are missing: this is a simpler method"
                                          : likely(found, slips, "the stages y, y + (h/2) k1, y + (h/2) k2, y + h k3"),
-               .handout = kRead});
+               .handout = kReadRk4});
 }
 
 TEST(Rk4Step, MovesTimeWithTheStages) {
@@ -58,7 +57,7 @@ TEST(Rk4Step, MovesTimeWithTheStages) {
                                               {vector({3, 3.25, 3.5, 3.5}), "k3 is taken at t + h: it belongs at t + h/2"},
                                               {vector({3, 3.5, 3.5, 3.5}), "whole steps where half steps belong: k2 and k3 are at t + h/2"}},
                               "the stages are at t, t + h/2, t + h/2, t + h"),
-               .handout = kRead});
+               .handout = kReadRk4});
 }
 
 TEST(Rk4Step, WeighsTheSlopesAsSimpsonDoes) {
@@ -70,7 +69,7 @@ TEST(Rk4Step, WeighsTheSlopesAsSimpsonDoes) {
                .slip = rk4_slip(likely(found,
                                        Slips<VectorXd>{{vector({2}), "the old y is missing"}, {vector({14}), "the slopes are not multiplied by h"}},
                                        "y + (h/6) (k1 + 2 k2 + 2 k3 + k4)")),
-               .handout = kRead});
+               .handout = kReadRk4});
 }
 
 TEST(Rk4Step, IsExactForCubicsInTime) {
@@ -80,7 +79,7 @@ TEST(Rk4Step, IsExactForCubicsInTime) {
   expect_near(found, vector({54}), kRoundoff * 200, "",  // 4 * 27 is the largest number on the way; weighted, 200
               {.scene = "y' = 4 t^3 - 6 t from y(1) = -2, one step of 2 s to y(3) = 54",
                .slip = rk4_slip(likely(found, Slips<VectorXd>{{vector({-6}), "time stands still inside the step"}}, "times of the stages: t, t + h/2, t + h/2, t + h")),
-               .handout = kRead});
+               .handout = kReadRk4});
 }
 
 TEST(Rk4Step, IsOfOrderFour) {

@@ -4,7 +4,6 @@
 namespace tumble::a2_testing {
 namespace {
 
-constexpr double kRoundoff = 20 * kEps;  // of numbers of size 1, at most 20 roundings
 constexpr double kRightAngle = M_PI / 2;
 
 const VectorXd numbers(const Quaterniond& q) { return vector({q.w(), q.x(), q.y(), q.z()}); }

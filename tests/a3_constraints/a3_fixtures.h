@@ -16,6 +16,8 @@
 
 namespace tumble::a3_testing {
 
+inline constexpr double kRoundoff = 20 * testing::kEps;   // relative to the largest term: fewer than 20 roundings
+
 using namespace tumble::testing;
 
 inline constexpr double kGravity = 9.81;  // m/s^2

@@ -4,7 +4,6 @@
 namespace tumble::a3_testing {
 namespace {
 
-constexpr double kRoundoff = 20 * kEps;  // relative: a rotation of a vector and a sum, fewer than 20 roundings
 
 TEST(AnchorPosition, TurnsWithTheBody) {
   Body body = resting_at({10, 20, 30});

@@ -4,7 +4,7 @@
 namespace tumble::a3_testing {
 namespace {
 
-constexpr double kRoundoff = 40 * kEps;  // relative to the largest term: two rotations, cross products, a norm and a division
+constexpr double kRodRoundoff = 40 * kEps;  // relative to the largest term: two rotations, cross products, a norm and a division
 
 // A at (10, 20, 30), turned by a third; its point (1, 2, 4) is at r = (4, 1, 2), hence at (14, 21, 32).
 // B at (10, 21, 32), not turned; its point (1, -4, 0) is at (11, 17, 32). d = (3, 4, 0).
@@ -25,7 +25,7 @@ Vector6d six(const Vector3d& linear, const Vector3d& angular) {
 
 TEST(RodRow, MeasuresHowMuchTooLong) {
   const double found = a3_module().rod_row(body_a(), kPointA, body_b(), kPointB, 2.0).value;
-  expect_near(found, 3.0, kRoundoff * 35, "m",
+  expect_near(found, 3.0, kRodRoundoff * 35, "m",
               {.scene = kScene,
                .slip = likely(found,
                               Slips<double>{{-3, "the sign of C: |d| - length"},
@@ -41,7 +41,7 @@ TEST(RodRow, MeasuresHowMuchTooLong) {
 TEST(RodRow, JacobianPushesTheEndsApart) {
   const ConstraintRow row = a3_module().rod_row(body_a(), kPointA, body_b(), kPointB, 2.0);
   const Vector6d a = six(n, kArmA.cross(n)), b = six(-n, -kPointB.cross(n));
-  expect_near(row.jacobian_a, a, kRoundoff * 10, "(J_a: n, r_a x n)",
+  expect_near(row.jacobian_a, a, kRodRoundoff * 10, "(J_a: n, r_a x n)",
               {.scene = kScene,
                .slip = likely<Vector6d>(row.jacobian_a,
                               Slips<Vector6d>{{-a, "the sign of J_a: n points from B to A, and C grows when A moves along it"},
@@ -53,7 +53,7 @@ TEST(RodRow, JacobianPushesTheEndsApart) {
                                               {b, "J_a and J_b exchanged"}},
                               "(n, r_a x n)"),
                .handout = equation(4)});
-  expect_near(row.jacobian_b, b, kRoundoff * 10, "(J_b: -n, -(r_b x n))",
+  expect_near(row.jacobian_b, b, kRodRoundoff * 10, "(J_b: -n, -(r_b x n))",
               {.scene = kScene,
                .slip = likely<Vector6d>(row.jacobian_b,
                               Slips<Vector6d>{{-b, "the sign of J_b: what pushes A one way pushes B the other"},
@@ -75,8 +75,8 @@ TEST(RodRow, RateIsJacobianTimesVelocity) {
     const Vector3d d = a.com_world + arm_a - b.com_world - arm_b;
     const double rate = d.normalized().dot(a.velocity_world + a.omega_world.cross(arm_a) - b.velocity_world - b.omega_world.cross(arm_b));
     const Story story{.scene = "two random bodies, number " + std::to_string(i), .slip = "C' = n . (p_a' - p_b'), with omega x r in both", .handout = equation(4)};
-    expect_near(row.rate, rate, kRoundoff * 50, "m/s (C')", story);
-    expect_near(row.jacobian_a.dot(velocity_of(a)) + row.jacobian_b.dot(velocity_of(b)), rate, kRoundoff * 50, "m/s (J u)", story);
+    expect_near(row.rate, rate, kRodRoundoff * 50, "m/s (C')", story);
+    expect_near(row.jacobian_a.dot(velocity_of(a)) + row.jacobian_b.dot(velocity_of(b)), rate, kRodRoundoff * 50, "m/s (J u)", story);
   }
 }
 
@@ -94,14 +94,14 @@ TEST(RodRow, DrivenBodiesMoveToo) {
     const Story story{.scene = std::string("a rod between a random body and a driven one of infinite mass that moves and turns; the driven one is ") + (wall_is_a ? "A" : "B"),
                       .slip = likely(row.rate, Slips<double>{{n.dot(wall_is_a ? Vector3d(-of_b) : of_a), "an immovable body taken to be at rest: infinite mass says nothing about its velocity"}}, "C' = n . (p_a' - p_b'), with omega x r in both"),
                       .handout = equation(4)};
-    expect_near(row.rate, rate, kRoundoff * 50, "m/s (C')", story);
+    expect_near(row.rate, rate, kRodRoundoff * 50, "m/s (C')", story);
     const double across = (d_rate - rate * n).squaredNorm() / d.norm();
     Story of_product = story;
     of_product.slip = likely(row.velocity_product, Slips<double>{{across, "the anchors' centripetal accelerations w x (w x r) are missing"},
                                                                  {n.dot(centripetal), "what turning the rod adds is missing: (d'^2 - (n . d')^2) / |d|"},
                                                                  {across - n.dot(centripetal), "the sign of the centripetal accelerations: + n . (w x (w x r)) of A, - of B"}},
                              "J' u = n . (a_centripetal_a - a_centripetal_b) + what turning the rod adds");
-    expect_near(row.velocity_product, velocity_product, kRoundoff * 300, "m/s^2 (J' u)", of_product);
+    expect_near(row.velocity_product, velocity_product, kRodRoundoff * 300, "m/s^2 (J' u)", of_product);
   }
 }
 
@@ -115,10 +115,10 @@ TEST(RodRow, IsRightAtEveryLength) {
     const ConstraintRow row = a3_module().rod_row(a, size * kPointA, b, size * kPointB, size * 2.0);
     const Story story{.scene = kScene + ", all lengths times " + show(size) + "; A moves at (1, -2, 0.5) m/s times the same",
                       .slip = std::abs(plain.value - 3.0) > 1e-9 ? "the same rod in metres is wrong, too: see the tests before this one" : "an absolute threshold: a rod has a direction unless its length is exactly 0", .handout = equation(4)};
-    expect_near(row.value / size, 3.0, kRoundoff * 35, "(C, in that unit)", story);
-    expect_near(Vector3d(row.jacobian_a.head<3>()), n, kRoundoff, "(n)", story);
-    expect_near(Vector3d(row.jacobian_a.tail<3>() / size), Vector3d(kArmA.cross(n)), kRoundoff * 10, "(r_a x n, in that unit)", story);
-    expect_near(row.rate / size, -1.0, kRoundoff * 10, "(C', in that unit)", story);
+    expect_near(row.value / size, 3.0, kRodRoundoff * 35, "(C, in that unit)", story);
+    expect_near(Vector3d(row.jacobian_a.head<3>()), n, kRodRoundoff, "(n)", story);
+    expect_near(Vector3d(row.jacobian_a.tail<3>() / size), Vector3d(kArmA.cross(n)), kRodRoundoff * 10, "(r_a x n, in that unit)", story);
+    expect_near(row.rate / size, -1.0, kRodRoundoff * 10, "(C', in that unit)", story);
   }
 }
 
@@ -131,7 +131,7 @@ TEST(RodRow, AccelerationOfASwingingPoint) {
   for (const bool mass_is_a : {true, false}) {
     const double found = mass_is_a ? a3_module().rod_row(mass, Vector3d::Zero(), wall, Vector3d::Zero(), 0.5).velocity_product
                                    : a3_module().rod_row(wall, Vector3d::Zero(), mass, Vector3d::Zero(), 0.5).velocity_product;
-    expect_near(found, 18.0, kRoundoff * 20, "m/s^2 (J' u)",
+    expect_near(found, 18.0, kRodRoundoff * 20, "m/s^2 (J' u)",
                 {.scene = std::string("a mass flies past a fixed point 0.5 m away at 3 m/s, leaving it at 1 m/s; it is ") + (mass_is_a ? "A" : "B"),
                  .slip = likely(found,
                                 Slips<double>{{0, "the velocity product is missing: (|d'|^2 - (n . d')^2) / |d|, a straight flight leaves the circle"},
@@ -153,7 +153,7 @@ TEST(RodRow, AccelerationOfATurningBody) {
   for (const bool wheel_is_a : {true, false}) {
     const ConstraintRow row = wheel_is_a ? a3_module().rod_row(wheel, {0.5, 0, 0}, other, Vector3d::Zero(), 2.0) : a3_module().rod_row(other, Vector3d::Zero(), wheel, {0.5, 0, 0}, 2.0);
     const double found = row.velocity_product;
-    expect_near(found, 2.0, kRoundoff * 10, "m/s^2 (J' u)",
+    expect_near(found, 2.0, kRodRoundoff * 10, "m/s^2 (J' u)",
                 {.scene = std::string("a wheel turns at 2 rad/s, a rod from its rim leads away from the hub; the wheel is ") + (wheel_is_a ? "A" : "B"),
                  .slip = likely(found,
                                 Slips<double>{{0, "the centripetal term is missing: n . (w x (w x r)), the points of a turning body accelerate"},
@@ -170,7 +170,7 @@ TEST(RodRow, HasNoDirectionWhereThePointsCoincide) {
   b.omega_world = {1, 2, 3};
   const ConstraintRow row = a3_module().rod_row(a, {0, 0, 1}, b, {0, 0, -1}, 2.0);
   const Story story{.scene = "a rod of 2 m between two points at the same place", .slip = "there is no direction, hence J = 0, C' = 0, J' u = 0", .handout = equation(4), .no_number = "a division by the length 0: there is no direction, hence J = 0, C' = 0, J' u = 0"};
-  expect_near(row.value, -2.0, kRoundoff * 10, "m (C)", story);
+  expect_near(row.value, -2.0, kRodRoundoff * 10, "m (C)", story);
   expect_near(row.jacobian_a, Vector6d::Zero(), 0.0, "(J_a)", story);
   expect_near(row.jacobian_b, Vector6d::Zero(), 0.0, "(J_b)", story);
   expect_near(row.rate, 0.0, 0.0, "m/s (C')", story);
@@ -181,7 +181,7 @@ TEST(Baumgarte, PullsBack) {
   struct Case { double value, rate; std::string scene; };
   for (const Case& c : {Case{0.5, 0, "C = 0.5 m"}, Case{0, 3, "C' = 3 m/s"}, Case{0.5, -3, "C = 0.5 m, C' = -3 m/s"}}) {
     const double found = a3_module().baumgarte_acceleration(c.value, c.rate, 0.1), expected = -20 * c.rate - 100 * c.value;
-    expect_near(found, expected, kRoundoff * 60, "m/s^2",
+    expect_near(found, expected, kRodRoundoff * 60, "m/s^2",
                 {.scene = c.scene + ", T = 0.1 s",
                  .slip = likely(found,
                                 Slips<double>{{-expected, "the sign: the acceleration must lead back"},
@@ -202,7 +202,7 @@ TEST(Baumgarte, LeadsBackWithoutSwingingOver) {
   for (const double t : {0.0, 0.1, 0.25, 1.0}) {
     const double decay = std::exp(-t / T), value = (C0 + slope * t) * decay, rate = (slope - (C0 + slope * t) / T) * decay;
     const double acceleration = (-2 * slope / T + (C0 + slope * t) / (T * T)) * decay;
-    expect_near(a3_module().baumgarte_acceleration(value, rate, T), acceleration, kRoundoff * 20, "m/s^2",
+    expect_near(a3_module().baumgarte_acceleration(value, rate, T), acceleration, kRodRoundoff * 20, "m/s^2",
                 {.scene = "a critically damped return with T = 0.25 s, at t = " + show(t) + " s, in closed form", .slip = "the 2, the square of T, or a sign", .handout = equation(6)});
   }
 }
@@ -252,17 +252,17 @@ TEST(Constraints, KeepNothingBetweenCalls) {
   const AnchorState origin{Vector3d::Zero(), Vector3d::Zero()};
   const auto pull = [&](const Vector3d& at) { return a3_module().spring_force(spring, origin, {at, Vector3d::Zero()}); };
   const Vector3d f1 = pull({3, 4, 0}), f2 = pull({0, -6, 8});
-  expect_kept_nothing(f1, Vector3d(18, 24, 0), f2, Vector3d(0, -48, 64), kRoundoff * 100, "N", story("spring_force", 3));
+  expect_kept_nothing(f1, Vector3d(18, 24, 0), f2, Vector3d(0, -48, 64), kRodRoundoff * 100, "N", story("spring_force", 3));
 
   const ConstraintRow first = a3_module().rod_row(body_a(), kPointA, body_b(), kPointB, 2.0), second = a3_module().rod_row(body_b(), kPointB, body_a(), kPointA, 2.0);
-  expect_kept_nothing(first.jacobian_a, six(n, kArmA.cross(n)), second.jacobian_a, six(-n, -kPointB.cross(n)), kRoundoff * 10, "(J_a)", story("rod_row", 4));
+  expect_kept_nothing(first.jacobian_a, six(n, kArmA.cross(n)), second.jacobian_a, six(-n, -kPointB.cross(n)), kRodRoundoff * 10, "(J_a)", story("rod_row", 4));
 
   const VectorXd l1 = hanging_chain({2, 2}).multipliers(), l2 = hanging_chain({8, 8}).multipliers();
   expect_kept_nothing(l1, vector({-4 * kGravity, -2 * kGravity}), l2, vector({-16 * kGravity, -8 * kGravity}), 1e-12 * 16 * kGravity, "N", story("constraint_multipliers", 7));
 
   const auto push = [](double A, double b) { return VectorXd(a3_module().contact_forces(MatrixXd::Constant(1, 1, A), vector({b}))); };
   const VectorXd c1 = push(0.5, -1), c2 = push(0.25, -3);
-  expect_kept_nothing(c1, vector({2}), c2, vector({12}), kRoundoff * 12, "N", story("contact_forces", 9));
+  expect_kept_nothing(c1, vector({2}), c2, vector({12}), kRodRoundoff * 12, "N", story("contact_forces", 9));
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 namespace tumble::a3_testing {
 namespace {
 
-constexpr double kRoundoff = 20 * kEps;  // relative to the largest term: a norm, a division, a dot product and four products
 
 AnchorState at_rest(const Vector3d& point_world) { return {point_world, Vector3d::Zero()}; }
 

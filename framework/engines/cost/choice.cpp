@@ -10,15 +10,15 @@
 namespace tumble::engines {
 namespace {
 
-constexpr int kMostHalvings = 14;        // 1 to 16384 steps a frame
+constexpr int kMostChoiceHalvings = 14;        // 1 to 16384 steps a frame
 constexpr int kMostTolerances = 13;      // 0.1 to 1e-13
 constexpr double kAim = 0.7;             // of the error asked for: where a power law is expected to lead, its next term still fits in
 constexpr int kMostTrims = 3;            // trials between a rung that fails and the next one, which passes
 constexpr double kWorthTrimming = 0.9;   // of the price: what saves less is not looked for
-constexpr double kHopeless = 3.0;        // prices: above this of the best one a way that does not yet fulfil the wish is given up
-constexpr int kMostWorse = 2;            // trials in a row that are no better
-constexpr double kAnswer = 0.1;           // of the scale: coarser runs do not show where they lead
-constexpr double kAlike = 1.05;          // errors that differ by less are one: the cheaper run is better
+constexpr double kHopelessPrice = 3.0;        // prices: above this of the best one a way that does not yet fulfil the wish is given up
+constexpr int kMostWorseTrials = 2;            // trials in a row that are no better
+constexpr double kFollowed = 0.1;           // of the scale: coarser runs do not show where they lead
+constexpr double kAlikeErrors = 1.05;          // errors that differ by less are one: the cheaper run is better
 
 bool is_right(const CostRung& rung) { return rung.stopped_by.empty() && std::isfinite(rung.error_m); }
 
@@ -48,7 +48,7 @@ class Search {
 bool Search::better(const CostRung& a, const CostRung& b) const {
   if (wish_.error_m) return a.cpu_s < b.cpu_s;
   const double error_a = std::max(a.error_m, truth_.floor_m), error_b = std::max(b.error_m, truth_.floor_m);   // below it, none is better
-  return error_a * kAlike < error_b || (error_a < error_b * kAlike && a.cpu_s < b.cpu_s);
+  return error_a * kAlikeErrors < error_b || (error_a < error_b * kAlikeErrors && a.cpu_s < b.cpu_s);
 }
 
 CostChoice Search::tried(const CostWay& way, long steps, double tolerance) {
@@ -67,7 +67,7 @@ void Search::trim(CostChoice fails, CostChoice passes) {
   const bool by_tolerance = passes.steps == fails.steps;
   for (int k = 0; k < kMostTrims && cpu_seconds() < until_; ++k) {
     const double span = std::log(fails.rung.error_m / passes.rung.error_m);
-    if (!(span > 0.0) || !is_right(fails.rung) || passes.rung.cpu_s > best_price() * kHopeless) return;
+    if (!(span > 0.0) || !is_right(fails.rung) || passes.rung.cpu_s > best_price() * kHopelessPrice) return;
     const double part = std::clamp(std::log(fails.rung.error_m / (kAim * asked)) / span, 0.1, 1.0);   // of the way from fails to passes
     const auto between = [part](double from, double to) { return from * std::pow(to / from, part); };
     const long steps = by_tolerance ? passes.steps : std::lround(std::ceil(between(static_cast<double>(fails.steps), static_cast<double>(passes.steps))));
@@ -86,7 +86,7 @@ void Search::refine(const CostWay& way) {
     return;
   }
   const bool steps_shrink = way.has_ladder && (!way.controlled || !steps_are_free(scene_));
-  const int most = !way.has_ladder ? 1 : way.controlled ? kMostTolerances : kMostHalvings;
+  const int most = !way.has_ladder ? 1 : way.controlled ? kMostTolerances : kMostChoiceHalvings;
   std::optional<CostChoice> before;
   double least = std::numeric_limits<double>::infinity();
   int worse = 0;
@@ -99,12 +99,12 @@ void Search::refine(const CostWay& way) {
       return;
     }
     if (is_right(now.rung) && now.rung.error_m <= truth_.floor_m) return;   // no truth tells better
-    if (is_right(now.rung) && now.rung.cpu_s > (wish_.error_m ? kHopeless * best_price() : *wish_.price_s)) return;
+    if (is_right(now.rung) && now.rung.cpu_s > (wish_.error_m ? kHopelessPrice * best_price() : *wish_.price_s)) return;
     if (wish_.price_s && found.best && found.best->rung.error_m <= truth_.floor_m && now.rung.cpu_s > found.best->rung.cpu_s) return;
     const bool is_new = !before || now.rung.evaluations > before->rung.evaluations;   // a tolerance that changes nothing tells nothing
-    const bool falls = now.rung.error_m * kAlike < least;
+    const bool falls = now.rung.error_m * kAlikeErrors < least;
     worse = falls ? 0 : worse + (is_right(now.rung) && is_new ? 1 : 0);
-    if (worse >= kMostWorse && least < kAnswer * truth_.scale_m) return;    // round-off has taken over, or it is another motion
+    if (worse >= kMostWorseTrials && least < kFollowed * truth_.scale_m) return;    // round-off has taken over, or it is another motion
     if (is_right(now.rung)) least = std::min(least, now.rung.error_m);
     before = now;
   }

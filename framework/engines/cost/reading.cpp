@@ -15,7 +15,7 @@ constexpr double kSettled = 0.5;         // slopes that lie farther apart show n
 constexpr double kNoOrder = 0.3;         // a slope below this is no convergence
 constexpr double kLeastSlope = 2.0, kMostSlope = 14.0;   // of a method that chooses its steps: others show that the tolerance was not what cost
 constexpr double kStaysBelow = 0.6;      // of the scale: errors as large as bodies move are alike whatever made them
-constexpr double kNoAnswer = 0.3;        // of the scale: whoever stays above it has not found the motion
+constexpr double kNoMotion = 0.3;        // of the scale: whoever stays above it has not found the motion
 constexpr double kSame = 0.02;           // errors that differ by less are one
 constexpr double kRoundOff = 1e-10;       // of the scale: smaller errors are
 constexpr double kWrongLimit = 100.0;    // floors: what does not shrink above this is wrong, not finished
@@ -104,7 +104,7 @@ std::string read_ladder(const CostWay& way, const std::vector<CostRung>& rungs, 
   if (!fit && way.controlled) return fmt::format("{} gets to {:.1e} m.", way.name, least);
   if (!fit && least <= kWrongLimit * truth.floor_m) return of_exact(way, least, truth);
   if (!way.controlled && stays(rungs) && least > kWrongLimit * truth.floor_m && least < kStaysBelow * truth.scale_m) return of_wrong_limit(way, least);
-  if (!fit && least > kNoAnswer * truth.scale_m) return fmt::format("{} does not find the motion: its error is still {:.1e} m at the finest {}, where bodies move {:.1e} m. Either a law is wrong, or the steps are far too long.", way.name, least, way.controlled ? "tolerance" : "step", truth.scale_m);
+  if (!fit && least > kNoMotion * truth.scale_m) return fmt::format("{} does not find the motion: its error is still {:.1e} m at the finest {}, where bodies move {:.1e} m. Either a law is wrong, or the steps are far too long.", way.name, least, way.controlled ? "tolerance" : "step", truth.scale_m);
   if (!fit) return fmt::format("{} shows no order yet: its error is still {:.1e} m where bodies move {:.1e} m.", way.name, least, truth.scale_m);
   if (way.controlled && (fit->order < kLeastSlope || fit->order > kMostSlope)) return fmt::format("{} gets to {:.1e} m.", way.name, least);
   if (way.controlled) return fmt::format("{} gets to {:.1e} m; each ten times the evaluations divide its error by 10^{:.1f}.", way.name, least, fit->order);

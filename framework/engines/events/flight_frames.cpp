@@ -6,11 +6,11 @@
 
 #include "framework/collision/gap.h"
 #include "framework/collision/sweep.h"
+#include "framework/core/numbers.h"
 
 namespace tumble::engines {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kFew = 200;      // movers: pairs of so few are all looked at
 constexpr double kFirstReach = 0.05;   // of the largest mover's radius: how far boxes reach at first where there are many
 

@@ -12,7 +12,6 @@
 namespace tumble::engines {
 namespace {
 
-constexpr double kMicroInterval = 0.01;   // of the step: a pair that meets again sooner, and slowly, is sent apart (as retroactive.cpp)
 
 }  // namespace
 

@@ -16,7 +16,7 @@
 namespace tumble::engines {
 namespace {
 
-constexpr double kRounding = 1e-14;   // of coordinates, so that bodies that just touch are looked at
+constexpr double kTouchRounding = 1e-14;   // of coordinates, so that bodies that just touch are looked at
 constexpr double kTouchingAtStart = 1e-9;   // of the smaller body: ten shells of lasting_contacts.cpp
 constexpr int kMostNudges = 20;       // a few roundings are taken back in as many rounds
 
@@ -100,7 +100,7 @@ bool FlightWorld::may_collide(int a, int b) const {
 void FlightWorld::refuse_overlap(const scene::Scene& scene) {
   std::vector<collision::SweptBox> boxes;
   for (int i = 0; i < size(); ++i) {
-    const Vector3d margin = Vector3d::Constant(radius(i) * (1 + kRounding)) + kRounding * first_[i].com_world.cwiseAbs();
+    const Vector3d margin = Vector3d::Constant(radius(i) * (1 + kTouchRounding)) + kTouchRounding * first_[i].com_world.cwiseAbs();
     boxes.push_back({first_[i].com_world - margin, first_[i].com_world + margin, can_move(i)});
   }
   auto pairs = collision::overlapping_pairs(boxes);

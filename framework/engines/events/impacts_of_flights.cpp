@@ -7,12 +7,12 @@
 #include <fmt/format.h>
 
 #include "framework/collision/time_bound.h"
+#include "framework/core/numbers.h"
 #include "framework/engines/guarded_laws.h"
 
 namespace tumble::engines {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kSlack = 1e-9;   // of lengths: pairs this much out of reach are still searched, whatever rounding does
 
 constexpr double kMostTurning = 1e5;   // rad in one search, which looks at each of them: beyond, a run would take hours and look like a hang

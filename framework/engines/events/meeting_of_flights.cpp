@@ -7,13 +7,13 @@
 #include <fmt/format.h>
 
 #include "framework/collision/contact_patch.h"
+#include "framework/core/numbers.h"
 #include "framework/engines/guarded_laws.h"
 #include "framework/engines/impact_bodies.h"
 
 namespace tumble::engines {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 // Approach slower than this part of the fastest point is what rounding leaves of "not approaching" (as sequential_impacts.cpp).
 constexpr double kRoundOffOfSpeed = 1e-13;
 constexpr double kRoundOffOfSliding = 64 * kEpsilon;
@@ -23,7 +23,7 @@ constexpr double kSamePatch = 1e-9;
 // A push through the middle of a ball does not turn it: this is what rounding leaves of the torque, against the push.
 constexpr double kNoTurn = 64 * kEpsilon;
 constexpr double kLevel = 1e-12;      // a support that leans by less [rad] counts as level: in 100 s a ball would slide 5e-8 m
-constexpr int kMostNudges = 20;
+constexpr int kMostPairNudges = 20;
 
 // Not by the law that is being judged: a record of what the impulse did.
 double normal_velocity(const Contact& contact, const Body& a, const Body& b) {
@@ -145,7 +145,7 @@ bool MeetingOfFlights::settle(Work& work, int body, int support) const {
 // What rounding leaves of an overlap is taken back by moving one body along the normal.
 void MeetingOfFlights::draw_apart(Work& work) const {
   const int a = work.result.key.body_a, b = work.result.key.body_b;
-  for (int round = 0; round < kMostNudges; ++round) {
+  for (int round = 0; round < kMostPairNudges; ++round) {
     const collision::Gap gap = collision::compute_gap(world_.shape(a), {work.a.com_world, work.a.world_from_body}, world_.shape(b), {work.b.com_world, work.b.world_from_body});
     if (gap.distance >= 0) return;
     const bool moves_a = work.a.inertia.inverse_mass >= work.b.inertia.inverse_mass;

@@ -3,20 +3,20 @@
 #include <algorithm>
 #include <limits>
 
+#include "framework/core/numbers.h"
 #include "framework/engines/events/flight_run.h"
 #include "framework/engines/guarded_laws.h"
 
 namespace tumble::engines {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr EventKey kNever{kInfinity, 0, EventClass::kCollision, -1, -1};
+constexpr EventKey kNeverKey{kInfinity, 0, EventClass::kCollision, -1, -1};
 
 class OrderedRun {
  public:
   OrderedRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink) : run_(scene, laws, options, sink) {
     for (int i = 0; i < run_.world().size(); ++i) flights_.push_back(run_.world().first_flight(i));
-    first_of_.assign(flights_.size(), kNever);
+    first_of_.assign(flights_.size(), kNeverKey);
   }
 
   void run() {
@@ -37,7 +37,7 @@ class OrderedRun {
     begin_ = begin;
     for (const int a : run_.world().movers()) first_of_[a] = first_among_all(a);
     for (;;) {
-      EventKey next = kNever;
+      EventKey next = kNeverKey;
       for (const int a : run_.world().movers())
         if (first_of_[a] < next) next = first_of_[a];
       if (built::kCallback && called_ < run_.callbacks().size()) next = std::min(next, run_.callbacks()[called_]);
@@ -78,13 +78,13 @@ class OrderedRun {
   }
 
   EventKey impact_of(int a, int b) {
-    if (a == b || !run_.world().may_collide(a, b)) return kNever;
+    if (a == b || !run_.world().may_collide(a, b)) return kNeverKey;
     const double time = run_.impacts().first_impact(a, flights_[a], b, flights_[b], begin_, end_, run_.cost);
-    return time < kInfinity ? key_of_impact(a, flights_[a], b, flights_[b], time) : kNever;
+    return time < kInfinity ? key_of_impact(a, flights_[a], b, flights_[b], time) : kNeverKey;
   }
 
   EventKey first_among_all(int a) {
-    EventKey first = run_.own_end(a, flights_[a], end_).value_or(kNever);
+    EventKey first = run_.own_end(a, flights_[a], end_).value_or(kNeverKey);
     for (int b = 0; b < run_.world().size(); ++b) first = std::min(first, impact_of(a, b));
     return first;
   }

@@ -7,11 +7,11 @@
 #include <fmt/format.h>
 
 #include "framework/engines/guarded_laws.h"
+#include "framework/engines/step_limits.h"
 
 namespace tumble::engines {
 namespace {
 
-constexpr double kMicroInterval = 0.01;   // of the step: a pair that meets again sooner, and slowly, is sent apart (as retroactive.cpp)
 constexpr double kTogether = 2.0;         // steps
 constexpr double kNear = 1e-6;            // of the sizes: pairs farther apart do not touch
 

@@ -1,4 +1,5 @@
 // What is taken back, and what is committed. Part of TaughtTimewarp.
+#include "framework/core/numbers.h"
 #include "framework/engines/timewarp/taught_run.h"
 
 #include <algorithm>
@@ -6,7 +7,6 @@
 namespace tumble::engines {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kWorthPurging = 6;          // states of a body: fewer are not worth the question
 
 }  // namespace

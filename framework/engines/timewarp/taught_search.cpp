@@ -4,11 +4,11 @@
 #include <limits>
 
 #include "framework/collision/gap.h"
+#include "framework/core/numbers.h"
 
 namespace tumble::engines {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 

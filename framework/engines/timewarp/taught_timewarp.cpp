@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "framework/core/error.h"
+#include "framework/core/numbers.h"
 #include "framework/engines/events/ordered.h"
 #include "framework/engines/timewarp/guarded_scheduling.h"
 #include "framework/engines/timewarp/taught_run.h"
@@ -10,7 +11,6 @@
 namespace tumble::engines {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::size_t kFewProcesses = 4;          // so few, and global virtual time is asked for after every event; else once an event and process
 constexpr std::size_t kMostEventsAtOneGvt = 20000;   // before a run is stopped in which nothing becomes certain
 

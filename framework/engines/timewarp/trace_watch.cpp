@@ -11,7 +11,7 @@ namespace tumble::engines {
 namespace {
 
 bool same_bits(double x, double y) { return std::bit_cast<std::uint64_t>(x) == std::bit_cast<std::uint64_t>(y); }
-bool same(const Event& x, const Event& y) { return same_bits(x.time, y.time) && x.kind == y.kind && x.body_a == y.body_a && x.body_b == y.body_b && same_bits(x.impulse, y.impulse); }
+bool same_event(const Event& x, const Event& y) { return same_bits(x.time, y.time) && x.kind == y.kind && x.body_a == y.body_a && x.body_b == y.body_b && same_bits(x.impulse, y.impulse); }
 // Said at times that stand fast, with whatever is committed next: nothing that a scheduler could lose.
 bool is_switch(const Event& event) { return event.kind == EventKind::kForceOn || event.kind == EventKind::kForceOff; }
 bool same_pair(const Event& x, const Event& y) { return x.body_a == y.body_a && x.body_b == y.body_b; }
@@ -25,11 +25,11 @@ std::string TraceWatch::told(const Event& event) const {
 
 std::string TraceWatch::likely(const Event& expected, const Event& found) const {
   const auto from = reference_.events.begin() + static_cast<std::ptrdiff_t>(events_);
-  if (std::any_of(reference_.events.begin(), from, [&](const Event& event) { return same(event, found); })) return "it was committed before: an impact was worked at twice";
-  if (std::any_of(from, reference_.events.end(), [&](const Event& event) { return same(event, found); }))
+  if (std::any_of(reference_.events.begin(), from, [&](const Event& event) { return same_event(event, found); })) return "it was committed before: an impact was worked at twice";
+  if (std::any_of(from, reference_.events.end(), [&](const Event& event) { return same_event(event, found); }))
     return same_bits(expected.time, found.time) ? "it is due, but later: of two things at one instant the wrong one came first (comes_before)"
                                                 : "it is due, but later: an earlier impact was lost or is not found yet (what a check looks at, what becomes of it after a rollback), or things are committed out of their order";
-  if (same_pair(expected, found) && same_bits(expected.time, found.time)) return "the same impact with other velocities: one of the two came with a state that should have been taken back";
+  if (same_pair(expected, found) && same_bits(expected.time, found.time)) return "the same_event impact with other velocities: one of the two came with a state that should have been taken back";
   if (found.time < expected.time) return "no such impact belongs there: something that happened before it was undone, and it was not taken back (anti-messages), or an impact was lost before it";
   return "an impact was lost: the interval that holds it was never looked at, or the check that had found it was forgotten";
 }
@@ -38,7 +38,7 @@ void TraceWatch::event(const Event& event) {
   const bool is_judged = events_ < reference_.events.size() || reference_.stopped_by.empty();
   if (is_judged && events_ >= reference_.events.size())
     throw StoppedRun(fmt::format("committed event {} is not the ordered reference's: expected nothing more; found {}. Likely: it should have been taken back", events_ + 1, told(event)));
-  if (is_judged && !same(reference_.events[events_], event)) {
+  if (is_judged && !same_event(reference_.events[events_], event)) {
     const Event& expected = reference_.events[events_];
     throw StoppedRun(fmt::format("committed event {} is not the ordered reference's: expected {}; found {}. Likely: {}", events_ + 1, told(expected), told(event), likely(expected, event)));
   }

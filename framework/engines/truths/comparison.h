@@ -9,6 +9,8 @@
 
 namespace tumble::truths {
 
+inline constexpr double kNoFrames = 1e-3;   // Hz, of a run of which only events matter
+
 /// A closed form passes within this many times the error that double precision forces: a few dozen roundings.
 inline constexpr double kClosedFormFactor = 100.0;
 

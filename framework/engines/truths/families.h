@@ -8,6 +8,7 @@
 #include "framework/dynamics/laws.h"
 #include "framework/engines/truths/comparison.h"
 #include "framework/engines/truths/truth_case.h"
+#include "framework/trajectory/trajectory.h"
 
 namespace tumble::truths {
 
@@ -36,5 +37,7 @@ void compare_roll_incline(const Case& truth, const Laws& laws, Comparison& compa
 void compare_slip_to_roll(const Case& truth, const Laws& laws, Comparison& comparison);
 /// The part of toi_tunnel that runs a scene.
 void compare_tunnel_run(const Case& truth, const Laws& laws, Comparison& comparison);
+
+inline double energy_of(const Frame& frame) { return frame.kinetic_energy + frame.potential_energy; }
 
 }  // namespace tumble::truths

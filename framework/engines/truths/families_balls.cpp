@@ -11,7 +11,6 @@ namespace {
 constexpr double kMass = 1.0;        // kg: without effect
 constexpr double kRestBelow = 0.5;   // of the slowest impact that the file lists: rest comes after the last of them
 constexpr double kRestSpeed = 1e-5;  // m/s: nor faster than this; its bounce of 5e-12 m still stands far above the rounding of heights
-constexpr double kNoFrames = 1e-3;   // Hz: only events matter
 
 struct BallOnFloor {
   double g, e;

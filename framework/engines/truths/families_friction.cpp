@@ -14,7 +14,7 @@
 namespace tumble::truths {
 namespace {
 
-constexpr double kRestSpeed = 1e-9;   // m/s: nothing here bounces
+constexpr double kNeverBounces = 1e-9;   // m/s: nothing here bounces
 constexpr long kSteps = 50;           // of a run at least; none of them is where a motion changes
 constexpr double kLongestStep = 0.1;  // s: contact forces come from what gravity does in a step, g h, and are rounded at its size
 constexpr double kStands = 1e-9;      // of the speed at the start: slower than this a body stands, or rolls
@@ -32,7 +32,7 @@ struct Incline {
 
 /// @param height  of the body's centre above the plane [m]
 scene::Scene Incline::scene(const std::string& name, double duration, scene::BodySpec body, double height) const {
-  scene::Scene scene = empty_scene(name, duration, kRestSpeed);
+  scene::Scene scene = empty_scene(name, duration, kNeverBounces);
   scene.gravity_m_s2 = Vector3d(0, 0, -g);
   scene.contact = scene::ContactSpec{};
   body.position_m = height * out();

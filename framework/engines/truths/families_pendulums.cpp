@@ -12,7 +12,6 @@
 namespace tumble::truths {
 namespace {
 
-double energy_of(const Frame& frame) { return frame.kinetic_energy + frame.potential_energy; }
 
 /// Of the direction at an angle, and its derivative by the angle.
 Vector3d along(double angle) { return {std::sin(angle), -std::cos(angle), 0.0}; }

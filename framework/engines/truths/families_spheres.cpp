@@ -9,7 +9,6 @@
 namespace tumble::truths {
 namespace {
 
-constexpr double kNoFrames = 1e-3;   // Hz: only events matter
 constexpr double kNeverRest = 1e-9;  // m/s: nothing rests where there is no gravity
 
 // ---- newtons_cradle --------------------------------------------------------------------------------------------------

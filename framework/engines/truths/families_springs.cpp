@@ -13,7 +13,6 @@ namespace {
 
 const Vector3d kAxis = Vector3d::UnitX();   // along which a spring-mass moves
 
-double energy_of(const Frame& frame) { return frame.kinetic_energy + frame.potential_energy; }
 
 // ---- spring_mass -----------------------------------------------------------------------------------------------------
 

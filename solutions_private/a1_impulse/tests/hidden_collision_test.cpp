@@ -4,10 +4,10 @@
 namespace tumble::testing {
 namespace {
 
-constexpr double kRoundoff = 50 * kEps;  // about 100 roundings of eps / 2, times the scale given at each use
+constexpr double kHundredRoundings = 50 * kEps;  // about 100 roundings of eps / 2, times the scale given at each use
 constexpr int kScenes = 100;
 
-std::string number_of(int i, int seed) { return "random collision " + std::to_string(i) + " of seed " + std::to_string(seed); }
+std::string case_of(int i, int seed) { return "random collision " + std::to_string(i) + " of seed " + std::to_string(seed); }
 
 /// Sum of the speeds that meet in the relative velocity [m/s]: what its rounding is relative to.
 double speeds(const Contact& contact, const Body& a, const Body& b) {
@@ -20,7 +20,7 @@ double speeds(const Contact& contact, const Body& a, const Body& b) {
 /// What rounding may do to j: the relative velocity is a small difference of large speeds.
 double impulse_tolerance(const Encounter& e, double j) {
   const double approach = std::abs(gap_rate(e.contact, e.a, velocity_of(e.a), e.b, velocity_of(e.b)));
-  return kRoundoff * j * (2.0 + speeds(e.contact, e.a, e.b) / approach);
+  return kHundredRoundings * j * (2.0 + speeds(e.contact, e.a, e.b) / approach);
 }
 
 /// How readily the touching point of a body gives way, as a matrix: 1/m + [r]^T I^-1 [r]. A second way to the denominator.
@@ -47,8 +47,8 @@ TEST(HiddenImpulseWithoutRotation, AgreesWithTheClosedForm) {
     const double restitution = random.unit();
     const double j = u >= 0.0 ? 0.0 : (1.0 + restitution) * -u / (e.a.inertia.inverse_mass + e.b.inertia.inverse_mass);
     const double found = student().collision_impulse_without_rotation(e.contact, e.a, e.b, restitution);
-    expect_near(found, j, kRoundoff * j * (2.0 + 20.0 / std::abs(u)), "N s",
-                {.scene = number_of(i, 2201), .slip = "velocities of the centres, inverse masses, (1 + e); 0 when separating", .handout = equation("8")});
+    expect_near(found, j, kHundredRoundings * j * (2.0 + 20.0 / std::abs(u)), "N s",
+                {.scene = case_of(i, 2201), .slip = "velocities of the centres, inverse masses, (1 + e); 0 when separating", .handout = equation("8")});
   }
 }
 
@@ -59,7 +59,7 @@ TEST(HiddenCollisionImpulse, AgreesWithTheMobilityMatrix) {
     const double restitution = random.unit();
     const double j = second_way(e, restitution);
     expect_near(student().collision_impulse(e.contact, e.a, e.b, restitution), j, impulse_tolerance(e, j), "N s",
-                {.scene = number_of(i, 2202), .slip = "a term of the denominator: both arms, world inertia", .handout = equation("9")});
+                {.scene = case_of(i, 2202), .slip = "a term of the denominator: both arms, world inertia", .handout = equation("9")});
   }
 }
 
@@ -69,9 +69,9 @@ TEST(HiddenCollisionImpulse, IsTheSameWhicheverBodyIsCalledA) {
     const Encounter e = random_encounter(random, i);
     const double j = student().collision_impulse(e.contact, e.a, e.b, 0.7);
     const double swapped = student().collision_impulse({e.contact.point_world, -e.contact.normal_b_to_a_world}, e.b, e.a, 0.7);
-    expect_true(j > 0.0, "a push between approaching bodies", show(j), {.scene = number_of(i, 2203), .slip = "the sign of u_n", .handout = equation("9")});
+    expect_true(j > 0.0, "a push between approaching bodies", show(j), {.scene = case_of(i, 2203), .slip = "the sign of u_n", .handout = equation("9")});
     expect_near(swapped, j, impulse_tolerance(e, j), "N s",
-                {.scene = number_of(i, 2203) + ": bodies swapped, normal turned round", .slip = "A and B treated differently", .handout = equation("9")});
+                {.scene = case_of(i, 2203) + ": bodies swapped, normal turned round", .slip = "A and B treated differently", .handout = equation("9")});
   }
 }
 
@@ -92,7 +92,7 @@ TEST(HiddenCollisionImpulse, IsTheSameForEveryObserver) {
     e.contact = {turn * e.contact.point_world + shift, (turn * e.contact.normal_b_to_a_world).normalized()};
     // Four times: the turned scene is rounded itself, twice over.
     expect_near(student().collision_impulse(e.contact, e.a, e.b, 0.7), j, 4 * impulse_tolerance(e, std::abs(j)), "N s",
-                {.scene = number_of(i, 2204) + ", seen by an observer who is turned, elsewhere and moving",
+                {.scene = case_of(i, 2204) + ", seen by an observer who is turned, elsewhere and moving",
                  .slip = "body inertia where world inertia belongs, or an arm that starts at the world's origin",
                  .handout = equation("9")});
   }
@@ -105,7 +105,7 @@ TEST(HiddenCollisionImpulse, NeverPulls) {
     const Encounter e = random_encounter(random, i);
     const Contact away{e.contact.point_world, -e.contact.normal_b_to_a_world};
     expect_near(student().collision_impulse(away, e.a, e.b, 0.7), 0.0, 0.0, "N s",
-                {.scene = number_of(i, 2205) + ", the normal turned round: the bodies separate",
+                {.scene = case_of(i, 2205) + ", the normal turned round: the bodies separate",
                  .slip = "impulse applied to separating bodies",
                  .handout = equation("9")});
   }
@@ -121,8 +121,8 @@ TEST(HiddenApplyImpulse, WorksAsMuchAsTheBodyGainsInEnergy) {
     const auto at_point = [&](const Velocity& v) { return Vector3d(v.linear_world + v.angular_world.cross(point - body.com_world)); };
     const double work = impulse.dot(at_point(before) + at_point(after)) / 2.0;
     const double scale = kinetic_energy(body, before) + kinetic_energy(body, after);
-    expect_near(kinetic_energy(body, after) - kinetic_energy(body, before), work, 4 * kRoundoff * scale, "J",
-                {.scene = number_of(i, 2206) + ": energy gained against J . (u + u') / 2", .slip = "the arm, the inverse inertia or its frame", .handout = equation("10")});
+    expect_near(kinetic_energy(body, after) - kinetic_energy(body, before), work, 4 * kHundredRoundings * scale, "J",
+                {.scene = case_of(i, 2206) + ": energy gained against J . (u + u') / 2", .slip = "the arm, the inverse inertia or its frame", .handout = equation("10")});
   }
 }
 
@@ -137,9 +137,9 @@ TEST(HiddenApplyImpulse, IsUndoneByItsOpposite) {
     body.velocity_world = after.linear_world;
     body.omega_world = after.angular_world;
     const Velocity undone = student().apply_impulse(body, -impulse, point);
-    const Story story{.scene = number_of(i, 2207) + ": J, then -J", .slip = "the impulse does not add to the old velocities", .handout = equation("10")};
-    expect_near(undone.linear_world, before.linear_world, kRoundoff * (4 + after.linear_world.norm()), "m/s", story);
-    expect_near(undone.angular_world, before.angular_world, kRoundoff * (4 + after.angular_world.norm()), "rad/s", story);
+    const Story story{.scene = case_of(i, 2207) + ": J, then -J", .slip = "the impulse does not add to the old velocities", .handout = equation("10")};
+    expect_near(undone.linear_world, before.linear_world, kHundredRoundings * (4 + after.linear_world.norm()), "m/s", story);
+    expect_near(undone.angular_world, before.angular_world, kHundredRoundings * (4 + after.angular_world.norm()), "rad/s", story);
   }
 }
 
@@ -149,7 +149,7 @@ void collide(int seed, double restitution, bool walls, const Judge& judge) {
   Random random(static_cast<std::uint64_t>(seed));
   for (int i = 0; i < kScenes && !::testing::Test::HasFailure(); ++i) {
     const Encounter e = random_encounter(random, walls ? i : 0);
-    judge(e, student().resolve_collision(e.contact, e.a, e.b, restitution), number_of(i, seed));
+    judge(e, student().resolve_collision(e.contact, e.a, e.b, restitution), case_of(i, seed));
   }
 }
 
@@ -159,7 +159,7 @@ TEST(HiddenResolveCollision, KeepsTheMomentumOfThePair) {
     const double ma = e.a.inertia.mass, mb = e.b.inertia.mass;
     const Vector3d before = ma * e.a.velocity_world + mb * e.b.velocity_world;
     const double scale = ma * (4 + after.a.linear_world.norm()) + mb * (4 + after.b.linear_world.norm());
-    expect_near(ma * after.a.linear_world + mb * after.b.linear_world, before, kRoundoff * scale, "kg m/s",
+    expect_near(ma * after.a.linear_world + mb * after.b.linear_world, before, kHundredRoundings * scale, "kg m/s",
                 {.scene = scene, .slip = "action is not reaction: B gets exactly the opposite of what A gets", .handout = equation("11")});
   });
 }
@@ -172,7 +172,7 @@ TEST(HiddenResolveCollision, KeepsTheAngularMomentumOfThePair) {
       return body.inertia.mass * body.com_world.norm() * v.linear_world.norm() + body.inertia.inertia_body.norm() * v.angular_world.norm();
     };
     const double scale = size(e.a, velocity_of(e.a)) + size(e.b, velocity_of(e.b)) + size(e.a, after.a) + size(e.b, after.b);
-    expect_near(total(after.a, after.b), total(velocity_of(e.a), velocity_of(e.b)), 4 * kRoundoff * scale, "kg m^2/s",
+    expect_near(total(after.a, after.b), total(velocity_of(e.a), velocity_of(e.b)), 4 * kHundredRoundings * scale, "kg m^2/s",
                 {.scene = scene + ", about the world's origin",
                  .slip = "the two impulses do not act at the same point, or inverse inertia in the wrong frame",
                  .handout = equation("11")});
@@ -186,7 +186,7 @@ TEST(HiddenResolveCollision, OpensTheGapAtETimesTheSpeedItClosed) {
       const double arm_a = (e.contact.point_world - e.a.com_world).norm(), arm_b = (e.contact.point_world - e.b.com_world).norm();
       const double scale = speeds(e.contact, e.a, e.b) + after.a.linear_world.norm() + arm_a * after.a.angular_world.norm() +
                            after.b.linear_world.norm() + arm_b * after.b.angular_world.norm();
-      expect_near(gap_rate(e.contact, e.a, after.a, e.b, after.b), -restitution * closing, 2 * kRoundoff * scale, "m/s",
+      expect_near(gap_rate(e.contact, e.a, after.a, e.b, after.b), -restitution * closing, 2 * kHundredRoundings * scale, "m/s",
                   {.scene = scene + ", e = " + show(restitution), .slip = "the restitution law u_n' = -e u_n", .handout = equation("11")});
     });
   }
@@ -200,7 +200,7 @@ TEST(HiddenResolveCollision, KeepsEnergyAtEOneAndNeverGainsBelow) {
       // Exact: the pair loses (1 - e) j |u_n| / 2.
       const double closing = -gap_rate(e.contact, e.a, velocity_of(e.a), e.b, velocity_of(e.b));
       const double loss = (1.0 - restitution) * second_way(e, restitution) * closing / 2.0;
-      expect_near(kinetic_energy(e.a, after.a) + kinetic_energy(e.b, after.b), before - loss, 20 * kRoundoff * before, "J",
+      expect_near(kinetic_energy(e.a, after.a) + kinetic_energy(e.b, after.b), before - loss, 20 * kHundredRoundings * before, "J",
                   {.scene = scene + ", e = " + show(restitution), .slip = "the size of the impulse, or one of its two effects", .handout = equation("11")});
     });
   }

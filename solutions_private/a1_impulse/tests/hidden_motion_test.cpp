@@ -5,7 +5,7 @@ namespace tumble::testing {
 namespace {
 
 // Random scenes: about 100 roundings of eps / 2, times the size of the largest product that occurs (given at each use).
-constexpr double kRoundoff = 50 * kEps;
+constexpr double kManyRoundings = 50 * kEps;
 
 std::string number_of(int i, int seed) { return "random scene " + std::to_string(i) + " of seed " + std::to_string(seed); }
 
@@ -20,7 +20,7 @@ TEST(HiddenPointForce, MovingTheCentreChangesTheTorqueByTheLeverOfTheMove) {
     const Vector3d force = random_vector(random, 10), point = random_vector(random, 3), x = random_vector(random, 3), y = random_vector(random, 3);
     const Vector3d about_x = student().wrench_of_point_force(force, point, x).torque_world;
     const Vector3d about_y = student().wrench_of_point_force(force, point, y).torque_world;
-    expect_near(about_x - about_y, (y - x).cross(force), kRoundoff * 60, "N m",
+    expect_near(about_x - about_y, (y - x).cross(force), kManyRoundings * 60, "N m",
                 {.scene = number_of(i, 2101) + ": the same force about two centres",
                  .slip = "the arm or the order of the cross product: tau = (p - x) x F",
                  .handout = equation("2")});
@@ -35,7 +35,7 @@ TEST(HiddenPointForce, PowerIsForceTimesVelocityOfThePoint) {
     const Wrench wrench = student().wrench_of_point_force(force, point, body.com_world);
     const double power = wrench.force_world.dot(body.velocity_world) + wrench.torque_world.dot(body.omega_world);
     const Vector3d point_velocity = body.velocity_world + body.omega_world.cross(point - body.com_world);
-    expect_near(power, force.dot(point_velocity), kRoundoff * 1000, "W",
+    expect_near(power, force.dot(point_velocity), kManyRoundings * 1000, "W",
                 {.scene = number_of(i, 2102) + ": power of force and torque against power at the point",
                  .slip = "the sign or the arm of the torque",
                  .handout = equation("2")});
@@ -47,7 +47,7 @@ TEST(HiddenLinearAcceleration, GivesTheForceBackTimesMass) {
   for (int i = 0; i < 50 && !HasFailure(); ++i) {
     const Body body = random_body(random);
     const Vector3d force = random_vector(random, 10);
-    expect_near(body.inertia.mass * student().linear_acceleration(body, force), force, kRoundoff * 10, "N",
+    expect_near(body.inertia.mass * student().linear_acceleration(body, force), force, kManyRoundings * 10, "N",
                 {.scene = number_of(i, 2103), .slip = "m a = F: something beside mass and force came in", .handout = equation("3")});
   }
 }
@@ -61,7 +61,7 @@ TEST(HiddenAngularAcceleration, ObeysEulersEquationInTheWorldFrame) {
     const Vector3d& w = body.omega_world;
     const Vector3d found = I * student().angular_acceleration(body, torque) + w.cross(I * w);
     const double scale = (torque.norm() + I.norm() * w.squaredNorm()) * I.norm() * body.inertia.inverse_inertia_body.norm();
-    expect_near(found, torque, kRoundoff * scale, "N m",
+    expect_near(found, torque, kManyRoundings * scale, "N m",
                 {.scene = number_of(i, 2104) + ": I w' + w x (I w) in the world frame",
                  .slip = "a frame mixed up, or the gyroscopic term",
                  .handout = equation("4")});
@@ -77,7 +77,7 @@ TEST(HiddenAngularAcceleration, TorqueWorksAtTheRateThatEnergyGrows) {
     const Vector3d& w = body.omega_world;
     const double found = w.dot(I * student().angular_acceleration(body, torque));
     const double scale = w.norm() * (torque.norm() + I.norm() * w.squaredNorm()) * I.norm() * body.inertia.inverse_inertia_body.norm();
-    expect_near(found, w.dot(torque), kRoundoff * scale, "W",
+    expect_near(found, w.dot(torque), kManyRoundings * scale, "W",
                 {.scene = number_of(i, 2105) + ": d/dt of the energy w.Iw/2 against the power w.tau",
                  .slip = "a frame mixed up: the gyroscopic term does no work",
                  .handout = equation("4")});
@@ -89,7 +89,7 @@ TEST(HiddenRelativeNormalVelocity, IsTheSameWhicheverBodyIsCalledA) {
   for (int i = 0; i < 100 && !HasFailure(); ++i) {
     const auto [contact, a, b] = random_encounter(random, i);
     const double found = student().relative_normal_velocity({contact.point_world, -contact.normal_b_to_a_world}, b, a);
-    expect_near(found, gap_rate(contact, a, velocity_of(a), b, velocity_of(b)), kRoundoff * 60, "m/s",
+    expect_near(found, gap_rate(contact, a, velocity_of(a), b, velocity_of(b)), kManyRoundings * 60, "m/s",
                 {.scene = number_of(i, 2106) + ": bodies swapped and normal turned round",
                  .slip = "u_n = n . (u_a - u_b) with u = v + w x (p - x) for both",
                  .handout = equation("5")});
@@ -108,7 +108,7 @@ TEST(HiddenRelativeNormalVelocity, IsTheSameForEveryMovingObserver) {
       body->com_world += shift;
     }
     contact.point_world += shift;
-    expect_near(student().relative_normal_velocity(contact, a, b), seen_at_rest, kRoundoff * 100, "m/s",
+    expect_near(student().relative_normal_velocity(contact, a, b), seen_at_rest, kManyRoundings * 100, "m/s",
                 {.scene = number_of(i, 2107) + ": seen by an observer who stands elsewhere and moves",
                  .slip = "the other body's velocity left out, or an arm that starts at the world's origin",
                  .handout = equation("5")});

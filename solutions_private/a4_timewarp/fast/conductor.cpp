@@ -9,6 +9,7 @@
 
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
+#include "framework/core/numbers.h"
 #include "framework/engines/guarded_laws.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "solutions_private/a4_timewarp/fast/fast_timewarp.h"
@@ -19,7 +20,7 @@ namespace {
 constexpr std::size_t kCommitAfter = 512;      // events worked at before global virtual time is looked at again
 constexpr std::size_t kForgetAfter = 1;        // going on of each body, likewise: what passages keep should stay in the nearer caches
 constexpr int kMostThreads = 64;
-constexpr int kMostTerritories = std::numeric_limits<std::uint8_t>::max();   // Shared::home; the border is one more
+constexpr int kTerritoryIds = std::numeric_limits<std::uint8_t>::max();   // Shared::home; the border is one more
 constexpr int kFewestStates = 8;               // a passage keeps two steps behind what is certain, and one that is looked at
 
 // Bounded optimism: the window grows and shrinks so that 5 to 15 % of the integrations are undone.
@@ -330,7 +331,7 @@ void run_fast_timewarp(const scene::Scene& scene, const Laws& laws, const engine
     throw UserError("--most-states " + std::to_string(options.most_states), fmt::format("a process in contact needs {}", kFewestStates), fmt::format("Give {} or more, or 0: as many as it takes.", kFewestStates));
   if (options.threads < 1 || options.threads > kMostThreads)
     throw UserError("--threads " + std::to_string(options.threads), fmt::format("expected a number from 1 to {}", kMostThreads), "As many as the machine has cores is most that helps.");
-  require(options.trial.territories >= 0 && options.trial.territories <= kMostTerritories, fmt::format("TimewarpTrial::territories is from 0 to {}, and not {}: homes of bodies are numbered in a byte", kMostTerritories, options.trial.territories));
+  require(options.trial.territories >= 0 && options.trial.territories <= kTerritoryIds, fmt::format("TimewarpTrial::territories is from 0 to {}, and not {}: homes of bodies are numbered in a byte", kTerritoryIds, options.trial.territories));
   Conductor(scene, laws, options, sink, record, watch).run();
 }
 

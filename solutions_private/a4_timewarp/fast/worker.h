@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "framework/core/numbers.h"
 #include "framework/core/random.h"
 #include "solutions_private/a4_timewarp/fast/shared.h"
 

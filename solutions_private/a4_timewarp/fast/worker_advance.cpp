@@ -1,4 +1,5 @@
 // How far a process goes, and whom it may meet on the way. Part of Worker.
+#include "framework/core/numbers.h"
 #include "solutions_private/a4_timewarp/fast/worker.h"
 
 #include <algorithm>

@@ -1,4 +1,5 @@
 // What happens, and what of it is taken back. Part of Worker.
+#include "framework/core/numbers.h"
 #include "solutions_private/a4_timewarp/fast/worker.h"
 
 #include <algorithm>
