@@ -7,8 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
-#include <Eigen/Eigenvalues>
-
+#include "framework/core/decompositions.h"
 #include "framework/core/error.h"
 
 namespace tumble {
@@ -183,10 +182,10 @@ RealQuaternion widen(const Quaterniond& q) { return q.cast<Real>(); }
 FreeRotation::FreeRotation(const Matrix3d& inertia_body) : moments_(inertia_body.diagonal()), body_from_principal_(Quaterniond::Identity()) {
   require(inertia_body.allFinite() && inertia_body.isApprox(inertia_body.transpose(), 1e-12), "FreeRotation: the inertia tensor must be symmetric and finite");
   if (!inertia_body.isDiagonal(0.0)) {
-    const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(inertia_body);
-    Matrix3d axes = solver.eigenvectors();
+    const SymmetricEigen3 eigen = symmetric_eigen(inertia_body);
+    Matrix3d axes = eigen.vectors;
     if (axes.determinant() < 0.0) axes.col(2) = -axes.col(2);
-    moments_ = solver.eigenvalues();
+    moments_ = eigen.values;
     body_from_principal_ = Quaterniond(axes).normalized();
   }
   require((moments_.array() > 0.0).all(), "FreeRotation: the principal moments must be positive");

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-
+#include "framework/core/decompositions.h"
 #include "framework/dynamics/world.h"
 
 namespace tumble {
@@ -53,8 +52,8 @@ double squared(double x) { return x * x; }
 }  // namespace
 
 PrincipalMoments principal_moments(const Inertia& inertia) {
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(inertia.inertia_body);
-  return {solver.eigenvalues(), solver.eigenvectors()};
+  const SymmetricEigen3 eigen = symmetric_eigen(inertia.inertia_body);
+  return {eigen.values, eigen.vectors};
 }
 
 RotationBounds bound_rotation(const RigidBodyState& state, const Inertia& inertia, const Disturbance& disturbance) {

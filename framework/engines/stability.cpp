@@ -6,9 +6,9 @@
 #include <numeric>
 #include <utility>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
+#include "framework/core/decompositions.h"
 #include "framework/core/error.h"
 #include "framework/dynamics/anchors.h"
 #include "framework/engines/guarded_laws.h"
@@ -97,7 +97,7 @@ std::vector<StepLimit> judge_decays(const World& world, const Laws& laws, double
   for (const Drag& drag : world.drags) {
     const WorldBody& body = world.bodies[drag.body];
     if (body.immovable() || is_jointed(world, drag.body)) continue;
-    const double least_moment = 1.0 / Eigen::SelfAdjointEigenSolver<Matrix3d>(body.inertia.inverse_inertia_body).eigenvalues().maxCoeff();
+    const double least_moment = 1.0 / symmetric_eigen(body.inertia.inverse_inertia_body).values.maxCoeff();
     const double turning = is_held_beside_its_centre(world, drag.body) ? 0.0 : drag.angular / least_moment;
     for (const auto& [rate, way] : {std::pair{drag.linear * body.inertia.inverse_mass, "velocity"}, std::pair{turning, "turning"}}) {
       const auto amplified = [&laws, rate = rate](double h) { return amplification_of_decay(laws, rate, h); };
@@ -162,14 +162,14 @@ std::optional<StepLimit> judge_rods(const World& world, const std::vector<double
     A.block<3, 3>(a, b) -= root(rod.a) * root(rod.b) * across;
     A.block<3, 3>(b, a) -= root(rod.a) * root(rod.b) * across;
   }
-  const MatrixXd keep = MatrixXd::Identity(3 * n, 3 * n) - J.completeOrthogonalDecomposition().pseudoInverse() * J;
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(keep * A * keep);
-  const double squared = solver.eigenvalues()[3 * n - 1];
+  const MatrixXd keep = MatrixXd::Identity(3 * n, 3 * n) - pseudo_inverse(J) * J;
+  const SymmetricEigen eigen = symmetric_eigen(MatrixXd(keep * A * keep));
+  const double squared = eigen.values[3 * n - 1];
   if (!(squared > 0)) return std::nullopt;
   const double frequency = std::sqrt(squared), amplified = amplification(laws, frequency, 0.0, step);
   if (amplified <= 1.0 + kNotAtAll) return std::nullopt;
   Eigen::Index most = 0;
-  solver.eigenvectors().col(3 * n - 1).cwiseAbs().maxCoeff(&most);
+  eigen.vectors.col(3 * n - 1).cwiseAbs().maxCoeff(&most);
   const auto body = std::find(place.begin(), place.end(), most - most % 3) - place.begin();
   return StepLimit{fmt::format("the swing of body '{}' across its rods ({:.4g} rad/s where they pull most)", world.bodies[static_cast<std::size_t>(body)].name, frequency), amplified,
                    largest_stable_step(laws, all ? frequency : std::sqrt(bound), 0.0, step), "masses that differ less"};

@@ -7,9 +7,9 @@
 #include <limits>
 #include <queue>
 
-#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
+#include "framework/core/decompositions.h"
 #include "framework/dynamics/anchors.h"
 #include "framework/engines/linked_bodies.h"
 #include "framework/engines/stability.h"
@@ -167,7 +167,7 @@ std::optional<StepLimit> judge_joints(const World& world, const LinkLoads& loads
   for (std::size_t i = 0; i < world.bodies.size(); ++i) {
     if (world.bodies[i].immovable() || !turns[i] || stiffness[i] == 0.0) continue;
     // About an axis across its arm: a slender body does not swing about itself, which is its least moment.
-    const Vector3d moments = Eigen::SelfAdjointEigenSolver<Matrix3d>(world.bodies[i].inertia.inertia_body).eigenvalues();
+    const Vector3d moments = symmetric_eigen(world.bodies[i].inertia.inertia_body).values;
     if (!(moments[1] > 0) || !(stiffness[i] / moments[1] > squared)) continue;
     squared = stiffness[i] / moments[1];
     fastest = i;

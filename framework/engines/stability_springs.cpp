@@ -3,11 +3,10 @@
 #include <cmath>
 #include <tuple>
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <Eigen/SparseCore>
 #include <fmt/format.h>
 
+#include "framework/core/decompositions.h"
 #include "framework/dynamics/anchors.h"
 #include "framework/dynamics/joint_rows.h"
 #include "framework/engines/stability.h"
@@ -40,7 +39,7 @@ class LinkedCoordinates {
     if (!is_movable(body)) return;
     const WorldBody& moved = world_.bodies[static_cast<std::size_t>(body)];
     const Matrix3d R = moved.state.world_from_body.toRotationMatrix();
-    const Matrix3d root = Eigen::SelfAdjointEigenSolver<Matrix3d>(moved.inertia.inverse_inertia_body).operatorSqrt();
+    const Matrix3d root = symmetric_root(moved.inertia.inverse_inertia_body);
     row.segment<3>(place_[static_cast<std::size_t>(body)]) += std::sqrt(moved.inertia.inverse_mass) * jacobian.head<3>();
     row.segment<3>(place_[static_cast<std::size_t>(body)] + 3) += root * (R.transpose() * jacobian.tail<3>());
   }
@@ -124,8 +123,7 @@ Sparse ways_of_springs(const World& world) {
   }
   if (!holds || !is_small) return ways;
   const MatrixXd directions = held_directions(world, linked), free(ways);
-  const Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition(directions);   // redundant rows are allowed
-  return MatrixXd(free - directions * decomposition.solve(free)).sparseView();
+  return MatrixXd(free - directions * least_squares(directions, free)).sparseView();   // redundant rows are allowed
 }
 
 /// The way of moving on which a diagonal D over the springs acts most: x^T J^T D J x where x^T M x = 1.
@@ -144,9 +142,9 @@ MostActedOn most_acted_on(const Sparse& shared, const VectorXd& diagonal, const 
     result.other = diagonal[result.spring] > 0 ? result.most * other[result.spring] / diagonal[result.spring] : 0.0;
     return result;
   }
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> solver{MatrixXd(scaled)};
-  const VectorXd part = solver.eigenvectors().rightCols<1>();
-  result.most = solver.eigenvalues()[shared.rows() - 1];
+  const SymmetricEigen eigen = symmetric_eigen(MatrixXd(scaled));
+  const VectorXd part = eigen.vectors.rightCols<1>();
+  result.most = eigen.values[shared.rows() - 1];
   part.cwiseAbs().maxCoeff(&result.spring);
   if (result.most > 0) result.other = other.dot((shared * root.cwiseProduct(part)).cwiseAbs2()) / result.most;
   return result;

@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-
+#include "framework/core/decompositions.h"
 #include "framework/core/error.h"
 
 namespace tumble {
@@ -43,10 +42,10 @@ void make_positive(Eigen::Ref<Vector3d> axis) {
 }
 
 void find_principal(MassProperties& found) {
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(found.inertia_com_mesh);
-  require(solver.info() == Eigen::Success, "compute_mass_properties: the principal axes did not converge");
-  found.principal_moments = solver.eigenvalues();
-  Matrix3d axes = solver.eigenvectors();
+  const SymmetricEigen3 eigen = symmetric_eigen(found.inertia_com_mesh);
+  require(eigen.values.allFinite(), "compute_mass_properties: the principal axes did not converge");
+  found.principal_moments = eigen.values;
+  Matrix3d axes = eigen.vectors;
   make_positive(axes.col(0));
   make_positive(axes.col(1));
   axes.col(2) = axes.col(0).cross(axes.col(1));

@@ -2,8 +2,7 @@
 
 #include <algorithm>
 
-#include <Eigen/Eigenvalues>
-
+#include "framework/core/decompositions.h"
 #include "framework/scene/anchors.h"
 #include "framework/scene/check_checks.h"
 #include "framework/scene/check_links.h"
@@ -32,7 +31,7 @@ void check_mass(const BodySpec& body, const Refuse& refuse) {
 void check_inertia(const Matrix3d& inertia, const Refuse& refuse) {
   if ((inertia - inertia.transpose()).cwiseAbs().maxCoeff() > 1e-12 * inertia.cwiseAbs().maxCoeff())
     refuse("inertia_body_kg_m2", "the matrix is not symmetric", "An inertia tensor is: check the entries beside the diagonal, whose sign is that of -sum m x y.");
-  const Vector3d moments = Eigen::SelfAdjointEigenSolver<Matrix3d>(inertia, Eigen::EigenvaluesOnly).eigenvalues();   // ascending
+  const Vector3d moments = symmetric_eigen(inertia).values;   // ascending
   if (!(moments[0] > 0)) refuse("inertia_body_kg_m2", "a principal moment is not above 0", "Every moment of a solid is positive.");
   // Equality is a flat plate; 1e-9 forgives its rounding.
   if (moments[0] + moments[1] < moments[2] * (1 - 1e-9))
