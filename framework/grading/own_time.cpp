@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <sstream>
 #include <string>
 
@@ -57,11 +59,29 @@ double own_time(const ProcessTimes& from, const ProcessTimes& to, double wall_s)
   return std::max(cpu_s, std::min(wall_s, to.age_s) - delay_s);
 }
 
+std::vector<pid_t> children_of(pid_t process) {
+  std::vector<pid_t> all;
+  if (shows_children()) {
+    std::istringstream children(proc_file(process, ("task/" + std::to_string(process) + "/children").c_str()));
+    for (pid_t child; children >> child;) all.push_back(child);
+    return all;
+  }
+  std::error_code failed;
+  for (std::filesystem::directory_iterator it("/proc", failed), end; !failed && it != end; it.increment(failed)) {
+    const pid_t other = std::atoi(it->path().filename().c_str());
+    if (other <= 0) continue;
+    const std::string stat = proc_file(other, "stat");
+    const auto name_end = stat.rfind(')');
+    int parent = 0;
+    if (name_end != std::string::npos && std::sscanf(stat.c_str() + name_end + 1, " %*c %d", &parent) == 1 && parent == process) all.push_back(other);
+  }
+  return all;
+}
+
 double activity_below(pid_t process) {
   const ProcessTimes times = process_times(process);
   double sum = times.cpu_s + times.delay_s;
-  std::istringstream children(proc_file(process, ("task/" + std::to_string(process) + "/children").c_str()));
-  for (pid_t child; children >> child;) sum += activity_below(child);
+  for (const pid_t child : children_of(process)) sum += activity_below(child);
   return sum;
 }
 

@@ -8,6 +8,8 @@
 
 #include <sys/types.h>
 
+#include <vector>
+
 namespace tumble::grading {
 
 /// What the kernel has counted of a process since it began.
@@ -22,6 +24,9 @@ ProcessTimes process_times(pid_t process);
 
 /// Own time between two readings of one process, and the wall time between them.
 double own_time(const ProcessTimes& from, const ProcessTimes& to, double wall_s);
+
+/// The children of a process, the dead that nobody has waited for among them. Cost: a file of /proc, or all of /proc where the kernel shows no children.
+std::vector<pid_t> children_of(pid_t process);
 
 /// The process at the end of a chain of first children: of a sandbox's keeper the program inside.
 /// @return -1 while the chain is shorter than `depth`

@@ -150,13 +150,18 @@ class Keeper {
     return true;
   }
 
-  // bubblewrap's death takes its namespace's process 1 along (--die-with-parent), and that one everything inside.
+  // bubblewrap's death takes its namespace's process 1 along (--die-with-parent), and that one everything inside. But one that dies while it
+  // sets the sandbox up leaves a process 1 that waits for it for ever: that one has come to us, and is ended by us.
   void kill_and_reap() {
     if (child_ <= 0) return;
     ::kill(child_, SIGKILL);
+    constexpr useconds_t kPauseUs = 100;
     for (;;) {
-      const pid_t gone = ::waitpid(-1, nullptr, 0);
+      const pid_t gone = ::waitpid(-1, nullptr, WNOHANG);
       if (gone < 0 && errno != EINTR) return;
+      if (gone != 0) continue;
+      for (const pid_t child : children_of(::getpid())) ::kill(child, SIGKILL);
+      ::usleep(kPauseUs);
     }
   }
 
