@@ -1,10 +1,11 @@
 #include "framework/cli/truths_table.h"
-#include "framework/core/text.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <set>
+
+#include "framework/core/text.h"
 
 namespace tumble::cli {
 namespace {

@@ -7,8 +7,8 @@
 #include <unistd.h>
 
 #include "framework/core/files.h"
-#include "framework/core/text.h"
 #include "framework/core/nearest_word.h"
+#include "framework/core/text.h"
 #include "framework/grading/build_submission.h"
 #include "framework/grading/compiler_words.h"
 #include "framework/grading/digest.h"

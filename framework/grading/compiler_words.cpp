@@ -1,9 +1,7 @@
 #include "framework/grading/compiler_words.h"
-#include "framework/core/files.h"
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 #include <iterator>
 #include <optional>
 #include <regex>
@@ -12,6 +10,8 @@
 #include <vector>
 
 #include <fmt/format.h>
+
+#include "framework/core/files.h"
 
 namespace tumble::grading {
 namespace {

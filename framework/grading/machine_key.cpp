@@ -71,9 +71,9 @@ MachineKey machine_key() {
   key.file = machine_key_file();
   FoundKey found = key.file.empty() ? FoundKey{} : read_key(key.file);
   if (!found.bytes.empty()) return key.bytes = found.bytes, key;
-  // What is no key of ours may be somebody's file: it is never touched.
+  // A file that is not our key may be somebody's work: it is never touched.
   if (!found.problem.empty())
-    throw UserError(key.file.string(), "shall hold the key that signs results of this machine, and " + found.problem,
+    throw UserError(key.file.string(), "should hold the key that signs results of this machine, and " + found.problem,
                     "Name a file that is not there yet in TUMBLE_GRADER_KEY, or move this one away: a new key is made, and earlier results are graded again.");
   const std::string fresh = random_bytes(kKeyBytes);
   if (!key.file.empty() && keep(key.file, fresh)) found = read_key(key.file);

@@ -134,7 +134,7 @@ void OutputFolder::read_manifest() {
     const std::string other = manifest.at("assignment");
     if (other != id_) throw UserError(shown(path_), "holds results of " + plain_name(other) + ", not of " + id_, kElsewhere);
     for (const std::string folder : manifest.at("folders")) {
-      if (!is_one_component(folder)) refuse_foreign(file);   // written by hand: it would lead out of this folder
+      if (!is_one_component(folder)) refuse_foreign(file);   // written by hand: it could lead out of this folder
       folders_.insert(folder);
     }
   } catch (const nlohmann::json::exception&) {
@@ -164,8 +164,9 @@ void OutputFolder::lock() {
   const fs::path file = path_ / kLock;
   lock_ = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0600);
   if (lock_ < 0) throw UserError(shown(file), "cannot be opened", "Give --out a folder that you may write to.");
-  // flock: held by this process and those that it forks, let go when the last of them ends, however it ends. Who waits reads in the file who
-  // took the lock: one that lives is told of at once, the children of one that was killed need a while to die (seconds, on a busy machine).
+  // flock: held by this process and those that it forks, released when the last of them ends, however it ends. The file holds the number of the
+  // process that took the lock: while that one lives, another grading is running; after it was killed, its children need a while to die
+  // (seconds, on a busy machine), and are waited for.
   constexpr int kTries = 3000, kTriesBesideALiving = 100, kPauseUs = 20'000;
   for (int i = 0; ::flock(lock_, LOCK_EX | LOCK_NB) != 0; ++i) {
     if (i == kTries || (i >= kTriesBesideALiving && holder_lives(lock_)))

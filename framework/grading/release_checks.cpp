@@ -1,17 +1,17 @@
 #include "framework/grading/release_checks.h"
-#include "framework/core/files.h"
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 #include <cstdint>
-#include <fstream>
 #include <functional>
 #include <iterator>
 #include <optional>
 #include <regex>
 #include <string_view>
 #include <unordered_map>
+
+#include "framework/core/files.h"
 
 namespace tumble::grading {
 namespace {

@@ -65,12 +65,12 @@ TEST_F(RunAttack, ProcessesAreFew) {
   EXPECT_EQ(reached("children"), "0");
 }
 
-TEST_F(RunAttack, NobodyMakesHimselfSlow) {
+TEST_F(RunAttack, AWorkerCannotSlowItself) {
   // Time without a core is not charged: a worker must not choose to have none.
   for (const char* what : {"own core", "idle class", "nice"}) EXPECT_EQ(reached(what), "Operation not permitted") << what;
 }
 
-TEST_F(RunAttack, WaitingForOneThatHungUpIsCharged) {
+TEST_F(RunAttack, WaitingForAWorkerThatHungUpIsCharged) {
   Victim victim(attack_object("in_call.cpp"));
   victim.attack("hang up");
   EXPECT_STREQ(words(victim.verdict()), "crashed") << victim.story();

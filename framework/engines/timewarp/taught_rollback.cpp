@@ -1,8 +1,9 @@
 // What is taken back, and what is committed. Part of TaughtTimewarp.
-#include "framework/core/numbers.h"
 #include "framework/engines/timewarp/taught_run.h"
 
 #include <algorithm>
+
+#include "framework/core/numbers.h"
 
 namespace tumble::engines {
 namespace {
