@@ -6,6 +6,7 @@
 
 #include "assignments/a1_impulse/a1_impulse.h"
 #include "framework/engines/truths/comparison.h"
+#include "framework/engines/truths/module_truths.h"
 
 namespace tumble::a1 {
 namespace {
@@ -262,11 +263,11 @@ void compare_rays(const Module& module, const Case& truth, Comparison& compariso
 }  // namespace
 
 void register_truths(modules::Registry& registry) {
-  registry.add_truth_family<Module>("impulse_sphere_sphere", compare_sphere_sphere);
-  registry.add_truth_family<Module>("impulse_rod_ball", compare_rod_ball);
-  registry.add_truth_family<Module>("impulse_box_corner", compare_box_corner);
-  registry.add_truth_family<Module>("impulse_random", compare_random);
-  registry.add_truth_family<Module>("ray_triangle", compare_rays);
+  registry.set_note(Module::kId, truths::ModuleTruths{{{"impulse_sphere_sphere", truths::for_module(&compare_sphere_sphere)},
+                                                       {"impulse_rod_ball", truths::for_module(&compare_rod_ball)},
+                                                       {"impulse_box_corner", truths::for_module(&compare_box_corner)},
+                                                       {"impulse_random", truths::for_module(&compare_random)},
+                                                       {"ray_triangle", truths::for_module(&compare_rays)}}});
 }
 
 }  // namespace tumble::a1

@@ -6,6 +6,7 @@
 
 #include "assignments/a2_integration/a2_integration.h"
 #include "framework/engines/truths/comparison.h"
+#include "framework/engines/truths/module_truths.h"
 
 namespace tumble::a2 {
 namespace {
@@ -137,6 +138,8 @@ void compare_logistic(const Module& module, const Case& truth, Comparison& compa
 
 }  // namespace
 
-void register_truths(modules::Registry& registry) { registry.add_truth_family<Module>("logistic", compare_logistic); }
+void register_truths(modules::Registry& registry) {
+  registry.set_note(Module::kId, truths::ModuleTruths{{{"logistic", truths::for_module(&compare_logistic)}}});
+}
 
 }  // namespace tumble::a2

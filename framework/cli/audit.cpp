@@ -8,8 +8,8 @@
 #include <unistd.h>
 
 #include "framework/cli/verb.h"
-#include "framework/grading/audit.h"
-#include "framework/grading/scoring.h"
+#include "framework/grading/grades/audit.h"
+#include "framework/grading/grades/scoring.h"
 
 namespace tumble::cli {
 namespace {

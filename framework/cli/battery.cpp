@@ -12,7 +12,7 @@
 #include "framework/cli/read_truth.h"
 #include "framework/cli/verb.h"
 #include "framework/core/text.h"
-#include "framework/grading/laws_around.h"
+#include "framework/grading/course/laws_around.h"
 #include "framework/report/battery_page.h"
 
 namespace tumble::cli {

@@ -9,9 +9,9 @@
 #include <unistd.h>
 
 #include "framework/core/files.h"
-#include "framework/grading/build_submission.h"
-#include "framework/grading/compiler_words.h"
-#include "framework/grading/run_program.h"
+#include "framework/grading/course/build_submission.h"
+#include "framework/grading/compiler/compiler_words.h"
+#include "framework/grading/course/run_program.h"
 
 namespace tumble::cli {
 namespace {

@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "framework/cli/cost_measure.h"
-#include "framework/cli/scene_run.h"
+#include "framework/cli/find_scene.h"
 #include "framework/core/error.h"
 #include "framework/report/html.h"
 #include "framework/report/peer_rows.h"

@@ -8,10 +8,11 @@
 
 #include <fmt/format.h>
 
-#include "framework/cli/scene_run.h"
+#include "framework/cli/find_scene.h"
 #include "framework/core/error.h"
+#include "framework/engines/cost/showcase.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
-#include "framework/grading/scheduler_section.h"
+#include "framework/grading/grades/scheduler_section.h"
 #include "framework/report/cost_page.h"
 #include "framework/scene/sized_scenes.h"
 
@@ -53,10 +54,10 @@ std::string known_words(const CostWords& words) {
 class Measuring {
  public:
   Measuring(const Context& context, const modules::ModuleKind& kind, const CostWords& words)
-      : context_(context), kind_(kind), words_(words), scene_(find_scene(context, words.on.empty() ? kind.cost.scene : words.on, words.n)), sized_(words.on.empty() ? kind.cost.sized_scene : ""), until_(now_s() + words.budget()), steps_until_(now_s() + kOfTheFirst * words.budget()) {
+      : context_(context), kind_(kind), words_(words), scene_(find_scene(context, words.on.empty() ? kind.note<engines::CostShowcase>().scene : words.on, words.n)), sized_(words.on.empty() ? kind.note<engines::CostShowcase>().sized_scene : ""), until_(now_s() + words.budget()), steps_until_(now_s() + kOfTheFirst * words.budget()) {
     steps_ = words.steps_s();
     if (steps_.empty()) steps_ = engines::scheduler_steps(scene_);
-    duration_s_ = words.duration_s.value_or(words.on.empty() ? kind.cost.duration_s : scene_.duration_s);
+    duration_s_ = words.duration_s.value_or(words.on.empty() ? kind.note<engines::CostShowcase>().duration_s : scene_.duration_s);
   }
 
   void run(Way& way) const {

@@ -10,10 +10,11 @@
 #include <fmt/format.h>
 
 #include "framework/cli/sandboxed_module.h"
-#include "framework/cli/scene_run.h"
+#include "framework/cli/find_scene.h"
 #include "framework/core/error.h"
 #include "framework/dynamics/iterative_solvers.h"
 #include "framework/dynamics/root_methods.h"
+#include "framework/engines/cost/showcase.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 
 namespace tumble::cli {
@@ -232,9 +233,9 @@ CostSubject of_scene(const Context& context, const CostWords& words) {
 
 CostSubject of_assignment(const Context& context, const modules::ModuleKind& kind, const CostWords& words) {
   CostSubject subject;
-  if (words.on.empty() && kind.cost.scene.empty()) throw UserError("tumble cost " + kind.id, "no scene is known on which this assignment is measured", "Name one: --on SCENE.");
-  subject.scene = find_scene(context, words.on.empty() ? kind.cost.scene : words.on, words.n);
-  if (words.on.empty()) subject.duration_s = kind.cost.duration_s;
+  if (words.on.empty() && kind.note<engines::CostShowcase>().scene.empty()) throw UserError("tumble cost " + kind.id, "no scene is known on which this assignment is measured", "Name one: --on SCENE.");
+  subject.scene = find_scene(context, words.on.empty() ? kind.note<engines::CostShowcase>().scene : words.on, words.n);
+  if (words.on.empty()) subject.duration_s = kind.note<engines::CostShowcase>().duration_s;
   const bool has_reference = std::filesystem::exists(context.build / "modules" / (kind.id + "_reference.so"));
   const ChosenLaws right = choose_laws(context, subject.scene, parse_module_words(has_reference ? "reference" : kind.methods.empty() ? "" : kind.id + "=library", context.registry));
   subject.truth_laws = right.laws;

@@ -8,8 +8,9 @@
 #include "framework/cli/engines_all.h"
 #include "framework/cli/verb.h"
 #include "framework/core/files.h"
-#include "framework/grading/grade.h"
-#include "framework/grading/grade_pages.h"
+#include "framework/grading/grades/grade.h"
+#include "framework/grading/grades/grade_many.h"
+#include "framework/grading/grades/grade_pages.h"
 #include "framework/report/html.h"
 
 namespace tumble::cli {

@@ -13,10 +13,10 @@
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
 #include "framework/engines/events/trace.h"
-#include "framework/engines/guarded_laws.h"
+#include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/run.h"
-#include "framework/engines/run_counters.h"
-#include "framework/engines/time_parts.h"
+#include "framework/engines/base/run_counters.h"
+#include "framework/engines/judging/time_parts.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/trajectory/fault_words.h"
 

@@ -7,7 +7,7 @@
 
 #include "framework/cli/engine_rows.h"
 #include "framework/cli/engines_all.h"
-#include "framework/cli/scene_run.h"
+#include "framework/cli/find_scene.h"
 #include "framework/core/error.h"
 #include "framework/scene/sized_scenes.h"
 

@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 
 #include "framework/cli/engine_rows.h"
-#include "framework/cli/scene_run.h"
+#include "framework/cli/find_scene.h"
 #include "framework/core/error.h"
-#include "framework/engines/judge.h"
+#include "framework/engines/judging/judge.h"
 #include "framework/render/picture.h"
 #include "framework/report/engines_index.h"
 #include "framework/report/player.h"

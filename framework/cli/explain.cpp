@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "framework/cli/scene_run.h"
+#include "framework/cli/find_scene.h"
 #include "framework/engines/run.h"
 #include "framework/scene/effects.h"
 

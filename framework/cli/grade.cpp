@@ -7,9 +7,11 @@
 #include <unistd.h>
 
 #include "framework/cli/verb.h"
-#include "framework/grading/grade.h"
-#include "framework/grading/grade_pages.h"
-#include "framework/grading/plain_text.h"
+#include "framework/grading/grades/find_submissions.h"
+#include "framework/grading/grades/grade.h"
+#include "framework/grading/grades/grade_many.h"
+#include "framework/grading/grades/grade_pages.h"
+#include "framework/grading/verdicts/plain_text.h"
 
 namespace tumble::cli {
 namespace {

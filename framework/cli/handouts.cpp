@@ -9,7 +9,7 @@
 
 #include "framework/cli/verb.h"
 #include "framework/core/files.h"
-#include "framework/grading/run_program.h"
+#include "framework/grading/course/run_program.h"
 #include "framework/report/html.h"
 
 namespace tumble::cli {

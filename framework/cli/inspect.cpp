@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "framework/cli/scene_run.h"
+#include "framework/cli/find_scene.h"
 #include "framework/cli/verb.h"
 #include "framework/geometry/load_3ds.h"
 #include "framework/geometry/mass_properties.h"

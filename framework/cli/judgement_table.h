@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "framework/engines/judge.h"
+#include "framework/engines/judging/judge.h"
 
 namespace tumble::cli {
 

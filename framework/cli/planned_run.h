@@ -7,8 +7,11 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "framework/cli/scene_run.h"
+#include "framework/cli/module_choice.h"
+#include "framework/cli/run_words.h"
+#include "framework/cli/verb.h"
 #include "framework/engines/cost/choice.h"
+#include "framework/scene/scene.h"
 
 namespace tumble::cli {
 

@@ -9,9 +9,9 @@
 
 #include "framework/cli/verb.h"
 #include "framework/core/files.h"
-#include "framework/grading/course.h"
-#include "framework/grading/release_checks.h"
-#include "framework/grading/run_program.h"
+#include "framework/grading/course/course.h"
+#include "framework/grading/course/release_checks.h"
+#include "framework/grading/course/run_program.h"
 
 namespace tumble::cli {
 namespace {

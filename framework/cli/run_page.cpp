@@ -9,7 +9,7 @@
 
 #include "framework/engines/run.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
-#include "framework/grading/worker_connection.h"
+#include "framework/grading/worker/worker_connection.h"
 #include "framework/report/player.h"
 #include "framework/report/virtual_times_panel.h"
 

@@ -3,7 +3,10 @@
 
 #include <string>
 
-#include "framework/cli/scene_run.h"
+#include "framework/cli/module_choice.h"
+#include "framework/cli/run_words.h"
+#include "framework/cli/verb.h"
+#include "framework/scene/scene.h"
 #include "framework/trajectory/trajectory.h"
 #include "framework/trajectory/virtual_times.h"
 

@@ -3,10 +3,10 @@
 #include <cstdio>
 
 #include "framework/core/files.h"
-#include "framework/grading/build_submission.h"
-#include "framework/grading/call_log.h"
-#include "framework/grading/compiler_words.h"
-#include "framework/grading/worker_connection.h"
+#include "framework/grading/course/build_submission.h"
+#include "framework/grading/verdicts/call_log.h"
+#include "framework/grading/compiler/compiler_words.h"
+#include "framework/grading/worker/worker_connection.h"
 
 namespace tumble::cli {
 namespace {

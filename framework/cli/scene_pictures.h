@@ -1,7 +1,9 @@
 /// The pictures that a run was asked for.
 #pragma once
 
-#include "framework/cli/scene_run.h"
+#include "framework/cli/run_words.h"
+#include "framework/cli/verb.h"
+#include "framework/scene/scene.h"
 #include "framework/trajectory/trajectory.h"
 
 namespace tumble::cli {

@@ -18,11 +18,11 @@
 #include "framework/cli/scene_pictures.h"
 #include "framework/core/cpu_time.h"
 #include "framework/core/nearest_word.h"
-#include "framework/engines/judge.h"
+#include "framework/engines/judging/judge.h"
 #include "framework/engines/run.h"
-#include "framework/engines/run_counters.h"
+#include "framework/engines/base/run_counters.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
-#include "framework/grading/worker_connection.h"
+#include "framework/grading/worker/worker_connection.h"
 #include "framework/scene/load_scene.h"
 #include "framework/scene/sized_scenes.h"
 #include "framework/trajectory/run_progress.h"
@@ -125,37 +125,6 @@ void print_json(const scene::Scene& scene, const PlannedRun& plan, const Traject
   fmt::print("{}\n", page.dump(2));
 }
 
-std::vector<fs::path> scenes_of(const Context& context) {
-  std::set<fs::path> files;
-  std::error_code ignored;
-  for (const auto* kind : context.registry.all())
-    for (const auto& entry : fs::directory_iterator(context.root / "assignments" / kind->folder / "scenes", ignored))
-      if (entry.path().extension() == ".json") files.insert(entry.path());
-  return {files.begin(), files.end()};
-}
-
-/// Name and title of every scene, a line each.
-std::string listing(const Context& context) {
-  std::string lines;
-  for (const auto& file : scenes_of(context)) {
-    std::string title;
-    try {
-      title = scene::load_scene(file).title;
-    } catch (const UserError&) {
-      title = "(cannot be read; run it to see why)";
-    }
-    lines += fmt::format("\n  {:<24} {}", file.stem().string(), title);
-  }
-  for (const scene::SizedScene& sized : scene::sized_scenes()) lines += fmt::format("\n  {:<24} {} (--n {}: {})", sized.name, sized.title, sized.default_n, sized.counts);
-  return lines;
-}
-
-std::string sized_names() {
-  std::string names;
-  for (const scene::SizedScene& sized : scene::sized_scenes()) names += (names.empty() ? "" : ", ") + sized.name;
-  return names;
-}
-
 /// A run that was asked to be shorter than the scene is not judged by what it cannot have reached.
 scene::Scene judged_part(scene::Scene scene, const RunWords& words) {
   const bool is_shorter = words.duration_s && *words.duration_s < scene.duration_s;
@@ -189,75 +158,6 @@ void add_run_words(Verb& verb, RunWords& words) {
   verb.option("--speed", words.speed, "Seconds of the run in a second of video: 0.25 is slow motion").between(1e-6, 1e6).shows_default();
   verb.option("--size", words.size, "Of pictures and video, in pixels").type_name("WxH").shows_default();
   verb.flag("--json", words.json, "For machines");
-}
-
-PictureSize parse_size(const std::string& text) {
-  PictureSize size{0, 0};
-  char rest = 0;
-  const bool is_read = std::sscanf(text.c_str(), "%dx%d%c", &size.width, &size.height, &rest) == 2;
-  const auto fits = [](int pixels) { return pixels >= 16 && pixels <= 4096; };
-  if (!is_read || !fits(size.width) || !fits(size.height)) throw UserError("--size " + text, "expected WIDTHxHEIGHT in pixels, each from 16 to 4096", "For example --size 640x480.");
-  return size;
-}
-
-Vector3d parse_vector(const std::string& flag, const std::string& text) {
-  Vector3d v;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &v.x(), &v.y(), &v.z(), &rest) != 3 || !v.allFinite())
-    throw UserError(flag + " " + text, "expected three numbers with commas between them and no spaces", "For example " + flag + " 0,0,5.");
-  return v;
-}
-
-fs::path find_model_file(const Context& context, const std::string& word) {
-  if (fs::is_regular_file(word)) return word;
-  for (const std::string& name : {word, word + ".3ds"}) {
-    const auto path = context.root / "models" / name;
-    if (fs::is_regular_file(path)) return path.lexically_proximate(fs::current_path());
-  }
-  return word;  // the loader says that it is not there
-}
-
-scene::Scene scene_of_words(const Context& context, const RunWords& words, bool turns) {
-  if ((words.scale || words.density || words.drop) && !scene::names_model(words.scene))
-    throw UserError(words.scale ? "--scale" : words.density ? "--density" : "--drop", "'" + words.scene + "' is a scene, which says its sizes and masses itself",
-                    "These words are about a .3ds file: tumble run t_handle.3ds --drop");
-  scene::ModelSceneOptions model;
-  if (words.scale) model.metres_per_unit = *words.scale;
-  if (words.density) model.density_kg_m3 = *words.density;
-  model.is_dropped = words.drop;
-  model.turns = turns;
-  return find_scene(context, words.scene, words.n, model);
-}
-
-scene::Scene find_scene(const Context& context, const std::string& word, std::optional<int> n, const scene::ModelSceneOptions& model) {
-  if (const scene::SizedScene* sized = scene::sized_scene_named(word); sized != nullptr && !fs::is_regular_file(word)) {
-    scene::Scene made = scene::make_sized_scene(word, n.value_or(sized->default_n));
-    made.file = context.root / "models" / word;   // models are looked for beside it
-    return made;
-  }
-  if (n) throw UserError("--n " + std::to_string(*n), "'" + word + "' has one size", "Sizes are parameters of " + sized_names() + ".");
-  if (scene::names_model(word)) return scene::make_model_scene(find_model_file(context, word), model);
-  if (fs::is_regular_file(word)) return scene::load_scene(word);
-  if (word.ends_with(".json") || word.find('/') != std::string::npos) throw UserError(word, "there is no such file", "Check the path, or give a scene's bare name: " + listing(context));
-  std::vector<fs::path> beginning;   // a name may be cut short where that is clear
-  std::vector<std::string> names_there;
-  for (const auto& file : scenes_of(context)) {
-    if (file.stem() == word) return scene::load_scene(file);
-    if (file.stem().string().starts_with(word)) beginning.push_back(file);
-    names_there.push_back(file.stem());
-  }
-  if (beginning.size() == 1) return scene::load_scene(beginning.front());
-  if (beginning.empty()) throw UserError(word, "there is no such scene." + did_you_mean(word, names_there), "Give the path of a scene file, or one of these: " + listing(context));
-  std::string names;
-  for (const auto& file : beginning) names += (names.empty() ? "" : ", ") + file.stem().string();
-  throw UserError(word, "more than one scene begins like this: " + names, "Give more of the name.");
-}
-
-std::vector<std::string> scene_names(const Context& context) {
-  std::vector<std::string> names;
-  for (const fs::path& file : scenes_of(context)) names.push_back(file.stem().string());
-  for (const scene::SizedScene& sized : scene::sized_scenes()) names.push_back(sized.name);
-  return names;
 }
 
 void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const RunWords& words, const std::string& extra) {

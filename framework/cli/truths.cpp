@@ -11,6 +11,7 @@
 #include "framework/cli/truths_table.h"
 #include "framework/cli/verb.h"
 #include "framework/engines/truths/families.h"
+#include "framework/engines/truths/module_truths.h"
 
 namespace tumble::cli {
 namespace {
@@ -92,8 +93,9 @@ std::optional<CaseResult> compute(const Context& context, const Chosen& chosen, 
     known = true;
   }
   for (const modules::ModuleKind* kind : context.registry.all()) {
-    const auto family = kind->truth_families.find(truth.family);
-    if (family == kind->truth_families.end()) continue;
+    const auto families = kind->note<truths::ModuleTruths>().families;
+    const auto family = families.find(truth.family);
+    if (family == families.end()) continue;
     comparison.attempt(truth.family, [&] { family->second(chosen.tables.at(kind->id), truth, comparison); });
     known = true;
   }

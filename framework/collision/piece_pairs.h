@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "framework/collision/gap.h"
+#include "framework/collision/collision_shape.h"
 #include "framework/collision/pair_cache.h"
 #include "framework/collision/polytope_gap.h"
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "framework/core/error.h"
+#include "framework/dynamics/solve_contacts.h"
 
 namespace tumble {
 namespace {

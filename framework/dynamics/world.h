@@ -90,10 +90,6 @@ struct World {
   std::vector<std::pair<int, int>> apart;         // (i, j), i < j, sorted: pairs that do not collide; joined bodies are among them
 };
 
-/// Builds what the scene's entries ask for, and nothing else.
-/// @throws UserError naming the body or the force that cannot be built
-World build_world(const scene::Scene& scene);
-
 /// Place of an immovable body at a time: start + v t + A sin(w t). [m]
 Vector3d prescribed_position(const WorldBody& body, double time);
 /// Its velocity, exact. [m/s]
@@ -106,15 +102,5 @@ Vector3d angular_momentum_of(const Vector3d& omega_world, const Quaterniond& wor
 
 /// Of one movable body. [J]
 double kinetic_energy(const RigidBodyState& state, const Inertia& inertia);
-
-/// Sums over the movable bodies of a world.
-struct Invariants {
-  double kinetic_energy = 0.0;                            // [J]
-  double potential_energy = 0.0;                          // -m g.x, and of springs [J]
-  Vector3d momentum_world = Vector3d::Zero();             // [kg m/s]
-  Vector3d angular_momentum_world = Vector3d::Zero();     // about the world's origin [kg m^2/s]
-};
-/// @param states  by body index; of immovable bodies only the place is looked at, for springs that end there
-Invariants invariants_of(const World& world, const std::vector<RigidBodyState>& states);
 
 }  // namespace tumble

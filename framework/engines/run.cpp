@@ -9,15 +9,16 @@
 
 #include "framework/core/error.h"
 #include "framework/core/nearest_word.h"
+#include "framework/dynamics/build_world.h"
 #include "framework/dynamics/world.h"
 #include "framework/engines/events/advancement.h"
 #include "framework/engines/events/ordered.h"
-#include "framework/engines/guarded_laws.h"
-#include "framework/engines/local_origin.h"
-#include "framework/engines/retroactive.h"
-#include "framework/engines/run_counters.h"
-#include "framework/engines/start_overlaps.h"
-#include "framework/engines/start_watch.h"
+#include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/stepping/local_origin.h"
+#include "framework/engines/rd/retroactive.h"
+#include "framework/engines/base/run_counters.h"
+#include "framework/engines/stepping/start_overlaps.h"
+#include "framework/engines/stepping/start_watch.h"
 #include "framework/engines/timewarp/taught_timewarp.h"
 
 namespace tumble::engines {

@@ -4,7 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "framework/geometry/closed.h"
+#include "framework/geometry/defect.h"
+#include "framework/geometry/triangle_mesh.h"
 
 namespace tumble {
 

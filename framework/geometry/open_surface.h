@@ -3,8 +3,9 @@
 
 #include <vector>
 
-#include "framework/geometry/closed.h"
+#include "framework/geometry/defect.h"
 #include "framework/geometry/mesh_edges.h"
+#include "framework/geometry/triangle_mesh.h"
 
 namespace tumble {
 

@@ -4,8 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "framework/geometry/closed.h"
+#include "framework/geometry/defect.h"
 #include "framework/geometry/mesh_edges.h"
+#include "framework/geometry/triangle_mesh.h"
 
 namespace tumble {
 

@@ -1,21 +1,19 @@
 /// Which modules there are. Each assignment registers once; the framework never names one.
 #pragma once
 
+#include <any>
 #include <functional>
 #include <map>
 #include <memory>
 #include <string>
+#include <typeindex>
+#include <utility>
 #include <vector>
 
 #include "framework/dynamics/laws.h"
 #include "framework/modules/proxy.h"
 #include "framework/modules/serve.h"
 #include "framework/modules/watched.h"
-
-namespace tumble::truths {
-struct Case;
-class Comparison;
-}  // namespace tumble::truths
 
 namespace tumble::modules {
 
@@ -29,14 +27,6 @@ struct NamedMethod {
   std::function<std::function<VectorXd(const OdeFunction&, double, const VectorXd&, double)>(const AnyModule&)> step;
 };
 
-/// Where what accuracy costs is measured of a module: a scene for so long that an order shows, and so short that a method of the first does too.
-struct CostShowcase {
-  std::string scene;                       // a bare name; empty: nobody said
-  double duration_s = 0.0;
-  bool is_graded = false;                  // a part of each graded report: where the module decides how errors shrink with the step, whether they do, or what is paid
-  std::string sized_scene = {};            // of a scheduler: the scene that is run at growing size; empty: none
-};
-
 /// All that the framework can do with a module without knowing its header.
 struct ModuleKind {
   std::string id;                          // "a1"
@@ -48,11 +38,17 @@ struct ModuleKind {
   std::function<void(const AnyModule&, Channel&)> serve;             // worker's side
   std::function<AnyModule(Connection&)> make_proxy;                  // judge's side
   std::function<AnyModule(const AnyModule&, CallWatcher&)> watched;  // the same module, its calls seen from outside
-  /// Families of truths (engines/truths) whose values this module's functions give directly, by name.
-  std::map<std::string, std::function<void(const AnyModule&, const truths::Case&, truths::Comparison&)>> truth_families;
   std::vector<NamedMethod> methods;        // empty where the module is not about integration
-  CostShowcase cost;
-  bool is_scheduler = false;               // it decides in which order a world goes on, not how: only who names it gets it
+  bool is_scheduler = false;               // it decides in which order a world goes on, not how: it is bound only where it is named
+
+  /// What a room above this one wishes to know of a module, as a type of that room (truths::ModuleTruths, engines::CostShowcase): kept here, and not
+  /// known here. As the type is by default where nothing was noted.
+  template <class Note>
+  Note note() const {
+    const auto found = notes.find(typeid(Note));
+    return found == notes.end() ? Note{} : *std::any_cast<Note>(&found->second);
+  }
+  std::map<std::type_index, std::any> notes;
 };
 
 class Registry {
@@ -79,13 +75,10 @@ class Registry {
     kinds_[kind.id] = std::move(kind);
   }
 
-  /// A family of truths that a registered module's functions give directly.
-  /// @param compare  computes a case with the module and compares every output of it
-  template <class Module>
-  void add_truth_family(const std::string& family, void (*compare)(const Module&, const truths::Case&, truths::Comparison&)) {
-    kinds_.at(Module::kId).truth_families[family] = [compare](const AnyModule& module, const truths::Case& truth, truths::Comparison& comparison) {
-      compare(*static_cast<const Module*>(module.get()), truth, comparison);
-    };
+  /// See ModuleKind::note. @pre the module is registered
+  template <class Note>
+  void set_note(const std::string& id, Note note) {
+    kinds_.at(id).notes[typeid(Note)] = std::move(note);
   }
 
   /// A method of integration among a registered module's functions.
@@ -94,7 +87,6 @@ class Registry {
     kinds_.at(Module::kId).methods.push_back({name, order, [function](const AnyModule& module) { return static_cast<const Module*>(module.get())->*function; }});
   }
 
-  void show_cost(const std::string& id, const CostShowcase& showcase) { kinds_.at(id).cost = showcase; }
   /// A registered module that decides the order in which a world goes on.
   void mark_scheduler(const std::string& id) { kinds_.at(id).is_scheduler = true; }
 

@@ -1,6 +1,7 @@
 /// Words over a drawn picture. Internal to framework/render.
 #pragma once
 
+#include "framework/render/image.h"
 #include "framework/render/stage.h"
 #include "framework/render/text.h"
 

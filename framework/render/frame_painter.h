@@ -2,6 +2,7 @@
 #pragma once
 
 #include "framework/render/captions.h"
+#include "framework/render/image.h"
 #include "framework/render/painter.h"
 #include "framework/render/stage.h"
 

@@ -8,7 +8,9 @@
 #include "framework/geometry/shape.h"
 #include "framework/render/drawing.h"
 #include "framework/render/links.h"
-#include "framework/render/picture.h"
+#include "framework/render/picture_options.h"
+#include "framework/scene/scene.h"
+#include "framework/trajectory/trajectory.h"
 
 namespace tumble::render {
 

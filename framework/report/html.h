@@ -16,17 +16,11 @@
 #include <utility>
 #include <vector>
 
+#include "framework/report/html_text.h"
 #include "framework/report/plot.h"
 #include "framework/report/stacked_bars.h"
 
 namespace tumble::report {
-
-/// Text as HTML shows it: markup escaped; terminal colour codes, control characters and characters that reverse the
-/// direction of writing dropped; bytes that are not UTF-8 shown as U+FFFD. Newline and tab stay.
-std::string html_escape(std::string_view text);
-
-/// A file's path, relative to the page, as a link: every byte outside [A-Za-z0-9._~/-] as %XX.
-std::string link_to(const std::filesystem::path& relative);
 
 /// How a piece of text is meant. Shown by colour and by weight, so that print and colour-blind readers see it too.
 enum class Look { kPlain, kMuted, kGood, kWarning, kBad };

@@ -6,7 +6,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "framework/report/player.h"
+#include "framework/report/played_run.h"
+#include "framework/scene/scene.h"
 
 namespace tumble::report {
 

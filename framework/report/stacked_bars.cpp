@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
-#include "framework/report/html.h"
+#include "framework/report/html_text.h"
 
 namespace tumble::report {
 namespace {

@@ -1,7 +1,7 @@
 /// What a schema cannot say about a scene's checks: what each kind needs, and names that resolve.
 #pragma once
 
-#include "framework/scene/check_scene.h"
+#include "framework/scene/names.h"
 
 namespace tumble::scene {
 

@@ -1,7 +1,7 @@
 /// What a schema cannot say about springs, rods, joints, drag, motors and contact: what is impossible or would do nothing.
 #pragma once
 
-#include "framework/scene/check_scene.h"
+#include "framework/scene/names.h"
 
 namespace tumble::scene {
 

@@ -40,17 +40,6 @@ void check_inertia(const Matrix3d& inertia, const Refuse& refuse) {
 
 }  // namespace
 
-void Names::expect(const std::string& name, const std::string& pointer, const Refuse& refuse) const {
-  if (std::find(names_.begin(), names_.end(), name) != names_.end()) return;
-  refuse(pointer, "no " + what_ + " is named '" + name + "'." + did_you_mean(name, names_), names_.empty() ? "The scene has none." : plural_ + ": " + listed(names_) + ".");
-}
-
-Names names_of_bodies(const Scene& scene) {
-  std::vector<std::string> names;
-  for (const auto& body : scene.bodies) names.push_back(body.name);
-  return Names("body", "Bodies", std::move(names));
-}
-
 void check_body(const BodySpec& body, const Refuse& refuse) {
   check_mass(body, refuse);
   if (body.inertia_body_kg_m2) check_inertia(*body.inertia_body_kg_m2, refuse);

@@ -1,31 +1,10 @@
 /// What a schema cannot say about a scene: names that resolve, masses that fit, matrices that are inertias.
 #pragma once
 
-#include <functional>
-#include <string>
-#include <vector>
-
+#include "framework/scene/names.h"
 #include "framework/scene/scene.h"
 
 namespace tumble::scene {
-
-/// Called with a place (a key of the body, or a JSON pointer of the scene), what is wrong there, and what to do. Must throw.
-using Refuse = std::function<void(const std::string& place, const std::string& problem, const std::string& remedy)>;
-
-/// The names there are of a kind of thing.
-class Names {
- public:
-  /// @param what, plural  as errors call them: "body", "Bodies"
-  Names(std::string what, std::string plural, std::vector<std::string> names) : what_(std::move(what)), plural_(std::move(plural)), names_(std::move(names)) {}
-
-  /// Refuses a name that is not among them, and says which is nearest.
-  void expect(const std::string& name, const std::string& pointer, const Refuse& refuse) const;
-
- private:
-  std::string what_, plural_;
-  std::vector<std::string> names_;
-};
-Names names_of_bodies(const Scene& scene);
 
 /// Everything that one body's entry must hold on its own.
 void check_body(const BodySpec& body, const Refuse& refuse);

@@ -149,7 +149,7 @@ struct CameraSpec {
   std::optional<std::string> follow;  // a body's name: eye and target move along with it
 };
 
-/// One number by which a run of the scene is judged. `kind` is one of the checks that engines/judge.h knows.
+/// One number by which a run of the scene is judged. `kind` is one of the checks that engines/judging/judge.h knows.
 struct CheckSpec {
   std::string kind;                 // e.g. "energy", "momentum", "angular_momentum", "gap", "final_position", "impact_times"
   double tolerance = 0.0;

@@ -60,7 +60,7 @@ struct Event {
   double energy_excess = kUnset;           // how far that is from what restitution and friction say, over the kinetic energy before [-]
 };
 
-/// A reason not to trust a run, which the framework found while it went (engines/run_watch.h). A run that has one is judged wrong.
+/// A reason not to trust a run, which the framework found while it went (engines/base/run_watch.h). A run that has one is judged wrong.
 struct RunFault {
   std::string kind;                // as a check's: "link_open", "projection_open", "contact_unsolved", "energy_rises", "turn_unresolved"
   std::string subject;             // the bodies or links of the worst, by name

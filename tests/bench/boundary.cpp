@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "framework/grading/worker_connection.h"
+#include "framework/grading/worker/worker_connection.h"
 #include "tests/modules/waist.h"
 
 namespace {

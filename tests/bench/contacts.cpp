@@ -6,6 +6,8 @@
 
 #include "tests/dynamics/contact_scenes.h"
 
+#include "framework/dynamics/solve_contacts.h"
+
 namespace tumble::testing {
 namespace {
 

@@ -7,7 +7,7 @@
 
 #include "framework/core/error.h"
 #include "framework/engines/run.h"
-#include "framework/engines/run_counters.h"
+#include "framework/engines/base/run_counters.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/scene/sized_scenes.h"
 #include "tests/engines/reference_laws.h"

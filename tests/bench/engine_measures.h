@@ -6,7 +6,7 @@
 #include <string>
 
 #include "framework/scene/scene.h"
-#include "framework/engines/time_parts.h"
+#include "framework/engines/judging/time_parts.h"
 #include "framework/scene/scene.h"
 #include "framework/trajectory/trajectory.h"
 

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/files.h"
-#include "framework/grading/run_program.h"
+#include "framework/grading/course/run_program.h"
 
 namespace tumble::grading {
 namespace {

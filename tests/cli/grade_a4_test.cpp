@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "framework/grading/run_program.h"
+#include "framework/grading/course/run_program.h"
 
 namespace tumble::grading {
 namespace {

@@ -10,13 +10,14 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/core/files.h"
-#include "framework/grading/compiler_words.h"
-#include "framework/grading/grade_files.h"
-#include "framework/grading/grade_key.h"
-#include "framework/grading/grade_pages.h"
-#include "framework/grading/plain_text.h"
-#include "framework/grading/run_program.h"
-#include "framework/grading/scoring.h"
+#include "framework/grading/compiler/compiler_words.h"
+#include "framework/grading/grades/find_submissions.h"
+#include "framework/grading/grades/grade_files.h"
+#include "framework/grading/grades/grade_key.h"
+#include "framework/grading/grades/grade_pages.h"
+#include "framework/grading/verdicts/plain_text.h"
+#include "framework/grading/course/run_program.h"
+#include "framework/grading/grades/scoring.h"
 
 namespace tumble::grading {
 namespace {

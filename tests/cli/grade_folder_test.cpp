@@ -11,11 +11,11 @@
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
-#include "framework/grading/digest.h"
-#include "framework/grading/grade_files.h"
-#include "framework/grading/machine_key.h"
-#include "framework/grading/output_folder.h"
-#include "framework/grading/scoring.h"
+#include "framework/grading/course/digest.h"
+#include "framework/grading/grades/grade_files.h"
+#include "framework/grading/course/machine_key.h"
+#include "framework/grading/grades/output_folder.h"
+#include "framework/grading/grades/scoring.h"
 
 namespace tumble::grading {
 namespace {

@@ -1,9 +1,10 @@
 // Points alone are added up again; nothing is run.
 #include <gtest/gtest.h>
 
-#include "framework/grading/grade.h"
-#include "framework/grading/grade_key.h"
-#include "framework/grading/scoring.h"
+#include "framework/grading/grades/grade.h"
+#include "framework/grading/grades/grade_key.h"
+#include "framework/grading/grades/grade_submission.h"
+#include "framework/grading/grades/scoring.h"
 
 namespace tumble::grading {
 namespace {

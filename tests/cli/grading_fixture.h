@@ -14,7 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/core/files.h"
-#include "framework/grading/run_program.h"
+#include "framework/grading/course/run_program.h"
 
 namespace tumble::grading {
 

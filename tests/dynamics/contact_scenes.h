@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "framework/dynamics/contact_problem.h"
+#include "framework/dynamics/solve_contacts.h"
 #include "tests/dynamics/tops.h"
 
 namespace tumble::testing {

@@ -1,4 +1,6 @@
 // A world is what its scene asks for, and nothing else.
+#include "framework/dynamics/build_world.h"
+#include "framework/dynamics/invariants.h"
 #include "framework/dynamics/world.h"
 
 #include <cmath>

@@ -6,7 +6,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/random.h"
-#include "framework/engines/run_counters.h"
+#include "framework/engines/base/run_counters.h"
 #include "tests/engines/event_scenes.h"
 
 namespace tumble::testing {

@@ -1,6 +1,6 @@
 // What judges links, contacts, rest and falls, on runs made by hand: each says the number that the run was made with, and fails a
 // run that is wrong.
-#include "framework/engines/judge.h"
+#include "framework/engines/judging/judge.h"
 
 #include <functional>
 #include <numbers>

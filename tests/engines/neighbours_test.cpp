@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/dynamics/solve_contacts.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "tests/engines/reference_laws.h"
 

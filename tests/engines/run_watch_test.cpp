@@ -6,9 +6,10 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/random.h"
-#include "framework/engines/judge.h"
-#include "framework/engines/run_watch.h"
-#include "framework/engines/stability.h"
+#include "framework/dynamics/build_world.h"
+#include "framework/engines/judging/judge.h"
+#include "framework/engines/base/run_watch.h"
+#include "framework/engines/stepping/stability.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/scene/load_scene.h"
 #include "tests/engines/reference_laws.h"

@@ -1,7 +1,7 @@
 // Paths between the ends of a step.
 #include <gtest/gtest.h>
 
-#include "framework/engines/smooth_path.h"
+#include "framework/engines/stepping/smooth_path.h"
 
 namespace tumble::testing {
 namespace {

@@ -5,8 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
+#include "framework/dynamics/build_world.h"
 #include "framework/dynamics/methods.h"
-#include "framework/engines/stability.h"
+#include "framework/engines/stepping/stability.h"
 #include "framework/engines/truths/memory_scene.h"
 #include "tests/engines/reference_laws.h"
 

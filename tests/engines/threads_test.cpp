@@ -8,7 +8,7 @@
 
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
-#include "framework/engines/guarded_laws.h"
+#include "framework/engines/base/guarded_laws.h"
 #include "tests/engines/event_scenes.h"
 
 namespace tumble::testing {

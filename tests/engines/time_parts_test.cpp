@@ -1,9 +1,9 @@
 // The parts that an engine's time is told in: their names are names of functions, and each engine's parts are its whole.
 #include <gtest/gtest.h>
 
-#include "framework/engines/recorder.h"
+#include "framework/engines/rd/recorder.h"
 #include "framework/engines/run.h"
-#include "framework/engines/time_parts.h"
+#include "framework/engines/judging/time_parts.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/scene/sized_scenes.h"
 #include "tests/engines/reference_laws.h"

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "framework/collision/gap.h"
+#include "framework/dynamics/build_world.h"
 #include "framework/dynamics/world.h"
 
 namespace tumble::fuzz {

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/core/error.h"
-#include "framework/engines/judge.h"
+#include "framework/engines/judging/judge.h"
 #include "framework/engines/run.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/scene/load_scene.h"

@@ -7,9 +7,9 @@
 #include <memory>
 #include <string>
 
-#include "framework/grading/call_log.h"
-#include "framework/grading/compile.h"
-#include "framework/grading/worker_connection.h"
+#include "framework/grading/verdicts/call_log.h"
+#include "framework/grading/compiler/compile.h"
+#include "framework/grading/worker/worker_connection.h"
 #include "tests/modules/waist.h"
 
 namespace tumble::grading {

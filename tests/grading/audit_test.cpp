@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
-#include "framework/grading/audit.h"
+#include "framework/grading/grades/audit.h"
 
 namespace tumble::grading {
 namespace {

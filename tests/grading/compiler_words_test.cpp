@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/files.h"
-#include "framework/grading/compiler_words.h"
+#include "framework/grading/compiler/compiler_words.h"
 
 namespace tumble::grading {
 namespace {

@@ -5,8 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/grading/build_submission.h"
-#include "framework/grading/cost_section.h"
+#include "framework/grading/course/build_submission.h"
+#include "framework/grading/grades/cost_section.h"
+#include "framework/grading/grades/measure_cost.h"
 
 namespace tumble::grading {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/grading/guarded_calls.h"
-#include "framework/grading/worker_connection.h"
+#include "framework/grading/worker/guarded_calls.h"
+#include "framework/grading/worker/worker_connection.h"
 #include "tests/modules/waist.h"
 
 namespace tumble::grading {

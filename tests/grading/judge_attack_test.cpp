@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "framework/grading/verdict.h"
+#include "framework/grading/verdicts/verdict.h"
 #include "tests/grading/attack_fixture.h"
 
 namespace tumble::grading {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/engines/judge.h"
+#include "framework/engines/judging/judge.h"
 
 namespace tumble::engines {
 namespace {

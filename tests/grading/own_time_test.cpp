@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/grading/own_time.h"
+#include "framework/grading/verdicts/own_time.h"
 
 namespace tumble::grading {
 namespace {

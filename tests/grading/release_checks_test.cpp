@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/files.h"
-#include "framework/grading/release_checks.h"
+#include "framework/grading/course/release_checks.h"
 
 namespace tumble::grading {
 namespace {

@@ -3,7 +3,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "framework/grading/sandbox.h"
+#include "framework/grading/sandbox/sandbox.h"
 #include "tests/grading/attack_fixture.h"
 
 namespace tumble::grading {

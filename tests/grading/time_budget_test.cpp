@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
-#include "framework/grading/test_words.h"
-#include "framework/grading/time_budget.h"
+#include "framework/grading/test_program/test_words.h"
+#include "framework/grading/test_program/time_budget.h"
 
 namespace tumble::grading {
 namespace {

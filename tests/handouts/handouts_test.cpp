@@ -14,7 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/math.h"
-#include "framework/grading/rubric.h"
+#include "framework/grading/verdicts/rubric.h"
 #include "framework/scene/sized_scenes.h"
 
 namespace tumble::testing {

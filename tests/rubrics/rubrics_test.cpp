@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "framework/grading/rubric.h"
+#include "framework/grading/verdicts/rubric.h"
 
 namespace tumble::testing {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "assignments/a3_constraints/a3_binding.h"
 #include "assignments/a4_timewarp/a4_binding.h"
-#include "framework/engines/judge.h"
+#include "framework/engines/judging/judge.h"
 #include "framework/engines/run.h"
 #include "framework/modules/load.h"
 #include "framework/scene/load_scene.h"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "framework/dynamics/contact_problem.h"
+#include "framework/dynamics/solve_contacts.h"
 #include "framework/dynamics/methods.h"
 
 namespace tumble::battery {

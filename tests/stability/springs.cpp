@@ -7,7 +7,8 @@
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
-#include "framework/engines/stability.h"
+#include "framework/dynamics/build_world.h"
+#include "framework/engines/stepping/stability.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/methods.h"
 #include "tests/stability/support.h"

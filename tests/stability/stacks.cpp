@@ -9,6 +9,8 @@
 #include "tests/stability/cases.h"
 #include "tests/stability/support.h"
 
+#include "framework/dynamics/solve_contacts.h"
+
 namespace tumble::battery {
 namespace {
 

@@ -8,6 +8,7 @@
 #include "assignments/a3_constraints/a3_binding.h"
 #include "framework/cli/read_truth.h"
 #include "framework/engines/truths/families.h"
+#include "framework/engines/truths/module_truths.h"
 #include "framework/modules/load.h"
 
 namespace tumble::testing {
@@ -41,7 +42,7 @@ struct Reference {
     if (const auto family = truths::framework_families().find(truth.family); family != truths::framework_families().end())
       comparison.attempt(truth.family, [&] { family->second(truth, laws, comparison); });
     const auto with = [&](const std::string& id, modules::AnyModule table) {
-      const auto& families = registry.find(id).truth_families;
+      const auto families = registry.find(id).note<truths::ModuleTruths>().families;
       if (const auto family = families.find(truth.family); family != families.end())
         comparison.attempt(truth.family, [&] { family->second(table, truth, comparison); });
     };

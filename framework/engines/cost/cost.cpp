@@ -11,8 +11,8 @@
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
 #include "framework/core/not_implemented.h"
-#include "framework/engines/guarded_laws.h"
-#include "framework/engines/judge.h"
+#include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/judging/judge.h"
 #include "framework/engines/truths/memory_scene.h"
 
 namespace tumble::engines {

@@ -8,9 +8,10 @@
 
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
+#include "framework/dynamics/build_world.h"
 #include "framework/dynamics/world.h"
 #include "framework/engines/cost/cost.h"
-#include "framework/engines/guarded_laws.h"
+#include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/truths/memory_scene.h"
 
 namespace tumble::engines {

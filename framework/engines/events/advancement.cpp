@@ -8,7 +8,7 @@
 #include "framework/collision/time_bound.h"
 #include "framework/core/numbers.h"
 #include "framework/engines/events/flight_run.h"
-#include "framework/engines/guarded_laws.h"
+#include "framework/engines/base/guarded_laws.h"
 
 namespace tumble::engines {
 namespace {

@@ -12,7 +12,7 @@
 /// Source: B. Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems, PhD thesis, Berkeley 1996, ch. 2.
 #pragma once
 
-#include "framework/engines/run.h"
+#include "framework/engines/base/run_options.h"
 
 namespace tumble::engines {
 

@@ -5,9 +5,9 @@
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
-#include "framework/engines/guarded_laws.h"
-#include "framework/engines/stability.h"
-#include "framework/engines/step_limits.h"
+#include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/stepping/stability.h"
+#include "framework/engines/base/step_limits.h"
 
 namespace tumble::engines {
 namespace {

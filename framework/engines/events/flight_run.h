@@ -6,9 +6,9 @@
 #include "framework/engines/events/impacts_of_flights.h"
 #include "framework/engines/events/link_measures.h"
 #include "framework/engines/events/meeting_of_flights.h"
-#include "framework/engines/run.h"
-#include "framework/engines/run_counters.h"
-#include "framework/engines/stability.h"
+#include "framework/engines/base/run_options.h"
+#include "framework/engines/base/run_counters.h"
+#include "framework/engines/stepping/stability.h"
 
 namespace tumble::engines {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "framework/engines/events/flight_frames.h"
-#include "framework/engines/linked_bodies.h"
+#include "framework/engines/stepping/linked_bodies.h"
 
 namespace tumble::engines {
 

@@ -8,8 +8,8 @@
 
 #include "framework/collision/contact_patch.h"
 #include "framework/core/numbers.h"
-#include "framework/engines/guarded_laws.h"
-#include "framework/engines/impact_bodies.h"
+#include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/contact/impact_bodies.h"
 
 namespace tumble::engines {
 namespace {

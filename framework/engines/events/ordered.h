@@ -4,7 +4,7 @@
 /// again. There is no broad phase, no optimism, no rollback, no heap: nothing that could be wrong in the same way as a fast engine.
 #pragma once
 
-#include "framework/engines/run.h"
+#include "framework/engines/base/run_options.h"
 
 namespace tumble::engines {
 

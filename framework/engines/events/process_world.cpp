@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "framework/engines/guarded_laws.h"
-#include "framework/engines/step_limits.h"
+#include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/step_limits.h"
 
 namespace tumble::engines {
 namespace {

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "framework/engines/events/world_part.h"
-#include "framework/engines/lasting_contacts.h"
-#include "framework/engines/meetings.h"
-#include "framework/engines/sequential_impacts.h"
+#include "framework/engines/contact/lasting_contacts.h"
+#include "framework/engines/contact/meetings.h"
+#include "framework/engines/contact/sequential_impacts.h"
 
 namespace tumble::engines {
 

@@ -1,7 +1,7 @@
 /// The fast scheduler of timewarp, where this tree has one.
 #pragma once
 
-#include "framework/engines/run.h"
+#include "framework/engines/base/run_options.h"
 #include "framework/engines/timewarp/rollback_watch.h"
 #include "framework/trajectory/virtual_times.h"
 

@@ -6,7 +6,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/not_implemented.h"
-#include "framework/engines/guarded_laws.h"
+#include "framework/engines/base/guarded_laws.h"
 
 namespace tumble::engines {
 namespace {

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "framework/engines/events/flight_run.h"
-#include "framework/engines/guarded_laws.h"
+#include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/timewarp/taught_groups.h"
 #include "framework/engines/timewarp/taught_process.h"
 #include "framework/engines/timewarp/taught_queue.h"

@@ -9,7 +9,7 @@
 /// own states and are told of everything together.
 #pragma once
 
-#include "framework/engines/run.h"
+#include "framework/engines/base/run_options.h"
 
 namespace tumble::engines {
 

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "framework/engines/guarded_laws.h"
+#include "framework/engines/base/guarded_laws.h"
 
 namespace tumble::engines {
 namespace {

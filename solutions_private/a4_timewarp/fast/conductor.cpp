@@ -10,7 +10,7 @@
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
 #include "framework/core/numbers.h"
-#include "framework/engines/guarded_laws.h"
+#include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "solutions_private/a4_timewarp/fast/fast_timewarp.h"
 

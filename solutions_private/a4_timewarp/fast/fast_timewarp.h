@@ -13,7 +13,7 @@
 /// impacts of any body the first in the total order is the only one that no other can take back.
 #pragma once
 
-#include "framework/engines/run.h"
+#include "framework/engines/base/run_options.h"
 #include "framework/engines/timewarp/rollback_watch.h"
 #include "framework/trajectory/virtual_times.h"
 

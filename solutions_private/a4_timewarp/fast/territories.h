@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "framework/engines/events/flight_world.h"
-#include "framework/engines/run.h"
+#include "framework/engines/base/run_options.h"
 #include "framework/engines/timewarp/active_pairs.h"
 
 namespace tumble::a4 {

@@ -7,7 +7,7 @@
 #include <span>
 
 #include "framework/engines/timewarp/fast_timewarp.h"
-#include "framework/engines/guarded_laws.h"
+#include "framework/engines/base/guarded_laws.h"
 #include "solutions_private/a4_timewarp/fast/territories.h"
 
 namespace tumble::a4 {

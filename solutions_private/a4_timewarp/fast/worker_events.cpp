@@ -9,7 +9,7 @@
 
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
-#include "framework/engines/guarded_laws.h"
+#include "framework/engines/base/guarded_laws.h"
 
 namespace tumble::a4 {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "framework/cli/read_truth.h"
+#include "framework/dynamics/invariants.h"
 #include "tests/support/overlap.h"
 
 namespace tumble::peers {

@@ -1,0 +1,41 @@
+/// Which contacts with friction stick and which slide, told as events where that changes.
+///
+/// A pair slides when the force is on the edge of Coulomb's cone at every point where the two push each other and one of these points
+/// slips, sticks when at none, and keeps its mode in between (a box that pivots about a corner). The force alone does not tell: on a slope as
+/// steep as friction holds it is at its limit and nothing slips. A contact begins sticking; it is a new one where the pair has not
+/// pushed for a twentieth of a second. What changes again sooner than that after it was told is told then, if it has not changed
+/// back: a heap that chatters does not tell of every step.
+#pragma once
+
+#include <map>
+
+#include "framework/engines/contact/lasting_contacts.h"
+
+namespace tumble::engines {
+
+class ContactModes {
+ public:
+  ContactModes(MovingWorld& moving, const LastingContacts& contacts, double rest_speed, TrajectorySink& sink)
+      : moving_(moving), contacts_(contacts), rest_speed_(rest_speed), sink_(sink) {}
+
+  /// The contacts of the step under way have their forces: tells of pairs that stick or slide from its beginning on.
+  void look();
+  /// Whether the pair slides in this step.
+  bool slides(LastingContacts::Pair pair) const;
+
+ private:
+  struct Mode {
+    bool slides, told_sliding;
+    double told, seen;           // [s]
+  };
+
+  double slip_of(const ContactPoint& point);
+
+  MovingWorld& moving_;
+  const LastingContacts& contacts_;
+  double rest_speed_;            // [m/s]
+  TrajectorySink& sink_;
+  std::map<LastingContacts::Pair, Mode> modes_;
+};
+
+}  // namespace tumble::engines

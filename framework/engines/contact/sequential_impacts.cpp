@@ -1,0 +1,350 @@
+#include "framework/engines/contact/sequential_impacts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include <fmt/format.h>
+
+#include "framework/dynamics/point_impact.h"
+#include "framework/dynamics/solve_contacts.h"
+#include "framework/engines/base/guarded_laws.h"
+
+namespace tumble::engines {
+namespace {
+
+// Approach slower than this part of the fastest one is what rounding leaves of "not approaching"; so is what rounding leaves of
+// the speeds along the surface that cancel in it (a ball sliding in a groove).
+constexpr double kRoundOffOfSpeed = 1e-13;
+constexpr double kRoundOffOfSliding = 64 * std::numeric_limits<double>::epsilon();
+constexpr int kRoundsAmongContacts = 60;   // bodies in lasting contact pass a blow on in ever smaller parts
+constexpr std::size_t kToldAPair = 64;   // impulses at one instant: more are told as one a pair
+constexpr int kMostRounds = 10000;  // restitution 0.99 in a row of 50 balls takes some hundred
+// Of K of the free bodies: what rounding leaves where rods and joints hold both bodies completely along the normal.
+constexpr double kImmovable = 1e-12;
+constexpr double kRoundOffOfEnergy = 1e-11;   // of the work of the impulses: what the tolerance of the contact problem leaves
+
+// Of the rest speed: pushes of touching pairs approach it together, each round by a part of what is missing.
+constexpr double kFastEnough = 0.5;
+constexpr int kMostPushes = 200;
+
+Contact contact_of(const TouchingPair& pair, const Vector3d& point_world) { return {point_world, pair.gap.normal_b_to_a_world}; }
+
+struct Approach {
+  double velocity;               // [m/s], negative when approaching
+  const Vector3d* point_world;   // of the pair's points
+};
+
+// The middle counts first, so that a flat landing does not tip over its corners in turn.
+Approach fastest_approach(const Laws& laws, const TouchingPair& pair, const Body& a, const Body& b, double threshold) {
+  Approach fastest{std::numeric_limits<double>::infinity(), &pair.points_world[0]};
+  for (const Vector3d& point : pair.points_world) {
+    const double velocity = laws.relative_normal_velocity(contact_of(pair, point), a, b);
+    if (velocity < fastest.velocity) fastest = {velocity, &point};
+    if (&point == &pair.points_world[0] && velocity < -threshold) break;
+  }
+  return fastest;
+}
+
+
+double speed_at(const Body& body, const Vector3d& point_world) {
+  return body.velocity_world.norm() + body.omega_world.norm() * (point_world - body.com_world).norm();
+}
+
+// Not by the law that is being judged: a record of what the impulse did.
+double normal_velocity(const Contact& contact, const Body& a, const Body& b) {
+  return contact.normal_b_to_a_world.dot(relative_velocity(a, b, contact.point_world));
+}
+
+// The blows that pairs have struck at one instant as one each: all they gave, from the fastest approach on. A heap hands a blow to and fro ten
+// thousand times.
+std::vector<Event> one_a_pair(const std::vector<Event>& events) {
+  std::vector<Event> sums;
+  std::map<std::pair<int, int>, std::size_t> place;
+  for (const Event& event : events) {
+    const auto [found, is_new] = place.try_emplace({event.body_a, event.body_b}, sums.size());
+    if (is_new) {
+      sums.push_back(event);
+      continue;
+    }
+    Event& sum = sums[found->second];
+    sum.impulse += event.impulse;
+    sum.normal_velocity_before = std::min(sum.normal_velocity_before, event.normal_velocity_before);
+    sum.normal_velocity_after = event.normal_velocity_after;
+    sum.energy_change += event.energy_change;
+    sum.energy_excess = std::max(sum.energy_excess, event.energy_excess);
+  }
+  return sums;
+}
+
+double restitution_of(const World& world, const TouchingPair& pair) { return std::min(world.bodies[pair.a].restitution, world.bodies[pair.b].restitution); }
+double friction_of(const World& world, const TouchingPair& pair) { return !built::kFriction ? 0.0 : std::min(world.bodies[pair.a].friction, world.bodies[pair.b].friction); }
+
+}  // namespace
+
+struct SequentialImpacts::Work {
+  ImpactBodies bodies;            // as they are between impulses
+  Resolution result;
+  std::map<const Vector3d*, ImpactBodies::Answer> answers;   // at points of pairs: places stay as they are
+
+  Work(MovingWorld& moving, const Laws& laws) : bodies(moving, laws) {}
+  Body& body(int index) { return bodies.body(index); }
+  const World& world() { return bodies.moving().world(); }
+
+  const ImpactBodies::Answer& answer(const TouchingPair& pair, const Vector3d& point, bool with_tangents) {
+    const auto [found, is_new] = answers.try_emplace(&point);
+    if (is_new || (with_tangents && found->second.directions.cols() == 1)) found->second = bodies.answer({pair.a, pair.b, point, pair.gap.normal_b_to_a_world}, with_tangents);
+    return found->second;
+  }
+};
+
+bool SequentialImpacts::stays(const World& world, const TouchingPair& pair, double approach_speed) const {
+  const double restitution = restitution_of(world, pair);
+  return contact_rest_speed_ && laws_.ends_in_contact(approach_speed, restitution, *contact_rest_speed_);
+}
+
+double SequentialImpacts::friction_at_impact(const World& world, const TouchingPair& pair) const {
+  return built::kFriction && contact_rest_speed_ ? friction_of(world, pair) : 0.0;
+}
+
+bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double threshold) {
+  Body& a = work.body(pair.a);
+  Body& b = work.body(pair.b);
+  auto [approach, point] = fastest_approach(laws_, pair, a, b, threshold);
+  if (!(approach < -threshold)) return false;
+  const bool is_held = work.bodies.is_held(pair.a, pair.b);
+  if (is_held && work.bodies.put_on_constraints(pair.a, pair.b)) {
+    const Approach now = fastest_approach(laws_, pair, a, b, threshold);
+    approach = now.velocity;
+    point = now.point_world;
+    if (!(approach < -threshold)) return false;
+  }
+  const Contact contact = contact_of(pair, *point);
+  const TouchedPoint touched{pair.a, pair.b, contact.point_world, contact.normal_b_to_a_world};
+  const double restitution = stays(work.world(), pair, -approach) ? 0.0 : restitution_of(work.world(), pair);
+  const double friction = friction_at_impact(work.world(), pair);
+
+  // The law's impulse is that of the free bodies without friction: what holds them makes it smaller, friction at the point both.
+  double impulse = laws_.collision_impulse(contact, a, b, restitution), by_law = 0.5 * impulse * (1 - restitution) * approach;
+  Vector3d impulse_world = impulse * contact.normal_b_to_a_world;
+  static const ImpactBodies::Answer free_bodies;
+  const ImpactBodies::Answer* answer = &free_bodies;
+  if (is_held || friction > 0) {
+    answer = &work.answer(pair, *point, friction > 0);
+    const double free = answer->free_along(contact.normal_b_to_a_world), held = answer->held_normal();
+    if (!(held > kImmovable * free))
+      throw StoppedRun(fmt::format("they approach at {:.3g} m/s, and rods and joints hold both completely along the normal of the contact: no impulse can keep them apart. What drives them together (\"motion\") must leave them room",
+                                   -approach));
+    impulse *= free / held;
+    impulse_world = impulse * contact.normal_b_to_a_world;
+    by_law = 0.5 * impulse * (1 - restitution) * approach;
+    if (friction > 0) {
+      ++counters_.friction_points;
+      const Vector3d velocity = relative_velocity(a, b, contact.point_world);
+      const Matrix3d K = answer->held_world();
+      impulse_world = impulse_of({K, velocity, contact.normal_b_to_a_world, held * impulse, friction}).impulse_on_a_world;
+      impulse = impulse_world.dot(contact.normal_b_to_a_world);
+      by_law = energy_of(impulse_world, velocity, K);
+    }
+  }
+  const EnergyOfImpact energy = work.bodies.push(touched, *answer, impulse_world);
+  ++counters_.impulses;
+  work.result.events.push_back({work.bodies.moving().time(), EventKind::kCollision, pair.a, pair.b, contact.point_world, contact.normal_b_to_a_world, impulse, approach,
+                                normal_velocity(contact, a, b), energy.change, energy.excess(by_law)});
+  return true;
+}
+
+namespace {
+
+double size_of_work(const ContactProblem& problem, const ContactSolution& solution) {
+  double size = 0.0;
+  for (std::size_t i = 0; i < problem.contacts.size(); ++i)
+    for (const int body : {problem.contacts[i].body_a, problem.contacts[i].body_b})
+      size += solution.impulses_world[i].norm() * (problem.bodies[body].velocity_world.norm() + solution.velocities[body].linear_world.norm());
+  return size;
+}
+
+}  // namespace
+
+// Newton's restitution at all contacts, as far as it creates no energy.
+ContactSolution SequentialImpacts::solve_without_gain(const ContactProblem& problem) {
+  const std::vector<Velocity> before = velocities_of(problem);
+  const auto solve = [&](const ContactProblem& asked) {
+    ++counters_.contact_solves;
+    return solve_contacts(asked);
+  };
+  ContactSolution whole = solve(problem);
+  const auto gains = [&](const ContactSolution& solution) { return work_of(problem, solution.impulses_world, before, solution.velocities) > kRoundOffOfEnergy * size_of_work(problem, solution); };
+  if (!gains(whole)) return whole;
+  ContactProblem less = problem;
+  for (PushingContact& contact : less.contacts) contact.friction = 0.0;
+  ContactSolution base = solve(less);
+  if (gains(base)) {
+    less = problem;
+    for (PushingContact& contact : less.contacts) contact.target = 0.0;
+    base = solve(less);
+  }
+  // On the line between the two all laws but Coulomb's on the slip hold as they do at both ends, and energy is a parabola.
+  const auto mixed = [](double share, const auto& from, const auto& to) { return (from + share * (to - from)).eval(); };
+  ContactSolution difference = whole;
+  std::vector<Velocity> change = whole.velocities;
+  for (std::size_t i = 0; i < whole.impulses_world.size(); ++i) difference.impulses_world[i] -= base.impulses_world[i];
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] = {change[i].linear_world - base.velocities[i].linear_world, change[i].angular_world - base.velocities[i].angular_world};
+  const std::vector<Velocity> none(change.size(), {Vector3d::Zero(), Vector3d::Zero()});
+  const double bend = work_of(problem, difference.impulses_world, none, change);
+  const double slope = work_of(problem, difference.impulses_world, before, base.velocities) + work_of(problem, base.impulses_world, none, change);
+  const double share = share_without_gain(work_of(problem, base.impulses_world, before, base.velocities), slope, bend);
+  for (std::size_t i = 0; i < whole.impulses_world.size(); ++i) whole.impulses_world[i] = mixed(share, base.impulses_world[i], whole.impulses_world[i]);
+  for (std::size_t i = 0; i < whole.velocities.size(); ++i)
+    whole.velocities[i] = {mixed(share, base.velocities[i].linear_world, whole.velocities[i].linear_world), mixed(share, base.velocities[i].angular_world, whole.velocities[i].angular_world)};
+  return whole;
+}
+
+// Newton's law of restitution for all pairs at once: v_n' >= -e v_n where they approach, v_n' >= 0 elsewhere, with friction, and with the
+// rows of what is linked to them.
+void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingPair>& pairs, double threshold, bool rebounds) {
+  const auto first_corner = [](const TouchingPair& pair) { return pair.points_world.size() > 1 ? 1u : 0u; };   // corners carry; the middle lies between them
+  const auto approach_at = [&](const TouchingPair& pair, std::size_t k) { return laws_.relative_normal_velocity(contact_of(pair, pair.points_world[k]), work.body(pair.a), work.body(pair.b)); };
+  const auto approaches = [&](const TouchingPair& pair) {
+    for (std::size_t k = first_corner(pair); k < pair.points_world.size(); ++k)
+      if (approach_at(pair, k) < -threshold) return true;
+    return false;
+  };
+  if (std::none_of(pairs.begin(), pairs.end(), approaches)) return;
+  for (const TouchingPair& pair : pairs) work.bodies.put_on_constraints(pair.a, pair.b);
+
+  // Bodies: those that touch, and what is linked to them.
+  MovingWorld& moving = work.bodies.moving();
+  ContactProblem problem;
+  std::map<int, int> places;
+  std::vector<int> held_groups;
+  const auto place = [&](int index) {
+    const auto [found, is_new] = places.try_emplace(index, static_cast<int>(problem.bodies.size()));
+    if (!is_new) return found->second;
+    if (moving.resting(index)) moving.wake(index);
+    const Body& body = work.body(index);
+    const Matrix3d R = body.world_from_body.toRotationMatrix();
+    problem.bodies.push_back({body.inertia.inverse_mass, R * body.inertia.inverse_inertia_body * R.transpose(), body.com_world, body.velocity_world, body.omega_world});
+    if (const int group = work.bodies.held_group(index); group >= 0 && std::find(held_groups.begin(), held_groups.end(), group) == held_groups.end()) held_groups.push_back(group);
+    return found->second;
+  };
+  struct Met {
+    const TouchingPair* pair;
+    double approach;
+  };
+  std::vector<Met> met;
+  for (const TouchingPair& pair : pairs)
+    for (std::size_t k = first_corner(pair); k < pair.points_world.size(); ++k) {
+      const double approach = approach_at(pair, k);
+      const double restitution = !rebounds || stays(work.world(), pair, -approach) ? 0.0 : restitution_of(work.world(), pair);
+      problem.contacts.push_back({place(pair.a), place(pair.b), pair.points_world[k], pair.gap.normal_b_to_a_world, friction_of(work.world(), pair),
+                                  approach < 0 ? -restitution * approach : 0.0, Vector3d::Zero()});
+      met.push_back({&pair, approach});
+    }
+  for (const int group : held_groups)
+    for (const int member : moving.linked_groups()[static_cast<std::size_t>(group)].bodies()) place(member);
+  for (const int group : held_groups) add_rows(moving.linked_groups()[static_cast<std::size_t>(group)], moving.states(), moving.time(), places, problem);
+  keep_rates(problem);
+
+  const std::vector<Velocity> before = velocities_of(problem);
+  const ContactSolution solution = solve_without_gain(problem);
+  std::vector<int> all;
+  for (const auto& [index, at] : places) all.push_back(index);
+  const Vector3d driven = work.bodies.driven_velocity(all).value_or(Vector3d::Constant(kUnset));
+  EnergyOfImpact energy;
+  for (const auto& [index, at] : places) {
+    const Body& body = work.body(index);
+    if (body.inertia.inverse_mass == 0.0) continue;
+    energy.add(body.inertia, body.world_from_body, before[at], solution.velocities[at], driven);
+    work.bodies.set_velocity(index, solution.velocities[at]);
+  }
+  const double excess = energy.excess(solution.converged ? work_of(problem, solution.impulses_world, before, solution.velocities) : energy.change);   // unsolved: never more is all that can be asked
+  bool is_first = true;
+  for (std::size_t i = 0; i < met.size(); ++i) {
+    const TouchingPair& pair = *met[i].pair;
+    const double impulse = solution.impulses_world[i].dot(pair.gap.normal_b_to_a_world);
+    if (!(impulse > 0)) continue;
+    ++counters_.impulses;
+    const Contact contact = contact_of(pair, problem.contacts[i].point_world);
+    // The energy of all, which the first stands for.
+    work.result.events.push_back({moving.time(), EventKind::kCollision, pair.a, pair.b, contact.point_world, contact.normal_b_to_a_world, impulse, met[i].approach,
+                                  normal_velocity(contact, work.body(pair.a), work.body(pair.b)), is_first ? energy.change : 0.0, is_first ? excess : 0.0});
+    is_first = false;
+  }
+}
+
+bool SequentialImpacts::push_pair_apart(Work& work, const TouchingPair& pair) {
+  const auto [rate, point] = fastest_approach(laws_, pair, work.body(pair.a), work.body(pair.b), rules_.rest_speed);
+  if (rate >= kFastEnough * rules_.rest_speed) return false;
+  const Vector3d& n = pair.gap.normal_b_to_a_world;
+  const ImpactBodies::Answer& answer = work.answer(pair, *point, false);
+  if (!(answer.held_normal() > kImmovable * answer.free_along(n))) return false;   // links hold both where they are
+  work.bodies.push({pair.a, pair.b, *point, n}, answer, (rules_.rest_speed - rate) / answer.held_normal() * n);
+  ++counters_.micro_impacts;
+  return true;
+}
+
+void SequentialImpacts::push_apart(MovingWorld& moving, const std::vector<TouchingPair>& touching, const std::vector<TouchingPair>& micro_impacts) {
+  if (micro_impacts.empty()) return;
+  Work work(moving, laws_);
+  const auto had_micro_impact = [&](const TouchingPair& pair) {
+    return std::any_of(micro_impacts.begin(), micro_impacts.end(), [&](const TouchingPair& m) { return m.a == pair.a && m.b == pair.b; });
+  };
+  bool again = true;
+  for (int round = 0; again && round < kMostPushes; ++round) {
+    again = false;
+    for (const TouchingPair& pair : touching)
+      if (had_micro_impact(pair) || work.bodies.changed().contains(pair.a) || work.bodies.changed().contains(pair.b)) again = push_pair_apart(work, pair) || again;
+  }
+  work.bodies.write_back();
+}
+
+Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<TouchingPair>& pairs, std::size_t trigger) {
+  Work work(moving, laws_);
+  double fastest = 0.0, sliding = 0.0;
+  for (const TouchingPair& pair : pairs)
+    for (const Vector3d& point : pair.points_world) {
+      fastest = std::max(fastest, std::abs(laws_.relative_normal_velocity(contact_of(pair, point), work.body(pair.a), work.body(pair.b))));
+      sliding = std::max({sliding, speed_at(work.body(pair.a), point), speed_at(work.body(pair.b), point)});
+    }
+  const double threshold = std::max(kRoundOffOfSpeed * fastest, kRoundOffOfSliding * sliding);
+
+  bool again = law_ == scene::ImpactLaw::kSequential;
+  int rounds = 0;
+  if (!again) collide_together(work, pairs, threshold, true);
+  while (again && ++rounds < (contact_rest_speed_ ? kRoundsAmongContacts : kMostRounds)) {
+    again = false;
+    for (const TouchingPair& pair : pairs) again = collide(work, pair, threshold) || again;
+  }
+  if (again && contact_rest_speed_) {   // what is left of a blow that many bodies in contact hand to and fro is taken from all at once
+    collide_together(work, pairs, threshold, false);
+    again = false;
+    work.result.events = one_a_pair(work.result.events);
+  } else if (work.result.events.size() > kToldAPair * pairs.size()) {
+    work.result.events = one_a_pair(work.result.events);
+  }
+  work.result.settled = !again;
+
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const TouchingPair& pair = pairs[k];
+    const auto [last, first_time] = last_meeting_.try_emplace({pair.a, pair.b}, -std::numeric_limits<double>::infinity());
+    double approach = 0.0;
+    bool hit = false;
+    for (const Event& event : work.result.events) {
+      if (event.body_a != pair.a || event.body_b != pair.b) continue;
+      hit = true;
+      approach = std::max(approach, -event.normal_velocity_before);
+    }
+    if (!hit && k != trigger) continue;
+    const bool in_vain = work.result.events.empty();
+    const bool soon_again = moving.time() - last->second < rules_.micro_interval && approach < rules_.rest_speed;
+    if (in_vain || soon_again) work.result.micro_impacts.push_back(pair);
+    last->second = moving.time();
+  }
+  work.bodies.write_back();
+  ++counters_.impacts;
+  return work.result;
+}
+
+}  // namespace tumble::engines

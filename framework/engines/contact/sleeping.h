@@ -1,0 +1,85 @@
+/// Bodies at rest that are left alone until something touches them (`"sleep": true` of a scene's contact).
+///
+/// Bodies that touch each other or are linked are still or not as a group. A group falls asleep when for half a second none of its
+/// bodies was faster than a tenth of the rest speed, or left its place by more than a hundredth of the way that the rest speed makes in
+/// that time: 5 um at the rest speed that scenes start from, 1 mm/s. That is what a contact solver leaves of motion in heaps and, where
+/// there is no friction, in stacks. Where a pair of the group slides by friction, a hundredth of that is too much: 1e-7 m/s, the creep that a
+/// sticking contact is allowed. Something must hold the group, too: a body at the top of its path is slow for a while, and not at rest.
+///
+/// Asleep, a body keeps its place to the last bit and its velocity is zero; it is not integrated, its contacts are not solved, and it is
+/// no candidate with others that do not move. What its contacts carried in the last step stays on record. A group wakes as a whole, at
+/// the beginning of the step in which something moving meets it (that step is then taken with the group awake: the blow goes
+/// through it as through bodies that never slept), when a force on one of its bodies is switched, or a motor's law asks for
+/// another torque. What lies on something that moves by its own law, or is linked to it, does not sleep.
+///
+/// What sleep takes away: the kinetic energy of the last half second, less than m v^2 / 2 of a tenth of the rest speed.
+#pragma once
+
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "framework/engines/contact/contact_modes.h"
+
+namespace tumble::engines {
+
+class Sleepers {
+ public:
+  using Pair = LastingContacts::Pair;
+
+  /// @param modes  null where no contact has friction
+  Sleepers(MovingWorld& moving, const LastingContacts& contacts, const ContactModes* modes, double rest_speed, RunCounters& counters, TrajectorySink& sink);
+
+  /// After a step: puts the groups to sleep that have been still long enough. @param touching  pairs in contact in this step
+  void look(const std::vector<Pair>& touching);
+
+  /// Before a step's contacts: wakes groups that something moving will be in contact with. @return whether there were any: the step is to be begun again
+  bool wake_met(const std::vector<Pair>& candidates);
+  /// Wakes the groups of both bodies, if they sleep. @return whether one did
+  bool wake(Pair pair);
+  /// Wakes a body's group, if it sleeps. @param waker  what met it; -1 for a force or a control law
+  bool wake(int body, int waker);
+  /// Wakes groups whose motors have changed their torques.
+  void wake_where_control_changes();
+
+  /// Appends what the contacts of the sleeping groups carried in their last step.
+  void append_forces(std::vector<ContactPoint>& forces) const;
+
+ private:
+  struct Place {
+    double since;                  // it was last seen to have left its place [s]
+    Vector3d com_world;            // then
+    Quaterniond world_from_body;
+  };
+  struct Stillness {
+    Place roughly, strictly;
+  };
+  struct Group {
+    std::vector<int> bodies;       // ascending
+    std::vector<int> linked;       // places in linked_groups()
+    std::vector<ContactPoint> forces;
+    bool held = false, driven = false;   // by something that does not move; by something that moves by its own law
+    bool slides = false;
+  };
+
+  void watch(int body);
+  bool is_still(const Group& group, double since) const;
+  void watch_torques(int linked);
+  bool torques_differ(int linked) const;
+  std::map<int, Group> groups_of(const std::vector<Pair>& touching) const;
+  void put_to_sleep(Group group);
+  bool would_touch(Pair pair);
+
+  MovingWorld& moving_;
+  const LastingContacts& contacts_;
+  const ContactModes* modes_;
+  double rest_speed_;              // [m/s]
+  RunCounters& counters_;
+  TrajectorySink& sink_;
+  std::vector<Stillness> still_;   // by body
+  std::vector<std::vector<double>> torques_;   // by linked group: when they last changed
+  std::map<int, Group> asleep_;    // by first body
+  std::vector<int> group_of_;      // by body: key in asleep_, -1
+};
+
+}  // namespace tumble::engines

@@ -1,0 +1,15 @@
+/// Which bodies belong together: those that touch each other or are linked, directly or through others.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "framework/engines/stepping/moving_world.h"
+
+namespace tumble::engines {
+
+/// By body: the least index among the bodies it belongs together with; its own where it stands alone. What cannot move joins nobody.
+/// @param touching  pairs of bodies
+std::vector<int> group_leaders(const MovingWorld& moving, const std::vector<std::pair<int, int>>& touching);
+
+}  // namespace tumble::engines

@@ -1,0 +1,141 @@
+/// Bodies that move together because springs, rods, joints or motors tie them to each other or to the world, or a medium slows
+/// them: one system of differential equations, integrated by the laws' method as a whole.
+///
+/// Forces of springs and drag are evaluated at every stage of the method; rods and joints add what holds them (Lagrange
+/// multipliers at every stage), and are brought back by the stabilisation the scene chose: Baumgarte's term in the multipliers, or
+/// a projection of places and velocities at the end of each step.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "framework/dynamics/contact_problem.h"
+#include "framework/dynamics/laws.h"
+#include "framework/dynamics/world.h"
+#include "framework/engines/base/effects_built.h"
+#include "framework/engines/base/run_counters.h"
+
+namespace tumble::engines {
+
+/// What the links of a world pull with, by their places in World's lists; zero for links of other groups. [N]
+struct LinkForces {
+  std::vector<double> springs, rods, joints;
+};
+
+class LinkedBodies {
+ public:
+  /// Gravity and point forces on a body (index in the world) in a state.
+  using OuterWrench = std::function<Wrench(int body, const RigidBodyState& state)>;
+
+  /// @param bodies  movable ones, ascending: all that a link of the group touches
+  LinkedBodies(const World& world, const Laws& laws, RunCounters& counters, OuterWrench outer_wrench, std::vector<int> bodies);
+
+  const std::vector<int>& bodies() const { return bodies_; }
+  /// Immovable bodies that a link of the group ends at; -1: the world.
+  const std::vector<int>& fixed_ends() const { return fixed_; }
+  /// What its motors hold until they look again, by motor. [N m]
+  const std::vector<double>& torques() const { return torques_; }
+  /// When each looks again, by motor. [s]
+  const std::vector<double>& next_looks() const { return next_looks_; }
+  /// Its motors, in the world's list.
+  const std::vector<int>& motors() const { return motors_; }
+  /// Goes on with what motors held at another time. @param torques, next_looks  by motor
+  void remember(std::vector<double> torques, std::vector<double> next_looks) {
+    torques_ = std::move(torques);
+    next_looks_ = std::move(next_looks);
+  }
+  bool has_constraints() const { return (built::kRod && !rods_.empty()) || (built::kJoint && !joints_.empty()); }
+
+  /// Control laws whose time has come look and set their torques. @return the next time at which one looks; infinite without
+  double look(double time, const std::vector<RigidBodyState>& states);
+
+  /// States of bodies() after a step of the laws' method. @param states  by body of the world, at t
+  std::vector<RigidBodyState> advance(const std::vector<RigidBodyState>& states, double t, double h);
+
+  /// The rows of rods and joints at one instant, and the bodies between which they stand: bodies(), then fixed_ends().
+  struct Instant {
+    std::vector<Constraint> rows;
+    std::vector<ConstrainedBody> bodies;
+  };
+  Instant at_instant(const std::vector<RigidBodyState>& states, double t);
+  /// What rods and joints add to a sudden change of velocities: impulses of their own, after which their rates are what they were.
+  /// @param change  (6 a body of the instant): linear, angular, world [m/s, rad/s]
+  /// @return the same: smallest in the measure of the masses; 0 for fixed ends
+  VectorXd reaction(const Instant& instant, const VectorXd& change);
+
+  /// Velocities onto the constraints (where a callback or rounding left them off): the change that is smallest in the measure of the masses.
+  void project_velocities(std::vector<RigidBodyState>& states, double t);
+  /// Places, then velocities, onto the constraints.
+  void project(std::vector<RigidBodyState>& states, double t);
+
+  /// The rows of rods and joints, between places in bodies(); fixed ends have the index fixed_end().
+  std::vector<Constraint> constraint_rows(const std::vector<RigidBodyState>& states, double t);
+  int fixed_end() const { return static_cast<int>(bodies_.size()); }
+
+  /// Notes rods and joints of this group that are open in these states at the end of a step of length h. From places alone: no law is asked.
+  void watch(const std::vector<RigidBodyState>& states, double t, double h);
+
+  /// Adds the forces of this group's links in these states. What lies on its bodies, leans or rubs against them weighs on the links too.
+  /// @param contacts  lasting ones of the world, at that time
+  void measure(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts, LinkForces& forces);
+
+ private:
+  struct End {                 // of a link: a place in the list of bodies
+    int place;                 // bodies_, then fixed_
+    Vector3d point_body;
+  };
+  struct Link {
+    int index;                 // in the world's list
+    End a, b;
+  };
+
+  std::string whose() const;   // in words
+  double size_of_joint(const Link& joint) const;
+  double open_part(const std::vector<Body>& bodies, const std::vector<Constraint>& rows) const;
+  End end_of(const Anchor& anchor);
+  std::vector<Body> place_bodies(const std::vector<RigidBodyState>& local, double t) const;
+  std::vector<Wrench> forces(const std::vector<RigidBodyState>& local, const std::vector<Body>& bodies);
+  void add_springs(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches);
+  void add_drags(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches);
+  void add_motors(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches) const;
+  std::vector<Constraint> rows(const std::vector<Body>& bodies);
+  void append_rods(const std::vector<Body>& bodies, std::vector<Constraint>& rows);
+  void append_joints(const std::vector<Body>& bodies, std::vector<Constraint>& rows);
+  void add_contacts(const std::vector<Body>& bodies, const std::vector<ContactPoint>& contacts, std::vector<Wrench>& wrenches) const;
+  void measure_springs(const std::vector<Body>& bodies, LinkForces& measured);
+  VectorXd add_constraint_forces(const std::vector<Body>& bodies, const std::vector<RigidBodyState>& local, std::vector<Wrench>& wrenches);
+  VectorXd derivative(double t, const VectorXd& y);
+  static std::vector<ConstrainedBody> constrained(const std::vector<Body>& bodies);
+  VectorXd correction(const std::vector<Constraint>& rows, const std::vector<ConstrainedBody>& bodies, const VectorXd& error);
+  void project_local(std::vector<RigidBodyState>& local, double t, bool places);
+  std::vector<RigidBodyState> take(const std::vector<RigidBodyState>& states) const;
+  void put(const std::vector<RigidBodyState>& local, std::vector<RigidBodyState>& states) const;
+
+  const World& world_;
+  const Laws& laws_;
+  RunCounters& counters_;
+  OuterWrench outer_wrench_;
+  std::vector<int> bodies_;
+  std::vector<int> fixed_;            // immovable ends: bodies of the world, -1 for the world itself
+  std::vector<Link> springs_, rods_, joints_;
+  std::vector<int> drags_, motors_;   // in the world's lists
+  std::size_t most_rows_ = 0;   // of rods and joints
+  std::vector<double> torques_, next_looks_;   // by motors_
+  double time_of_stage_ = 0.0;
+  double step_ = kUnset;   // the last that advance() took [s]
+};
+
+/// Adds the rows of a group's rods and joints, where its bodies stand, to a problem of impulses.
+/// @param places  of its movable bodies in the problem, by body of the world; all fixed ends become one body that cannot be pushed
+void add_rows(LinkedBodies& group, const std::vector<RigidBodyState>& states, double t, const std::map<int, int>& places, ContactProblem& problem);
+
+/// Rows are to have the rates afterwards that the problem's bodies give them before.
+void keep_rates(ContactProblem& problem);
+
+/// The groups of a world: movable bodies that links tie together, each with what its links need. Bodies without links are in none.
+std::vector<std::vector<int>> groups_of_linked_bodies(const World& world);
+
+}  // namespace tumble::engines

@@ -1,0 +1,190 @@
+/// A world on the move: where every body is at the last committed time, and where the laws take it from there.
+///
+/// Within a step each body follows a path: the laws' integration from the committed state by any part of the step, always from
+/// the step's start. Bodies that depend on others (links, lasting contacts) follow the smooth path between the step's ends instead.
+/// Collision finding, rollback and pictures all look at this one path.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "framework/collision/first_impact.h"
+#include "framework/collision/sweep.h"
+#include "framework/dynamics/laws.h"
+#include "framework/dynamics/rotation_bounds.h"
+#include "framework/dynamics/spin_series.h"
+#include "framework/dynamics/world.h"
+#include "framework/engines/base/effects_built.h"
+#include "framework/engines/stepping/linked_bodies.h"
+#include "framework/engines/stepping/pair_caches.h"
+#include "framework/engines/base/run_counters.h"
+#include "framework/engines/stepping/smooth_path.h"
+
+namespace tumble::engines {
+
+/// A body that lies still on an immovable support and is left alone until something touches it.
+struct Rest {
+  int support;
+  Vector3d offset_from_support_world;   // [m]
+};
+
+class MovingWorld {
+ public:
+  MovingWorld(World world, const Laws& laws, RunCounters& counters);
+  /// The same with solids that were prepared before: what a body's `shape` in the world says is not looked at.
+  /// @param shapes  by body; stay where they are as long as this lives
+  MovingWorld(World world, const Laws& laws, RunCounters& counters, std::vector<const collision::CollisionShape*> shapes);
+  MovingWorld(const MovingWorld&) = delete;
+  MovingWorld& operator=(const MovingWorld&) = delete;
+
+  /// Stands at another time in other states; no step is under way.
+  /// @param states  by body; those of immovable bodies are not looked at: driven ones stand where they are at that time
+  void stand_at(double time, const std::vector<RigidBodyState>& states);
+  /// The forces that act, and the points of the bodies that they act on (by force of the world, body frame).
+  void set_active_forces(std::vector<int> active, std::vector<Vector3d> points_body);
+  const std::vector<Vector3d>& force_points_body() const { return force_points_body_; }
+
+  /// From here on bodies that nothing but gravity acts on go in closed form instead of along the laws' integration.
+  void go_in_closed_form();
+
+  const World& world() const { return world_; }
+  int size() const { return static_cast<int>(world_.bodies.size()); }
+  const collision::CollisionShape& shape(int body) const { return *shapes_[body]; }
+  double time() const { return time_; }
+
+  /// Committed state of a movable body.
+  const RigidBodyState& state(int body) const { return states_[body]; }
+  const std::vector<RigidBodyState>& states() const { return states_; }
+  void set_state(int body, const RigidBodyState& state) {
+    states_[body] = state;
+    paths_[body].is_stale = true;
+  }
+  /// Whether the two may collide at all: one can move, both collide, and the scene does not keep them apart.
+  bool may_collide(int a, int b) const;
+  bool can_move(int body) const { return !world_.bodies[body].immovable() && !rests_[body] && !asleep(body); }
+  /// Whether an immovable body moves by a law of its own.
+  bool is_driven(int body) const;
+  bool resting(int body) const { return rests_[body].has_value(); }
+  void put_to_rest(int body, int support);
+  /// Stops a body where it is: from here on it keeps its place to the last bit, and no law is asked about it (sleeping.h).
+  void put_to_sleep(int body);
+  bool asleep(int body) const { return built::kSleep && asleep_[body]; }
+  /// Ends rest or sleep of a body.
+  void wake(int body);
+  const std::vector<int>& active_forces() const { return active_forces_; }
+  void switch_force(int index, bool on);
+
+  /// Bodies tied by springs, rods, joints, drag: groups that are integrated as one.
+  std::vector<LinkedBodies>& linked_groups() { return linked_; }
+  const std::vector<LinkedBodies>& linked_groups() const { return linked_; }
+  /// Place of a body's group in linked_groups(); -1 for a body without links.
+  int linked_group(int body) const { return group_of_[body]; }
+  /// Control laws whose time has come look. @return when the next one does; infinite without
+  double look();
+  /// What springs, rods and joints pull with in these states. @param contacts  lasting ones, which weigh on them
+  LinkForces measure_links(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts);
+  /// For a picture within a step: rods and joints of projected groups hold there too, where the path between the step's ends is off by its fourth power.
+  /// Changes nothing but these states.
+  void close_links(std::vector<RigidBodyState>& states, double t);
+  /// At the end of a step of length h: notes rods and joints that have come apart.
+  void watch_links(double h);
+  /// After callbacks: velocities of the bodies joined to those that were called back onto the constraints. @return whether there are any
+  bool keep_constraints(const std::vector<Event>& events);
+  /// From here on to the step's target the body goes from `start` (at time(); its velocities may jump there) to `end`.
+  void set_path(int body, const RigidBodyState& start, const RigidBodyState& end, SmoothPath::Momenta momenta = SmoothPath::Momenta::kOfPath);
+  /// @throws StoppedRun where the body turns about itself ten times on its smooth path in the step under way, or where that path is not made of numbers
+  void refuse_whirl(int body) const;
+  /// Where the step leads without what set_path has added.
+  const RigidBodyState& path_end(int body);
+  /// The path that set_path has given, or that links have; nothing where the laws are asked at every instant.
+  const std::optional<SmoothPath>& smooth_path(int body) const { return paths_[body].smooth; }
+
+  /// Begins a step from the committed time: works out the motion's bounds and where all come out.
+  void begin_step(double target);
+  /// Begins the step under way again, because some bodies ask for an earlier target or have got other velocities. Nothing is integrated for
+  /// a body that flies alone and has kept its state: its path stays, or its new end is worked out when somebody asks for it.
+  void begin_step_again(double target);
+  /// What the step under way has computed was in vain: it will be begun again.
+  void give_up_step() { counters_.undone_integrations += integrations_in_step_; }
+  double target() const { return target_; }
+  /// Begins the step again with an earlier target, if one of the bodies of these pairs turns too far in it for a bound on its turning to
+  /// hold: collisions of these pairs would be missed. Balls for collision never ask for that.
+  /// @param in_step  pairs that contacts keep apart however their paths run: of these only the turning is asked, not what is wrong with it
+  /// @return whether the target was moved
+  /// @throws StoppedRun where a step would have to be cut into more than 1e5 parts
+  bool shorten_step(const std::vector<std::pair<int, int>>& pairs, const std::function<bool(std::pair<int, int>)>& in_step = {});
+  /// Where a body's path is at time t in [time(), target()]; any t for immovable, resting and sleeping ones.
+  RigidBodyState path(int body, double t);
+  collision::MotionState motion_at(int body, double t);
+  collision::Motion motion(int body);
+  collision::SweptBox swept_box(int body);
+  /// Whether swept_box tells of a longer step: of a body whose path's end nobody has asked for. path_end(body) ends that.
+  bool has_roomy_box(int body) const { return !paths_[body].end_known; }
+  /// All bodies to where their paths are at t; what the step had computed beyond counts as undone when t is before its target.
+  void commit(double t);
+
+  /// Of the bodies a < b: hand it to every question about their gap.
+  collision::PairCache* pair_cache(int a, int b) const { return caches_.of(a, b); }
+
+  /// As impulses need it, at the committed time.
+  Body body_at_impact(int body) const;
+  Vector3d velocity_of(int body, double t) const;
+
+ private:
+  struct Path {
+    VectorXd start;                 // packed
+    RigidBodyState end;
+    bool end_known = true;          // false: worked out by path_end, not yet asked for since the step began again
+    bool is_stale = false;          // the state has been changed since the step began
+    std::optional<collision::SweptBox> box;    // of a body alone, from the step's start to box_target
+    double box_target;
+    Vector3d acceleration_world;    // of the path, constant in the step
+    std::optional<collision::MotionBounds> bounds;
+    double memo_time;
+    RigidBodyState memo;
+    double measured_duration, turning_error;   // see turning_error
+    std::optional<SmoothPath> smooth;
+    std::optional<SpinSeries> turning;         // of a body in closed form, from the step's start
+  };
+
+  void begin_path(int body);
+  void begin_linked_paths();
+  bool flies_freely(int body) const;
+  RigidBodyState fly(int body, double duration, const VectorXd& start);
+  RigidBodyState integrate(int body, double duration, double start_time, const VectorXd& start);
+  Wrench wrench_on(int body, const RigidBodyState& state);
+  void add_point_forces(int body, const RigidBodyState& state, Wrench& sum);
+  double torque_bound(int body) const;
+  const PrincipalMoments& principal_of(int body);
+  double turning_error(int body, double duration);
+  bool bound_turning(int body, double duration, collision::MotionBounds& bounds);
+  double resolved_duration(int body, double duration, bool measures_path);
+  void watch_turning(int body, double duration);
+  collision::MotionBounds work_out_bounds(int body);
+  RigidBodyState still_state(int body, double t) const;
+
+  World world_;
+  const Laws& laws_;
+  RunCounters& counters_;
+  std::vector<collision::CollisionShape> own_shapes_;           // empty where they were prepared before
+  std::vector<const collision::CollisionShape*> shapes_;
+  std::vector<RigidBodyState> states_;
+  std::vector<std::optional<Rest>> rests_;
+  std::vector<char> asleep_;                     // asked for often: a byte each is read faster than a bit
+  std::vector<int> active_forces_;               // indices into world_.point_forces
+  std::vector<Vector3d> force_points_body_;      // by force, from when it is switched on
+  std::vector<Path> paths_;
+  mutable PairCaches caches_;
+  std::vector<LinkedBodies> linked_;
+  std::vector<int> group_of_;                    // by body: place in linked_, -1
+  std::vector<bool> told_of_shortening_;   // by body
+  double time_ = 0.0, target_ = 0.0;
+  double path_bend_ = 1.0;   // how much of a constant acceleration the laws' integration puts into a path: 1 for order >= 2, 0 for Euler
+  std::uint64_t integrations_in_step_ = 0;
+  std::vector<std::optional<PrincipalMoments>> principal_;      // by body, once asked for
+  std::vector<FreeRotation> rotations_;          // by body; empty: the laws integrate
+};
+
+}  // namespace tumble::engines

@@ -1,0 +1,149 @@
+/// Whether a step is within the range in which the laws' method can follow a world: its springs, its drag, Baumgarte's term, light bodies on rods.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "framework/dynamics/invariants.h"
+#include "framework/dynamics/laws.h"
+#include "framework/dynamics/world.h"
+#include "framework/engines/base/run_watch.h"
+#include "framework/trajectory/trajectory.h"
+
+namespace tumble::engines {
+
+/// By how much a step of the method lengthens the swing of  y'' = -w^2 y - c y'  (spectral radius of the step's matrix, 1: not at all),
+/// found by asking the method itself. Source: E. Hairer, G. Wanner, "Solving ODEs II", IV.2.
+double amplification(const Laws& laws, double angular_frequency, double damping, double step);
+
+/// What rounding leaves of an amplification of exactly 1.
+inline constexpr double kNotAtAll = 1e-9;
+
+/// Largest step up to `step` that does not lengthen the same swing; 0 where none does not, down to a thousandth of its faster rate. [s]
+double largest_stable_step(const Laws& laws, double angular_frequency, double damping, double step);
+
+struct SpringStability {
+  std::string spring;              // the one that takes most part in the fastest swing
+  double angular_frequency;        // of that swing where the run starts [rad/s]
+  double damping;                  // c of  y'' = -w^2 y - c y'  for it [1/s]
+  double amplification;            // a step
+  double largest_step;             // that does not lengthen it [s]; 0 where none does not
+
+  bool is_overdamped() const { return damping > 2.0 * angular_frequency; }   // no swing: its damper's matter
+};
+
+/// The fastest swing of the springs of a world where it starts, along the springs, with what rods and joints hold kept still: the eigenvalues of
+/// J N J^T K, where N is M^-1 without the directions that rods and joints do not allow.
+/// @return nothing for a world without springs that can stretch. Where more than 60 bodies are linked, springs on bodies that rods or joints
+///         hold are not judged
+std::optional<SpringStability> judge_springs(const World& world, const Laws& laws, double step);
+
+/// Of anything else that limits a step.
+struct StepLimit {
+  std::string of;                  // in words, with the name
+  double amplification;            // of what should die away, a step
+  double largest_step;             // that does not lengthen it [s]; 0 where none does not
+  std::string remedy;              // beside a shorter step
+};
+
+/// The way of moving from which the dampers of the world's springs take most (the largest eigenvalue of J N J^T C), with what the springs do
+/// to it. Where it swings, `judge_springs` speaks of it.
+/// @return nothing where the method follows it; the same are not judged
+std::optional<StepLimit> judge_dampers(const World& world, const Laws& laws, double step);
+
+/// What drag takes from a body's velocities, y' = -c/m y and -c/I y (the least moment), and what Baumgarte's term takes from errors of rods and
+/// joints, e'' = -k e - c e' with the laws' own gains. Those that the method lengthens at this step.
+std::vector<StepLimit> judge_decays(const World& world, const Laws& laws, double step);
+
+/// The fastest swing of bodies across rods that pull: M x'' = -K x, K = sum of (tension / length) (1 - n n^T), where the rods keep their lengths.
+/// A light body between a ceiling and a heavy one has the highest: about sqrt(M g (1/l1 + 1/l2) / m).
+/// @param tensions  of the world's rods where the run starts [N]
+/// Of more than a hundred bodies the hundred that are held hardest are looked at, the others kept still: a lower bound of the fastest swing. The largest
+/// step comes from an upper bound then.
+/// @return nothing where the method does not lengthen it, and where rods end beside centres of mass or joints are there too: such worlds are not judged
+std::optional<StepLimit> judge_rods(const World& world, const std::vector<double>& tensions, const Laws& laws, double step);
+
+/// What rods and joints of a world carry, by its lists. [N]
+struct LinkLoads {
+  std::vector<double> rods, joints;
+  bool by_falling = false;         // some hangs loose first, or carries more by what has fallen than by what hangs on it: it comes taut with a jerk
+};
+
+/// About the most that each will carry in a run by gravity and what moves at the start: the weight below it, and what turns that round where it has
+/// fallen as far as its links let it. 0 for links of which none leads to anything that does not move.
+LinkLoads largest_link_loads(const World& world);
+
+/// The fastest swing of bodies between joints that carry these loads, an upper bound: w^2 = max sum of load times arm / moment of inertia.
+/// @return nothing where the method does not lengthen it
+std::optional<StepLimit> judge_joints(const World& world, const LinkLoads& loads, const Laws& laws, double step);
+
+struct StepsOfARun {
+  double step, duration;           // [s]
+};
+
+/// Refuses a run in which the method would lengthen a thousand times what springs, drag or Baumgarte's term take part in; tells of one where it can be seen.
+/// @throws UserError naming the spring, body or term, what happens to it and the largest step that does not do it
+void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfARun& steps, const std::string& where, std::vector<std::string>& notices);
+
+/// Tells of rods and joints whose bodies swing too fast for the step of a method that has a range, with the step that follows them all through the run. Not
+/// refused: what hangs straight does not swing.
+/// @param tensions  of the world's rods where the run starts, where they are known [N]
+/// @return that step, where one is told [s]
+std::optional<double> tell_of_unstable_links(const World& world, const std::vector<double>& tensions, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices);
+
+/// Energy that nothing can have brought in.
+struct Runaway {
+  int body;                        // that has most of it
+  double energy, first_energy;     // of the world, now and where the run started [J]
+  double by_blows;                 // of the difference, what impacts have brought in [J]
+};
+
+/// Looks on while a world moves: energy that nothing can have brought in is the method's, or a wrong law's.
+class EnergyWatch {
+ public:
+  /// @param rest_speed  below which impacts may do as they like: so little energy is not asked for [m/s];  @param step  of the run [s]
+  /// @param sees_switches  whether it looks at each instant at which a point force begins or ends: else worlds with such forces, and with motors, go unwatched
+  EnergyWatch(double rest_speed, double step, bool sees_switches) : rest_speed_(rest_speed), step_(step), sees_switches_(sees_switches) {}
+
+  /// An impact has taken place: what it did to the energy, as measured; else the work j (u + u') / 2 of its impulse.
+  void note(const Event& event) {
+    if (event.kind != EventKind::kCollision) return;
+    by_blows_ += event.energy_change == event.energy_change ? event.energy_change : 0.5 * event.impulse * (event.normal_velocity_before + event.normal_velocity_after);
+  }
+  /// @return nothing while all is well, and for worlds that moving walls, or motors without a largest torque, drive
+  std::optional<Runaway> look(double time, const World& world, const std::vector<RigidBodyState>& states);
+  /// Notes what energy has risen by above the least it has been, where that is more than steps leave of all that the world had to give.
+  void tell(const World& world, RunWatch& watch) const;
+
+ private:
+  struct Rise {
+    double time, size;             // [s], [J]
+    int body;                      // that had most of the world's energy then
+  };
+  void begin(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums);
+  double work_since(double time, const World& world, const std::vector<RigidBodyState>& states);
+  void note_rise(double time, double energy, const World& world, const std::vector<RigidBodyState>& states);
+  double available() const { return scale_ + given_ + (first_potential_ - lowest_potential_); }
+
+  double rest_speed_, step_;
+  bool sees_switches_, is_first_step_ = true;
+  std::vector<Vector3d> pushed_body_, pushed_world_;   // of each point force, where it acts: body frame, and where that was at the last look [m]
+  std::vector<double> turning_;                        // of each motor's hinge at the last look [rad/s]
+  double last_look_ = 0.0, work_ = 0.0, given_ = 0.0;  // [s]; what forces and, at most, motors have brought in, and without its sign [J]
+  double first_energy_ = kUnset, scale_ = 0.0, first_potential_ = 0.0, lowest_potential_ = 0.0, by_blows_ = 0.0;   // [J]
+  double least_energy_ = 0.0, unseen_ = 0.0;   // the least so far; what the model itself is free to make [J]
+  std::vector<Rise> rises_;        // each larger than the one before
+};
+
+/// What acts on bodies at an instant.
+struct ActingForces {
+  const std::vector<double>&springs, &rods, &joints;   // by the world's lists [N]
+  const std::vector<ContactPoint>& contacts;
+};
+
+/// What a run says that ends because of it: the body, the time, and the effect that most likely put the energy in: impacts where they have brought in
+/// half of it, else the spring, rod, joint or contact that pulls hardest at the body, else the integration.
+std::string told_runaway(double time, const World& world, const Runaway& runaway, const ActingForces& acting, const Laws& laws);
+
+}  // namespace tumble::engines

@@ -1,0 +1,167 @@
+#include "framework/grading/compiler/compile.h"
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cctype>
+#include <cerrno>
+#include <fstream>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <vector>
+
+#include "framework/core/error.h"
+#include "framework/core/files.h"
+#include "framework/grading/sandbox/sandbox.h"
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+using Ending = SandboxOutcome::Ending;
+using Outcome = Compiled::Outcome;
+
+constexpr std::size_t kObjectBytes = 32u << 20;    // a module is 200 kB
+constexpr const char* kHeadersInside = "/headers";
+constexpr const char* kSourceInside = "/submission";
+constexpr const char* kPrecompiled = "precompiled.h";
+
+// The compiler may fork its passes, and link to /tmp. What it made leaves through descriptor 3, not through a folder of ours.
+constexpr const char* kScript = "cd /submission && /usr/bin/g++ " TUMBLE_SUBMISSION_FLAGS
+                                " -Wall -Wextra -Wno-unused-parameter -fdiagnostics-color=never -fmax-errors=20 -I /headers -isystem " TUMBLE_EIGEN_INCLUDE
+                                " -include /headers/precompiled.h -x c++ \"$1\" -x none -shared -Wl,-z,defs -o /tmp/module.so && exec cat /tmp/module.so >&3";
+
+// Headers of the tree that a text includes, directly or not: those that students have, and of them only what is asked for.
+void collect_headers(const fs::path& root, const std::string& text, std::set<std::string>& found) {
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) {
+    const auto first = line.find_first_not_of(" \t");
+    if (first == std::string::npos || line[first] != '#') continue;
+    const auto open = line.find('"'), close = line.rfind('"');
+    if (line.find("include") == std::string::npos || open == std::string::npos || close <= open) continue;
+    const std::string name = line.substr(open + 1, close - open - 1);
+    const bool students = name.starts_with("framework/") || name.starts_with("assignments/");
+    if (!students || !name.ends_with(".h") || name.find("..") != std::string::npos) continue;
+    if (!fs::is_regular_file(root / name) || !found.insert(name).second) continue;
+    collect_headers(root, text_of(root / name), found);
+  }
+}
+
+// The precompiled header of this build; without it the compiler reads the same text, which takes longer.
+void stage_precompiled(Stage& headers, const fs::path& build) {
+  const fs::path folder = build.empty() ? fs::path(TUMBLE_SUBMISSION_SDK) : build / fs::path(TUMBLE_SUBMISSION_SDK).filename();
+  headers.add_text(text_of(folder / kPrecompiled), kPrecompiled);
+  const std::string binary = std::string(kPrecompiled) + ".gch";
+  if (fs::exists(folder / binary)) headers.add_file(folder / binary, binary);
+}
+
+fs::path init_program(const fs::path& build) {
+  const fs::path init = (build.empty() ? fs::canonical("/proc/self/exe").parent_path() : build / "bin") / "sandbox_init";
+  if (!fs::exists(init)) throw UserError(init.string(), "is not built", "Build the target sandbox_init.");
+  return init;
+}
+
+// All that comes out of the pipe; one byte above the limit tells that there is more.
+std::string drain(int fd) {
+  std::string bytes;
+  char buffer[1 << 16];
+  while (bytes.size() <= kObjectBytes) {
+    const ssize_t n = ::read(fd, buffer, sizeof buffer);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) break;
+    bytes.append(buffer, static_cast<std::size_t>(n));
+  }
+  return bytes;
+}
+
+// Compilers read bytes; an editor of Windows may write two of them a letter. Empty where the text is what a compiler reads.
+std::string why_no_text(const std::string& text) {
+  const bool is_utf16 = text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
+  if (is_utf16) return "is written in UTF-16, which no C++ compiler reads. Save it as UTF-8 (in Visual Studio: Save As, Save with Encoding; in Notepad: Encoding UTF-8)";
+  if (text.find('\0') != std::string::npos) return "holds bytes that are no text (a NUL at byte " + std::to_string(text.find('\0')) + "). Save it as UTF-8 text; a compiled file or an archive is no source";
+  return "";
+}
+
+bool says(const std::string& text, std::initializer_list<const char*> words) {
+  for (const char* word : words)
+    if (text.find(word) != std::string::npos) return true;
+  return false;
+}
+
+Compiled judge(const SandboxOutcome& outcome, const std::string& object, const CompileLimits& limits) {
+  const std::string& said = outcome.printed;
+  switch (outcome.ending) {
+    case Ending::kNotStarted:
+    case Ending::kStopped: return {Outcome::kGraderFault, "the sandbox did not start: " + said};
+    case Ending::kWallLimit: return {Outcome::kGraderFault, "the machine was too busy: the compiler was not done after " + std::to_string(static_cast<int>(limits.wall_s)) + " s, and had computed for less than " + std::to_string(limits.cpu_s) + " s. Run it again when less else runs"};
+    case Ending::kStalled: return {Outcome::kOutOfResources, "the compiler stood still: it waits for something, such as an #include of what is no file"};
+    case Ending::kOutputLimit: return {Outcome::kOutOfResources, "the compiler's messages had no end; the first were:\n" + said.substr(0, 2000)};
+    case Ending::kSignal: return {Outcome::kOutOfResources, "the compiler was ended by a limit\n" + said};
+    case Ending::kExited: break;
+  }
+  if (outcome.code == 0 && object.size() > kObjectBytes) return {Outcome::kOutOfResources, "the compiled module is larger than 32 MiB"};
+  if (outcome.code == 0 && !object.empty()) return {Outcome::kBuilt, said};
+  if (says(said, {"out of memory", "virtual memory exhausted", "CPU time limit", "File size limit", "No space left", "file too large", "Killed"}))
+    return {Outcome::kOutOfResources, "the compiler ran out of time, memory or room for files\n" + said};
+  if (outcome.code == 127) return {Outcome::kGraderFault, "the compiler cannot be started: " + said};
+  return {Outcome::kRefused, said};
+}
+
+SandboxJob sandbox_job(const CompileLimits& limits, const fs::path& init) {
+  SandboxJob job;
+  job.limits.wall_s = limits.wall_s;
+  job.limits.cpu_s = limits.cpu_s;
+  job.limits.stall_s = limits.stall_s;
+  job.limits.memory_bytes = limits.memory_bytes;
+  job.limits.tmp_bytes = 128ull << 20;
+  job.limits.processes = 16;
+  job.init = init;
+  return job;
+}
+
+}  // namespace
+
+Compiled compile_submission(const CompileJob& job) {
+  std::error_code ignored;
+  fs::remove(job.object, ignored);
+  if (!fs::exists(job.root / job.header)) throw UserError((job.root / job.header).string(), "there is no such header", "It tells what the module is.");
+  const std::string name = job.source.filename().string();
+  std::string why;
+  const auto source = read_plain_file(job.source, job.limits.source_bytes, why);
+  if (!source) return {Outcome::kRefused, name + ": " + why};
+  if (const std::string no_text = why_no_text(*source); !no_text.empty()) return {Outcome::kRefused, name + ":1:1: error: the file " + no_text};
+
+  const SandboxUser user = SandboxUser::lease();
+  Stage headers(&user), submission(&user), tools(&user);
+  std::set<std::string> needed = {job.header.string()};
+  collect_headers(job.root, text_of(job.root / job.header), needed);
+  collect_headers(job.root, *source, needed);
+  for (const std::string& header : needed) headers.add_file(job.root / header, header);
+  stage_precompiled(headers, job.build);
+  submission.add_text(*source, name);
+
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC) != 0) return {Outcome::kGraderFault, "no descriptor left for a compiler"};
+  SandboxJob inside = sandbox_job(job.limits, tools.add_file(init_program(job.build), "init", true));
+  inside.binds = {{headers.path(), kHeadersInside}, {submission.path(), kSourceInside}};
+  // A name such as "-o" or "@file" is no option.
+  const bool plain_name = std::isalnum(static_cast<unsigned char>(name[0])) != 0 || name[0] == '_';
+  inside.command = {"/usr/bin/sh", "-c", kScript, "compile", plain_name ? name : "./" + name};
+  inside.uid = user.uid();
+  inside.channel = ends[1];
+  Sandbox sandbox = Sandbox::start(inside);
+  ::close(ends[1]);
+  const std::string object = drain(ends[0]);
+  ::close(ends[0]);
+  Compiled compiled = judge(sandbox.wait(), object, job.limits);
+  if (compiled.outcome != Outcome::kBuilt) return compiled;
+  std::ofstream out(job.object, std::ios::binary);
+  out << object;
+  out.close();
+  if (!out) throw UserError(job.object.string(), "cannot be written");
+  return compiled;
+}
+
+}  // namespace tumble::grading

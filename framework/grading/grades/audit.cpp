@@ -1,0 +1,171 @@
+#include "framework/grading/grades/audit.h"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+
+#include <unistd.h>
+
+#include "framework/core/files.h"
+#include "framework/core/nearest_word.h"
+#include "framework/core/text.h"
+#include "framework/grading/course/build_submission.h"
+#include "framework/grading/compiler/compiler_words.h"
+#include "framework/grading/course/digest.h"
+#include "framework/grading/grades/grade_key.h"
+#include "framework/grading/course/processes.h"
+#include "framework/grading/grades/scoring.h"
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> sources_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder, ignored))
+    if (entry.path().extension() == ".cpp") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+Candidate read_mutant(const fs::path& file) {
+  constexpr std::string_view kMutant = "// mutant: ", kCaughtBy = "// caught-by: ";
+  std::ifstream in(file);
+  std::string first, second;
+  std::getline(in, first);
+  std::getline(in, second);
+  const auto dash = first.find(" - ");
+  if (!first.starts_with(kMutant) || dash == std::string::npos || !second.starts_with(kCaughtBy))
+    throw UserError(file.string(), "does not say which slip it makes", "Its first two lines are:  // mutant: NAME - slip   and   // caught-by: words of the story that names it");
+  return {first.substr(kMutant.size(), dash - kMutant.size()), file, false, first.substr(dash + 3), second.substr(kCaughtBy.size())};
+}
+
+bool is_caught(const TestResult& result) {
+  return result.verdict == Verdict::kWrong || result.verdict == Verdict::kCrashed || result.verdict == Verdict::kOutOfResources;
+}
+
+constexpr std::size_t kNameDigits = 32;   // of a digest, in a file's name: 128 bits
+
+// Where the results of an audit lie that need not be run again.
+struct Kept {
+  fs::path results, refused;
+};
+
+Kept kept_for(const Course& course, const std::string& id, const std::string& grader, const Candidate& candidate) {
+  const fs::path base = course.build / "audit" / id / (candidate.file.stem().string() + "-" + digest(grader + digest_of_file(candidate.file)).substr(0, kNameDigits));
+  return {base.string() + ".json", base.string() + ".refused.txt"};
+}
+
+// In a process of its own: leaves either the judge's results or why there are none.
+void run_one(const Course& course, const std::string& id, const Candidate& candidate, const Kept& kept) {
+  fs::create_directories(kept.results.parent_path());
+  const fs::path object = kept.results.string() + ".so";
+  const BuiltSubmission built = build_submission(course, id, candidate.file, object);
+  if (built.outcome != BuiltSubmission::Outcome::kBuilt) {
+    write_whole(kept.refused, "does not compile: " + compiler_story(built.said, candidate.file, module_header(course, id)));
+    return;
+  }
+  Judgement judgement = judge_module(course, id, object);
+  fs::remove(object);
+  for (const TestResult& test : judgement.results)  // a fault of ours is not kept: the next audit tries again
+    if (!is_final_verdict(test.verdict)) judgement.fault = test.test + ": " + test.story;
+  if (!judgement.fault.empty()) write_whole(kept.refused, judgement.fault);
+  else make_whole(kept.results, [&](const fs::path& draft) { write_results(draft.string(), judgement.results); });
+}
+
+AuditResult read_result(const Rubric& rubric, const Candidate& candidate, const Kept& kept) {
+  AuditResult result;
+  result.candidate = candidate;
+  if (!fs::exists(kept.results)) {
+    std::ifstream in(kept.refused);
+    result.fault.assign(std::istreambuf_iterator<char>(in), {});
+    if (result.fault.empty()) result.fault = "was not judged";
+    std::error_code ignored;
+    fs::remove(kept.refused, ignored);  // a failure is tried again
+    return result;
+  }
+  const auto tests = read_results(kept.results.string());
+  for (const ScoredTest& test : score_tests(rubric, {tests, ""})) {
+    result.score += test.score;
+    result.possible += test.item.points;
+    if (!is_final_verdict(test.result.verdict)) result.fault = test.item.test + ": " + test.result.story;
+  }
+  const std::string keyword = lowercase(candidate.keyword);
+  for (const TestResult& test : tests) {
+    if (!is_caught(test)) continue;
+    result.caught_by.push_back(test);
+    const bool names = !keyword.empty() && lowercase(test.story).find(keyword) != std::string::npos;
+    if (result.best.empty() || (names && !result.is_named)) result.best = test.test;
+    result.is_named = result.is_named || names;
+  }
+  return result;
+}
+
+}  // namespace
+
+bool AuditResult::is_as_it_should() const {
+  constexpr double kSlack = 1e-9;  // points: round-off of the sum
+  if (!fault.empty()) return false;
+  return candidate.is_right ? score >= possible - kSlack && caught_by.empty() : !caught_by.empty();
+}
+
+std::vector<Candidate> find_candidates(const Course& course, const std::string& id, const fs::path& mutants) {
+  const std::string folder = course.registry->find(id).folder;
+  const fs::path own = course.root / "solutions_private" / folder;
+  std::vector<Candidate> all;
+  const fs::path wrong = mutants.empty() ? own / "mutants" : mutants;
+  for (const fs::path& file : sources_in(wrong)) all.push_back(read_mutant(file));
+  if (all.empty()) throw UserError(wrong.string(), "holds no known-wrong solution", "Put one .cpp a slip there.");
+  if (fs::exists(own / (folder + ".cpp"))) all.push_back({"reference", own / (folder + ".cpp"), true, "", ""});
+  for (const fs::path& file : sources_in(own / "alternatives")) all.push_back({file.stem().string(), file, true, "", ""});
+  return all;
+}
+
+std::vector<Candidate> only(const std::vector<Candidate>& candidates, const std::vector<std::string>& names) {
+  if (names.empty()) return candidates;
+  std::vector<std::string> known;
+  for (const Candidate& candidate : candidates) known.insert(known.end(), {candidate.file.stem().string(), candidate.name});
+  std::vector<Candidate> chosen;
+  for (const std::string& name : names) {
+    const auto found = std::find_if(candidates.begin(), candidates.end(), [&](const Candidate& c) { return c.name == name || c.file.stem() == name; });
+    if (found == candidates.end()) throw UserError("--only " + name, "no solution of this audit has such a name." + did_you_mean(name, known), "The first column of the whole audit has the names.");
+    chosen.push_back(*found);
+  }
+  return chosen;
+}
+
+std::map<std::string, Catches> catches_of(const std::vector<AuditResult>& results) {
+  std::map<std::string, Catches> all;
+  for (const AuditResult& result : results) {
+    if (result.candidate.is_right) continue;
+    for (const TestResult& test : result.caught_by) ++all[test.test].count;
+    if (result.caught_by.size() == 1) all[result.caught_by.front().test].alone.push_back(result.candidate.name);
+  }
+  return all;
+}
+
+std::vector<AuditResult> audit(const Course& course, const std::string& id, const std::vector<Candidate>& candidates, int jobs,
+                               const std::function<void(std::size_t, std::size_t)>& told) {
+  const Rubric rubric = rubric_of(course, id);
+  const std::string grader = judging_digest(course, id);
+  std::vector<Kept> kept;
+  std::vector<std::size_t> open;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    kept.push_back(kept_for(course, id, grader, candidates[i]));
+    if (!fs::exists(kept[i].results)) open.push_back(i);
+  }
+  std::size_t done = candidates.size() - open.size();
+  if (told) told(done, candidates.size());
+  run_in_processes(open.size(), jobs, [&](std::size_t i) { run_one(course, id, candidates[open[i]], kept[open[i]]); },
+                   [&](std::size_t, int, double) {
+                     ++done;
+                     if (told) told(done, candidates.size());
+                   });
+  std::vector<AuditResult> results;
+  for (std::size_t i = 0; i < candidates.size(); ++i) results.push_back(read_result(rubric, candidates[i], kept[i]));
+  return results;
+}
+
+}  // namespace tumble::grading

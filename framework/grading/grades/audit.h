@@ -1,0 +1,61 @@
+/// Are the tests any good? Known-wrong solutions must each be caught, and right ones must get every point.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "framework/grading/course/course.h"
+#include "framework/grading/verdicts/verdict.h"
+
+namespace tumble::grading {
+
+/// What is audited: a known-wrong solution, whose first two lines are
+///   // mutant: NAME - what the slip is
+///   // caught-by: words that the story of a test that catches it must hold
+/// or a right one, which has no such lines.
+struct Candidate {
+  std::string name;
+  std::filesystem::path file;
+  bool is_right = false;
+  std::string slip, keyword;
+};
+
+struct AuditResult {
+  Candidate candidate;
+  std::string fault;                  // it does not compile, or the judge failed; empty: judged
+  std::vector<TestResult> caught_by;  // tests that it did not pass, in the judge's order
+  double score = 0.0, possible = 0.0;
+  std::string best;                   // the test to look at: one whose story holds the keyword, else the first
+  bool is_named = false;              // some story holds the keyword
+
+  /// A wrong one that a test caught, or a right one with every point.
+  bool is_as_it_should() const;
+};
+
+/// Known-wrong solutions of a folder (the assignment's own where empty), then the reference and the other right ones.
+/// @throws UserError for a folder without sources, or one whose first lines are not as above
+std::vector<Candidate> find_candidates(const Course& course, const std::string& id, const std::filesystem::path& mutants = {});
+
+/// Compiles and judges all, `jobs` at a time. What has not changed since an earlier audit is not run again (BUILD/audit).
+/// @param told  called as each is finished: how many of how many; may be empty
+/// @pre  this process runs no thread
+std::vector<AuditResult> audit(const Course& course, const std::string& id, const std::vector<Candidate>& candidates, int jobs,
+                               const std::function<void(std::size_t done, std::size_t total)>& told = {});
+
+/// The candidates of these names; all of them where there is none.
+/// @throws UserError for a name that no candidate has, with the nearest
+std::vector<Candidate> only(const std::vector<Candidate>& candidates, const std::vector<std::string>& names);
+
+/// What one test does among known-wrong solutions. Right solutions that it accuses are no catch.
+struct Catches {
+  std::size_t count = 0;
+  std::vector<std::string> alone;   // slips that no other test catches
+};
+
+/// By test. A test that catches nothing is not in it.
+std::map<std::string, Catches> catches_of(const std::vector<AuditResult>& results);
+
+}  // namespace tumble::grading

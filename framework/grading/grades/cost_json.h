@@ -1,0 +1,14 @@
+/// The section on what accuracy costs, as JSON: a record keeps it, so that a page can be written again without measuring again.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "framework/grading/grades/cost_section.h"
+
+namespace tumble::grading {
+
+nlohmann::ordered_json cost_json(const CostSection& cost);
+/// The inverse. @throws nlohmann::json::exception for anything else
+CostSection cost_of(const nlohmann::ordered_json& json);
+
+}  // namespace tumble::grading

@@ -1,0 +1,282 @@
+#include "framework/grading/grades/grade_files.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <fstream>
+#include <limits>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "framework/core/files.h"
+#include "framework/grading/grades/cost_json.h"
+#include "framework/grading/course/digest.h"
+#include "framework/grading/grades/grade_pages.h"
+#include "framework/grading/verdicts/plain_text.h"
+#include "framework/grading/grades/scoring.h"
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kRecord = "record.json";
+
+constexpr std::array kStates = {"judged", "nothing to compile", "does not compile", "fault of the grader"};
+
+// Names and stories that are kept for ourselves hold any bytes: what is not UTF-8 is replaced, not refused.
+std::string dumped(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n'; }
+
+std::string output_of(const ScoredTest& test) {
+  std::string text = words(test.result.verdict);
+  if (!test.result.story.empty()) text += "\n" + plain_text(test.result.story);
+  return text;
+}
+
+// What spreadsheets take for the start of a formula: the signs, and the full-width forms that some of them read alike.
+bool starts_a_formula(const std::string& text) {
+  const auto first = text.find_first_not_of(' ');
+  if (first == std::string::npos) return false;
+  for (const std::string_view sign : {"=", "+", "-", "@", "\uff1d", "\uff0b", "\uff0d", "\uff20", "\u2212"})
+    if (std::string_view(text).substr(first).starts_with(sign)) return true;
+  return false;
+}
+
+// A cell of a table for spreadsheets: one line, quoted where it must be, and never a formula.
+std::string csv_cell(const std::string& raw) {
+  std::string text = plain_name(raw);
+  if (starts_a_formula(text)) text.insert(0, "'");
+  const bool is_plain = text.find_first_of(",;\"") == std::string::npos && !text.starts_with(' ') && !text.ends_with(' ');
+  if (is_plain) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + '"';
+}
+
+Json media_json(const SceneMedia& media) {
+  Json checks = Json::array();
+  for (const auto& c : media.checks)
+    checks.push_back({{"kind", c.kind}, {"subject", c.subject}, {"value", c.value}, {"threshold", c.threshold}, {"unit", c.unit}, {"passed", c.passed},
+                      {"why", c.why}, {"at_least", c.at_least}, {"detail", c.detail}});
+  return {{"scene", media.scene}, {"title", media.title}, {"about", media.about}, {"picture", media.picture.string()}, {"video", media.video.string()},
+          {"story", media.story}, {"attempted", media.attempted}, {"checks", checks}, {"page", media.page.string()}};
+}
+
+// JSON has no infinities: they became null.
+double number_or_infinity(const Json& json) { return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>(); }
+
+SceneMedia media_of(const Json& json) {
+  SceneMedia media;
+  media.scene = json.at("scene");
+  media.title = json.at("title");
+  media.about = json.at("about");
+  media.picture = json.at("picture").get<std::string>();
+  media.video = json.at("video").get<std::string>();
+  media.story = json.at("story");
+  media.attempted = json.at("attempted");
+  media.page = json.value("page", std::string());
+  for (const Json& c : json.at("checks"))
+    media.checks.push_back({c.at("kind"), c.at("subject"), number_or_infinity(c.at("value")), number_or_infinity(c.at("threshold")), c.at("unit"), c.at("passed"), c.at("why"),
+                            c.at("at_least"), c.at("detail")});
+  return media;
+}
+
+Json test_json(const ScoredTest& test) {
+  return {{"test", test.item.test}, {"title", test.item.title}, {"level", test.item.level}, {"hidden", test.item.hidden}, {"points", test.item.points},
+          {"score", test.score}, {"verdict", words(test.result.verdict)}, {"story", test.result.story}, {"last_call", test.result.last_call},
+          {"calls", test.result.calls}, {"not_run", test.result.not_run}};
+}
+
+ScoredTest test_of(const Json& json) {
+  ScoredTest test;
+  test.item = {json.at("test"), json.at("points"), json.at("level"), json.at("title"), json.at("hidden")};
+  test.score = json.at("score");
+  test.result.test = test.item.test;
+  test.result.verdict = verdict_from_words(json.at("verdict")).value_or(Verdict::kGraderFault);
+  test.result.story = json.at("story");
+  test.result.last_call = json.at("last_call");
+  test.result.calls = json.at("calls");
+  test.result.not_run = json.at("not_run");
+  return test;
+}
+
+Json changes_json(const std::vector<TestChange>& changes) {
+  Json list = Json::array();
+  for (const TestChange& c : changes) list.push_back({{"test", c.test}, {"title", c.title}, {"before", c.before}, {"after", c.after}, {"reason", c.reason}});
+  return list;
+}
+
+std::string code_of(const Json& json, const std::string& machine_key) { return authentication_code(machine_key, "tumble record 1\n" + dumped(json)); }
+
+GradeRecord record_of(const Json& json) {
+  GradeRecord record;
+  record.assignment = json.at("assignment");
+  record.key = {json.at("submission"), json.at("judging"), json.at("rubric"), json.at("pictures")};
+  record.files = json.at("files").get<std::map<std::string, std::string>>();
+  Grade& grade = record.grade;
+  grade.name = json.at("name");
+  grade.folder = json.at("folder");
+  const std::string state = json.at("state");
+  for (std::size_t i = 0; i < kStates.size(); ++i)
+    if (state == kStates[i]) grade.state = static_cast<GradeState>(i);
+  grade.score = json.at("score");
+  grade.possible = json.at("possible");
+  grade.change = json.at("change");
+  for (const Json& c : json.at("changes")) grade.changes.push_back({c.at("test"), c.at("title"), c.at("before"), c.at("after"), c.at("reason")});
+  grade.story = json.at("story");
+  grade.notes = json.at("notes").get<std::vector<std::string>>();
+  for (const Json& test : json.at("tests")) grade.tests.push_back(test_of(test));
+  for (const Json& media : json.at("media")) grade.media.push_back(media_of(media));
+  grade.cost = cost_of(json.at("cost"));
+  return record;
+}
+
+// The last line of a page: the first digits of each digest find the entry in the ledger.
+std::string graded_from(const GradeKey& key) {
+  constexpr std::size_t kShown = 16;
+  const auto head = [](const std::string& digits) { return digits.substr(0, kShown); };
+  std::string text = "Submission " + head(key.submission) + " · judge " + head(key.judging) + " · rubric " + head(key.rubric);
+  if (!key.pictures.empty()) text += " · pictures " + head(key.pictures);
+  return text + " · Tumble";
+}
+
+}  // namespace
+
+std::string gradescope_json(const Grade& grade) {
+  Json page;
+  // Without a score Gradescope keeps what it has: nobody's 0 is written for what was not judged.
+  if (grade.has_score()) page["score"] = grade.score;
+  std::string said = grade.story;
+  for (const std::string& note : grade.notes) said += (said.empty() ? "" : "\n") + ("note: " + note);
+  page["output"] = plain_text(said);
+  page["output_format"] = "text";
+  page["test_output_format"] = "text";
+  page["test_name_format"] = "text";
+  page["visibility"] = "visible";
+  page["stdout_visibility"] = "hidden";
+  page["extra_data"] = {{"state", kStates.at(static_cast<std::size_t>(grade.state))}, {"final", grade.is_final()}};
+  page["tests"] = Json::array();
+  for (const ScoredTest& test : grade.tests) {
+    Json entry;
+    entry["name"] = test.item.title;
+    if (grade.has_score()) entry["score"] = test.score;
+    entry["max_score"] = test.item.points;
+    entry["status"] = test.result.verdict == Verdict::kRight ? "passed" : "failed";
+    entry["output"] = output_of(test);
+    entry["tags"] = test.item.level.empty() ? Json::array() : Json::array({test.item.level});
+    entry["visibility"] = test.item.hidden ? "after_published" : "visible";
+    entry["extra_data"] = {{"test", test.item.test}, {"verdict", words(test.result.verdict)}};
+    page["tests"].push_back(std::move(entry));
+  }
+  return dumped(page);
+}
+
+namespace {
+
+bool is_points_row(std::string name) {
+  const auto first = name.find_first_not_of(" \t"), last = name.find_last_not_of(" \t");
+  if (first == std::string::npos) return false;
+  name = name.substr(first, last - first + 1);
+  std::transform(name.begin(), name.end(), name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return name == "points possible";
+}
+
+}  // namespace
+
+std::string gradebook_csv(const std::string& assignment_title, const std::vector<Grade>& grades) {
+  std::string text = "Student,ID,SIS Login ID,Section," + csv_cell(assignment_title) + "\n";
+  double possible = 0.0;
+  for (const Grade& grade : grades) possible = std::max(possible, grade.possible);
+  text += "    Points Possible,,,," + points_text(possible) + "\n";
+  for (const Grade& grade : grades) {
+    // A student of this name would be read as the row of points.
+    const std::string name = csv_cell(is_points_row(grade.name) ? "folder " + grade.name : grade.name);
+    text += name + "," + grade.student_id + "," + name + ",," + (grade.has_score() ? points_text(grade.score) : "") + "\n";
+  }
+  return text;
+}
+
+std::map<std::string, std::string> digests_below(const fs::path& folder) {
+  std::map<std::string, std::string> digests;
+  std::error_code failed;
+  for (fs::recursive_directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
+    const std::string name = it->path().lexically_relative(folder).string();
+    if (fs::is_directory(it->symlink_status()) || name == kRecord) continue;
+    digests[name] = fs::is_regular_file(it->symlink_status()) ? digest_of_file(it->path()) : "no file";
+  }
+  return digests;
+}
+
+std::string record_json(const GradeRecord& record, const std::string& machine_key) {
+  const Grade& grade = record.grade;
+  Json json;
+  json["assignment"] = record.assignment;
+  json["folder"] = grade.folder;
+  json["submission"] = record.key.submission;
+  json["judging"] = record.key.judging;
+  json["rubric"] = record.key.rubric;
+  json["pictures"] = record.key.pictures;
+  json["name"] = grade.name;
+  json["state"] = kStates.at(static_cast<std::size_t>(grade.state));
+  json["score"] = grade.score;
+  json["possible"] = grade.possible;
+  json["change"] = grade.change;
+  json["changes"] = changes_json(grade.changes);
+  json["story"] = grade.story;
+  json["notes"] = grade.notes;
+  json["tests"] = Json::array();
+  for (const ScoredTest& test : grade.tests) json["tests"].push_back(test_json(test));
+  json["media"] = Json::array();
+  for (const SceneMedia& media : grade.media) json["media"].push_back(media_json(media));
+  json["cost"] = cost_json(grade.cost);
+  json["files"] = record.files;
+  // Through text and back: what is signed is what a reader will have, after bytes that are no UTF-8 have been replaced.
+  json = Json::parse(dumped(json));
+  json["mac"] = code_of(json, machine_key);
+  return dumped(json);
+}
+
+EarlierRun read_earlier_run(const fs::path& folder, const std::string& assignment, const std::string& machine_key) {
+  std::error_code failed;
+  if (!fs::exists(fs::symlink_status(folder, failed))) return {};
+  std::ifstream in(folder / kRecord);
+  if (!in) return {{}, "it has no record"};
+  GradeRecord record;
+  try {
+    Json json = Json::parse(in);
+    const std::string code = json.at("mac");
+    json.erase("mac");
+    if (!is_same_code(code, code_of(json, machine_key))) return {{}, "its record is not signed by this machine's key"};
+    record = record_of(json);
+  } catch (const Json::exception&) {
+    return {{}, "its record cannot be read"};
+  }
+  if (record.assignment != assignment || record.grade.folder != folder.filename().string()) return {{}, "its record is of another folder"};
+  if (record.files != digests_below(folder)) return {{}, "its files are not those that were written"};
+  return {std::move(record), ""};
+}
+
+void write_grade(const modules::ModuleKind& kind, const Grade& grade, const GradeKey& key, const fs::path& folder, const std::string& machine_key) {
+  write_whole(folder / "results.json", gradescope_json(grade));
+  submission_page(kind, grade, graded_from(key)).write(folder / "index.html");
+  write_whole(folder / kRecord, record_json({grade, key, kind.id, digests_below(folder)}, machine_key));
+}
+
+std::string ledger_json(const std::string& id, const std::vector<GradeRecord>& records) {
+  Json ledger;
+  ledger["assignment"] = id;
+  ledger["submissions"] = Json::array();
+  for (const GradeRecord& record : records) {
+    const auto results = record.files.find("results.json");
+    ledger["submissions"].push_back({{"name", plain_name(record.grade.name)}, {"folder", record.grade.folder}, {"submission", record.key.submission},
+                                     {"judging", record.key.judging}, {"rubric", record.key.rubric},
+                                     {"results", results == record.files.end() ? "missing" : results->second},
+                                     {"score", record.grade.has_score() ? Json(record.grade.score) : Json(nullptr)}, {"final", record.grade.is_final()},
+                                     {"remarks", record.grade.remarks}, {"change", record.grade.change}, {"changes", changes_json(record.grade.changes)}});
+  }
+  return dumped(ledger);
+}
+
+}  // namespace tumble::grading

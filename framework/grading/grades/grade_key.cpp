@@ -1,0 +1,73 @@
+#include "framework/grading/grades/grade_key.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "framework/grading/course/digest.h"
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string digest_of_files(const std::vector<fs::path>& files) {
+  std::string digests;
+  for (const fs::path& file : files) digests += digest_of_file(file) + ' ';
+  return digest(digests);
+}
+
+}  // namespace
+
+std::string judging_digest(const Course& course, const std::string& id) {
+  const std::string folder = course.registry->find(id).folder;
+  std::vector<fs::path> headers;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(course.root / "assignments" / folder, ignored))
+    if (entry.path().extension() == ".h") headers.push_back(entry.path());
+  std::sort(headers.begin(), headers.end());
+  const fs::path bin = course.build / "bin";
+  std::vector<fs::path> files = {bin / ("judge_" + id), bin / ("worker_" + id), bin / "sandbox_init", "/usr/bin/g++"};
+  files.insert(files.end(), headers.begin(), headers.end());
+  return digest_of_files(files);
+}
+
+std::string grader_digest(const Course& course, const std::string& id, double budget_s) {
+  return digest(judging_digest(course, id) + fmt::format(" {} ", budget_s) + digest_of_file("/proc/self/exe"));
+}
+
+std::string rubric_digest(const Rubric& rubric) {
+  std::string text;
+  for (const RubricItem& item : rubric.items) text += fmt::format("{}\n{}\n{}\n{}\n{}\n", item.test, item.points, item.level, item.title, item.hidden);
+  return digest(text);
+}
+
+std::string pictures_digest(const Course& course, const std::string& id, const GradeOptions& options) {
+  if (!options.media) return "";
+  const MediaOptions& m = options.media_options;
+  std::string text = fmt::format("{} {} {} {} {} {} ", m.width, m.height, m.samples, m.rate_hz, m.video, m.page);
+  for (const fs::path& scene : options.scenes.empty() ? scenes_of(course, id) : options.scenes) text += scene.filename().string() + digest_of_file(scene) + ' ';
+  return digest(text + digest_of_file(built_module(course, id, "reference")));
+}
+
+std::string submission_digest(const Submission& submission) {
+  std::string text = submission.problem + '\0';
+  for (const std::string& note : submission.notes) text += note + '\0';
+  return digest(text + (submission.source.empty() ? "" : digest_of_file(submission.source)));
+}
+
+std::string folder_of(const std::string& name) {
+  constexpr std::size_t kLongest = 80;  // bytes: a file system takes 255, and drafts need room
+  std::string plain;
+  for (const char c : name) {
+    const bool keep = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
+    plain += keep ? c : '_';
+  }
+  if (plain.size() > kLongest) plain.resize(kLongest);
+  // Names that begin with "_" are those made here: nobody's own name may look like one.
+  const bool taken = plain.empty() || plain[0] == '.' || plain[0] == '-' || plain[0] == '_' || plain == "index.html" || plain == "gradebook.csv" || plain == "ledger.json" || plain == "times.json";
+  constexpr std::size_t kDigits = 16;   // 64 bits of SHA-256: two names of a course do not share them by chance
+  return plain == name && !taken ? plain : "_" + plain + "-" + digest(name).substr(0, kDigits);
+}
+
+}  // namespace tumble::grading

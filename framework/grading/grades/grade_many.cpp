@@ -1,0 +1,354 @@
+// All submissions of a folder: a process for each, a few at a time, so that what happens in one stays in one.
+#include <fcntl.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "framework/core/files.h"
+#include "framework/grading/compiler/compile.h"
+#include "framework/grading/course/digest.h"
+#include "framework/grading/grades/grade_many.h"
+#include "framework/grading/grades/grade_files.h"
+#include "framework/grading/grades/grade_key.h"
+#include "framework/grading/grades/grade_pages.h"
+#include "framework/grading/course/machine_key.h"
+#include "framework/grading/grades/grade_submission.h"
+#include "framework/grading/grades/output_folder.h"
+#include "framework/grading/verdicts/plain_text.h"
+#include "framework/grading/course/processes.h"
+#include "framework/grading/grades/scoring.h"
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+struct Work {
+  const Submission* submission;
+  std::string folder;
+  GradeKey key;
+  EarlierRun earlier;
+  GradeRecord record;       // as it stands in the end
+  std::vector<std::string> remarks;
+  double seconds = 0.0;
+};
+
+class Batch {
+ public:
+  Batch(const Course& course, const std::string& id, const fs::path& submissions, const fs::path& out, const GradeOptions& options)
+      : snapshot_(course, id), course_(snapshot_.course()), id_(id), kind_(course.registry->find(id)), options_(options) {
+    require_rubric_of_judge(course_, id);
+    rubric_ = rubric_of(course_, id);
+    refuse_key_in(out);
+    output_.emplace(out, submissions, id);
+    key_ = machine_key();
+    if (!key_.notice.empty()) notice(key_.notice);
+  }
+
+  std::vector<Grade> run(std::vector<Submission> submissions) {
+    read_once(submissions);
+    plan(submissions);
+    grade_open_ones();
+    return write_overview();
+  }
+
+ private:
+  // Results are handed on and published; the key that signs them is not.
+  static void refuse_key_in(const fs::path& out) {
+    std::error_code failed;
+    const fs::path key = fs::weakly_canonical(machine_key_file(), failed), folder = fs::weakly_canonical(fs::absolute(out), failed);
+    const auto [end, rest] = std::mismatch(folder.begin(), folder.end(), key.begin(), key.end());
+    if (!key.empty() && end == folder.end()) throw UserError(key.string(), "is the key of this machine, and lies in the folder of results " + folder.string(), "Name another file in TUMBLE_GRADER_KEY, or another folder with --out.");
+  }
+
+  void notice(const std::string& sentence) const {
+    if (options_.notice) options_.notice(sentence);
+  }
+
+  // A file may change while others are graded: what is digested, compared and compiled is one copy, read here.
+  void read_once(std::vector<Submission>& submissions) {
+    std::size_t number = 0;
+    for (Submission& submission : submissions) {
+      if (submission.source.empty()) continue;
+      std::string why;
+      const auto text = read_plain_file(submission.source, CompileLimits{}.source_bytes, why);
+      const fs::path copy = sources_.path() / std::to_string(number++) / submission.source.filename();
+      if (text) write_whole(copy, *text);
+      else submission.problem = plain_name(submission.source.filename().string()) + ' ' + why;
+      submission.source = text ? copy : fs::path();
+    }
+  }
+
+  // Takes over what is whole, signed and unchanged.
+  void plan(const std::vector<Submission>& submissions) {
+    const std::string judging = grader_digest(course_, id_, options_.budget_s), pictures = pictures_digest(course_, id_, options_);
+    std::set<std::string> folders;
+    for (const Submission& submission : submissions) {
+      // Two entries of one name cannot be, but two flat files of one student can: each gets a folder of its own.
+      std::string folder = folder_of(submission.name);
+      for (int again = 2; !folders.insert(folder).second; ++again) folder = folder_of(submission.name + '\0' + std::to_string(again));
+      Work work{&submission, folder, {submission_digest(submission), judging, rubric_digest(rubric_), pictures}, {}, {}, {}, 0.0};
+      if (output_->owns(folder)) work.earlier = read_earlier_run(place_of(work), id_, key_.bytes);
+      work_.push_back(std::move(work));
+    }
+    output_->claim(folders);
+    remark_equal_files();
+    tell_doubles();
+    tell_distrusted();
+    for (Work& work : work_) {
+      if (is_current(work)) {
+        work.record = *work.earlier.record;
+        work.record.grade.taken_over = true;
+        ++done_;
+      } else {
+        open_.push_back(&work);
+      }
+    }
+  }
+
+  // The same bytes under two names are worth a look. No student reads it: it names others.
+  void remark_equal_files() {
+    std::map<std::string, std::vector<Work*>> by_digest;
+    for (Work& work : work_)
+      if (!work.submission->source.empty()) by_digest[digest_of_file(work.submission->source)].push_back(&work);
+    for (const auto& [bytes, equal] : by_digest)
+      for (Work* work : equal)
+        for (const Work* other : equal)
+          if (other != work) work->remarks.push_back("the same file, byte for byte, as that of " + plain_name(other->submission->name));
+  }
+
+  // A folder and a flat file of one name, say: two rows of one student, of which a grade book keeps the last.
+  void tell_doubles() {
+    std::map<std::pair<std::string, std::string>, std::vector<Work*>> by_student;
+    for (Work& work : work_) by_student[{work.submission->name, work.submission->student_id}].push_back(&work);
+    for (const auto& [student, works] : by_student) {
+      if (works.size() < 2) continue;
+      notice(fmt::format("{}: {} submissions of that name: the grade book has a row for each, and a system that reads it may keep the last. Leave one.", plain_name(student.first), works.size()));
+      for (Work* work : works) work->remarks.push_back(fmt::format("one of {} submissions of this name", works.size()));
+    }
+  }
+
+  void tell_distrusted() const {
+    constexpr std::size_t kNamed = 5;
+    std::size_t count = 0;
+    for (const Work& work : work_) {
+      if (work.earlier.problem.empty()) continue;
+      if (++count <= kNamed) notice(plain_name(work.submission->name) + ": the earlier result is not taken over, " + work.earlier.problem + "; graded again");
+    }
+    if (count > kNamed) notice(fmt::format("... and {} more", count - kNamed));
+  }
+
+  bool pictures_do(const Work& work) const { return !options_.media || work.earlier.record->key.pictures == work.key.pictures; }
+  bool verdicts_stand(const Work& work) const {
+    if (!work.earlier.record || !work.earlier.record->grade.is_final()) return false;
+    const GradeKey& old = work.earlier.record->key;
+    return old.submission == work.key.submission && old.judging == work.key.judging && pictures_do(work);
+  }
+  bool is_current(const Work& work) const { return verdicts_stand(work) && work.earlier.record->key.rubric == work.key.rubric; }
+
+  void grade_open_ones() {
+    start_ = Clock::now();
+    tell("");
+    const auto work = [&](std::size_t i) { grade_one(*open_[i]); };
+    run_in_processes(open_.size(), options_.jobs, work, [&](std::size_t i, int status, double seconds) {
+      open_[i]->seconds = seconds;
+      settle(*open_[i], status);
+      ++done_;
+      ++fresh_;
+      tell(open_[i]->submission->name);
+    }, [this] { clear_drafts(); });
+  }
+
+  // What is half done goes; what is done stands, and is taken over by the next run.
+  void clear_drafts() const {
+    std::error_code ignored;
+    for (const Work& work : work_) fs::remove_all(draft_of(work), ignored);
+    for (const fs::path& folder : {course_.build, sources_.path()}) fs::remove_all(folder, ignored);   // this process ends by the signal, without its destructors
+    fmt::print(stderr, "stopped: {} of {} submissions are graded; the same command goes on from here\n", done_, work_.size());
+  }
+
+  fs::path place_of(const Work& work) const { return output_->path() / work.folder; }
+  fs::path draft_of(const Work& work) const { return output_->path() / draft_name(work.folder); }
+  // The draft's name must not show in what is written: it is named as it will be.
+  fs::path made_of(const Work& work) const { return draft_of(work) / work.folder; }
+
+  // In a process of its own. What goes wrong is left beside the draft, for the parent to read.
+  void grade_one(const Work& work) const {
+    try {
+      fs::create_directories(made_of(work));
+      GradeOptions own = options_;
+      own.progress = {};
+      std::optional<Grade> grade;
+      if (verdicts_stand(work)) grade = graded_by(rubric_, work.earlier.record->grade);   // points alone have changed: added up again, not run again
+      GradeKey key = work.key;
+      const bool is_rerun = !grade;
+      if (is_rerun) grade = grade_submission(course_, id_, *work.submission, made_of(work), own);
+      grade->folder = work.folder;
+      if (!is_rerun || !options_.media) keep_media(work, *grade, key);
+      grade->change.clear();
+      grade->changes.clear();
+      if (work.earlier.record) compare(*work.earlier.record, key, *grade);
+      write_grade(kind_, *grade, key, made_of(work), key_.bytes);
+    } catch (const std::exception& error) {
+      write_whole(draft_of(work) / "fault.txt", error.what());
+      throw;
+    }
+  }
+
+  // Pictures of an earlier run stay where none are made now: their files always, and on the page where it is known what they show.
+  void keep_media(const Work& work, Grade& grade, GradeKey& key) const {
+    const fs::path from = place_of(work) / "media", to = made_of(work) / "media";
+    if (!fs::is_directory(fs::symlink_status(from))) return;
+    fs::create_directories(to);
+    for (const auto& entry : fs::directory_iterator(from)) {
+      std::error_code failed;
+      fs::create_hard_link(entry.path(), to / entry.path().filename(), failed);
+      if (failed) fs::copy_file(entry.path(), to / entry.path().filename());
+    }
+    if (!work.earlier.record || work.earlier.record->grade.media.empty()) return;
+    const GradeRecord& earlier = *work.earlier.record;
+    grade.media = earlier.grade.media;
+    const bool is_same = earlier.key.submission == work.key.submission;
+    key.pictures = is_same ? earlier.key.pictures : "";
+    const std::string note = "the pictures are of an earlier version of the file (no new ones were made)";
+    std::erase(grade.notes, note);
+    const bool were_old = std::find(earlier.grade.notes.begin(), earlier.grade.notes.end(), note) != earlier.grade.notes.end();
+    if (!is_same || were_old) grade.notes.push_back(note);
+  }
+
+  // What a regrade changed, test by test.
+  static void compare(const GradeRecord& old, const GradeKey& key, Grade& now) {
+    const char* reason = old.key.submission != key.submission ? "the submission changed"
+                         : old.key.judging != key.judging     ? "the tests or the grader changed"
+                         : old.key.rubric != key.rubric       ? "the rubric changed"
+                                                              : "run again";
+    const auto said = [](const ScoredTest& test) { return fmt::format("{}, {} of {}", words(test.result.verdict), points_text(test.score), points_text(test.item.points)); };
+    std::map<std::string, std::string> before;
+    for (const ScoredTest& test : old.grade.tests) before[test.item.test] = said(test);
+    for (const ScoredTest& test : now.tests) {
+      const auto it = before.find(test.item.test);
+      const std::string was = it == before.end() ? "not there" : it->second;
+      if (was != said(test)) now.changes.push_back({test.item.test, test.item.title, was, said(test), reason});
+      if (it != before.end()) before.erase(it);
+    }
+    for (const auto& [test, was] : before) now.changes.push_back({test, test, was, "not there", reason});
+    if (old.grade.score != now.score && old.grade.has_score() && now.has_score())
+      now.change = fmt::format("{} -> {}: {}", points_text(old.grade.score), points_text(now.score), reason);
+    else if (old.grade.has_score() != now.has_score())
+      now.change = fmt::format("{} -> {}: {}", old.grade.has_score() ? points_text(old.grade.score) : "none", now.has_score() ? points_text(now.score) : "none", reason);
+  }
+
+  // Puts a finished submission in place. A fault of ours leaves an old result standing.
+  void settle(Work& work, int status) {
+    const fs::path draft = draft_of(work), made = made_of(work), place = place_of(work);
+    std::optional<GradeRecord> record;
+    if (status == 0) record = read_earlier_run(made, id_, key_.bytes).record;
+    if (!record) record = write_fault(work, status);
+    const std::optional<GradeRecord>& earlier = work.earlier.record;
+    const bool old_stands = earlier && earlier->grade.is_final() && earlier->key.submission == work.key.submission && !record->grade.is_final();
+    if (old_stands) {
+      work.record = *earlier;
+      work.record.grade.change = "the grader failed on a new run; this is the result of the earlier one";
+    } else {
+      put_in_place(made, place, draft / "old");
+      work.record = *record;
+    }
+    std::error_code ignored;
+    fs::remove_all(draft, ignored);
+  }
+
+  // A reader sees the old folder or the new one, whole: where the file system can, they change places in one step.
+  static void put_in_place(const fs::path& made, const fs::path& place, const fs::path& aside) {
+    if (!fs::exists(fs::symlink_status(place))) return fs::rename(made, place);
+    if (::renameat2(AT_FDCWD, made.c_str(), AT_FDCWD, place.c_str(), RENAME_EXCHANGE) == 0) return;
+    fs::rename(place, aside);
+    fs::rename(made, place);
+  }
+
+  // The grading process itself failed: a page that says so, and no score.
+  GradeRecord write_fault(const Work& work, int status) {
+    std::string why;
+    std::ifstream said(draft_of(work) / "fault.txt");
+    why.assign(std::istreambuf_iterator<char>(said), {});
+    if (why.empty()) why = WIFSIGNALED(status) ? fmt::format("the grading process ended with signal {}", WTERMSIG(status)) : "the grading process left no result";
+    GradeRecord record;
+    record.key = work.key;
+    record.key.pictures.clear();
+    record.assignment = id_;
+    Grade& grade = record.grade;
+    grade.name = work.submission->name;
+    grade.folder = work.folder;
+    grade.notes = work.submission->notes;
+    grade.story = why;
+    grade.tests = score_nothing(rubric_, Verdict::kGraderFault, why);
+    add_up(grade);
+    fs::remove_all(made_of(work));
+    fs::create_directories(made_of(work));
+    keep_media(work, grade, record.key);
+    write_grade(kind_, grade, record.key, made_of(work), key_.bytes);
+    record.files = digests_below(made_of(work));
+    return record;
+  }
+
+  void tell(const std::string& finished) const {
+    if (!options_.progress) return;
+    GradeProgress progress{done_, work_.size(), finished, -1.0};
+    if (fresh_ > 0) {
+      const double spent = std::chrono::duration<double>(Clock::now() - start_).count();
+      progress.left_s = spent / static_cast<double>(fresh_) * static_cast<double>(work_.size() - done_);
+    }
+    options_.progress(progress);
+  }
+
+  std::vector<Grade> write_overview() {
+    std::vector<Grade> grades;
+    std::vector<GradeRecord> records;
+    nlohmann::ordered_json times = {{"command", course_.command}, {"seconds", nlohmann::ordered_json::object()}};
+    for (Work& work : work_) {
+      work.record.grade.name = work.submission->name;
+      work.record.grade.remarks = work.remarks;
+      work.record.grade.student_id = work.submission->student_id;
+      grades.push_back(work.record.grade);
+      records.push_back(work.record);
+      if (work.seconds > 0.0) times["seconds"][work.folder] = work.seconds;
+    }
+    const fs::path& out = output_->path();
+    write_whole(out / "gradebook.csv", gradebook_csv(kind_.title, grades));
+    write_whole(out / "ledger.json", ledger_json(id_, records));
+    index_page(kind_, grades).write(out / "index.html");
+    write_whole(out / "times.json", times.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + '\n');
+    return grades;
+  }
+
+  const CourseSnapshot snapshot_;
+  const PrivateFolder sources_;
+  const Course& course_;
+  const std::string id_;
+  const modules::ModuleKind& kind_;
+  const GradeOptions& options_;
+  Rubric rubric_;
+  std::optional<OutputFolder> output_;
+  MachineKey key_;
+  std::vector<Work> work_;
+  std::vector<Work*> open_;
+  std::size_t done_ = 0, fresh_ = 0;
+  Clock::time_point start_;
+};
+
+}  // namespace
+
+std::vector<Grade> grade_submissions(const Course& course, const std::string& id, const FoundSubmissions& submissions, const fs::path& out,
+                                     const GradeOptions& options) {
+  return Batch(course, id, submissions.folder, out, options).run(submissions.all);
+}
+
+}  // namespace tumble::grading

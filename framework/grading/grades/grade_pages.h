@@ -1,0 +1,29 @@
+/// The pages of a graded folder.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "framework/grading/grades/grade.h"
+#include "framework/report/html.h"
+
+namespace tumble::grading {
+
+/// The page of one submission, for OUT/NAME/index.html. Media are looked for in media/ beside it.
+report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade, const std::string& record);
+
+/// The page over all, for OUT/index.html.
+report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade>& grades);
+
+/// Parts of a page that other reports are made of.
+void add_stories(report::Page& page, const Grade& grade);
+/// @param folder  of the media, relative to the page
+void add_media(report::Page& page, const std::vector<SceneMedia>& media, const std::filesystem::path& folder);
+
+/// Nothing where nothing was measured.
+void add_cost(report::Page& page, const CostSection& cost);
+
+/// "12.5 of 100", "fault of the grader", ...: one line on how it went.
+std::string summary_of(const Grade& grade);
+
+}  // namespace tumble::grading

@@ -1,0 +1,114 @@
+#include "framework/grading/grades/media.h"
+
+#include "framework/engines/run.h"
+#include "framework/grading/verdicts/call_log.h"
+#include "framework/grading/course/laws_around.h"
+#include "framework/grading/verdicts/plain_text.h"
+#include "framework/render/picture.h"
+#include "framework/report/player.h"
+#include "framework/report/virtual_times_panel.h"
+#include "framework/scene/load_scene.h"
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+using modules::AnyModule;
+using modules::ModuleKind;
+
+struct Run {
+  Trajectory trajectory;
+  std::string story;
+  bool attempted = true;
+};
+
+// Runs to the end, or to where the submission fails; what was recorded before stays.
+Run run(const scene::Scene& scene, const Laws& laws) {
+  Run result;
+  TrajectoryRecorder recorder;
+  try {
+    engines::run_scene(scene, laws, {}, recorder);
+  } catch (const NotImplemented& missing) {
+    result.story = missing.what();
+    result.attempted = false;
+  } catch (const std::exception& error) {
+    result.story = error.what();
+  }
+  result.trajectory = recorder.trajectory();
+  if (result.story.empty()) result.story = result.trajectory.stopped_by;
+  else result.trajectory.stopped_by = plain_text(result.story);   // it may be a submission's own words
+  return result;
+}
+
+Run run_submission(const Course& course, const ModuleKind& kind, const fs::path& submission, const scene::Scene& scene, const MediaOptions& options) {
+  WorkerOptions worker;
+  worker.id = kind.id;
+  worker.module = submission;
+  worker.programs = course.build / "bin";
+  worker.session_own_s = options.wall_s;
+  worker.callback_budget = 100'000'000;  // a scene is thousands of steps; the wall limit comes first
+  call_log() = CallLog{};
+  WorkerConnection connection(worker);
+  const Laws laws = laws_around(course, kind, kind.make_proxy(connection), "submission", scene);
+  return run(scene, laws);
+}
+
+void draw(const scene::Scene& scene, const std::vector<render::LabelledRun>& runs, const fs::path& folder, const MediaOptions& options,
+          const Course& course, SceneMedia& media) {
+  render::PictureOptions picture;
+  picture.width = options.width;
+  picture.height = options.height;
+  picture.samples = options.samples;
+  picture.video_rate_hz = options.rate_hz;
+  picture.root = course.root;
+  media.picture = scene.name + ".png";
+  render::write_side_by_side_picture(folder / media.picture, scene, runs, render::telling_instant(runs.back().trajectory), picture);
+  if (!options.video) return;
+  media.video = scene.name + ".mp4";
+  render::write_side_by_side_video(folder / media.video, scene, runs, picture);
+}
+
+// Run and reference in one page that plays them, with the first difference.
+void write_page(const scene::Scene& scene, const std::vector<render::LabelledRun>& runs, const fs::path& folder, const Course& course, SceneMedia& media) {
+  report::PlayerOptions player;
+  player.root = course.root;
+  std::vector<report::PlayedRun> played;
+  if (!runs.empty() && !runs.front().trajectory.virtual_times.moves.empty()) player.panels.push_back(report::virtual_times_panel(runs.front().trajectory.virtual_times));
+  for (const render::LabelledRun& run : runs) played.push_back({run.trajectory, run.label});
+  media.page = scene.name + ".html";
+  report::write_player(folder / media.page, scene, played, player);
+}
+
+}  // namespace
+
+std::vector<SceneMedia> make_media(const Course& course, const std::string& id, const std::vector<fs::path>& scenes, const fs::path& submission,
+                                   const fs::path& folder, const MediaOptions& options, const std::function<void(const std::string&)>& told) {
+  const ModuleKind& kind = course.registry->find(id);
+  const AnyModule reference = reference_of(course, kind);
+  fs::create_directories(folder);
+  std::vector<SceneMedia> all;
+  for (const fs::path& file : scenes) {
+    const scene::Scene scene = scene::load_scene(file);
+    if (told) told(scene.title);
+    SceneMedia media;
+    media.scene = scene.name;
+    media.title = scene.title;
+    media.about = scene.about;
+    const Run theirs = run_submission(course, kind, submission, scene, options);
+    media.story = theirs.story;
+    media.attempted = theirs.attempted;
+    if (theirs.story.empty()) media.checks = engines::judge_run(scene, theirs.trajectory);
+    const Run ours = reference ? run(scene, laws_around(course, kind, reference, "reference", scene)) : Run{};
+    std::vector<render::LabelledRun> runs;
+    if (!theirs.trajectory.frames.empty()) runs.push_back({theirs.trajectory, "submission"});
+    if (!ours.trajectory.frames.empty()) runs.push_back({ours.trajectory, "reference"});
+    MediaOptions own = options;
+    own.video = options.video && theirs.attempted;  // nothing moves by what is not there: a picture says that as well
+    if (!runs.empty()) draw(scene, runs, folder, own, course, media);
+    if (!runs.empty() && options.page && theirs.attempted) write_page(scene, runs, folder, course, media);
+    all.push_back(std::move(media));
+  }
+  return all;
+}
+
+}  // namespace tumble::grading

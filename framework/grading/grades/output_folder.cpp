@@ -1,0 +1,199 @@
+#include "framework/grading/grades/output_folder.h"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "framework/core/error.h"
+#include "framework/core/files.h"
+#include "framework/grading/verdicts/plain_text.h"
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kManifest = ".tumble-grade.json";
+constexpr const char* kLock = ".tumble-lock";
+constexpr const char* kDraft = ".making-";
+constexpr std::array<std::string_view, 4> kOverview = {"index.html", "gradebook.csv", "ledger.json", "times.json"};
+constexpr std::array<std::string_view, 3> kOfASubmission = {"index.html", "results.json", "record.json"};
+const char* const kElsewhere = "Give --out a folder of its own, or one that does not exist yet.";
+
+std::string shown(const fs::path& path) { return plain_name(path.string()); }
+
+bool is_there(const fs::path& path) {
+  std::error_code failed;
+  return fs::exists(fs::symlink_status(path, failed));
+}
+
+// Whether one of the folders is the other or lies in it, by what they are on the disk: links, "..", and letter case where that does not count.
+bool lies_in(const fs::path& inner, const fs::path& outer) {
+  for (fs::path at = inner;; at = at.parent_path()) {
+    std::error_code failed;
+    if (fs::equivalent(at, outer, failed) && !failed) return true;
+    if (at == at.parent_path()) return false;
+  }
+}
+
+// A draft that a killed run left: ".index.draft123.html" beside "index.html".
+bool is_draft_of(const std::string& name, std::string_view file) {
+  const fs::path wanted(file);
+  const std::string head = '.' + wanted.stem().string() + ".draft", tail = wanted.extension().string();
+  if (!name.starts_with(head) || !name.ends_with(tail) || name.size() <= head.size() + tail.size()) return false;
+  return name.substr(head.size(), name.size() - head.size() - tail.size()).find_first_not_of("0123456789") == std::string::npos;
+}
+
+template <std::size_t N>
+bool is_one_of(const std::string& name, const std::array<std::string_view, N>& files) {
+  for (const std::string_view file : files)
+    if (name == file || is_draft_of(name, file)) return true;
+  return false;
+}
+
+[[noreturn]] void refuse_foreign(const fs::path& path) {
+  throw UserError(shown(path), "was not written by this grader, and results go only where nothing else lies", kElsewhere);
+}
+
+// The files of a submission's folder are known by their names; whatever else is there was put there by somebody.
+void refuse_foreign_in(const fs::path& folder) {
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    const auto status = entry.symlink_status();
+    if (fs::is_regular_file(status) && is_one_of(name, kOfASubmission)) continue;
+    if (!fs::is_directory(status) || name != "media") refuse_foreign(entry.path());
+    for (const auto& media : fs::directory_iterator(entry.path())) {
+      const std::string ending = media.path().extension().string();
+      const bool is_ours = fs::is_regular_file(media.symlink_status()) && (ending == ".png" || ending == ".mp4" || ending == ".html");
+      if (!is_ours) refuse_foreign(media.path());
+    }
+  }
+}
+
+// A folder of this folder: what folder_of() makes, and what may be joined to a path and removed.
+bool is_one_component(const std::string& name) {
+  return !name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos && name.find('\0') == std::string::npos;
+}
+
+// Whether the process that took this lock, whose number it wrote into it, is still there.
+bool holder_lives(int lock) {
+  char text[24] = {};
+  if (::pread(lock, text, sizeof text - 1, 0) <= 0) return false;
+  const int holder = std::atoi(text);
+  return holder > 0 && (::kill(holder, 0) == 0 || errno == EPERM);
+}
+
+}  // namespace
+
+std::string draft_name(const std::string& folder) { return kDraft + folder; }
+
+OutputFolder::OutputFolder(const fs::path& out, const fs::path& submissions, const std::string& id) : id_(id) {
+  std::error_code failed;
+  path_ = fs::weakly_canonical(fs::absolute(out), failed);
+  if (failed) throw UserError(shown(out), "cannot be reached: " + failed.message());
+  if (is_there(path_) && !fs::is_directory(path_)) throw UserError(shown(out), "is no folder", kElsewhere);
+  const fs::path graded = fs::canonical(submissions);
+  const char* const kOverlaps = "Results are never written among submissions, and submissions never read among results. Give --out a folder elsewhere.";
+  if (lies_in(path_, graded)) throw UserError(shown(out), lies_in(graded, path_) ? "is the folder of the submissions itself" : "lies in the folder of the submissions, " + shown(submissions), kOverlaps);
+  if (lies_in(graded, path_)) throw UserError(shown(out), "holds the folder of the submissions, " + shown(submissions), kOverlaps);
+  read_manifest();
+  if (!is_there(path_ / kLock)) refuse_foreign_files();   // else the lock first: a grading that runs there makes and renames files
+  fs::create_directories(path_, failed);
+  if (failed) throw UserError(shown(out), "cannot be made: " + failed.message(), "Give --out a folder that you may write to.");
+  lock();
+  // Once more: another grading may have come first.
+  read_manifest();
+  refuse_foreign_files();
+  sweep_drafts();
+  claim({});
+}
+
+OutputFolder::~OutputFolder() {
+  if (lock_ < 0) return;
+  if (::ftruncate(lock_, 0) != 0) {}   // a number that stays is one of a process that is gone: no harm
+  ::close(lock_);
+}
+
+void OutputFolder::read_manifest() {
+  const fs::path file = path_ / kManifest;
+  folders_.clear();
+  if (!is_there(file)) return;
+  try {
+    if (!fs::is_regular_file(fs::symlink_status(file))) refuse_foreign(file);
+    std::ifstream in(file);
+    const auto manifest = nlohmann::json::parse(in);
+    const std::string other = manifest.at("assignment");
+    if (other != id_) throw UserError(shown(path_), "holds results of " + plain_name(other) + ", not of " + id_, kElsewhere);
+    for (const std::string folder : manifest.at("folders")) {
+      if (!is_one_component(folder)) refuse_foreign(file);   // written by hand: it could lead out of this folder
+      folders_.insert(folder);
+    }
+  } catch (const nlohmann::json::exception&) {
+    refuse_foreign(file);
+  }
+}
+
+void OutputFolder::refuse_foreign_files() const {
+  if (!is_there(path_)) return;
+  std::error_code failed;
+  for (fs::directory_iterator it(path_, failed), end; !failed && it != end; it.increment(failed)) {
+    const std::string name = it->path().filename().string();
+    const auto status = it->symlink_status();
+    // Without a manifest nothing here is ours, whatever it is named; only a lock may stand alone, of a run that was killed at its first step.
+    const bool has_manifest = is_there(path_ / kManifest);
+    if (fs::is_regular_file(status) && (name == kLock || is_draft_of(name, kManifest))) continue;
+    if (has_manifest && fs::is_regular_file(status) && (name == kManifest || is_one_of(name, kOverview))) continue;
+    const bool is_drafts = name.starts_with(kDraft) && owns(name.substr(std::string_view(kDraft).size()));
+    if (fs::is_directory(status) && is_drafts) continue;
+    if (!fs::is_directory(status) || !owns(name)) refuse_foreign(it->path());
+    refuse_foreign_in(it->path());
+  }
+  if (failed) throw UserError(shown(path_), "cannot be read: " + failed.message());
+}
+
+void OutputFolder::lock() {
+  const fs::path file = path_ / kLock;
+  lock_ = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0600);
+  if (lock_ < 0) throw UserError(shown(file), "cannot be opened", "Give --out a folder that you may write to.");
+  // flock: held by this process and those that it forks, released when the last of them ends, however it ends. The file holds the number of the
+  // process that took the lock: while that one lives, another grading is running; after it was killed, its children need a while to die
+  // (seconds, on a busy machine), and are waited for.
+  constexpr int kTries = 3000, kTriesBesideALiving = 100, kPauseUs = 20'000;
+  for (int i = 0; ::flock(lock_, LOCK_EX | LOCK_NB) != 0; ++i) {
+    if (i == kTries || (i >= kTriesBesideALiving && holder_lives(lock_)))
+      throw UserError(shown(path_), "another grading writes there at this moment", "Wait for its end, or give --out another folder.");
+    ::usleep(kPauseUs);
+  }
+  const std::string holder = std::to_string(::getpid()) + '\n';
+  if (::ftruncate(lock_, 0) != 0 || ::pwrite(lock_, holder.data(), holder.size(), 0) != static_cast<ssize_t>(holder.size()))
+    throw UserError(shown(file), "cannot be written", "Is the disk full?");
+}
+
+void OutputFolder::sweep_drafts() const {
+  std::error_code ignored;
+  for (const std::string& folder : folders_) fs::remove_all(path_ / draft_name(folder), ignored);
+  for (const auto& entry : fs::directory_iterator(path_)) {
+    const std::string name = entry.path().filename().string();
+    const bool is_ours = is_one_of(name, kOverview) || is_draft_of(name, kManifest);
+    if (is_ours && name.starts_with('.')) fs::remove(entry.path(), ignored);
+  }
+}
+
+void OutputFolder::claim(const std::set<std::string>& folders) {
+  for (const std::string& folder : folders)
+    if (!owns(folder) && is_there(path_ / folder)) refuse_foreign(path_ / folder);
+  folders_.insert(folders.begin(), folders.end());
+  const nlohmann::ordered_json manifest = {{"assignment", id_}, {"folders", folders_}};
+  write_whole(path_ / kManifest, manifest.dump(1) + '\n');
+}
+
+}  // namespace tumble::grading

@@ -1,0 +1,184 @@
+#include "framework/grading/grades/scheduler_section.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "framework/engines/cost/showcase.h"
+#include "framework/grading/verdicts/call_log.h"
+#include "framework/grading/course/laws_around.h"
+#include "framework/grading/verdicts/plain_text.h"
+#include "framework/grading/worker/worker_connection.h"
+#include "framework/scene/load_scene.h"
+#include "framework/scene/sized_scenes.h"
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+using engines::SchedulerCurve;
+using engines::SchedulerReading;
+using engines::SchedulerRun;
+using engines::SchedulerTrial;
+using modules::AnyModule;
+using modules::ModuleKind;
+
+// Each decision of a submission crosses to the sandbox and back, so that scenes are small.
+constexpr int kSizes[] = {6, 12, 24};
+constexpr double kSizedDuration = 0.5;        // s
+
+double percent(double part) { return 100.0 * part; }
+
+/// The reference comes last, in the submission's colours with hollow marks.
+void place(const SchedulerCurve& whose, report::Curve curve, report::Plot& plot) {
+  if (curve.x.empty()) curve.name.clear();   // its place stays, so that colours mean the same in both
+  if (whose.is_reference && plot.curves.size() < report::kReferenceStyles) plot.curves.resize(report::kReferenceStyles);
+  plot.curves.push_back(std::move(curve));
+}
+
+report::Plot plot_of_errors(const std::vector<SchedulerCurve>& curves) {
+  report::Plot plot{"Error against work", {"integrations for each committed event", "-", report::Scale::kLog}, {"events of the reference not committed", "%"}, {}, {}, "At 0 % a scheduler is right, and the farther left the less it pays for it. Each mark is a run: other steps, or another number of processes."};
+  for (const SchedulerCurve& whose : curves)
+    for (const auto& [ladder, what] : {std::pair{&whose.by_step, "by step"}, std::pair{&whose.by_size, "by size"}}) {
+      report::Curve curve{fmt::format("{}, {}", whose.name, what), {}, {}, true};
+      for (const SchedulerRun& run : *ladder) {
+        if (run.committed == 0 || run.integrations == 0) continue;
+        curve.x.push_back(run.per_event(run.integrations));
+        curve.y.push_back(percent(run.error()));
+      }
+      place(whose, std::move(curve), plot);
+    }
+  return plot;
+}
+
+/// Work an event over one ladder, of the runs that are right.
+report::Plot plot_of_work(const std::vector<SchedulerCurve>& curves, std::vector<SchedulerRun> SchedulerCurve::* ladder, report::Axis across, const std::string& title, double (*x)(const SchedulerRun&), const std::string& caption) {
+  report::Plot plot{title, std::move(across), {"for each committed event", "-", report::Scale::kLog}, {}, {}, caption};
+  for (const SchedulerCurve& whose : curves) {
+    using Count = std::uint64_t SchedulerRun::*;
+    for (const auto& [count, what] : {std::pair<Count, const char*>{&SchedulerRun::integrations, "integrations"}, {&SchedulerRun::undone, "taken back"}, {&SchedulerRun::rollbacks, "rollbacks"}, {&SchedulerRun::checks, "checks of pairs"}}) {
+      report::Curve curve{fmt::format("{}: {}", whose.name, what), {}, {}, true};
+      for (const SchedulerRun& run : whose.*ladder) {
+        if (!run.is_right() || run.integrations == 0) continue;
+        curve.x.push_back(x(run));
+        curve.y.push_back(run.per_event(run.*count));
+      }
+      place(whose, std::move(curve), plot);
+    }
+  }
+  return plot;
+}
+
+bool has(const std::vector<SchedulerCurve>& curves, std::vector<SchedulerRun> SchedulerCurve::* ladder) {
+  return std::any_of(curves.begin(), curves.end(), [ladder](const SchedulerCurve& curve) { return (curve.*ladder).size() > 1; });
+}
+
+/// Runs one ladder; what hangs or crashes in the sandbox ends it.
+class Ladder {
+ public:
+  Ladder(const Course& course, const ModuleKind& kind) : course_(course), kind_(kind), reference_(reference_of(course, kind)) {}
+  const AnyModule& reference() const { return reference_; }
+
+  /// @param between  called before each run
+  void run(const AnyModule& module, const std::string& source, const std::function<void()>& between, SchedulerCurve& curve) const {
+    const fs::path file = course_.root / "assignments" / kind_.folder / "scenes" / (kind_.note<engines::CostShowcase>().scene + ".json");
+    const scene::Scene scene = scene::load_scene(file);
+    for (const double step : engines::scheduler_steps(scene)) {
+      SchedulerTrial trial;
+      trial.step_s = step;
+      trial.duration_s = kind_.note<engines::CostShowcase>().duration_s;
+      between();
+      if (!one(scene, module, source, trial, curve.by_step)) return;
+    }
+    if (kind_.note<engines::CostShowcase>().sized_scene.empty()) return;
+    for (const int n : kSizes) {
+      SchedulerTrial trial;
+      trial.n = n;
+      trial.duration_s = kSizedDuration;
+      between();
+      if (!one(scene::make_sized_scene(kind_.note<engines::CostShowcase>().sized_scene, n), module, source, trial, curve.by_size)) return;
+    }
+  }
+
+ private:
+  bool one(const scene::Scene& scene, const AnyModule& module, const std::string& source, const SchedulerTrial& trial, std::vector<SchedulerRun>& runs) const {
+    const std::size_t due = engines::events_due(scene, laws_around(course_, kind_, nullptr, "", scene), trial);
+    runs.push_back(engines::run_scheduler(scene, laws_around(course_, kind_, module, source, scene), trial, due));
+    return !call_log().noted;   // what hangs, crashes or is not written does so again
+  }
+
+  const Course& course_;
+  const ModuleKind& kind_;
+  AnyModule reference_;
+};
+
+}  // namespace
+
+CostLine line_of(const SchedulerReading& reading) {
+  CostLine line;
+  line.reading = plain_text(reading.text);
+  line.reading[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(line.reading[0])));
+  line.is_wasteful = reading.kind == SchedulerReading::Kind::kWasteful;
+  line.is_right = line.is_wasteful || reading.kind == SchedulerReading::Kind::kRight;
+  line.is_attempted = reading.kind != SchedulerReading::Kind::kNotWritten;
+  return line;
+}
+
+std::vector<report::Plot> scheduler_plots(const std::vector<SchedulerCurve>& curves) {
+  std::vector<report::Plot> plots{plot_of_errors(curves)};
+  if (has(curves, &SchedulerCurve::by_step))
+    plots.push_back(plot_of_work(curves, &SchedulerCurve::by_step, {"how far a process goes ahead at a time", "s", report::Scale::kLog}, "Work against the step", [](const SchedulerRun& run) { return run.step_s; },
+                                 "Much at once is soon taken back, little at once is many steps. Runs that are wrong are not drawn."));
+  if (has(curves, &SchedulerCurve::by_size))
+    plots.push_back(plot_of_work(curves, &SchedulerCurve::by_size, {"processes", "-", report::Scale::kLog}, "Work against the number of processes", [](const SchedulerRun& run) { return static_cast<double>(run.processes); },
+                                 "Where a surprise takes back only those whom it concerns, an event costs the same however many others there are."));
+  return plots;
+}
+
+report::Table scheduler_table(const std::vector<SchedulerCurve>& curves) {
+  report::Table table;
+  table.caption = "Every run, in counts that are the same on any machine.";
+  table.columns = {{""}, {"processes", true}, {"step [s]", true}, {"committed", true}, {"integrations", true}, {"taken back", true}, {"rollbacks", true}, {"anti-messages", true}, {"checks", true}, {"states", true}};
+  for (const SchedulerCurve& curve : curves)
+    for (const auto* ladder : {&curve.by_step, &curve.by_size})
+      for (const SchedulerRun& run : *ladder) {
+        std::vector<report::Cell> cells{{curve.is_reference ? "reference" : "yours"}, {std::to_string(run.processes)}, {fmt::format("{:.3g}", run.step_s)}, {fmt::format("{} of {}", run.committed, run.due), "", run.is_right() ? report::Look::kGood : report::Look::kBad}};
+        for (const std::uint64_t count : {run.integrations, run.undone, run.rollbacks, run.anti_messages, run.checks, run.states_kept}) cells.push_back({std::to_string(count)});
+        table.rows.push_back(std::move(cells));
+      }
+  return table;
+}
+
+std::string what_a_scheduler_pays() {
+  return "Errors are against the ordered reference, which takes one event after the other: the part of its events that a scheduler does not commit, in order and to the last bit, before it leaves them or stands still. "
+         "Prices are counts: integrations (steps of a process), those of them that were taken back, bodies sent back, checks of pairs, each for one committed event.";
+}
+
+CostSection measure_scheduler(const Course& course, const ModuleKind& kind, const fs::path& submission, const CostSectionOptions& options) {
+  if (!kind.note<engines::CostShowcase>().is_graded) return {};
+  const Ladder ladder(course, kind);
+  if (!ladder.reference()) return {};   // nor is there who decides the impulses
+  WorkerOptions worker;
+  worker.id = kind.id;
+  worker.module = submission;
+  worker.programs = course.build / "bin";
+  worker.call_own_s = options.call_wall_s;
+  worker.session_own_s = options.session_wall_s;
+  call_log() = CallLog{};
+  WorkerConnection connection(worker);
+  std::vector<SchedulerCurve> curves{{"your scheduler", false, {}, {}}};
+  ladder.run(kind.make_proxy(connection), "submission", [&] { connection.reset(); }, curves[0]);   // each run has a worker of its own, and its time
+  call_log() = CallLog{};
+  curves.push_back({"reference", true, {}, {}});
+  ladder.run(ladder.reference(), "reference", [] {}, curves[1]);
+  CostSection section;
+  section.scene = scene::load_scene(course.root / "assignments" / kind.folder / "scenes" / (kind.note<engines::CostShowcase>().scene + ".json")).title;
+  section.truth = what_a_scheduler_pays();
+  for (const SchedulerReading& reading : engines::read_scheduler(curves[0], &curves[1])) section.lines.push_back(line_of(reading));
+  section.plots = scheduler_plots(curves);
+  section.tables.push_back(scheduler_table(curves));
+  return section;
+}
+
+}  // namespace tumble::grading

@@ -1,0 +1,102 @@
+// Uids and folders for sandboxes.
+#include <fcntl.h>
+#include <pwd.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+
+#include "framework/core/error.h"
+#include "framework/core/files.h"
+#include "framework/grading/sandbox/sandbox_user.h"
+
+namespace tumble::grading {
+namespace {
+
+// High in the range of ordinary users, where nobody is; one that somebody is gets skipped.
+constexpr uid_t kFirstUid = 58100;
+constexpr uid_t kUids = 64;
+constexpr const char* kLockFolder = "/run/tumble";
+
+// The maker's process id stands in a stage's name, so that what a killed process left behind is seen and swept.
+constexpr const char* kStageFolder = "/tmp";
+constexpr const char* kStageName = "tumble-stage-";
+
+}  // namespace
+
+void sweep_stages_of_the_dead() { sweep_folders_of_the_dead(kStageFolder, kStageName); }
+
+SandboxUser SandboxUser::lease() {
+  SandboxUser user;
+  if (::geteuid() != 0) return user;
+  ::mkdir(kLockFolder, 0700);
+  for (uid_t uid = kFirstUid; uid < kFirstUid + kUids; ++uid) {
+    if (::getpwuid(uid) != nullptr) continue;
+    const std::string file = std::string(kLockFolder) + "/uid-" + std::to_string(uid);
+    const int lock = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0600);
+    if (lock < 0) throw UserError(file, "cannot be opened", "It says which sandbox uses which user id; root must be able to write there.");
+    if (::flock(lock, LOCK_EX | LOCK_NB) == 0) {
+      user.lock_ = lock;
+      user.uid_ = uid;
+      return user;
+    }
+    ::close(lock);
+  }
+  throw UserError(kLockFolder, "all user ids for sandboxes are in use", "Use fewer --jobs.");
+}
+
+SandboxUser::SandboxUser(SandboxUser&& other) noexcept : uid_(other.uid_), lock_(other.lock_) { other.lock_ = -1; }
+
+SandboxUser::~SandboxUser() {
+  if (lock_ >= 0) ::close(lock_);
+}
+
+Stage::Stage(const SandboxUser* user) {
+  static const bool swept = (sweep_stages_of_the_dead(), true);
+  (void)swept;
+  // Not the user's TMPDIR: it may lie in a folder that another uid cannot enter.
+  std::string name = std::string(kStageFolder) + '/' + kStageName + std::to_string(::getpid()) + "-XXXXXX";
+  if (::mkdtemp(name.data()) == nullptr) throw UserError(kStageFolder, "no folder can be made in it");
+  path_ = name;
+  alive_ = hold_folder(path_);
+  if (user != nullptr) owner_ = user->uid();
+  hand_over(path_, user != nullptr ? 0700 : 0755);
+}
+
+Stage::~Stage() {
+  std::error_code ignored;
+  std::filesystem::remove_all(path_, ignored);
+  if (alive_ >= 0) ::close(alive_);
+}
+
+void Stage::hand_over(const std::filesystem::path& file, unsigned mode) const {
+  if (::chmod(file.c_str(), mode) != 0) throw UserError(file.string(), "its permissions cannot be set");
+  if (owner_ && ::lchown(file.c_str(), *owner_, *owner_) != 0) throw UserError(file.string(), "its owner cannot be set");
+}
+
+std::filesystem::path Stage::add_file(const std::filesystem::path& from, const std::string& name, bool executable) {
+  const auto to = path_ / name;
+  for (auto folder = std::filesystem::path(name).parent_path(); !folder.empty(); folder = folder.parent_path()) {
+    std::filesystem::create_directories(path_ / folder);
+    hand_over(path_ / folder, owner_ ? 0700 : 0755);
+  }
+  std::error_code error;
+  std::filesystem::copy_file(from, to, std::filesystem::copy_options::overwrite_existing, error);
+  if (error) throw UserError(from.string(), "cannot be copied: " + error.message());
+  hand_over(to, executable ? 0555 : 0444);
+  return to;
+}
+
+std::filesystem::path Stage::add_text(const std::string& text, const std::string& name) {
+  const auto to = path_ / name;
+  std::ofstream(to, std::ios::binary) << text;
+  hand_over(to, 0444);
+  return to;
+}
+
+}  // namespace tumble::grading

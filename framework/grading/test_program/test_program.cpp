@@ -1,0 +1,84 @@
+#include "framework/grading/test_program/test_program.h"
+
+#include <unistd.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <iostream>
+
+#include <gtest/gtest.h>
+
+#include "framework/grading/test_program/test_words.h"
+#include "framework/grading/test_program/time_budget.h"
+#include "framework/grading/verdicts/verdict_table.h"
+
+namespace tumble::grading {
+namespace {
+
+// Whoever waits for the answer has a loop without end within seconds: a test of a module takes milliseconds.
+constexpr double kTestOwn = 2.0;      // s, of own time (own_time.h), as all here
+constexpr double kSuspectOwn = 0.2;   // s, of a call to a function that has just timed out
+constexpr double kBudget = 4.0;        // s, of all tests together
+
+struct Words {
+  std::string json, rubric;
+  bool debug = false;
+  TestLimits limits{.own_s = kTestOwn};
+  TimeRules time{.budget_s = kBudget, .full_timeouts = 1, .suspect_own_s = kSuspectOwn};
+  std::string filter;   // GoogleTest's, patterns joined by ':'
+};
+
+Words read_words(int argc, char** argv) {
+  Words words;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const auto value = [&]() -> std::string {
+      if (i + 1 >= argc) throw UserError(word, "needs a value");
+      return argv[++i];
+    };
+    if (word == "--json") words.json = value();
+    else if (word == "--rubric") words.rubric = value();
+    else if (word == "--wall-s") words.limits.own_s = number_word(word, value());
+    else if (word == "--budget-s") words.time.budget_s = number_word(word, value());
+    else if (word == "--debug") words.debug = true;
+    else if (word.starts_with("--gtest_")) continue;  // GoogleTest has read it
+    else if (word.starts_with("-")) throw UserError(word, "is not known here", "Known: --json FILE, --rubric FILE, --wall-s S, --budget-s S, --debug, and patterns of test names.");
+    else words.filter += (words.filter.empty() ? "" : ":") + word;
+  }
+  return words;
+}
+
+int run(int argc, char** argv) {
+  ::testing::InitGoogleTest(&argc, argv);
+  const Words words = read_words(argc, argv);
+  if (words.debug) {
+    if (!words.filter.empty()) ::testing::GTEST_FLAG(filter) = words.filter;
+    return RUN_ALL_TESTS();
+  }
+  TestLimits limits = words.limits;
+  TimeBudget budget(words.time);
+  std::vector<TestResult> results;
+  for (const std::string& test : chosen_tests(linked_tests(), words.filter)) {
+    limits.call_own_s = budget.suspects();
+    results.push_back(budget.is_used_up() ? budget.not_run(test) : run_isolated(test, limits, Process::kStudents));
+    if (!results.back().not_run) budget.charge(results.back());
+  }
+  const Rubric rubric = words.rubric.empty() ? Rubric{} : read_rubric(words.rubric);
+  if (!words.json.empty()) write_results(words.json, results);
+  print_verdicts(std::cout, results, rubric, ::isatty(STDOUT_FILENO) == 1);
+  return static_cast<int>(exit_code(results));
+}
+
+}  // namespace
+
+int run_check_program(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const UserError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return static_cast<int>(ExitCode::kUserError);
+  }
+}
+
+}  // namespace tumble::grading

@@ -1,0 +1,32 @@
+/// Runs one GoogleTest test of this program in a process of its own: a crash, a hang or a memory blow-up costs that test.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "framework/grading/verdicts/verdict.h"
+
+namespace tumble::grading {
+
+struct TestLimits {
+  double own_s = 5.0;                        // own time (own_time.h): a test of a module takes milliseconds; an endless loop must not bore its author
+  std::uint64_t memory_bytes = 2ull << 30;   // of address space; a module's test needs a few MB
+  std::map<std::string, double> call_own_s = {};   // [s] of one call to these functions, where it is shorter (see TimeBudget)
+};
+
+/// Who owns the code that runs in the test's process, hence whose fault a crash of that process is.
+enum class Process {
+  kStudents,   // the module is linked in
+  kGraders,    // the module answers from elsewhere
+};
+
+/// Names of all tests linked into this program, "Suite.Name", in the order of registration.
+/// @pre InitGoogleTest was called
+std::vector<std::string> linked_tests();
+
+/// @param test  one of linked_tests()
+TestResult run_isolated(const std::string& test, const TestLimits& limits, Process owner);
+
+}  // namespace tumble::grading

@@ -1,0 +1,149 @@
+#include "framework/grading/worker/guarded_calls.h"
+
+#include <signal.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "framework/core/not_implemented.h"
+#include "framework/engines/base/guarded_laws.h"
+#include "framework/grading/verdicts/death.h"
+#include "framework/grading/worker/worker_connection.h"
+
+namespace tumble::grading {
+namespace {
+
+constexpr auto kLook = std::chrono::milliseconds(250);   // between two looks at the calls
+constexpr int kLooks = static_cast<int>(kGuardedCallLimit / 0.25);
+constexpr std::array kSignals = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
+constexpr const char* kLoading = "its global and static variables";
+
+/// What one thread is in. Written by it, read by the watch and by a signal's handler.
+struct CallPlace {
+  std::atomic<const char*> function{nullptr};   // the innermost guarded one; null: in none
+  std::atomic<const char*> file{nullptr};       // that it stands in
+  std::atomic<unsigned long> outermost{0};      // counts calls that are in no other
+  unsigned long seen = 0;                       // of the watch alone
+  int looks = 0;
+};
+
+constexpr std::size_t kThreads = 256;   // more run unguarded
+CallPlace places[kThreads];
+std::atomic<std::size_t> threads{0};
+thread_local CallPlace* here = nullptr;
+char signal_words[kSignals.size()][256];   // made before they are needed: a handler may not ask for memory
+
+void say(const char* text) { [[maybe_unused]] const ssize_t n = ::write(STDERR_FILENO, text, std::strlen(text)); }
+
+[[noreturn]] void leave(const char* what, const char* function, const char* file) {
+  say("\ntumble: ");
+  say(file);
+  say(": ");
+  say(what);
+  say(", in ");
+  say(function);
+  say("\n  The run ends here. ./tumble check tests each function by itself and tells what it was asked.\n");
+  ::_exit(1);
+}
+
+void on_signal(int signal) {
+  const char* function = here != nullptr ? here->function.load() : nullptr;
+  if (function != nullptr)
+    for (std::size_t i = 0; i < kSignals.size(); ++i)
+      if (kSignals[i] == signal) leave(signal_words[i], function, here->file);
+  ::signal(signal, SIG_DFL);   // not a module's: as if nobody had looked
+  ::raise(signal);
+}
+
+[[noreturn]] void watch() {
+  static char words[96];
+  std::snprintf(words, sizeof words, "out of time: no answer within %g s (a loop that does not end?)", kGuardedCallLimit);
+  for (;;) {
+    std::this_thread::sleep_for(kLook);
+    for (std::size_t i = 0; i < std::min(threads.load(), kThreads); ++i) {
+      CallPlace& place = places[i];
+      const char* function = place.function.load();
+      const unsigned long call = place.outermost.load();
+      if (function == nullptr || call != place.seen) place.looks = 0;
+      else if (++place.looks > kLooks) leave(words, function, place.file);
+      place.seen = call;
+    }
+  }
+}
+
+void start_guard() {
+  static std::once_flag once;
+  std::call_once(once, [] {
+    struct sigaction action {};
+    action.sa_handler = on_signal;
+    action.sa_flags = SA_ONSTACK | SA_NODEFER;
+    for (std::size_t i = 0; i < kSignals.size(); ++i) {
+      std::snprintf(signal_words[i], sizeof signal_words[i], "%s", signal_words_of(kSignals[i]).c_str());
+      ::sigaction(kSignals[i], &action, nullptr);
+    }
+    std::thread(watch).detach();
+  });
+}
+
+// A recursion without end has no stack left for its handler: each thread that calls has one aside.
+void enter_thread() {
+  constexpr std::size_t kStack = 1u << 16;   // bytes
+  thread_local std::unique_ptr<char[]> stack;
+  const std::size_t index = threads.fetch_add(1);
+  if (index >= kThreads) return;
+  here = &places[index];
+  stack = std::make_unique<char[]>(kStack);
+  const stack_t aside{stack.get(), 0, kStack};
+  ::sigaltstack(&aside, nullptr);
+}
+
+class Guard : public modules::CallWatcher {
+ public:
+  explicit Guard(std::string file) : file_(std::move(file)) { start_guard(); }
+
+  const char* begin(const char* function) override {
+    if (here == nullptr) enter_thread();
+    if (here == nullptr) return nullptr;
+    const char* outer = here->function.load(std::memory_order_relaxed);
+    if (outer == nullptr) here->outermost.store(here->outermost.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+    here->file.store(file_.c_str(), std::memory_order_relaxed);
+    here->function.store(function, std::memory_order_relaxed);
+    return outer;
+  }
+  void end(const char* outer) override {
+    if (here != nullptr) here->function.store(outer, std::memory_order_relaxed);
+  }
+  void threw(const char* function, const std::exception& error) override {
+    // What the framework throws through a function that it gave to the module is not the module's.
+    const bool ours = dynamic_cast<const NotImplemented*>(&error) || dynamic_cast<const UserError*>(&error) || dynamic_cast<const PreconditionError*>(&error) ||
+                      dynamic_cast<const Final*>(&error) || dynamic_cast<const engines::StoppedRun*>(&error);
+    if (!ours) throw CallEnded(file_ + ": " + function + " threw an exception: " + error.what());
+  }
+
+ private:
+  std::string file_;
+};
+
+// Laws copied out of a table live as long as the program, and so does what they are watched by.
+Guard& lasting_guard(const std::string& file) { return *new Guard(file); }
+
+}  // namespace
+
+modules::AnyModule guarded(const modules::ModuleKind& kind, const modules::AnyModule& module, const std::string& file) { return kind.watched(module, lasting_guard(file)); }
+
+modules::AnyModule guarded_load(const std::string& file, const std::function<modules::AnyModule()>& load) {
+  Guard& guard = lasting_guard(file);
+  const modules::detail::WatchedCall call(guard, kLoading);
+  return load();
+}
+
+}  // namespace tumble::grading

@@ -1,0 +1,124 @@
+#include "framework/grading/worker/judge_program.h"
+
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <iostream>
+
+#include <gtest/gtest.h>
+
+#include "framework/grading/test_program/test_runner.h"
+#include "framework/grading/test_program/test_words.h"
+#include "framework/grading/test_program/time_budget.h"
+#include "framework/grading/verdicts/verdict_table.h"
+
+namespace tumble::grading {
+namespace {
+
+// s, of what a test of ours computes itself: tests take at most a few, so past this it works on answers that give it too much to do. Its wall
+// clock ends after kPatience times as much, later than that of its worker.
+constexpr double kJudgesOwn = 60.0;
+constexpr int kMostBusy = 2;   // tests that a busy machine ended: the rest would wait as long, and none of it counts
+
+TestResult not_run_for_busy(const std::string& test) {
+  TestResult result;
+  result.test = test;
+  result.verdict = Verdict::kMachineBusy;
+  result.not_run = true;
+  result.story = "not run: the machine was too busy in " + std::to_string(kMostBusy) + " tests before it";
+  return result;
+}
+
+struct Words {
+  WorkerOptions worker;
+  std::string json, filter;
+  bool list = false;
+  Rubric rubric;
+  TimeRules time;
+};
+
+// A person waits: the limits of a student's own check (test_program.cpp).
+void be_quick(Words& words) {
+  words.worker.call_own_s = 2.0;
+  words.time = {.budget_s = 4.0, .full_timeouts = 1, .suspect_own_s = 0.2};
+}
+
+Words read_words(const char* id, int argc, char** argv) {
+  Words words;
+  words.worker.id = id;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    const auto value = [&]() -> std::string {
+      if (i + 1 >= argc) throw UserError(word, "needs a value");
+      return argv[++i];
+    };
+    if (word == "--submission") words.worker.module = value();
+    else if (word == "--json") words.json = value();
+    else if (word == "--budget-s") words.time.budget_s = number_word(word, value());
+    else if (word == "--list") words.list = true;
+    else if (word == "--plain") words.worker.sandboxed = false;
+    else if (word == "--quick") be_quick(words);
+    else if (word == "--rubric") {
+      const Rubric more = read_rubric(value());
+      words.rubric.items.insert(words.rubric.items.end(), more.items.begin(), more.items.end());
+    } else if (word.starts_with("-")) {
+      throw UserError(word, "is not known here", "Known: --submission FILE.so, --json FILE, --rubric FILE, --budget-s S, --plain, --quick, --list, and patterns of test names.");
+    } else {
+      words.filter += (words.filter.empty() ? "" : ":") + word;
+    }
+  }
+  if (words.worker.module.empty() && !words.list) throw UserError("--submission", "is missing", "Give the shared object of a compiled submission.");
+  return words;
+}
+
+int run(const char* id, const std::function<void(modules::Connection&)>& attach, int argc, char** argv) {
+  ::testing::InitGoogleTest(&argc, argv);
+  const Words words = read_words(id, argc, argv);
+  if (words.list) {
+    for (const std::string& test : chosen_tests(linked_tests(), words.filter)) std::cout << test << '\n';
+    return static_cast<int>(ExitCode::kFine);
+  }
+  // Keepers of sandboxes whose test has ended come to us, so that we leave only when all of them are gone.
+  ::prctl(PR_SET_CHILD_SUBREAPER, 1);
+  WorkerConnection connection(words.worker);
+  attach(connection);
+  TestLimits limits;
+  limits.own_s = kJudgesOwn;
+  limits.memory_bytes = 4ull << 30;
+  TimeBudget budget(words.time);
+  std::vector<TestResult> results;
+  int busy = 0;
+  for (const std::string& test : chosen_tests(linked_tests(), words.filter)) {
+    connection.suspect(budget.suspects());
+    if (busy >= kMostBusy) {
+      results.push_back(not_run_for_busy(test));
+      continue;
+    }
+    results.push_back(budget.is_used_up() ? budget.not_run(test) : run_isolated(test, limits, Process::kGraders));
+    if (results.back().verdict == Verdict::kMachineBusy) ++busy;
+    if (!results.back().not_run) budget.charge(results.back());
+  }
+  while (::waitpid(-1, nullptr, 0) > 0 || errno == EINTR) {}
+  if (!words.json.empty()) write_results(words.json, results);
+  print_verdicts(std::cout, results, words.rubric, ::isatty(STDOUT_FILENO) == 1);
+  return static_cast<int>(exit_code(results));
+}
+
+}  // namespace
+
+int run_judge_program(const char* id, const std::function<void(modules::Connection&)>& attach, int argc, char** argv) {
+  try {
+    return run(id, attach, argc, argv);
+  } catch (const UserError& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return static_cast<int>(ExitCode::kUserError);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "the judge failed: %s\n", error.what());
+    return static_cast<int>(ExitCode::kOurBug);
+  }
+}
+
+}  // namespace tumble::grading

@@ -1,0 +1,34 @@
+/// main() of a worker: answers calls to a submission's module over the channel. Runs inside the sandbox with the submission,
+/// so nothing but the module's header goes into it: no test, no expected value, no other module.
+#pragma once
+
+#include <cstdio>
+#include <exception>
+
+#include "framework/core/keep_memory.h"
+#include "framework/grading/sandbox/sandbox_wire.h"
+#include "framework/modules/load.h"
+#include "framework/modules/serve.h"
+
+namespace tumble::grading {
+
+/// Words of a worker: worker_a1 FILE.so, with the channel as descriptor 3.
+template <class Module>
+int run_worker(int argc, char** argv) {
+  keep_freed_memory();
+  if (argc != 2) return 2;
+  try {
+    modules::ModuleKind kind;
+    kind.id = kind.folder = Module::kId;
+    kind.exported_name = Module::kExportedName;
+    const modules::AnyModule module = modules::load_module(kind, argv[1]);
+    modules::Channel channel(kChannelFd, kChannelFd);
+    modules::serve(*static_cast<const Module*>(module.get()), channel);
+    return 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}
+
+}  // namespace tumble::grading
