@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "framework/cli/read_truth.h"
+#include "framework/cli/record.h"
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
 #include "framework/engines/cost/cost.h"
@@ -231,7 +232,7 @@ report::CostPage page_of(const Context& context, const std::vector<Ladder>& ladd
   }
   page.floor = truth.floor_m;
   page.scale = truth.scale_m;
-  page.record = context.command_line;
+  page.record = record_of(context, subject.scene);
   const double price = middle_price(ladders, truth);
   for (const Ladder& ladder : ladders) page.curves.push_back(curve_of(ladder, truth, price, is_smooth(subject.scene)));
   page.readings = verdicts(page);

@@ -196,7 +196,8 @@ void print_json(const scene::Scene& scene, const std::vector<Effect>& effects, c
   page["scene"] = scene.name;
   page["title"] = scene.title;
   page["file"] = scene.file.string();
-  page["scene_hash"] = scene.hash;
+  page["scene_digest"] = scene.digest;
+  page["seeds"] = scene.seeds;
   for (const Effect& effect : effects) {
     nlohmann::ordered_json entry = {{"name", effect.name}, {"on", effect.is_on()}, {"stage", effect.stage}, {"asked_for_by", nlohmann::json::array()}, {"note", effect.note}};
     for (const auto& asker : effect.askers) entry["asked_for_by"].push_back({{"pointer", asker.pointer}, {"line", asker.line}, {"what", asker.what}});

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/cli/record.h"
 #include "framework/cli/verb.h"
 #include "framework/core/files.h"
 #include "framework/grading/course/run_program.h"
@@ -109,7 +110,7 @@ void write_index(const Context& context, const std::vector<Handout>& handouts, c
     table.rows.push_back({{handout.title, report::link_to(name + ".html")}, options.pdf ? report::Cell{"PDF", report::link_to(name + ".pdf")} : report::Cell{""}});
   }
   page.table(table);
-  page.record(context.command_line);
+  page.record(record_of(context));
   page.write(out / "index.html");
 }
 

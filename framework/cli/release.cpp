@@ -9,6 +9,7 @@
 
 #include "framework/cli/verb.h"
 #include "framework/core/files.h"
+#include "framework/core/version.h"
 #include "framework/grading/course/course.h"
 #include "framework/grading/course/release_checks.h"
 #include "framework/grading/course/run_program.h"
@@ -19,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPrivate = "solutions_private";
+constexpr const char* kVersionFile = ".version";   // read by framework/core/CMakeLists.txt: a released tree has no history
 constexpr const char* kStudentsReadme = "assignments/README.md";   // in the place of README.md
 
 struct ReleaseOptions {
@@ -158,6 +160,7 @@ void release(Context& context, const ReleaseOptions& options) {
       ++count;
     }
     for (const std::string& id : options.publish) publish_solution(context, id, partial);
+    write_whole(partial / kVersionFile, std::string(kProgramVersion) + "\n");
     if (fs::exists(partial / kStudentsReadme)) fs::rename(partial / kStudentsReadme, partial / "README.md"), --count;
     refuse_what_is_no_stub(context, partial, options.publish);
     refuse(grading::leaks(partial, private_files(context, options.publish)), "Take it out of the public folders.");

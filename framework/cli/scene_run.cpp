@@ -25,6 +25,7 @@
 #include "framework/grading/worker/worker_connection.h"
 #include "framework/scene/load_scene.h"
 #include "framework/scene/sized_scenes.h"
+#include "framework/trajectory/record.h"
 #include "framework/trajectory/run_progress.h"
 
 namespace tumble::cli {
@@ -103,7 +104,8 @@ void print_json(const scene::Scene& scene, const PlannedRun& plan, const Traject
   nlohmann::ordered_json page;
   page["scene"] = scene.name;
   page["title"] = scene.title;
-  page["scene_hash"] = scene.hash;
+  page["scene_digest"] = scene.digest;
+  page["seeds"] = scene.seeds;
   page["command"] = run.info.command;
   page["version"] = run.info.version;
   page["engine"] = run.info.engine;
@@ -190,7 +192,7 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   else print_summary(scene, plan.laws, run, checks, extra, searched);
   std::fflush(stdout);
 
-  fmt::print(stderr, "ran in {:.2f} s", seconds);
+  fmt::print(stderr, "{}\nran in {:.2f} s", record_of(run.info), seconds);
   for (const auto& [stage, spent] : run.counters.stage_seconds) fmt::print(stderr, " · {} {:.2f} s", stage, spent);
   fmt::print(stderr, "\n");
   if (!words.trajectory.empty()) {

@@ -9,6 +9,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/nearest_word.h"
+#include "framework/core/version.h"
 #include "framework/dynamics/build_world.h"
 #include "framework/dynamics/world.h"
 #include "framework/engines/events/advancement.h"
@@ -165,10 +166,13 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& as
   TrajectoryInfo info;
   info.command = options.command;
   info.scene_name = scene.name;
-  info.scene_hash = scene.hash;
+  info.version = kProgramVersion;
+  info.scene_digest = scene.digest;
+  info.seeds = scene.seeds;
   info.engine = options.engine;
   info.impulse_source = laws.impulse_source;
   info.integrator_source = laws.integrator_source;
+  info.constraint_source = laws.constraint_source;
   info.step_s = step;
   info.frame_rate_hz = options.frame_rate_hz;
   std::vector<TrajectoryBody> bodies;

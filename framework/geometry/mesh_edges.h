@@ -1,10 +1,10 @@
 /// Who shares an edge with whom: the table that the closed check, convexity and rays are built on.
 #pragma once
 
-#include <numeric>
 #include <string>
 #include <vector>
 
+#include "framework/core/disjoint_sets.h"
 #include "framework/geometry/triangle_mesh.h"
 
 namespace tumble {
@@ -30,25 +30,6 @@ void for_each_edge(const std::vector<EdgeUse>& uses, Group group) {
     first = last;
   }
 }
-
-/// Disjoint sets with the smallest member as the name of each.
-class DisjointSets {
- public:
-  explicit DisjointSets(int size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(int a, int b) {
-    a = find(a);
-    b = find(b);
-    if (a < b) parent_[b] = a;
-    else parent_[a] = b;
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 /// "(0, 0.5, 1)": a place in messages.
 std::string show_point(const Vector3d& point);

@@ -7,6 +7,7 @@
 
 #include "framework/core/error.h"
 #include "framework/render/frame_painter.h"
+#include "framework/trajectory/record.h"
 
 namespace tumble::render {
 namespace {
@@ -44,7 +45,8 @@ Image FramePainter::with_words(Wordless painted) const {
 ImageNotes notes_of(const scene::Scene& scene, const Trajectory& run, double time_s) {
   return {{"Title", scene.title.empty() ? scene.name : scene.title},
           {"Scene", run.info.scene_name},
-          {"Scene hash", run.info.scene_hash},
+          {"Scene digest", run.info.scene_digest},
+          {"Record", record_of(run.info)},
           {"Engine", run.info.engine},
           {"Step", fmt::format("{:.17g} s", run.info.step_s)},
           {"Time", fmt::format("{:.17g} s", time_s)},

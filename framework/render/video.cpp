@@ -9,6 +9,7 @@
 #include "framework/render/frame_painter.h"
 #include "framework/render/picture.h"
 #include "framework/render/video_writer.h"
+#include "framework/trajectory/record.h"
 
 namespace tumble::render {
 namespace {
@@ -46,7 +47,7 @@ void write_side_by_side_video(const std::filesystem::path& mp4, const scene::Sce
   const int count = static_cast<int>(runs.size());
   Image whole(count * options.width + (count - 1) * kViewSeam, options.height);
   make_whole(mp4, [&](const std::filesystem::path& draft) {
-    VideoWriter video(draft, whole.width, whole.height, options.video_rate_hz);
+    VideoWriter video(draft, whole.width, whole.height, options.video_rate_hz, record_of(runs.front().trajectory.info));
     std::vector<std::optional<std::size_t>> shown(painters.size());   // frame
     std::future<void> before;   // the picture before is lettered and encoded while this one is painted
     for (const double time : instants(end, options)) {

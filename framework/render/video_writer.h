@@ -15,7 +15,8 @@ class VideoWriter {
   /// @param mp4  written as pictures come: give a draft's name (core/files.h)
   /// @param width, height  of every picture; odd ones lose their last column or row
   /// @throws UserError when ffmpeg is not there
-  VideoWriter(const std::filesystem::path& mp4, int width, int height, double rate_hz);
+  /// @param record  what made it, as the file's comment
+  VideoWriter(const std::filesystem::path& mp4, int width, int height, double rate_hz, const std::string& record);
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;
   ~VideoWriter();

@@ -16,6 +16,7 @@
 #include "framework/report/player_scene.h"
 #include "framework/report/player_still.h"
 #include "framework/scene/build_shape.h"
+#include "framework/trajectory/record.h"
 
 namespace tumble::report {
 namespace {
@@ -66,11 +67,8 @@ Json panels_json(const std::vector<PlayerPanel>& panels) {
   return all;
 }
 
-std::string record_of(const scene::Scene& scene, const std::vector<PlayedRun>& runs) {
-  const TrajectoryInfo& info = runs.front().run.info;
-  std::string record;
-  for (const std::string& part : {info.command, "Tumble " + info.version, "seed " + std::to_string(info.seed), "scene " + scene.name + " " + scene.hash})
-    if (!part.empty()) record += (record.empty() ? "" : " · ") + html_escape(part);
+std::string record_and_notices(const std::vector<PlayedRun>& runs) {
+  std::string record = html_escape(tumble::record_of(runs.front().run.info));
   for (const PlayedRun& played : runs)   // what the run had to say beside its numbers, such as start velocities that were changed
     for (const std::string& notice : played.run.counters.notices) record += "<br>note" + (played.label.empty() ? "" : " (" + html_escape(played.label) + ")") + ": " + html_escape(notice);
   return record;
@@ -111,7 +109,7 @@ std::string player_page(const scene::Scene& scene, const std::vector<PlayedRun>&
   head["panels"] = panels_json(options.panels);
   return filled(player_file("page.html"), {{"title", html_escape(scene.title.empty() ? scene.name : scene.title)}, {"about", html_escape(scene.about)},
                                            {"style", std::string(player_file("player.css"))}, {"script", script_text()}, {"head", json_text(head)}, {"data", data},
-                                           {"still", player_still(runs, packed)}, {"record", record_of(scene, runs)}});
+                                           {"still", player_still(runs, packed)}, {"record", record_and_notices(runs)}});
 }
 
 std::size_t write_player(const fs::path& file, const scene::Scene& scene, const std::vector<PlayedRun>& runs, const PlayerOptions& options) {

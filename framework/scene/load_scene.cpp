@@ -4,6 +4,7 @@
 #include <map>
 #include <sstream>
 
+#include "framework/core/digest.h"
 #include "framework/scene/check_scene.h"
 #include "framework/scene/load_body.h"
 #include "framework/scene/load_links.h"
@@ -53,8 +54,11 @@ void read_bodies(const Document& document, Scene& scene) {
   const json& bodies = entries(document.json, "bodies");
   const json& repeats = entries(document.json, "repeat");
   for (std::size_t i = 0; i < bodies.size(); ++i) scene.bodies.push_back(read_body(bodies.at(i), document, "/bodies/" + std::to_string(i)));
-  for (std::size_t i = 0; i < repeats.size(); ++i)
-    for (auto& copy : write_out(read_repeat(repeats.at(i), document, "/repeat/" + std::to_string(i)))) scene.bodies.push_back(std::move(copy));
+  for (std::size_t i = 0; i < repeats.size(); ++i) {
+    const RepeatSpec repeat = read_repeat(repeats.at(i), document, "/repeat/" + std::to_string(i));
+    if (repeats.at(i).contains("seed")) scene.seeds.push_back(repeat.seed);
+    for (auto& copy : write_out(repeat)) scene.bodies.push_back(std::move(copy));
+  }
 }
 
 void check_names(const Document& document, const Scene& scene) {
@@ -79,18 +83,6 @@ void read_view(const json& root, Scene& scene) {
   }
 }
 
-/// FNV-1a, 64 bit: names a file's bytes in records; no defence against malice is needed here.
-std::string digest(const std::string& bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-  std::ostringstream text;
-  text << std::hex;
-  text.width(16);
-  text.fill('0');
-  text << hash;
-  return text.str();
-}
-
 }  // namespace
 
 Scene parse_scene(const std::string& text, const std::filesystem::path& file) {
@@ -102,7 +94,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& file) {
   scene.name = file.stem().string();
   scene.file = file;
   scene.lines = document.lines;
-  scene.hash = digest(text);
+  scene.digest = digest(text);
   scene.title = root.at("title");
   read(root, "about", scene.about);
   read(root, "needs", scene.needs);

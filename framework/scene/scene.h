@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <limits>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -170,7 +171,8 @@ struct Scene {
   std::string about;                // what a viewer should notice
   std::filesystem::path file;
   std::map<std::string, int> lines; // by JSON pointer: the line of the file where the value or its key begins; empty: made in memory
-  std::string hash;                 // hex digest of the file's bytes, for records
+  std::string digest;               // of the file's bytes (core/digest.h), or a name and size, for records
+  std::vector<std::uint64_t> seeds; // of what was drawn by lot when the scene was made
   double duration_s = 0.0;
   double step_s = 1.0 / 60.0;
   double rest_speed_m_s = 1e-3;     // an impact that separates more slowly than this ends in rest

@@ -8,6 +8,7 @@
 
 #include "framework/core/random.h"
 #include "framework/core/shortest_turn.h"
+#include "framework/scene/lots.h"
 
 namespace tumble::scene {
 namespace {
@@ -103,7 +104,7 @@ Scene cars(int n) {
   Scene scene = scene_of(2.0, 1.0 / 240.0);
   scene.contact = ContactSpec{};
   scene.stabilisation = StabilisationSpec{};
-  Random random(21);
+  Random random = lots(21, scene);
   const int across = std::max(1, static_cast<int>(std::lround(std::sqrt(n)))), vehicles = std::max(1, n / 100);
   BodySpec floor = ground("floor", Vector3d::Zero(), Vector3d::UnitZ(), 0.6 * kLane * across + 3.0);
   floor.restitution = 0.5;
@@ -224,7 +225,7 @@ Scene robots(int n) {
   scene.stabilisation = StabilisationSpec{};
   scene.contact = ContactSpec{};
   scene.contact->plastic_impacts = PlasticImpacts::kInStep;
-  Random random(22);
+  Random random = lots(22, scene);
   const int across = std::max(1, static_cast<int>(std::lround(std::sqrt(n))));
   BodySpec floor = ground("floor", Vector3d::Zero(), Vector3d::UnitZ(), 0.6 * kCell * across + 2);
   floor.friction = 0.6;
@@ -274,7 +275,7 @@ void add_mountain(double width, Scene& scene) {
 Scene avalanche(int n) {
   Scene scene = scene_of(4.0, 1.0 / 240.0);
   scene.contact = ContactSpec{};
-  Random random(23);
+  Random random = lots(23, scene);
   const int along = std::clamp(static_cast<int>(std::lround(std::sqrt(0.5 * n))), 1, 10), across = (n + along - 1) / along;
   const double width = kRockApart * across;
   BodySpec valley = ground("valley", Vector3d::Zero(), Vector3d::UnitZ(), 0.5 * width + 12.0);

@@ -85,10 +85,10 @@ struct TrajectoryBody {
 };
 
 struct TrajectoryInfo {
-  std::string command, version, scene_name, scene_hash, engine, impulse_source, integrator_source;
+  std::string command, version, scene_name, scene_digest, engine, impulse_source, integrator_source;
   double step_s = 0.0;
   double frame_rate_hz = 0.0;
-  std::uint64_t seed = 0;
+  std::vector<std::uint64_t> seeds;  // of what was drawn by lot
   std::string constraint_source{};   // who provides springs, rods and contact forces; "none" where the scene asks for none
 };
 

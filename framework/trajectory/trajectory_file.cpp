@@ -1,9 +1,9 @@
 // The one file format of a run. Little-endian; IEEE 754 doubles, so that a run comes back bit for bit:
 //
 //   "TUMBLE\r\n"                8 bytes: a transfer that touches line ends spoils them, and is noticed
-//   version                     u32, 2
-//   info                        strings command, version, scene_name, scene_hash, engine, impulse_source, integrator_source;
-//                               f64 step_s, frame_rate_hz; u64 seed; string constraint_source
+//   version                     u32, 3
+//   info                        strings command, version, scene_name, scene_digest, engine, impulse_source, integrator_source;
+//                               f64 step_s, frame_rate_hz; seeds: u64 count, u64 each; string constraint_source
 //   bodies                      u64 count; each: string name, u8 immovable
 //   frames                      u64 count; each: f64 time; a body: com (3), quaternion x y z w, velocity (3), omega (3);
 //                               f64 kinetic, potential; momentum (3), angular momentum (3); f64 smallest gap;
@@ -34,7 +34,7 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "the format is little-endian and written as the memory has it");
 
 constexpr std::string_view kMagic = "TUMBLE\r\n", kEnd = "end\n";
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 
 class Writer {
  public:
@@ -150,8 +150,10 @@ void pass_frames(Archive& archive, Run& run) {
 template <class Archive, class Run>
 void pass_run(Archive& archive, Run& run) {
   auto& info = run.info;
-  pass(archive, info.command, info.version, info.scene_name, info.scene_hash, info.engine, info.impulse_source, info.integrator_source,
-       info.step_s, info.frame_rate_hz, info.seed, info.constraint_source);
+  pass(archive, info.command, info.version, info.scene_name, info.scene_digest, info.engine, info.impulse_source, info.integrator_source,
+       info.step_s, info.frame_rate_hz);
+  pass_list(archive, info.seeds, sizeof(std::uint64_t), [&](auto& seed) { archive(seed); });
+  archive(info.constraint_source);
   pass_list(archive, run.bodies, 9, [&](auto& body) { pass(archive, body.name, body.immovable); });
   pass_frames(archive, run);
   pass_list(archive, run.events, 9 + 10 * sizeof(double), [&](auto& event) {

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "framework/core/files.h"
 #include "framework/grading/course/run_program.h"
 
 namespace tumble::grading {
@@ -21,19 +22,14 @@ const fs::path kSolutions = fs::path(TUMBLE_SOURCE_DIR) / "solutions_private/a4_
 class GradingOfTimewarp : public ::testing::Test {
  protected:
   GradingOfTimewarp() {
-    std::string name = (fs::temp_directory_path() / "tumble-grade-a4-XXXXXX").string();
-    root = ::mkdtemp(name.data());
     ::setenv("TUMBLE_ROOT", TUMBLE_SOURCE_DIR, 1);
-  }
-  ~GradingOfTimewarp() override {
-    std::error_code ignored;
-    fs::remove_all(root, ignored);
   }
   ProgramOutcome type(std::vector<std::string> words) const {
     words.insert(words.begin(), std::string(TUMBLE_BINARY_DIR) + "/bin/tumble");
     return run_program(words, Output::kCaptured, 200.0);
   }
-  fs::path root;
+  PrivateFolder scratch_;
+  fs::path root = scratch_.path();
 };
 
 // Half right: some points and not all; each lost one by a test whose story is kept.

@@ -11,7 +11,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
-#include "framework/grading/course/digest.h"
+#include "framework/core/digest.h"
 #include "framework/grading/grades/grade_files.h"
 #include "framework/grading/course/machine_key.h"
 #include "framework/grading/grades/output_folder.h"

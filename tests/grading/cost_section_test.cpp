@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/core/files.h"
 #include "framework/grading/course/build_submission.h"
 #include "framework/grading/grades/cost_section.h"
 #include "framework/grading/grades/measure_cost.h"
@@ -17,14 +18,8 @@ namespace fs = std::filesystem;
 class CostInAReport : public ::testing::Test {
  protected:
   CostInAReport() {
-    std::string name = (fs::temp_directory_path() / "tumble-cost-section-XXXXXX").string();
-    folder_ = ::mkdtemp(name.data());
     register_assignments(registry_);
     course_ = {TUMBLE_SOURCE_DIR, TUMBLE_BINARY_DIR, &registry_, "test"};
-  }
-  ~CostInAReport() override {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
   }
 
   /// The stub with another function in place of one of its own.
@@ -42,7 +37,8 @@ class CostInAReport : public ::testing::Test {
     return measure_cost(course_, "a2", object);
   }
 
-  fs::path folder_;
+  PrivateFolder scratch_;
+  fs::path folder_ = scratch_.path();
   modules::Registry registry_;
   Course course_;
 };

@@ -1,7 +1,8 @@
 #include "framework/engines/events/processes.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "framework/core/disjoint_sets.h"
 
 namespace tumble::engines {
 namespace {
@@ -9,27 +10,20 @@ namespace {
 // Components of members, by the least of them, in order.
 class Components {
  public:
-  explicit Components(const std::vector<int>& members) : members_(members), leader_(members.size()) { std::iota(leader_.begin(), leader_.end(), 0); }
+  explicit Components(const std::vector<int>& members) : members_(members), sets_(static_cast<int>(members.size())) {}
   bool has(int body) const { return std::binary_search(members_.begin(), members_.end(), body); }
-  void join(int a, int b) {
-    const int i = find(place(a)), j = find(place(b));
-    leader_[static_cast<std::size_t>(std::max(i, j))] = std::min(i, j);
-  }
+  void join(int a, int b) { sets_.unite(place(a), place(b)); }
   std::vector<std::vector<int>> all() {
     std::vector<std::vector<int>> by_leader(members_.size());
-    for (std::size_t k = 0; k < members_.size(); ++k) by_leader[static_cast<std::size_t>(find(static_cast<int>(k)))].push_back(members_[k]);
+    for (std::size_t k = 0; k < members_.size(); ++k) by_leader[static_cast<std::size_t>(sets_.find(static_cast<int>(k)))].push_back(members_[k]);
     std::erase_if(by_leader, [](const auto& component) { return component.empty(); });
     return by_leader;
   }
 
  private:
   int place(int body) const { return static_cast<int>(std::lower_bound(members_.begin(), members_.end(), body) - members_.begin()); }
-  int find(int k) {
-    while (leader_[static_cast<std::size_t>(k)] != k) k = leader_[static_cast<std::size_t>(k)] = leader_[static_cast<std::size_t>(leader_[static_cast<std::size_t>(k)])];
-    return k;
-  }
   const std::vector<int>& members_;
-  std::vector<int> leader_;
+  DisjointSets sets_;   // of places in members_
 };
 
 }  // namespace

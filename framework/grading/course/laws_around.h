@@ -9,9 +9,6 @@
 
 namespace tumble::grading {
 
-/// Puts a module's functions into the laws that it is about, and says whose each of these laws is.
-void put_into(const modules::ModuleKind& kind, const modules::AnyModule& module, const std::string& source, Laws& laws);
-
 /// The course's own module, loaded into this process; nothing where the tree has none.
 modules::AnyModule reference_of(const Course& course, const modules::ModuleKind& kind);
 

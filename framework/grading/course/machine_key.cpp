@@ -10,7 +10,7 @@
 #include <cstring>
 
 #include "framework/core/error.h"
-#include "framework/grading/course/digest.h"
+#include "framework/core/digest.h"
 
 namespace tumble::grading {
 namespace {

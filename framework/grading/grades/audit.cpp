@@ -11,7 +11,7 @@
 #include "framework/core/text.h"
 #include "framework/grading/course/build_submission.h"
 #include "framework/grading/compiler/compiler_words.h"
-#include "framework/grading/course/digest.h"
+#include "framework/core/digest.h"
 #include "framework/grading/grades/grade_key.h"
 #include "framework/grading/course/processes.h"
 #include "framework/grading/grades/scoring.h"

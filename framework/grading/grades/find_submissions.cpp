@@ -8,7 +8,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/text.h"
-#include "framework/grading/course/digest.h"
+#include "framework/core/digest.h"
 #include "framework/grading/grades/find_submissions.h"
 #include "framework/grading/verdicts/plain_text.h"
 

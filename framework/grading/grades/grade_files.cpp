@@ -10,11 +10,13 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/core/files.h"
+#include "framework/core/version.h"
 #include "framework/grading/grades/cost_json.h"
-#include "framework/grading/course/digest.h"
+#include "framework/core/digest.h"
 #include "framework/grading/grades/grade_pages.h"
 #include "framework/grading/verdicts/plain_text.h"
 #include "framework/grading/grades/scoring.h"
+#include "framework/trajectory/record.h"
 
 namespace tumble::grading {
 namespace {
@@ -139,7 +141,7 @@ std::string graded_from(const GradeKey& key) {
   const auto head = [](const std::string& digits) { return digits.substr(0, kShown); };
   std::string text = "Submission " + head(key.submission) + " · judge " + head(key.judging) + " · rubric " + head(key.rubric);
   if (!key.pictures.empty()) text += " · pictures " + head(key.pictures);
-  return text + " · Tumble";
+  return text + " · " + version_in_words(kProgramVersion);
 }
 
 }  // namespace
@@ -156,7 +158,7 @@ std::string gradescope_json(const Grade& grade) {
   page["test_name_format"] = "text";
   page["visibility"] = "visible";
   page["stdout_visibility"] = "hidden";
-  page["extra_data"] = {{"state", kStates.at(static_cast<std::size_t>(grade.state))}, {"final", grade.is_final()}};
+  page["extra_data"] = {{"version", kProgramVersion}, {"state", kStates.at(static_cast<std::size_t>(grade.state))}, {"final", grade.is_final()}};
   page["tests"] = Json::array();
   for (const ScoredTest& test : grade.tests) {
     Json entry;
@@ -267,6 +269,7 @@ void write_grade(const modules::ModuleKind& kind, const Grade& grade, const Grad
 std::string ledger_json(const std::string& id, const std::vector<GradeRecord>& records) {
   Json ledger;
   ledger["assignment"] = id;
+  ledger["version"] = kProgramVersion;
   ledger["submissions"] = Json::array();
   for (const GradeRecord& record : records) {
     const auto results = record.files.find("results.json");

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "framework/grading/course/digest.h"
+#include "framework/core/digest.h"
 
 namespace tumble::grading {
 namespace {

@@ -14,7 +14,7 @@
 
 #include "framework/core/files.h"
 #include "framework/grading/compiler/compile.h"
-#include "framework/grading/course/digest.h"
+#include "framework/core/digest.h"
 #include "framework/grading/grades/grade_many.h"
 #include "framework/grading/grades/grade_files.h"
 #include "framework/grading/grades/grade_key.h"

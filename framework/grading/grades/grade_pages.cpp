@@ -8,8 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/version.h"
 #include "framework/grading/verdicts/plain_text.h"
 #include "framework/grading/grades/scoring.h"
+#include "framework/trajectory/record.h"
 
 namespace tumble::grading {
 namespace {
@@ -216,6 +218,7 @@ report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade
                           number(Verdict::kOutOfResources), {remarks, "", Look::kMuted}});
   }
   page.table(table);
+  page.record(version_in_words(kProgramVersion));   // not the command: it may name the number of jobs, and pages are the same with any
   return page;
 }
 

@@ -1,11 +1,11 @@
-/// SHA-256 and HMAC-SHA-256 (OpenSSL's libcrypto): what grading notices change by, and what it trusts its own records by.
+/// SHA-256 and HMAC-SHA-256 (OpenSSL's libcrypto): how records name bytes, and how grading trusts its own records.
 #pragma once
 
 #include <filesystem>
 #include <string>
 #include <string_view>
 
-namespace tumble::grading {
+namespace tumble {
 
 /// @return SHA-256 (FIPS 180-4) of the bytes, 64 hex digits
 std::string digest(std::string_view bytes);
@@ -23,4 +23,4 @@ std::string random_bytes(std::size_t count);
 /// Bytes as lower-case hex digits.
 std::string hex(std::string_view bytes);
 
-}  // namespace tumble::grading
+}  // namespace tumble

@@ -1,0 +1,9 @@
+/// Which program made an output.
+#pragma once
+
+namespace tumble {
+
+/// "0.1.0 (25ccc19a01)": the project's version, and the commit that was configured where the tree has a history.
+extern const char* const kProgramVersion;
+
+}  // namespace tumble
