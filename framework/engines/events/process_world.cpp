@@ -8,6 +8,9 @@
 
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/base/step_limits.h"
+#include "framework/engines/contact/contact_paths.h"
+#include "framework/engines/contact/impact_law.h"
+#include "framework/engines/contact/impact_response.h"
 
 namespace tumble::engines {
 namespace {
@@ -199,18 +202,23 @@ ProcessWorld::Outcome ProcessWorld::step(ProcessState& start, double due) {
   ProcessState from = start.without_memory();
   save_controls(from);
   ++counters_.steps;
+  // As a world of all bodies does it (rd/retroactive.cpp), without sleep and pictures: free paths, contacts, the first impact, commit, response.
   begin_step(std::min({due, next_look, next_switch}));
-  std::vector<BodyPair> pairs, near;
+  PairsOfStep pairs;
   if (has_contacts()) {
-    pairs = meetings_.candidates();
-    if (keep_contacts(pairs)) {   // a blow at the very start
+    pairs.searched = meetings_.candidates();
+    const bool goes_on = keep_contacts(*contacts_, meetings_, pairs, [&](double earlier) {
+      if (!collector_.events.empty()) return false;   // an impact at the very start
+      begin_step(earlier);
+      return true;
+    });
+    if (!goes_on) {
       ProcessState after = save();
       const double now = from.time;
       return {{std::move(from), now, {}, {}}, std::move(after), take_events()};
     }
-    if (!contacts_->empty()) near = meetings_.candidates();
   }
-  const std::optional<Earliest> earliest = pairs.empty() ? std::nullopt : meetings_.earliest(pairs);
+  const std::optional<Earliest> earliest = pairs.searched.empty() ? std::nullopt : meetings_.earliest(pairs.searched);
   const double reached = earliest ? earliest->time : moving_.target();
   ProcessStep step{std::move(from), reached, {}, forces()};
   if (reached > step.from.time)
@@ -218,27 +226,12 @@ ProcessWorld::Outcome ProcessWorld::step(ProcessState& start, double due) {
   moving_.commit(reached);
   require_numbers();
   if (has_contacts()) {
-    if (!pairs.empty() && !meetings_.apart_at_target()) meetings_.separate(pairs);
-    if (!contacts_->commit()) meetings_.separate(near);
-    if (earliest) resolve(near.empty() ? pairs : near, pairs[earliest->pair], true);
+    take_back_overlaps(&*contacts_, meetings_, pairs);
+    if (earliest) resolve(pairs.near.empty() ? pairs.searched : pairs.near, pairs.searched[earliest->pair], true);
   }
   if (!earliest) moving_.watch_links(reached - step.from.time);
   ProcessState after = save();
   return {std::move(step), std::move(after), take_events()};
-}
-
-// Bodies in lasting contact get their paths; `pairs` are those among which impacts are left to be looked for.
-// @return whether blows were struck where the step begins
-bool ProcessWorld::keep_contacts(std::vector<BodyPair>& pairs) {
-  while (const auto earlier = contacts_->advance(pairs)) {
-    if (!collector_.events.empty()) return true;
-    begin_step(*earlier);
-    pairs = meetings_.candidates();
-  }
-  if (contacts_->empty()) return false;
-  pairs = meetings_.candidates();   // the paths are others now
-  std::erase_if(pairs, [&](const BodyPair& pair) { return contacts_->keeps(pair); });
-  return false;
 }
 
 std::vector<ContactPoint> ProcessWorld::forces() const {
@@ -303,31 +296,16 @@ ProcessWorld::Change ProcessWorld::collide(BodyPair pair, const ProcessState& st
   return {std::move(after), take_events()};
 }
 
-// As a world of all bodies does it (retroactive.cpp): everything that touches, and within the same impulses what rods and joints hold.
+// As a world of all bodies does it (rd/retroactive.cpp): everything that touches, and within the same impulses what rods and joints hold.
 // What lies on something touches it: within a step that says which pairs were kept apart, at an instant all lasting contacts.
 void ProcessWorld::resolve(const std::vector<BodyPair>& pairs, BodyPair trigger, bool is_in_step) {
   const StageTimer timer(counters_.impact_seconds);
-  std::vector<TouchingPair> touching;
-  std::size_t trigger_index = 0;
-  for (const BodyPair& pair : pairs) {
-    const collision::Gap gap = meetings_.gap(pair);
-    const bool lasting = has_contacts() && contacts_->lasts(pair) && (!is_in_step || contacts_->keeps(pair));
-    if (pair != trigger && !lasting && !(gap.distance <= meetings_.touching_distance(pair))) continue;
-    if (pair == trigger) trigger_index = touching.size();
-    touching.push_back({pair.first, pair.second, gap, meetings_.touching_points(pair, gap)});
-  }
-  const Resolution resolution = impacts_.resolve(moving_, touching, trigger_index);
+  const TouchingPairs touching = touching_pairs(meetings_, pairs, trigger, [&](const BodyPair& pair) { return has_contacts() && contacts_->lasts(pair) && (!is_in_step || contacts_->keeps(pair)); });
+  const Resolution resolution = impacts_.resolve(moving_, touching.all, touching.trigger);
   for (const Event& event : resolution.events) collector_.event(event);
-  if (!resolution.settled)
-    throw StoppedRun(fmt::format("collision (collision_impulse, apply_impulse of {}) left them approaching, however often it was applied: the impulse has no effect, the wrong sign or too little "
-                                 "size, or a lasting contact is needed there", laws_.impulse_source));
-  if (!has_contacts()) return impacts_.push_apart(moving_, touching, resolution.micro_impacts);
-  for (const TouchingPair& pair : touching) {
-    bool slow = true;
-    for (const Event& event : resolution.events)
-      if (event.body_a == pair.a && event.body_b == pair.b) slow = slow && impacts_.stays(moving_.world(), pair, -event.normal_velocity_before);
-    if (slow) contacts_->begin({pair.a, pair.b}, pair.gap);
-  }
+  if (!resolution.settled) throw StoppedRun(told_left_approaching(laws_));
+  if (!has_contacts()) return impacts_.push_apart(moving_, touching.all, resolution.micro_impacts);
+  begin_slow_contacts(touching, resolution.events, impacts_, moving_.world(), *contacts_);
 }
 
 }  // namespace tumble::engines

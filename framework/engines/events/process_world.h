@@ -118,7 +118,6 @@ class ProcessWorld {
   void begin_step(double target);
   void require_numbers() const;
   bool has_contacts() const { return contacts_.has_value(); }
-  bool keep_contacts(std::vector<BodyPair>& pairs);
   std::vector<ContactPoint> forces() const;
   void resolve(const std::vector<BodyPair>& pairs, BodyPair trigger, bool is_in_step);
   std::vector<BodyPair> near_pairs(std::optional<BodyPair> trigger) const;
