@@ -113,6 +113,34 @@ TEST(RunWatch, AFaultIsACheckThatFailed) {
   EXPECT_NE(checks[0].detail.find("first at t = 0.1 s, 3 times in all"), std::string::npos) << checks[0].detail;
 }
 
+// ---- What energy is compared with -------------------------------------------------------------------------------------------
+
+/// A ball at a height that moves sideways first at one speed, then at another, and has gone `lift` up between two looks 1/60 s apart.
+std::vector<RunFault> told_of_ball(double radius, double mass, double height, double speed, double then, double lift) {
+  const World world = build_world(scene_of({ball("ball", radius, mass, {0, 0, height}, Vector3d::Zero())}, 1.0, kGravity));
+  const auto states = [&](double z, double v) { return std::vector<RigidBodyState>{{Vector3d(0, 0, z), Quaterniond::Identity(), Vector3d(mass * v, 0, 0), Vector3d::Zero()}}; };
+  engines::EnergyWatch watch(1e-3, 1.0 / 60, true);
+  EXPECT_FALSE(watch.look(0.0, world, states(height, speed)));
+  EXPECT_FALSE(watch.look(1.0 / 60, world, states(height, speed)));
+  EXPECT_FALSE(watch.look(2.0 / 60, world, states(height + lift, then)));
+  engines::RunCounters counters;
+  watch.tell(world, counters);
+  return counters.watch.faults();
+}
+
+// 10 t that move with 50 J and then with 60: a thousandth of their weight over their size would be 31 J.
+TEST(EnergyRises, IsComparedWithWhatMovesNotWithWeight) {
+  EXPECT_EQ(told_of_ball(0.5, 1e4, 0.0, 0.1, 0.1, 0.0).size(), 0u);
+  ASSERT_EQ(told_of_ball(0.5, 1e4, 0.0, 0.1, 0.11, 0.0).size(), 1u);
+  EXPECT_EQ(told_of_ball(0.5, 1e4, 0.0, 0.1, 0.11, 0.0)[0].kind, "energy_rises");
+}
+
+// The same wherever its heights are counted from, up to where they are rounded to more than it moves by: a million kilometres up to 1.2e-7 m.
+TEST(EnergyRises, IsNotHiddenByAFarOriginNorMadeByItsRounding) {
+  EXPECT_EQ(told_of_ball(0.5, 1e4, 1e4, 0.1, 0.11, 0.0).size(), 1u);
+  EXPECT_EQ(told_of_ball(1e-3, 1e-3, 1e9, 1e-3, 1e-3, std::nextafter(1e9, 2e9) - 1e9).size(), 0u);
+}
+
 // ---- Runs that cannot be trusted -------------------------------------------------------------------------------------------
 
 /// A light bob on a rod above one `ratio` times as heavy, held out sideways. Rods of 1 m. The seed draws the angles.

@@ -15,6 +15,7 @@ constexpr double kSame = 1e-6;       // of the step: a landing this near to its 
 constexpr double kNearLanding = 1e-3;       // of the way that the rest speed goes in the longest step: nearer than this a point is down
 constexpr int kMostBlows = 1000;     // at one instant
 constexpr double kTogether = 1e-6;   // of the smaller body
+constexpr double kHops = 0.1;         // of the rest speed: what parts more slowly is the turning of a curved surface, or gains less than m v^2 of the rest speed
 constexpr double kStrikes = 1e-4;    // of the rest speed: what comes together more slowly is left to the step's impulses
 
 }  // namespace
@@ -59,6 +60,27 @@ std::vector<Velocity> LastingContacts::velocities_now(const Group& group, const 
     set_driven(touches[i].pair.second, problem.contacts[i].body_b);
   }
   return now;
+}
+
+// Points that touch and part at the step's start, more slowly than they could leave in it: they hop, and have come down again by its end,
+//   gap(h) = h (v0 + v1) / 2 = 0,  so that  v1 = -v0.
+// Without that they would end at rest where half of their first velocity has taken them: an edge that rocks would be lifted by
+// v0 h / 2 each time, which is more energy than it has wherever v0 < g h. @return whether there are any
+bool LastingContacts::let_part(const Group& group, std::vector<Touch>& touches, ContactProblem& problem) const {
+  const std::vector<Velocity> now = velocities_now(group, touches, problem);
+  bool any = false;
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    const double parting = -approach(problem, i, now);
+    if (touches[i].lands || !(parting > kHops * rest_speed_)) continue;
+    touches[i].target = problem.contacts[i].target = -parting;
+    any = true;
+  }
+  return any;
+}
+
+void LastingContacts::keep_together(std::vector<Touch>& touches, ContactProblem& problem) {
+  for (std::size_t i = 0; i < touches.size(); ++i)
+    if (!touches[i].lands) touches[i].target = problem.contacts[i].target = 0.0;
 }
 
 // Does a point that is apart press, or would its path be under the surface, with this answer?

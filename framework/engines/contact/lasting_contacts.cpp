@@ -326,15 +326,20 @@ std::optional<double> LastingContacts::take_step(const Group& group, double h) {
   const bool located = locates(), moves = located && speed(group) > kMoves * rest_speed_;
   if (moves && strike_what_is_down(group, touches)) return moving_.target();
   ContactProblem problem = problem_of(group, touches, moving_.states(), h);
+  const bool parts = let_part(group, touches, problem);
   ContactSolution solution = solve(group, problem, h);
-  remember(touches, problem, solution, h, tried_);
   bool landing = lands(touches, solution);
+  remember(touches, problem, solution, h, tried_);
   if (moves && comes_down(group, touches, problem, solution, h)) {
     if (becomes_heap(group)) return moving_.target();
     if (const auto again = sort_out_landings(group, touches, h)) return again;
     problem = problem_of(group, touches, moving_.states(), h);
     solution = solve(group, problem, h);
     landing = false;
+  } else if (landing && parts) {   // on straight paths what hops has not left
+    keep_together(touches, problem);
+    solution = solve(group, problem, h);
+    landing = lands(touches, solution);
   }
   std::vector<RigidBodyState> ends = ends_of(group, problem, solution, h, landing);
   const double turn = std::max(largest_turn(group, ends, h), turn_of_normals(group, ends));
@@ -357,6 +362,7 @@ std::optional<double> LastingContacts::take_step(const Group& group, double h) {
     if (!located && group.linked.empty()) return take_pile_step(group, h);
     if (h > kShortest * step_) return moving_.time() + 0.5 * h;
   }
+  if (located && h > kShortestForEnergy * step_ && gains_energy(group)) return moving_.time() + 0.5 * h;
   keep_warm(group, touches, problem, solution, h);
   return std::nullopt;
 }

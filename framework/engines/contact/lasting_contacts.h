@@ -112,6 +112,8 @@ class LastingContacts {
 
   // Of the longest step: ends of sliding that come sooner are taken with it.
   static constexpr double kShortest = 1e-6;
+  // Of the longest step: one that gains energy is not cut below this.
+  static constexpr double kShortestForEnergy = 1.0 / 64;
   // Rest speeds: what holds a group that is slower is an equilibrium, however it trembles.
   static constexpr double kMoves = 10.0;
 
@@ -163,6 +165,7 @@ class LastingContacts {
   double speed(const Group& group) const;
   std::optional<double> take_steps(double h);
   std::optional<double> take_step(const Group& group, double h);
+  bool gains_energy(const Group& group);
   void require_numbers(const Group& group, const ContactSolution& solution) const;
   void note_unsolved(const Group& group, const ContactSolution& solution, double h);
   void draw_apart();
@@ -183,6 +186,8 @@ class LastingContacts {
   void set_straight_path(int body, const RigidBodyState& end);
   void keep_warm(const Group& group, const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h);
   std::optional<double> stop_of_sliding(const ContactProblem& problem, const std::vector<Touch>& touches, const ContactSolution& solution, double h);
+  bool let_part(const Group& group, std::vector<Touch>& touches, ContactProblem& problem) const;
+  static void keep_together(std::vector<Touch>& touches, ContactProblem& problem);
   static bool lands(const std::vector<Touch>& touches, const ContactSolution& solution);
   std::vector<RigidBodyState> ends_of(const Group& group, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing,
                                       const std::vector<RigidBodyState>* at = nullptr) const;

@@ -187,7 +187,7 @@ void FlightRun::end(const std::string& stopped_by) {
   counters.pair_checks += cost.pair_checks;
   counters.collision.gap_evaluations += cost.narrow.gap_evaluations;
   counters.collision.root_findings += cost.narrow.root_findings;
-  energy_watch_.tell(world_.world(), counters.watch);
+  energy_watch_.tell(world_.world(), counters);
   sink_.end(counters.named(), stopped_by);
 }
 

@@ -284,7 +284,7 @@ void RetroactiveRun::run() {
   } catch (const StoppedRun& stop) {
     stopped_by_ = fmt::format("at t = {:.6f} s, {}", moving_.time(), stop.what());
   }
-  energy_watch_.tell(moving_.world(), counters_.watch);
+  energy_watch_.tell(moving_.world(), counters_);
   sink_.end(counters_.named(), stopped_by_);
 }
 

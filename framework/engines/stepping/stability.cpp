@@ -10,6 +10,7 @@
 
 #include "framework/core/decompositions.h"
 #include "framework/core/error.h"
+#include "framework/core/numbers.h"
 #include "framework/dynamics/anchors.h"
 #include "framework/dynamics/invariants.h"
 #include "framework/engines/base/guarded_laws.h"
@@ -251,35 +252,53 @@ double energy_at_work(const World& world, const std::vector<RigidBodyState>& sta
   return scale;
 }
 
+// The terms that the energy is a sum of, and the places that springs are stretched between: what their rounding goes by. [J]
+double terms_of_energy(const World& world, const std::vector<RigidBodyState>& states, double kinetic) {
+  double terms = kinetic;
+  for (std::size_t i = 0; i < world.bodies.size(); ++i)
+    if (!world.bodies[i].immovable() && world.gravity_world) terms += world.bodies[i].inertia.mass * world.gravity_world->cwiseAbs().dot(states[i].com_world.cwiseAbs());
+  for (const SpringLink& link : world.springs) {
+    const Vector3d a = anchor_point(link.a, states), b = anchor_point(link.b, states);
+    const double stretch = std::abs((a - b).norm() - link.spring.rest_length);
+    terms += link.spring.stiffness * stretch * (stretch + a.norm() + b.norm());
+  }
+  return terms;
+}
+
+// Of the bodies' sizes: how far what lies is lifted where it is kept apart. Shells are 1e-10 of the smaller body, those of heaps 1e-4.
+constexpr double kLifted = 1e-5, kLiftedInHeaps = 1e-3;
+
 }  // namespace
 
 // What the world has to give: its kinetic energy, what its springs hold, and (available()) how far it falls.
 void EnergyWatch::begin(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums) {
-  // Of the size of a body: lying bodies are let down and lifted by less where they are kept apart.
-  constexpr double kLifted = 1e-3;
   first_energy_ = least_energy_ = sums.kinetic_energy + sums.potential_energy;
+  constexpr double kCorners = 8.0;   // what does not bounce is sent off at the rest speed, a box by each of its corners
   lowest_potential_ = first_potential_ = sums.potential_energy;
   scale_ = energy_at_work(world, states, sums);
   const double gravity = world.gravity_world ? world.gravity_world->norm() : 0.0;
   for (const WorldBody& body : world.bodies) {
     if (body.immovable()) continue;
     const double size = std::sqrt(0.5 * body.inertia.inertia_body.trace() * body.inertia.inverse_mass);   // of gyration [m]
-    unseen_ += body.inertia.mass * (rest_speed_ * rest_speed_ + kLifted * gravity * size);
+    of_rest_speed_ += kCorners * body.inertia.mass * rest_speed_ * rest_speed_;
+    of_sizes_ += body.inertia.mass * gravity * size;
   }
 }
 
-void EnergyWatch::note_rise(double time, double energy, const World& world, const std::vector<RigidBodyState>& states) {
+void EnergyWatch::note_rise(double time, double energy, double kinetic, const World& world, const std::vector<RigidBodyState>& states) {
   constexpr double kFarther = 1.1;   // times the last: what is kept of a rise that goes on
+  constexpr double kDeviations = 8.0;   // roundings of steps are independent of each other: their sum goes with the root of their number
   const double rise = energy - least_energy_;
   least_energy_ = std::min(least_energy_, energy);
-  if (!(rise > unseen_) || (!rises_.empty() && !(rise > kFarther * rises_.back().size))) return;
+  if (!(rise > unseen(kLifted)) || (!rises_.empty() && !(rise > kFarther * rises_.back().size))) return;
+  rounding_ = std::max(rounding_, kDeviations * kEpsilon * (1.0 + std::sqrt(time / step_)) * terms_of_energy(world, states, kinetic));
   rises_.push_back({time, rise, body_with_most_energy(world, states)});
 }
 
-void EnergyWatch::tell(const World& world, RunWatch& watch) const {
-  const double whole = available() + unseen_ / kEnergyRises;
+void EnergyWatch::tell(const World& world, RunCounters& counters) const {
+  const double whole = available() + (unseen(counters.heap_steps > 0 ? kLiftedInHeaps : kLifted) + rounding_) / kEnergyRises;
   for (const Rise& rise : rises_)
-    watch.note(RunWatch::Kind::kEnergyRises, fmt::format("'{}'", world.bodies[static_cast<std::size_t>(rise.body)].name), {rise.size / whole, kEnergyRises, rise.time, step_});
+    counters.watch.note(RunWatch::Kind::kEnergyRises, fmt::format("'{}'", world.bodies[static_cast<std::size_t>(rise.body)].name), {rise.size / whole, kEnergyRises, rise.time, step_});
 }
 
 // What point forces have done since the last look (force times the way of their point, exact where they are constant), and the most that motors can
@@ -325,8 +344,8 @@ std::optional<Runaway> EnergyWatch::look(double time, const World& world, const 
     scale_ = std::max(scale_, energy_at_work(world, states, sums));
   }
   lowest_potential_ = std::min(lowest_potential_, sums.potential_energy);
-  note_rise(time, energy, world, states);
-  if (energy - first_energy_ <= kRunaway * available() + unseen_ + kRoundingOfRest * std::abs(first_energy_)) return std::nullopt;
+  note_rise(time, energy, sums.kinetic_energy, world, states);
+  if (energy - first_energy_ <= kRunaway * available() + unseen(kLiftedInHeaps) + kRoundingOfRest * std::abs(first_energy_)) return std::nullopt;
   if (available() == 0.0 && first_energy_ == 0.0 && !(sums.kinetic_energy > 0)) return std::nullopt;
   return Runaway{body_with_most_energy(world, states), energy, first_energy_, by_blows_};
 }

@@ -8,7 +8,7 @@
 #include "framework/dynamics/invariants.h"
 #include "framework/dynamics/laws.h"
 #include "framework/dynamics/world.h"
-#include "framework/engines/base/run_watch.h"
+#include "framework/engines/base/run_counters.h"
 #include "framework/trajectory/trajectory.h"
 
 namespace tumble::engines {
@@ -114,7 +114,7 @@ class EnergyWatch {
   /// @return nothing while all is well, and for worlds that moving walls, or motors without a largest torque, drive
   std::optional<Runaway> look(double time, const World& world, const std::vector<RigidBodyState>& states);
   /// Notes what energy has risen by above the least it has been, where that is more than steps leave of all that the world had to give.
-  void tell(const World& world, RunWatch& watch) const;
+  void tell(const World& world, RunCounters& counters) const;
 
  private:
   struct Rise {
@@ -123,7 +123,9 @@ class EnergyWatch {
   };
   void begin(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums);
   double work_since(double time, const World& world, const std::vector<RigidBodyState>& states);
-  void note_rise(double time, double energy, const World& world, const std::vector<RigidBodyState>& states);
+  void note_rise(double time, double energy, double kinetic, const World& world, const std::vector<RigidBodyState>& states);
+  /// What the model itself is free to make: what moves slower than the rest speed, and lies, is lifted by this part of its size. [J]
+  double unseen(double lifted) const { return of_rest_speed_ + lifted * of_sizes_; }
   double available() const { return scale_ + given_ + (first_potential_ - lowest_potential_); }
 
   double rest_speed_, step_;
@@ -132,7 +134,8 @@ class EnergyWatch {
   std::vector<double> turning_;                        // of each motor's hinge at the last look [rad/s]
   double last_look_ = 0.0, work_ = 0.0, given_ = 0.0;  // [s]; what forces and, at most, motors have brought in, and without its sign [J]
   double first_energy_ = kUnset, scale_ = 0.0, first_potential_ = 0.0, lowest_potential_ = 0.0, by_blows_ = 0.0;   // [J]
-  double least_energy_ = 0.0, unseen_ = 0.0;   // the least so far; what the model itself is free to make [J]
+  double least_energy_ = 0.0, of_rest_speed_ = 0.0, of_sizes_ = 0.0;   // the least so far; of all bodies m v^2 of the rest speed, and m g size [J]
+  double rounding_ = 0.0;          // what it leaves of an energy, where one has risen [J]
   std::vector<Rise> rises_;        // each larger than the one before
 };
 
