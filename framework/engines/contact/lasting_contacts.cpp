@@ -328,8 +328,8 @@ std::optional<double> LastingContacts::take_step(const Group& group, double h) {
   ContactProblem problem = problem_of(group, touches, moving_.states(), h);
   const bool parts = let_part(group, touches, problem);
   ContactSolution solution = solve(group, problem, h);
-  bool landing = lands(touches, solution);
   remember(touches, problem, solution, h, tried_);
+  bool landing = lands(touches, solution);
   if (moves && comes_down(group, touches, problem, solution, h)) {
     if (becomes_heap(group)) return moving_.target();
     if (const auto again = sort_out_landings(group, touches, h)) return again;
