@@ -1,31 +1,25 @@
 // Whether contacts have brought energy in. Part of LastingContacts.
 //
-// What touches and does not rebound only ever takes energy away: friction does, and blows without rebound. A group that carries more than the
+// What touches and does not rebound only ever takes energy away: friction does, and blows without rebound. A island that carries more than the
 // forces of the step can hold in balance (a heavy slab on a small ball, a box on the crest of another) topples faster than its step
 // follows: the impulses of the step's middle, found where the bodies would be without toppling, push along what has turned away since, and do work.
 #include <algorithm>
 
 #include "framework/core/numbers.h"
+#include "framework/engines/contact/contact_constants.h"
 #include "framework/engines/contact/lasting_contacts.h"
 
 namespace tumble::engines {
-namespace {
-
-constexpr double kGains = 1e-2;     // of what moves: as the run's own watch allows of the whole run (kEnergyRises)
-constexpr double kLifted = 1e-6;    // of the bodies' sizes: shells are 1e-10; what is drawn out of an overlap of more has come too deep for its step
-constexpr double kRoundings = 8.0;
-
-}  // namespace
 
 // Between the ends of the paths that its bodies have been given. Not asked of what springs, motors or driven supports may give energy to.
-bool LastingContacts::gains_energy(const Group& group) {
-  if (!group.linked.empty()) return false;
-  for (const Pair& pair : group.pairs)
+bool LastingContacts::gains_energy(const ContactIsland& island) {
+  if (!island.linked.empty()) return false;
+  for (const Pair& pair : island.pairs)
     if (moving_.is_driven(pair.first) || moving_.is_driven(pair.second)) return false;
   const World& world = moving_.world();
   const Vector3d gravity = world.gravity_world.value_or(Vector3d::Zero());
   double gain = 0.0, moves_before = 0.0, moves_after = 0.0, unseen = 0.0, terms = 0.0;   // [J]
-  for (const int index : group.bodies) {
+  for (const int index : island.bodies) {
     const WorldBody& body = world.bodies[static_cast<std::size_t>(index)];
     const RigidBodyState &start = moving_.state(index), &end = moving_.path_end(index);
     const double mass = body.inertia.mass;
@@ -33,7 +27,7 @@ bool LastingContacts::gains_energy(const Group& group) {
     moves_after += kinetic_energy(end, body.inertia);
     gain -= mass * gravity.dot(end.com_world - start.com_world);
     terms += mass * gravity.cwiseAbs().dot(start.com_world.cwiseAbs());
-    unseen += mass * (rest_speed_ * rest_speed_ + kLifted * gravity.norm() * moving_.shape(index).bounding_radius());
+    unseen += mass * (rest_speed_ * rest_speed_ + kContact.lifted * gravity.norm() * moving_.shape(index).bounding_radius());
     for (const int force : moving_.active_forces()) {
       if (world.point_forces[static_cast<std::size_t>(force)].body != index) continue;
       const Vector3d& at_body = moving_.force_points_body()[static_cast<std::size_t>(force)];
@@ -41,7 +35,7 @@ bool LastingContacts::gains_energy(const Group& group) {
     }
   }
   gain += moves_after - moves_before;
-  return gain > kGains * std::max(moves_before, moves_after) + unseen + kRoundings * kEpsilon * terms;
+  return gain > kContact.gain * std::max(moves_before, moves_after) + unseen + kContact.energy_roundings * kEpsilon * terms;
 }
 
 }  // namespace tumble::engines

@@ -50,7 +50,7 @@ int ProcessWorld::local(int body) const { return static_cast<int>(std::lower_bou
 
 // ---- A state in, a state out ---------------------------------------------------------------------------------------------
 
-void ProcessWorld::load(const ProcessState& from, std::optional<LastingContacts> memory) {
+void ProcessWorld::load(const ProcessState& from, std::optional<ContactMemory> memory) {
   std::vector<RigidBodyState> states = moving_.states();
   for (std::size_t k = 0; k < members_.size(); ++k) states[static_cast<std::size_t>(part_.members[k])] = from.states[k];
   moving_.stand_at(from.time, states);
@@ -68,12 +68,8 @@ void ProcessWorld::load(const ProcessState& from, std::optional<LastingContacts>
   impacts_.remember(std::move(met));
   collector_.events.clear();
   if (!has_contacts()) return;
-  contacts_.reset();
-  if (memory) {
-    contacts_.emplace(std::move(*memory));
-    return;
-  }
-  contacts_.emplace(moving_, laws_, *moving_.world().contact, rules_.rest_speed, counters_, collector_);
+  if (memory) return contacts_->recall(std::move(*memory));
+  contacts_->recall({});
   const std::uint64_t begun = counters_.contacts_begun;
   for (const BodyPair& pair : from.lasting) contacts_->begin(local(pair), {});   // it has begun before: what is said of it is not new
   counters_.contacts_begun = begun;
@@ -112,7 +108,7 @@ ProcessState ProcessWorld::save() {
   if (!has_contacts()) return state;
   for (const BodyPair& pair : contacts_->lasting()) state.lasting.insert(whole(pair));
   if (moving_.world().contact->plastic_impacts == scene::PlasticImpacts::kInStep) note_near(state);
-  state.contacts.emplace(std::move(*contacts_));
+  state.contacts = contacts_->take_memory();
   return state;
 }
 

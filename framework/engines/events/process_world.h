@@ -36,7 +36,7 @@ struct ProcessState {
   std::map<BodyPair, double> met;               // when pairs met last [s]
   std::set<BodyPair> lasting;                   // pairs in lasting contact
   std::set<BodyPair> near;                      // pairs without restitution that meet within a step or two: they stay together (in_step)
-  std::optional<LastingContacts> contacts;      // what contacts remember; of the process world that made this state, and for it alone
+  std::optional<ContactMemory> contacts;        // what contacts remember; bodies are those of the process world that made this state
 
   const RigidBodyState& state_of(int body) const;
   /// A copy that goes on as if contacts had been asked for the first time; much the cheaper one.
@@ -110,7 +110,7 @@ class ProcessWorld {
     std::vector<Event> events;
   };
 
-  void load(const ProcessState& from, std::optional<LastingContacts> memory = std::nullopt);
+  void load(const ProcessState& from, std::optional<ContactMemory> memory = std::nullopt);
   ProcessState save();
   void save_controls(ProcessState& state) const;
   void note_near(ProcessState& state) const;

@@ -14,6 +14,7 @@
 #include "framework/core/numbers.h"
 #include "framework/dynamics/build_world.h"
 #include "framework/dynamics/world.h"
+#include "framework/engines/contact/contact_constants.h"
 #include "framework/engines/contact/lasting_contacts.h"
 #include "framework/engines/judging/measures.h"
 
@@ -62,7 +63,7 @@ class EnergyRounding {
       sizes += bounding_radius(body.shape);
       weight += body.inertia.mass * world_.gravity_world->norm();
     }
-    return 2.0 * kContactMargin * sizes * weight;
+    return 2.0 * kContact.margin * sizes * weight;
   }
 
   double spring_terms(const Frame& frame) const {
