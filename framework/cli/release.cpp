@@ -10,6 +10,7 @@
 #include "framework/cli/verb.h"
 #include "framework/core/files.h"
 #include "framework/core/version.h"
+#include "framework/grading/course/slip.h"
 #include "framework/grading/course/course.h"
 #include "framework/grading/course/release_checks.h"
 #include "framework/grading/course/run_program.h"
@@ -84,6 +85,15 @@ bool is_published(const Context& context, const std::vector<std::string>& publis
   });
 }
 
+// The whole wrong solution that a slip stands for, each line with its place in the slip or in its base.
+grading::PrivateFile made_of_slip(const Context& context, const fs::path& slip) {
+  const grading::MadeSolution made = grading::make_solution(slip, slip.parent_path().parent_path());
+  grading::PrivateFile whole{slip.lexically_relative(context.root), made.text};
+  for (const auto& origin : made.origins)
+    whole.places.push_back((origin.is_of_slip ? whole.file : made.base.lexically_relative(context.root)).string() + ":" + std::to_string(origin.line));
+  return whole;
+}
+
 // A flawed submission is a student's file: what it left of the stub is the stub. What CMake says of solutions is in no student's way.
 std::vector<grading::PrivateFile> private_files(const Context& context, const std::vector<std::string>& published) {
   std::vector<grading::PrivateFile> files;
@@ -95,6 +105,7 @@ std::vector<grading::PrivateFile> private_files(const Context& context, const st
     const bool of_published = std::any_of(published.begin(), published.end(), [&](const std::string& id) { return *std::next(file.begin()) == context.registry.find(id).folder; });
     if (of_published && (folder == "mutants" || folder == "alternatives")) continue;
     files.push_back({file, text_of(entry.path()), folder == "tests" || folder == "support"});
+    if (file.extension() == grading::kSlipExtension) files.push_back(made_of_slip(context, entry.path()));
   }
   return files;
 }

@@ -50,6 +50,17 @@ TEST_F(ReleaseChecks, ThreeLinesOfASolutionAreNamedWithBothPlaces) {
   EXPECT_EQ(found[0].problem, "holds three lines of solutions_private/a9_x/a9_x.cpp:4");
 }
 
+// A text that was made of two files says of each line where it is from.
+TEST_F(ReleaseChecks, APassageOfAMadeTextIsNamedWithThePlaceThatItIsFrom) {
+  PrivateFile made{"solutions_private/a9_x/mutants/s.slip", kSolution, false};
+  for (int line = 1; line <= 10; ++line) made.places.push_back(line == 4 ? "s.slip:7" : "a9_x.cpp:" + std::to_string(line));
+  write("handouts/a9_x.md", "  const Vector3d sum_of_both_vectors = first + second;\n  const double squared_length_of_sum = sum_of_both_vectors.dot(sum_of_both_vectors);\n"
+                            "  if (squared_length_of_sum <= kSmallestSquare) return 0.0;\n");
+  const auto found = leaks(folder_.path(), {made});
+  ASSERT_EQ(found.size(), 1u);
+  EXPECT_EQ(found[0].problem, "holds three lines of s.slip:7");
+}
+
 // Other line ends, spaces and comments do not hide the tokens.
 TEST_F(ReleaseChecks, AReformattedPassageIsNamed) {
   std::string text;

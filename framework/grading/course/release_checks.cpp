@@ -12,6 +12,7 @@
 #include <unordered_map>
 
 #include "framework/core/files.h"
+#include "framework/grading/course/code_text.h"
 
 namespace tumble::grading {
 namespace {
@@ -29,29 +30,6 @@ bool is_text(const std::string& bytes) { return bytes.size() < kMostBytes && byt
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 int line_at(const std::string& text, std::size_t at) { return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n')); }
 std::string at_line(const std::string& file, int line) { return file + ":" + std::to_string(line); }
-
-/// The same text with comments and preprocessor lines blanked: places stay. Text between quotes is kept.
-std::string code_of(std::string text) {
-  bool line_begins = true;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto blank_until = [&](std::size_t end) {
-      for (; i < std::min(end, text.size()); ++i)
-        if (text[i] != '\n') text[i] = ' ';
-    };
-    const char c = text[i];
-    if (line_begins && c == '#') blank_until(text.find('\n', i));
-    else if (text.compare(i, 2, "//") == 0) blank_until(text.find('\n', i));
-    else if (text.compare(i, 2, "/*") == 0) blank_until(std::min(text.find("*/", i + 2), text.size() - 2) + 2);
-    else if (c == '"') {
-      for (++i; i < text.size() && text[i] != '"' && text[i] != '\n'; ++i) i += text[i] == '\\' ? 1 : 0;
-      ++i, line_begins = false;
-    } else {
-      line_begins = c == '\n' || (line_begins && (c == ' ' || c == '\t'));
-      ++i;
-    }
-  }
-  return text;
-}
 
 struct Token {
   std::uint64_t hash;
@@ -117,13 +95,13 @@ struct Secrets {
 Secrets collect(const std::vector<PrivateFile>& secrets) {
   Secrets all;
   for (const PrivateFile& secret : secrets) {
-    const std::string name = secret.file.string();
-    all.files.emplace(std::hash<std::string>{}(secret.text), name);
+    const auto place = [&](int line) { return secret.places.empty() ? at_line(secret.file.string(), line) : secret.places[static_cast<std::size_t>(line) - 1]; };
+    all.files.emplace(std::hash<std::string>{}(secret.text), secret.file.string());
     if (!is_text(secret.text)) continue;
     const std::vector<Token> tokens = tokens_of(code_of(secret.text));
     each_row(tokens, secret.is_test ? kTestTokens : kSolutionTokens,
-             [&](std::uint64_t hash, int line) { (secret.is_test ? all.test_rows : all.solution_rows).emplace(hash, at_line(name, line)); });
-    if (!secret.is_test) each_passage(secret.text, [&](std::uint64_t hash, int line) { all.passages.emplace(hash, at_line(name, line)); });
+             [&](std::uint64_t hash, int line) { (secret.is_test ? all.test_rows : all.solution_rows).emplace(hash, place(line)); });
+    if (!secret.is_test) each_passage(secret.text, [&](std::uint64_t hash, int line) { all.passages.emplace(hash, place(line)); });
   }
   return all;
 }

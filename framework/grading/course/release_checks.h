@@ -27,6 +27,7 @@ struct PrivateFile {
   std::filesystem::path file;   // from the root: solutions_private/...
   std::string text;
   bool is_test = false;         // a hidden test: it may share its fixture's idiom with public tests
+  std::vector<std::string> places = {};   // "file:line" of each line, where they are not the file's own: of a text made of several
 };
 
 /// Compares all shipped text with all private text: whole files, three lines of code in a row, and long rows of tokens, which
