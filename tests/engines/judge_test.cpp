@@ -84,6 +84,18 @@ TEST(Judge, ARodIsAsLongAsItsEndsAreFarApart) {
   EXPECT_FALSE(judged(made, check_of("rod_length", 1e-6)).passed) << "nothing to judge is not right";
 }
 
+TEST(Judge, RestitutionIsAskedOfImpactsNotOfBodiesThatTouchWithoutApproach) {
+  HandMade made(stays({0, 0, 0}), stays({2, 0, 0}));
+  for (scene::BodySpec& body : made.scene.bodies) body.restitution = 0.5;
+  const Event touch{0.5, EventKind::kCollision, 0, 1, Vector3d::Zero(), Vector3d::UnitX(), 0.0, 0.0, 0.0};
+  made.run.events = {touch};
+  EXPECT_FALSE(judged(made, check_of("restitution_law", 1e-9)).passed) << "nothing to judge is not right";
+  made.run.events.push_back({0.6, EventKind::kCollision, 0, 1, Vector3d::Zero(), Vector3d::UnitX(), 3.0, -2.0, 1.0});
+  expect_value(made, check_of("restitution_law", 1e-9), 0.0);
+  made.run.events.back().normal_velocity_after = 1.5;
+  expect_value(made, check_of("restitution_law", 1e-9), 0.25);
+}
+
 TEST(Judge, AHingeOpensByTheDistanceOfItsPointsAndTheAngleOfItsAxes) {
   // The second body leans by 0.3 t about the shared point, which then slips by 0.02 t.
   const Vector3d point(0.5, 0, 0);

@@ -1,6 +1,6 @@
 /// Every tolerance of contacts, in one place: its unit or what it is a part of, its reason, and what happens when it is larger or smaller.
 ///
-/// `tests/bench/contact_constants.sh` multiplies and divides each by ten, and says which scenes notice.
+/// `ninja -C build bench_contact_constants && build/bin/bench_contact_constants` multiplies and divides each by ten, and says which scenes notice.
 /// "Of the restitution threshold": of the scene's rest_speed_m_s. "Of the smaller body": of the radius about the smaller of two.
 #pragma once
 
