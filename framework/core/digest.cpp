@@ -17,7 +17,7 @@ namespace {
 
 using Bytes = std::array<unsigned char, EVP_MAX_MD_SIZE>;
 
-// One SHA-256 that is fed piece by piece.
+// An incremental SHA-256.
 class Sha256 {
  public:
   Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {

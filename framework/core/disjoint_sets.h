@@ -1,4 +1,5 @@
-/// Which of n things belong together (union-find), each set named by its smallest member.
+/// A partition of 0 .. n-1 into disjoint sets (union-find); each set is named by its smallest
+/// member.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +8,8 @@
 
 namespace tumble {
 
-/// Boost's disjoint_sets names a set by whichever member its ranks choose, and has to be normalised before its names may be relied on.
+/// Not Boost's disjoint_sets: its ranks choose the name of a set, so the sets must be normalised
+/// before a name can be relied on.
 class DisjointSets {
  public:
   explicit DisjointSets(int size) : parent_(static_cast<std::size_t>(size)) { std::iota(parent_.begin(), parent_.end(), 0); }

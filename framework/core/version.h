@@ -3,7 +3,8 @@
 
 namespace tumble {
 
-/// "0.1.0 (25ccc19a01)": the project's version, and the commit that was configured where the tree has a history.
+/// "0.1.0 (25ccc19a01)": the project's version, and the commit at configuration where the tree has
+/// a history.
 extern const char* const kProgramVersion;
 
 }  // namespace tumble
