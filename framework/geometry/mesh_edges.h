@@ -1,4 +1,5 @@
-/// Who shares an edge with whom: the table that the closed check, convexity and rays are built on.
+/// Which faces share an edge: the basis of the closed check and of the tests for convexity and open
+/// edges.
 #pragma once
 
 #include <string>
@@ -13,11 +14,12 @@ namespace tumble {
 struct EdgeUse {
   int low, high;   // vertices, low < high
   int face;
-  int corner;      // the face runs from faces[face][corner] to the next corner
-  bool forward;    // it runs from low to high
+  int corner;      // the edge goes from faces[face][corner] to the face's next corner
+  bool forward;    // from low to high
 };
 
-/// Every use of every edge, sorted by (low, high, face): uses of the same edge stand together. Cost: O(n log n)
+/// Every use of every edge, sorted by (low, high, face), so that uses of the same edge are
+/// adjacent. Cost: O(n log n)
 std::vector<EdgeUse> edge_uses(const TriangleMesh& mesh);
 
 /// Calls group(first, last) for every run of uses of the same edge, in order.
