@@ -1,4 +1,4 @@
-/// What made a run, in a line: for pages, pictures and files.
+/// The provenance of a run in one line, for pages, pictures and files.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +9,12 @@
 
 namespace tumble {
 
-/// Parts that say something, with dots between them.
+/// The parts that are not empty, separated by dots.
 std::string joined_record(const std::vector<std::string>& parts);
 
 /// "Tumble 0.1.0 (25ccc19a01)"; nothing where the version is not known.
 std::string version_in_words(const std::string& version);
-/// "scene gas 7f3a..., seed 11": the digest cut to what people compare.
+/// "scene gas 7f3a..., seed 11", with the first 16 digits of the digest.
 std::string scene_in_words(const std::string& name, const std::string& digest, const std::vector<std::uint64_t>& seeds);
 
 /// "tumble run gas --n 40 · Tumble 0.1.0 (25ccc19a01) · scene gas gas n=40, seed 11"
