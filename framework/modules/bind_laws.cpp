@@ -4,7 +4,7 @@ namespace tumble::modules {
 
 void bind_laws(const ModuleKind& kind, const AnyModule& module, const std::string& source, Laws& laws) {
   kind.bind(module, laws);
-  Laws alone;   // shows which laws this module is about
+  Laws alone;   // has only the laws that this module implements
   kind.bind(module, alone);
   if (alone.collision_impulse) laws.impulse_source = source;
   if (alone.integrate_step) laws.integrator_source = source;

@@ -1,7 +1,8 @@
-/// Which laws stand together: modules over each other, and the library's laws of motion between them. The one place that composes laws.
+/// The only place that composes laws: from modules in layers, and the library's laws of motion.
 ///
-/// From the bottom: modules that a scene does not need (what may still be asked for, such as a push by hand), the library's laws of motion,
-/// then modules that the scene needs or that somebody named. No scheduler is taken over from below.
+/// From the bottom: modules that the scene does not need (for interactive use, such as `poke`), the
+/// library's laws of motion, then modules that the scene needs or that the user has named. A
+/// scheduler of the lowest layer is dropped.
 #pragma once
 
 #include <string>
@@ -11,11 +12,12 @@
 
 namespace tumble::modules {
 
-/// Puts a module's functions into the laws that it is about, and notes in each of these laws' sources whose they are.
-/// @param source  for people and records: "a2 reference", "submission"
+/// Sets the laws that a module implements to its functions, and the sources of these laws to
+/// `source`.
+/// @param source  for messages and records: "a2 reference", "submission"
 void bind_laws(const ModuleKind& kind, const AnyModule& module, const std::string& source, Laws& laws);
 
-/// Over modules that the scene does not need: motion by the library, no scheduler.
+/// The second layer: sets motion by the library, and no scheduler.
 void set_library_motion(Laws& laws);
 
 }  // namespace tumble::modules

@@ -180,7 +180,7 @@ TEST_F(RunAttack, WrongSizesAreWrongAnswersAndTheJudgeLives) {
     Victim victim = in_call();
     EXPECT_THROW(victim.module().step([](double, const VectorXd& y) { return VectorXd(-y); }, VectorXd::Ones(13), what), CallEnded) << what;
     EXPECT_EQ(victim.verdict(), Verdict::kWrong) << victim.story();
-    EXPECT_TRUE(holds(victim.story(), what.substr(what.find(' ') + 1) + " numbers, 13 are needed")) << victim.story();
+    EXPECT_TRUE(holds(victim.story(), what.substr(what.find(' ') + 1) + " numbers, but 13 are needed")) << victim.story();
     call_log() = CallLog{};
     EXPECT_EQ(victim.module().twice(21.0), 42.0) << "the next test gets a fresh worker";
   }
