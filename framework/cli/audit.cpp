@@ -8,7 +8,7 @@
 #include <unistd.h>
 
 #include "framework/cli/verb.h"
-#include "framework/grading/course/touched_lines.h"
+#include "framework/grading/grades/touched_lines.h"
 #include "framework/grading/grades/audit.h"
 #include "framework/grading/grades/scoring.h"
 

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/files.h"
-#include "framework/grading/course/touched_lines.h"
+#include "framework/grading/grades/touched_lines.h"
 
 namespace tumble::grading {
 namespace {

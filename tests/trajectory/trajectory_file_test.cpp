@@ -114,7 +114,7 @@ TEST(TrajectoryFile, ForeignFileIsNamedAsSuch) {
 TEST(TrajectoryFile, OtherVersionIsNamedAsOlderOrNewer) {
   std::string bytes = good_bytes();
   bytes[8] = 1;
-  EXPECT_NE(problem_of(bytes).find("byte 8: recorded by an older version of this program: format version 1, this program reads 2"), std::string::npos);
+  EXPECT_NE(problem_of(bytes).find("byte 8: recorded by an older version of this program: format version 1, this program reads 3"), std::string::npos);
   bytes[8] = 9;
   EXPECT_NE(problem_of(bytes).find("byte 8: recorded by a newer version"), std::string::npos);
 }

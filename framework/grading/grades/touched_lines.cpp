@@ -1,4 +1,4 @@
-#include "framework/grading/course/touched_lines.h"
+#include "framework/grading/grades/touched_lines.h"
 
 #include <regex>
 #include <sstream>
