@@ -24,12 +24,12 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// In the order in which they stand in the page: what is used stands above.
+// In the order of the page: each script uses only earlier ones.
 constexpr const char* kScripts[] = {"decode.js", "model.js", "shapes.js", "marks.js", "pick.js", "stage.js", "plot.js", "curves.js", "events.js", "player.js", "panel_virtual_times.js", "main.js"};
 
 std::string library(const fs::path& folder, const char* file) {
   std::ifstream in(folder / file, std::ios::binary);
-  if (!in) throw UserError((folder / file).string(), "three.js is not there, and a page that plays a run is made of it", "Install Debian's package libjs-three.");
+  if (!in) throw UserError((folder / file).string(), "three.js is missing, which a page that plays a run needs", "Install Debian's package libjs-three.");
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
@@ -39,7 +39,7 @@ std::string script_text() {
   return text + "})();\n";
 }
 
-// Data in a script element ends at "</": in JSON a slash or a less-than sign may be written otherwise.
+// "</" would end a script element; JSON allows an escape for the less-than sign.
 std::string json_text(const Json& json) {
   std::string text;
   for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) c == '<' ? text += "\\u003c" : text += c;
@@ -69,7 +69,7 @@ Json panels_json(const std::vector<PlayerPanel>& panels) {
 
 std::string record_and_notices(const std::vector<PlayedRun>& runs) {
   std::string record = html_escape(tumble::record_of(runs.front().run.info));
-  for (const PlayedRun& played : runs)   // what the run had to say beside its numbers, such as start velocities that were changed
+  for (const PlayedRun& played : runs)   // notes of the run, such as changed initial velocities
     for (const std::string& notice : played.run.counters.notices) record += "<br>note" + (played.label.empty() ? "" : " (" + html_escape(played.label) + ")") + ": " + html_escape(notice);
   return record;
 }

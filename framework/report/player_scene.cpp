@@ -11,10 +11,10 @@ using Json = nlohmann::ordered_json;
 
 Json triple(const Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
 
-/// Meshes used twice are told once.
+/// Collects meshes; one that is used twice is stored once.
 class Meshes {
  public:
-  /// Of a shape that the page knows no better than by its triangles.
+  /// For a shape that the page draws by its triangles.
   std::size_t index_of_surface(const Shape& shape) { return index_of(made_.emplace_back(surface_of(shape))); }
   std::size_t index_of(const TriangleMesh& mesh) {
     for (std::size_t i = 0; i < meshes_.size(); ++i)
@@ -57,7 +57,7 @@ class Anchors {
   }
   int body(const std::string& name) const { return name.empty() ? -1 : index_.at(name); }
   Json of(const scene::AnchorSpec& spec) const { return {{"body", body(spec.body)}, {"point", triple(spec.point_m)}}; }
-  /// A point given in the world at the start.
+  /// A point in world coordinates at the start.
   Json fixed(const std::string& name, const Vector3d& point_world) const {
     const int index = body(name);
     if (index < 0) return {{"body", -1}, {"point", triple(point_world)}};
@@ -77,7 +77,7 @@ void add_links(const scene::Scene& scene, const Anchors& anchors, Json& page) {
   for (const auto& rod : scene.rods) page["rods"].push_back({{"name", rod.name}, {"a", anchors.of(rod.a)}, {"b", anchors.of(rod.b)}});
   for (const auto& joint : scene.joints) {
     const bool is_hinge = joint.kind == scene::JointKind::kHinge;
-    // Of a joint with the world, body_a is the one that moves.
+    // In a joint with the world, body_a is the moving body.
     Json entry{{"name", joint.name}, {"kind", is_hinge ? "hinge" : joint.kind == scene::JointKind::kBall ? "ball" : "weld"}};
     entry["a"] = anchors.fixed(joint.body_a, joint.point_m);
     if (is_hinge) entry["b"] = anchors.fixed(joint.body_a, joint.point_m + joint.axis.normalized());
