@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 
 const fs::path& scratch() {
-  static const PrivateFolder folder;   // gone with the program
+  static const PrivateFolder folder;   // removed at the end of the program
   static const fs::path path = folder.path();
   return path;
 }

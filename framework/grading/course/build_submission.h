@@ -1,4 +1,4 @@
-/// From a submission's source to a shared object.
+/// Builds a submission's shared object from its source.
 #pragma once
 
 #include <filesystem>
@@ -11,14 +11,14 @@ namespace tumble::grading {
 struct BuiltSubmission {
   enum class Outcome { kBuilt, kRefused, kGraderFault };
   Outcome outcome = Outcome::kGraderFault;
-  std::string said;   // the compiler's words, cut short; or why it could not be asked
+  std::string said;   // the compiler's errors; or why it could not run
 };
 
-/// Compiles in the sandbox, where nothing of the project but headers can be seen.
+/// Compiles in the sandbox, where only headers of the project are visible.
 /// @param object  written where the outcome is kBuilt
 BuiltSubmission build_submission(const Course& course, const std::string& id, const std::filesystem::path& source, const std::filesystem::path& object);
 
-/// The header that says what the module of an assignment is.
+/// The header of an assignment's module.
 std::filesystem::path module_header(const Course& course, const std::string& id);
 
 }  // namespace tumble::grading

@@ -32,7 +32,7 @@ Laws laws_around(const Course& course, const ModuleKind& kind, const AnyModule& 
   add_neighbours(false);
   modules::set_library_motion(laws);
   add_neighbours(true);
-  if (!needs(scene, kind.id)) laws.scheduling = {};   // a reference's, that nobody asked for
+  if (!needs(scene, kind.id)) laws.scheduling = {};   // the reference's scheduler, which the scene does not need
   if (module) modules::bind_laws(kind, module, source, laws);
   return laws;
 }
