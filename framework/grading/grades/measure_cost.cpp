@@ -26,7 +26,7 @@ using modules::AnyModule;
 using modules::ModuleKind;
 
 constexpr double kCoarsest = 1.0 / 8.0;   // s: the largest step
-constexpr int kRungs = 8;                 // halvings down to 1/1024 s
+constexpr int kResolutions = 8;                 // halvings down to 1/1024 s
 
 struct Measured {
   CostWay way;
@@ -63,7 +63,7 @@ std::vector<Measured> measure(const scene::Scene& scene, std::vector<CostWay> wa
   engines::CostOptions options;
   options.runs = 1;
   std::vector<double> steps;
-  for (int k = 0; k < kRungs; ++k) steps.push_back(kCoarsest * std::pow(0.5, k));
+  for (int k = 0; k < kResolutions; ++k) steps.push_back(kCoarsest * std::pow(0.5, k));
   std::vector<Measured> all;
   for (CostWay& way : ways) {
     Measured measured{std::move(way), {}, "", false};

@@ -40,9 +40,9 @@ void place(const SchedulerCurve& whose, report::Curve curve, report::Plot& plot)
 report::Plot plot_of_errors(const std::vector<SchedulerCurve>& curves) {
   report::Plot plot{"Error against work", {"integrations for each committed event", "-", report::Scale::kLog}, {"events of the reference not committed", "%"}, {}, {}, "At 0 % a scheduler is right; farther left is cheaper. Each mark is a run with another step, or another number of processes."};
   for (const SchedulerCurve& whose : curves)
-    for (const auto& [ladder, what] : {std::pair{&whose.by_step, "by step"}, std::pair{&whose.by_size, "by size"}}) {
+    for (const auto& [sequence, what] : {std::pair{&whose.by_step, "by step"}, std::pair{&whose.by_size, "by size"}}) {
       report::Curve curve{fmt::format("{}, {}", whose.name, what), {}, {}, true};
-      for (const SchedulerRun& run : *ladder) {
+      for (const SchedulerRun& run : *sequence) {
         if (run.committed == 0 || run.integrations == 0) continue;
         curve.x.push_back(run.per_event(run.integrations));
         curve.y.push_back(percent(run.error()));
@@ -53,13 +53,13 @@ report::Plot plot_of_errors(const std::vector<SchedulerCurve>& curves) {
 }
 
 /// Work per event over one sequence of runs, only of right runs.
-report::Plot plot_of_work(const std::vector<SchedulerCurve>& curves, std::vector<SchedulerRun> SchedulerCurve::* ladder, report::Axis across, const std::string& title, double (*x)(const SchedulerRun&), const std::string& caption) {
+report::Plot plot_of_work(const std::vector<SchedulerCurve>& curves, std::vector<SchedulerRun> SchedulerCurve::* sequence, report::Axis across, const std::string& title, double (*x)(const SchedulerRun&), const std::string& caption) {
   report::Plot plot{title, std::move(across), {"for each committed event", "-", report::Scale::kLog}, {}, {}, caption};
   for (const SchedulerCurve& whose : curves) {
     using Count = std::uint64_t SchedulerRun::*;
     for (const auto& [count, what] : {std::pair<Count, const char*>{&SchedulerRun::integrations, "integrations"}, {&SchedulerRun::undone, "undone"}, {&SchedulerRun::rollbacks, "rollbacks"}, {&SchedulerRun::checks, "checks of pairs"}}) {
       report::Curve curve{fmt::format("{}: {}", whose.name, what), {}, {}, true};
-      for (const SchedulerRun& run : whose.*ladder) {
+      for (const SchedulerRun& run : whose.*sequence) {
         if (!run.is_right() || run.integrations == 0) continue;
         curve.x.push_back(x(run));
         curve.y.push_back(run.per_event(run.*count));
@@ -70,14 +70,14 @@ report::Plot plot_of_work(const std::vector<SchedulerCurve>& curves, std::vector
   return plot;
 }
 
-bool has(const std::vector<SchedulerCurve>& curves, std::vector<SchedulerRun> SchedulerCurve::* ladder) {
-  return std::any_of(curves.begin(), curves.end(), [ladder](const SchedulerCurve& curve) { return (curve.*ladder).size() > 1; });
+bool has(const std::vector<SchedulerCurve>& curves, std::vector<SchedulerRun> SchedulerCurve::* sequence) {
+  return std::any_of(curves.begin(), curves.end(), [sequence](const SchedulerCurve& curve) { return (curve.*sequence).size() > 1; });
 }
 
 /// Runs one sequence; a hang or crash in the sandbox ends it.
-class Ladder {
+class RunSequence {
  public:
-  Ladder(const Course& course, const ModuleKind& kind) : course_(course), kind_(kind), reference_(reference_of(course, kind)) {}
+  RunSequence(const Course& course, const ModuleKind& kind) : course_(course), kind_(kind), reference_(reference_of(course, kind)) {}
   const AnyModule& reference() const { return reference_; }
 
   /// @param between  called before each run
@@ -141,8 +141,8 @@ report::Table scheduler_table(const std::vector<SchedulerCurve>& curves) {
   table.caption = "Every run, in counts that are the same on any machine.";
   table.columns = {{""}, {"processes", true}, {"step [s]", true}, {"committed", true}, {"integrations", true}, {"undone", true}, {"rollbacks", true}, {"anti-messages", true}, {"checks", true}, {"states", true}};
   for (const SchedulerCurve& curve : curves)
-    for (const auto* ladder : {&curve.by_step, &curve.by_size})
-      for (const SchedulerRun& run : *ladder) {
+    for (const auto* sequence : {&curve.by_step, &curve.by_size})
+      for (const SchedulerRun& run : *sequence) {
         std::vector<report::Cell> cells{{curve.is_reference ? "reference" : "yours"}, {std::to_string(run.processes)}, {fmt::format("{:.3g}", run.step_s)}, {fmt::format("{} of {}", run.committed, run.due), "", run.is_right() ? report::Look::kGood : report::Look::kBad}};
         for (const std::uint64_t count : {run.integrations, run.undone, run.rollbacks, run.anti_messages, run.checks, run.states_kept}) cells.push_back({std::to_string(count)});
         table.rows.push_back(std::move(cells));
@@ -157,8 +157,8 @@ std::string what_a_scheduler_pays() {
 
 CostSection measure_scheduler(const Course& course, const ModuleKind& kind, const fs::path& submission, const CostSectionOptions& options) {
   if (!kind.note<engines::CostShowcase>().is_graded) return {};
-  const Ladder ladder(course, kind);
-  if (!ladder.reference()) return {};   // nor laws for the impulses
+  const RunSequence sequence(course, kind);
+  if (!sequence.reference()) return {};   // nor laws for the impulses
   WorkerOptions worker;
   worker.id = kind.id;
   worker.module = submission;
@@ -168,10 +168,10 @@ CostSection measure_scheduler(const Course& course, const ModuleKind& kind, cons
   call_log() = CallLog{};
   WorkerConnection connection(worker);
   std::vector<SchedulerCurve> curves{{"your scheduler", false, {}, {}}};
-  ladder.run(kind.make_proxy(connection), "submission", [&] { connection.reset(); }, curves[0]);   // each run has its own worker and time limit
+  sequence.run(kind.make_proxy(connection), "submission", [&] { connection.reset(); }, curves[0]);   // each run has its own worker and time limit
   call_log() = CallLog{};
   curves.push_back({"reference", true, {}, {}});
-  ladder.run(ladder.reference(), "reference", [] {}, curves[1]);
+  sequence.run(sequence.reference(), "reference", [] {}, curves[1]);
   CostSection section;
   section.scene = scene::load_scene(course.root / "assignments" / kind.folder / "scenes" / (kind.note<engines::CostShowcase>().scene + ".json")).title;
   section.truth = what_a_scheduler_pays();
