@@ -83,5 +83,36 @@ TEST_F(GradingOfTimewarp, AnAuditCatchesASlipByNameAndAccusesNobodyElse) {
   EXPECT_GE(right, 2);   // the reference, and one that goes about it otherwise
 }
 
+// The first slip by name, with the first line of a block that `mark` begins written anew: its text, and the number of that line.
+std::pair<std::string, int> spoilt_slip(char mark, const std::string& line) {
+  std::vector<fs::path> slips;
+  for (const auto& entry : fs::directory_iterator(kSolutions / "mutants"))
+    if (entry.path().extension() == ".slip") slips.push_back(entry.path());
+  std::ifstream in(*std::min_element(slips.begin(), slips.end()));
+  std::string text;
+  int number = 0, spoilt = 0;
+  for (std::string read; std::getline(in, read);) {
+    ++number;
+    if (spoilt == 0 && number > 3 && read.starts_with(mark)) spoilt = number;
+    text += (spoilt == number ? mark + line : read) + '\n';
+  }
+  return {text, spoilt};
+}
+
+// A slip that does not compile, and one that its base has left behind, are told at their own lines.
+TEST_F(GradingOfTimewarp, AnAuditTellsWhichLineOfASlipIsAmiss) {
+  const auto [broken, at] = spoilt_slip('+', "  undeclared;");
+  write_whole(root / "wrong/s.slip", broken);
+  const ProgramOutcome refused = type({"audit", "a4", "--mutants", (root / "wrong").string(), "--only", "s"});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_NE(refused.printed.find("does not compile: s.slip:" + std::to_string(at) + ":3: error: "), std::string::npos) << refused.printed;
+
+  const auto [stale, gone] = spoilt_slip('-', "  what the base does not hold;");
+  write_whole(root / "wrong/s.slip", stale);
+  const ProgramOutcome left_behind = type({"audit", "a4", "--mutants", (root / "wrong").string(), "--only", "s"});
+  EXPECT_EQ(left_behind.code, 2);
+  EXPECT_NE(left_behind.printed.find("s.slip:" + std::to_string(gone) + ": this line stands nowhere in "), std::string::npos) << left_behind.printed;
+}
+
 }  // namespace
 }  // namespace tumble::grading

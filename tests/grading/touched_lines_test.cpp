@@ -53,9 +53,9 @@ class TouchedLinesOfReference : public ::testing::Test {
   TouchedLinesOfReference() {
     register_assignments(registry);
     write("a1_impulse.cpp", "int one() {\n  return 1;\n}\nint two() {\n  return 2;\n}\n");
-    write("alternatives/other.cpp", "int one() {\n  return 2 - 1;\n}\n");
+    write("alternatives/other.cpp", "int one() {\n  return 1;\n}\nint two() {\n  return 3 - 1;\n}\n");
     slip("first", "reference", "-  return 1;\n+  return 0;\n");
-    slip("second", "other", "-  return 2 - 1;\n+  return 2 + 1;\n");
+    slip("second", "other", "-  return 3 - 1;\n+  return 3 + 1;\n");
     slip("third", "reference", " int two() {\n+  if (one() == 0) return 0;\n");
   }
   void write(const std::string& file, const std::string& text) const { write_whole(folder.path() / "solutions_private/a1_impulse" / file, text); }
@@ -89,7 +89,7 @@ TEST_F(TouchedLinesOfReference, EverySlipThatNoLongerFitsIsNamed) {
     EXPECT_NE(said.find("third.slip:5: "), std::string::npos) << said;
     EXPECT_EQ(said.find("second.slip"), std::string::npos) << said;
   }
-  EXPECT_EQ(sources_of(only(all, {"second"})).front().text, "int one() {\n  return 2 + 1;\n}\n");
+  EXPECT_EQ(sources_of(only(all, {"second"})).front().text, "int one() {\n  return 1;\n}\nint two() {\n  return 3 + 1;\n}\n");
 }
 
 }  // namespace
