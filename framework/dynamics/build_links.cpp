@@ -29,7 +29,6 @@ class LinkBuilder {
       refuse_immovable(world_.rods.back().a, world_.rods.back().b, who);
     }
     for (const scene::JointSpec& spec : scene_.joints) world_.joints.push_back(joint(spec));
-    for (const scene::DragSpec& spec : scene_.drags) world_.drags.push_back({body(spec.body, "drag"), spec.linear_n_s_m, spec.angular_n_m_s});
     for (const scene::MotorSpec& spec : scene_.motors) world_.motors.push_back({joint_index(spec.joint), spec});
     world_.contact = scene_.contact;
     if (!world_.rods.empty() || !world_.joints.empty()) world_.stabilisation = scene_.stabilisation.value_or(scene::StabilisationSpec{});

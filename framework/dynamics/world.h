@@ -30,14 +30,6 @@ struct WorldBody {
   bool immovable() const { return inertia.inverse_mass == 0.0; }
 };
 
-/// A constant force on a point fixed in a body, for a while.
-struct PointForce {
-  int body;
-  Vector3d force_world;      // [N]
-  Vector3d point_world;      // where the point is at `start` [m]
-  double start, end;         // [s]
-};
-
 /// A point fixed in a body, or in the world.
 struct Anchor {
   int body;                  // -1: the world
@@ -64,12 +56,6 @@ struct JointLink {
   Quaterniond a_from_joint, b_from_joint;   // frame fixed in each body (b: in the world for body -1); a hinge turns about its z
 };
 
-struct Drag {
-  int body;
-  double linear;             // [N s/m]
-  double angular;            // [N m s]
-};
-
 /// A control law in a hinge (scene::MotorSpec).
 struct Motor {
   int joint;                 // index into World::joints
@@ -78,12 +64,11 @@ struct Motor {
 
 struct World {
   std::vector<WorldBody> bodies;
+  TypedLists effects;                             // what acts on them: lists of the types in framework/effects/NAME/NAME.h, such as effects.of<Drag>()
   std::optional<Vector3d> gravity_world;          // [m/s^2]
-  std::vector<PointForce> point_forces;           // in the scene's order
   std::vector<SpringLink> springs;
   std::vector<RodLink> rods;
   std::vector<JointLink> joints;
-  std::vector<Drag> drags;
   std::vector<Motor> motors;
   std::optional<scene::ContactSpec> contact;      // lasting contact; absent where the scene does not ask for it
   std::optional<scene::StabilisationSpec> stabilisation;

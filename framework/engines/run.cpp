@@ -9,14 +9,15 @@
 
 #include "framework/core/error.h"
 #include "framework/core/nearest_word.h"
-#include "framework/dynamics/build_world.h"
 #include "framework/dynamics/world.h"
+#include "framework/effects/build_world.h"
+#include "framework/effects/registry.h"
+#include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/run_counters.h"
 #include "framework/engines/events/advancement.h"
 #include "framework/engines/events/ordered.h"
-#include "framework/engines/base/guarded_laws.h"
-#include "framework/engines/stepping/local_origin.h"
 #include "framework/engines/rd/retroactive.h"
-#include "framework/engines/base/run_counters.h"
+#include "framework/engines/stepping/local_origin.h"
 #include "framework/engines/stepping/start_overlaps.h"
 #include "framework/engines/stepping/start_watch.h"
 #include "framework/engines/timewarp/taught_timewarp.h"
@@ -39,7 +40,9 @@ void check_laws(const scene::Scene& scene, const Laws& laws) {
   need(laws.integrate_step, scene, "a step of integration", "a2 (or the framework's library laws)");
   need(laws.state_derivative, scene, "the derivative of a rigid body's state", "a2 (or the framework's library laws)");
   need(laws.renormalize, scene, "the renormalisation of quaternions", "a2 (or the framework's library laws)");
-  if (!scene.point_forces.empty()) need(laws.wrench_of_point_force, scene, "the force and torque of a point force", "a1");
+  for (const effects::Effect* effect : effects::all())
+    if (effect->is_asked(scene))
+      for (const effects::NeededLaw& law : effect->needed_laws(scene, laws)) need(law.is_there, scene, law.what.c_str(), law.assignment.c_str());
   if (!scene.springs.empty()) need(laws.spring_force, scene, "the force of a spring", "a3");
   if (!scene.rods.empty()) need(laws.rod_row, scene, "the constraint of a rod", "a3");
   if (!scene.rods.empty() || !scene.joints.empty()) {

@@ -141,21 +141,21 @@ void Stage::add_impacts(const Frame& frame, Drawing& drawing) const {
 // A force is an arrow that pushes: its head at the point, which moves with the body.
 void Stage::add_forces(const Frame& frame, Moment& moment) const {
   double strongest = 0.0;
-  for (const auto& force : scene_.point_forces) strongest = std::max(strongest, force.force_n.norm());
+  for (const effects::DrawnArrow& force : drawables_.arrows) strongest = std::max(strongest, force.force_world.norm());
   Batch arrows{kArrow, Pass::kMark, {}};
-  for (const auto& force : scene_.point_forces) {
+  for (const effects::DrawnArrow& force : drawables_.arrows) {
     const double end = force.start_s + force.duration_s + kForceLinger * options_.speed;
-    if (frame.time < force.start_s - 1e-9 || frame.time > end || !(force.force_n.norm() > 0.0)) continue;
+    if (frame.time < force.start_s - 1e-9 || frame.time > end || !(force.force_world.norm() > 0.0)) continue;
     const auto body = std::find_if(scene_.bodies.begin(), scene_.bodies.end(), [&](const auto& spec) { return spec.name == force.body; });
     if (body == scene_.bodies.end()) continue;
     const auto index = static_cast<std::size_t>(body - scene_.bodies.begin());
     const BodyPose& then = run_.frames[frame_at(force.start_s)].poses[index];
     const BodyPose& now = frame.poses[index];
-    const Vector3d tip = now.com_world + now.world_from_body * (then.world_from_body.conjugate() * (force.point_m - then.com_world));
-    const double length = 0.17 * sight_m() * std::sqrt(force.force_n.norm() / strongest);
-    const Vector3d tail = tip - length * force.force_n.normalized();
+    const Vector3d tip = now.com_world + now.world_from_body * (then.world_from_body.conjugate() * (force.point_world - then.com_world));
+    const double length = 0.17 * sight_m() * std::sqrt(force.force_world.norm() / strongest);
+    const Vector3d tail = tip - length * force.force_world.normalized();
     arrows.instances.push_back(laid_between(tail, tip, length, kForceColor));
-    moment.labels.push_back({tail, fmt::format("{:.3g} N", force.force_n.norm()), 0.0});
+    moment.labels.push_back({tail, fmt::format("{:.3g} N", force.force_world.norm()), 0.0});
   }
   if (!arrows.instances.empty()) moment.drawing.batches.push_back(std::move(arrows));
 }

@@ -52,6 +52,7 @@ Stage::Stage(const scene::Scene& scene, const Trajectory& run, const PictureOpti
     if (event.kind == EventKind::kCollision) strongest_impulse_ = std::max(strongest_impulse_, event.impulse);
   std::vector<double> radii;
   for (const Actor& actor : actors_) radii.push_back(actor.radius_m);
+  drawables_ = effects::drawn(scene);
   links_ = SceneLinks(scene, run.frames.front(), sight_m(), radii);
   find_extent();
   lay_ground();

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/effects/registry.h"
 #include "framework/geometry/shape.h"
 #include "framework/render/drawing.h"
 #include "framework/render/links.h"
@@ -78,6 +79,7 @@ class Stage {
   std::vector<TriangleMesh> meshes_;        // of geometries_ from kFirstMesh on, to find models used twice
   std::vector<Actor> actors_;               // by body index
   SceneLinks links_;
+  effects::Drawables drawables_;
   Eigen::AlignedBox3d extent_;              // of everything finite, over the run
   Ground ground_;
   int floor_ = -1;                          // body whose plane the ground is

@@ -4,6 +4,8 @@
 #include <deque>
 #include <map>
 
+#include "framework/effects/registry.h"
+
 namespace tumble::report {
 namespace {
 
@@ -83,8 +85,8 @@ void add_links(const scene::Scene& scene, const Anchors& anchors, Json& page) {
     if (is_hinge) entry["b"] = anchors.fixed(joint.body_a, joint.point_m + joint.axis.normalized());
     page["joints"].push_back(std::move(entry));
   }
-  for (const auto& force : scene.point_forces)
-    page["forces"].push_back({{"body", anchors.body(force.body)}, {"force", triple(force.force_n)}, {"point", triple(force.point_m)},
+  for (const effects::DrawnArrow& force : effects::drawn(scene).arrows)
+    page["forces"].push_back({{"body", anchors.body(force.body)}, {"force", triple(force.force_world)}, {"point", triple(force.point_world)},
                               {"start", force.start_s}, {"duration", force.duration_s}});
 }
 

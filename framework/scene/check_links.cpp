@@ -24,9 +24,7 @@ std::string ending(const AnchorSpec& anchor) { return anchor.body.empty() ? "the
 
 class LinkChecker {
  public:
-  LinkChecker(const Scene& scene, const Refuse& refuse) : scene_(scene), refuse_(refuse) {
-    for (const BodySpec& body : scene.bodies) bodies_.emplace(body.name, &body);
-  }
+  LinkChecker(const Scene& scene, const Refuse& refuse) : scene_(scene), refuse_(refuse), bodies_(scene) {}
 
   void check() {
     for (const SpringSpec& spring : scene_.springs) {
@@ -40,13 +38,12 @@ class LinkChecker {
     }
     for (const JointSpec& joint : scene_.joints) check_joint(joint);
     for (const MotorSpec& motor : scene_.motors) check_motor(motor);
-    for (const DragSpec& drag : scene_.drags) check_drag(drag);
     check_friction();
   }
 
  private:
-  const BodySpec* body(const std::string& name) const { return name.empty() ? nullptr : bodies_.at(name); }
-  bool can_move(const std::string& name) const { return !name.empty() && !body(name)->immovable; }
+  const BodySpec* body(const std::string& name) const { return bodies_.find(name); }
+  bool can_move(const std::string& name) const { return bodies_.can_move(name); }
   Vector3d place(const AnchorSpec& anchor) const {
     const BodySpec* of = body(anchor.body);
     return of == nullptr ? anchor.point_m : Vector3d(of->position_m + of->world_from_body * anchor.point_m);
@@ -98,11 +95,6 @@ class LinkChecker {
     if (motor.stiffness_n_m_rad == 0.0 && motor.damping_n_m_s_rad == 0.0) refuse_(motor.pointer, "the motor has neither stiffness_n_m_rad nor damping_n_m_s_rad: it would do nothing", "Give one of the two.");
   }
 
-  void check_drag(const DragSpec& drag) const {
-    if (!can_move(drag.body)) refuse_(drag.pointer + "/body", "body '" + drag.body + "' is immovable: nothing slows it", "Name a movable body.");
-    if (drag.linear_n_s_m == 0.0 && drag.angular_n_m_s == 0.0) refuse_(drag.pointer, "the drag has neither linear_n_s_m nor angular_n_m_s: it would do nothing", "Give one of the two.");
-  }
-
   void check_friction() const {
     for (const BodySpec& body : scene_.bodies)
       if (body.friction > 0.0 && !scene_.contact)
@@ -111,7 +103,7 @@ class LinkChecker {
 
   const Scene& scene_;
   const Refuse& refuse_;
-  std::map<std::string, const BodySpec*> bodies_;
+  BodiesByName bodies_;
   std::map<std::string, std::string> names_;
 };
 

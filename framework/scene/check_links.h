@@ -1,4 +1,4 @@
-/// What a schema cannot say about springs, rods, joints, drag, motors and contact: what is impossible or would do nothing.
+/// What a schema cannot say about springs, rods, joints, motors and contact: what is impossible or would do nothing.
 #pragma once
 
 #include "framework/scene/names.h"

@@ -6,6 +6,7 @@
 #include "framework/scene/anchors.h"
 #include "framework/scene/check_checks.h"
 #include "framework/scene/check_links.h"
+#include "framework/scene/words.h"
 
 namespace tumble::scene {
 namespace {
@@ -66,14 +67,8 @@ void check_scene(const Scene& scene, const Refuse& refuse) {
   if (scene.bodies.empty()) refuse("/bodies", "the scene has no body", "Add one, here or under \"repeat\".");
   if (scene.step_s > scene.duration_s) refuse("/step_s", "the step is longer than the whole run", "Give a shorter step_s or a longer duration_s.");
   const Names names = names_of_bodies(scene);
-  for (std::size_t i = 0; i < scene.point_forces.size(); ++i) {
-    const PointForceSpec& force = scene.point_forces[i];
-    const std::string pointer = "/point_forces/" + std::to_string(i) + "/body";
-    names.expect(force.body, pointer, refuse);
-    const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(), [&](const BodySpec& b) { return b.name == force.body; });
-    if (body != scene.bodies.end() && body->immovable) refuse(pointer, "body '" + force.body + "' is immovable: no force moves it", "Name a movable body.");
-  }
   check_ellipsoids(scene, refuse);
+  for (const Words* words : all_words()) words->check(scene, refuse);
   check_links(scene, refuse);
   if ((scene.camera.eye_m - scene.camera.target_m).norm() == 0.0) refuse("/camera/target_m", "the camera stands where it looks", "Move eye_m or target_m.");
   if (scene.camera.follow) names.expect(*scene.camera.follow, "/camera/follow", refuse);

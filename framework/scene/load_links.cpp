@@ -65,15 +65,6 @@ MotorSpec motor(const json& value, const std::string& pointer) {
   return spec;
 }
 
-DragSpec drag(const json& value, Anchors& anchors, const std::string& pointer) {
-  DragSpec spec;
-  spec.pointer = pointer;
-  spec.body = anchors.expect_body(value.at("body"), pointer + "/body").name;
-  read(value, "linear_n_s_m", spec.linear_n_s_m);
-  read(value, "angular_n_m_s", spec.angular_n_m_s);
-  return spec;
-}
-
 void read_contact(const json& root, Scene& scene) {
   if (!root.contains("contact")) return;
   const json& value = root.at("contact");
@@ -113,7 +104,6 @@ void read_links(const Document& document, Anchors& anchors, Scene& scene) {
   each(root, "springs", [&](const json& value, Text at, Text n) { scene.springs.push_back(spring(value, anchors, at, "spring " + n)); });
   each(root, "rods", [&](const json& value, Text at, Text n) { scene.rods.push_back(rod(value, anchors, at, "rod " + n)); });
   each(root, "joints", [&](const json& value, Text at, Text n) { scene.joints.push_back(joint(value, document, anchors, at, "joint " + n)); });
-  each(root, "drag", [&](const json& value, Text at, Text) { scene.drags.push_back(drag(value, anchors, at)); });
   each(root, "motors", [&](const json& value, Text at, Text) { scene.motors.push_back(motor(value, at)); });
   each(root, "apart", [&](const json& value, Text at, Text) {
     const std::string a = anchors.expect_body(value.at(0), at + "/0").name, b = anchors.expect_body(value.at(1), at + "/1").name;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "framework/core/math.h"
+#include "framework/core/typed_lists.h"
 
 namespace tumble::scene {
 
@@ -60,16 +61,6 @@ struct BodySpec {
   std::string pointer{};                           // JSON pointer of its entry, for messages; empty: made in memory
 };
 
-/// A force on a point of a body for a while (what a user's click makes). The point is fixed in the body.
-struct PointForceSpec {
-  std::string body;
-  Vector3d force_n;                 // world frame, constant
-  Vector3d point_m;                 // world position of the point at start_s
-  double start_s = 0.0;
-  double duration_s = 0.0;
-  std::string pointer{};            // JSON pointer of the entry that asked for it, for messages; empty: made in memory
-};
-
 /// A point fixed in a body or, with an empty name, in the world. Of a body it may be given as a vertex of its model.
 struct AnchorSpec {
   std::string body;                 // "": the world
@@ -103,14 +94,6 @@ struct JointSpec {
   std::string body_a, body_b;       // body_b "": the world
   Vector3d point_m = Vector3d::Zero();   // world, at the start
   Vector3d axis = Vector3d::UnitZ();     // unit, world, at the start; of a hinge
-  std::string pointer{};            // JSON pointer of the entry that asked for it, for messages; empty: made in memory
-};
-
-/// Resistance of a medium at low speed: force -linear v, torque -angular omega.
-struct DragSpec {
-  std::string body;
-  double linear_n_s_m = 0.0;
-  double angular_n_m_s = 0.0;
   std::string pointer{};            // JSON pointer of the entry that asked for it, for messages; empty: made in memory
 };
 
@@ -176,11 +159,10 @@ struct Scene {
   double rest_speed_m_s = 1e-3;     // an impact that separates more slowly than this ends in rest
   std::optional<Vector3d> gravity_m_s2;
   std::vector<BodySpec> bodies;
-  std::vector<PointForceSpec> point_forces;
+  TypedLists effects;               // what it says of effects: lists of the types in framework/effects/NAME/NAME.h, such as effects.of<DragSpec>()
   std::vector<SpringSpec> springs;
   std::vector<RodSpec> rods;
   std::vector<JointSpec> joints;
-  std::vector<DragSpec> drags;
   std::vector<MotorSpec> motors;
   std::optional<ContactSpec> contact;     // absent: bodies bounce until they rest, nothing lies, slides or rolls
   std::optional<StabilisationSpec> stabilisation;   // present exactly where there are rods or joints

@@ -1,7 +1,8 @@
 // A world is what its scene asks for, and nothing else.
-#include "framework/dynamics/build_world.h"
-#include "framework/dynamics/invariants.h"
 #include "framework/dynamics/world.h"
+#include "framework/effects/build_world.h"
+#include "framework/effects/drag/drag.h"
+#include "framework/effects/invariants.h"
 
 #include <cmath>
 #include <numbers>
@@ -10,6 +11,7 @@
 
 #include "framework/core/error.h"
 #include "framework/dynamics/anchors.h"
+#include "framework/effects/point_force/point_force.h"
 #include "tests/dynamics/tops.h"
 
 namespace tumble::testing {
@@ -34,7 +36,7 @@ scene::Scene scene_of(std::vector<scene::BodySpec> bodies) {
 TEST(World, HasNoEffectThatTheSceneDoesNotAskFor) {
   const World world = build_world(scene_of({ball("a", 2.0)}));
   EXPECT_FALSE(world.gravity_world.has_value());
-  EXPECT_TRUE(world.point_forces.empty());
+  EXPECT_TRUE(world.effects.of<effects::PointForce>().empty());
 }
 
 TEST(World, StartsWithTheMomentaOfTheVelocitiesGiven) {
@@ -61,7 +63,7 @@ TEST(World, RefusesWhatCannotBe) {
   plane.inertia_body_kg_m2 = Matrix3d::Identity();
   EXPECT_THROW(build_world(scene_of({plane})), UserError);
   scene::Scene pushed = scene_of({ball("a", 1.0)});
-  pushed.point_forces = {{.body = "b", .force_n = {1, 0, 0}, .point_m = {0, 0, 0}, .start_s = 0, .duration_s = 1}};
+  pushed.effects.of<effects::PointForceSpec>() = {{.body = "b", .force_n = {1, 0, 0}, .point_m = {0, 0, 0}, .start_s = 0, .duration_s = 1}};
   EXPECT_THROW(build_world(pushed), UserError);
 }
 
@@ -112,7 +114,7 @@ TEST(World, SumsInvariantsOverMovableBodiesAboutTheOrigin) {
 
 TEST(World, HasNoLinksThatTheSceneDoesNotAskFor) {
   const World world = build_world(scene_of({ball("a", 2.0), ball("b", 2.0)}));
-  EXPECT_TRUE(world.springs.empty() && world.rods.empty() && world.joints.empty() && world.drags.empty() && world.motors.empty() && world.apart.empty());
+  EXPECT_TRUE(world.springs.empty() && world.rods.empty() && world.joints.empty() && world.effects.of<effects::Drag>().empty() && world.motors.empty() && world.apart.empty());
   EXPECT_FALSE(world.contact.has_value());
   EXPECT_FALSE(world.stabilisation.has_value());
 }

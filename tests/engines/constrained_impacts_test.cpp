@@ -8,10 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/random.h"
-#include "framework/dynamics/build_world.h"
-#include "framework/engines/judging/judge.h"
+#include "framework/effects/build_world.h"
 #include "framework/engines/contact/meetings.h"
 #include "framework/engines/contact/sequential_impacts.h"
+#include "framework/engines/judging/judge.h"
 #include "tests/engines/event_scenes.h"
 #include "tests/engines/reference_laws.h"
 

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "framework/effects/drag/drag.h"
+#include "framework/effects/point_force/point_force.h"
 #include "tests/engines/scenes.h"
 
 namespace tumble::testing {
@@ -54,7 +56,7 @@ inline const std::map<std::string, AddsEffect> kEffects = {
        s.joints.push_back({"j", scene::JointKind::kHinge, "b", "", {1, 0, 2}, Vector3d::UnitY()});
        s.stabilisation.emplace();
      }},
-    {"drag", [](scene::Scene& s) { s.drags.push_back({"a", 0.1, 0.1}); }},
+    {"drag", [](scene::Scene& s) { s.effects.of<effects::DragSpec>().push_back({"a", 0.1, 0.1}); }},
     {"motor",
      [](scene::Scene& s) {
        kEffects.at("joint")(s);
@@ -75,7 +77,7 @@ inline const std::map<std::string, AddsEffect> kEffects = {
        kEffects.at("contact")(s);
        for (scene::BodySpec& body : s.bodies) body.friction = 0.5;
      }},
-    {"point force", [](scene::Scene& s) { s.point_forces.push_back({"a", {1, 0, 0}, {0, 0, 1}, 0.0, 0.1}); }},
+    {"point force", [](scene::Scene& s) { s.effects.of<effects::PointForceSpec>().push_back({"a", {1, 0, 0}, {0, 0, 1}, 0.0, 0.1}); }},
     {"collision",
      [](scene::Scene& s) {
        s.bodies[0].velocity_m_s = {5, 0, 0};

@@ -1,6 +1,8 @@
 /// Scenes of bodies that links and lasting contacts hold together, among others that fly.
 #pragma once
 
+#include "framework/effects/drag/drag.h"
+#include "framework/effects/point_force/point_force.h"
 #include "framework/scene/load_scene.h"
 #include "tests/engines/event_scenes.h"
 
@@ -26,8 +28,8 @@ inline scene::Scene pendula_and_balls(int pendula, double duration) {
   scene.duration_s = duration;
   scene.gravity_m_s2 = kEarth;
   scene.stabilisation = scene::StabilisationSpec{};
-  scene.drags.push_back({"bob0", 0.2, 0.0});
-  scene.point_forces.push_back({"ball0", {0.5, 0, 1.0}, {0.05, 0.35, 0.38}, 0.1, 0.3});
+  scene.effects.of<effects::DragSpec>().push_back({"bob0", 0.2, 0.0});
+  scene.effects.of<effects::PointForceSpec>().push_back({"ball0", {0.5, 0, 1.0}, {0.05, 0.35, 0.38}, 0.1, 0.3});
   return scene;
 }
 

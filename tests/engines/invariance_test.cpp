@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/effects/point_force/point_force.h"
 #include "tests/engines/scenes.h"
 #include "tests/support/story.h"
 
@@ -87,7 +88,7 @@ scene::Scene far_meeting(const Vector3d& shift) {
     for (double& x : body.position_m) x = std::round(std::ldexp(x, 30)) / std::ldexp(1.0, 30);
     body.position_m += shift;
   }
-  scene.point_forces = {{"ball", {0.1, 0, 0.05}, scene.bodies[2].position_m, 0.25, 0.5}};
+  scene.effects.of<effects::PointForceSpec>() = {{"ball", {0.1, 0, 0.05}, scene.bodies[2].position_m, 0.25, 0.5}};
   return scene;
 }
 

@@ -6,9 +6,11 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/random.h"
-#include "framework/dynamics/build_world.h"
-#include "framework/engines/judging/judge.h"
+#include "framework/effects/build_world.h"
+#include "framework/effects/drag/drag.h"
+#include "framework/effects/point_force/point_force.h"
 #include "framework/engines/base/run_watch.h"
+#include "framework/engines/judging/judge.h"
 #include "framework/engines/stepping/stability.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/scene/load_scene.h"
@@ -163,7 +165,7 @@ TEST(RunWatch, WhatAForceBringsInIsNoFault) {
   spring.stiffness_n_m = 100.0;
   spring.rest_length_m = 0.5;
   scene.springs.push_back(spring);
-  scene.point_forces.push_back({"ball", {50, 0, 0}, {1, 0, 0}, 0.0, 0.5});
+  scene.effects.of<effects::PointForceSpec>().push_back({"ball", {50, 0, 0}, {1, 0, 0}, 0.0, 0.5});
   scene.step_s = 0.01;
   EXPECT_FALSE(has_fault(run_by("rd", scene), "energy_rises"));
   Laws laws = reference_laws();
@@ -174,7 +176,7 @@ TEST(RunWatch, WhatAForceBringsInIsNoFault) {
     const VectorXd next = right.integrate_step(f, t, y, h);
     return t == 0.0 ? VectorXd(next + 2.0 * (next - y)) : next;
   };
-  scene.point_forces.clear();
+  scene.effects.of<effects::PointForceSpec>().clear();
   EXPECT_TRUE(has_fault(run_by("rd", scene, laws), "energy_rises"));
 }
 
@@ -258,7 +260,7 @@ scene::Scene touching_boxes(unsigned seed) {
   for (double& velocity : scene.bodies.back().velocity_m_s) velocity = random.between(-0.5, 0.3);
   scene.contact.emplace();
   scene.contact->plastic_impacts = scene::PlasticImpacts::kInStep;
-  scene.drags.push_back({scene.bodies[1].name, random.between(0.0, 0.2), 0.0});
+  scene.effects.of<effects::DragSpec>().push_back({scene.bodies[1].name, random.between(0.0, 0.2), 0.0});
   scene.step_s = seed % 3 == 0 ? 1.0 / 1000 : 1.0 / 60;
   return scene;
 }

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/effects/point_force/point_force.h"
 #include "tests/engines/reference_laws.h"
 
 namespace tumble::testing {
@@ -157,7 +158,7 @@ TEST(Sleeping, WhatTrulySlidesIsAwakeHoweverSlow) {
 
 TEST(Sleeping, AForceThatIsSwitchedOnWakes) {
   scene::Scene scene = block_on_floor(4.0);
-  scene.point_forces.push_back({"box 0", {8, 0, 0}, {-0.5, 0, 0.5}, 1.5, 1.0});
+  scene.effects.of<effects::PointForceSpec>().push_back({"box 0", {8, 0, 0}, {-0.5, 0, 0.5}, 1.5, 1.0});
   const Trajectory result = run_it(scene);
   ASSERT_EQ(times_of(result, EventKind::kWake, 0).size(), 1u);
   EXPECT_EQ(times_of(result, EventKind::kWake, 0).front(), 1.5);
@@ -172,7 +173,7 @@ TEST(Sleeping, AForceThatIsSwitchedOffWakes) {
   scene::Scene scene = creeping_block(0.0, 0.0);
   const double angle = 0.4;
   const Vector3d up(-std::cos(angle), 0, std::sin(angle));
-  scene.point_forces.push_back({"block", kG * std::sin(angle) * up, scene.bodies[0].position_m, 0.0, 2.0});
+  scene.effects.of<effects::PointForceSpec>().push_back({"block", kG * std::sin(angle) * up, scene.bodies[0].position_m, 0.0, 2.0});
   const Trajectory result = run_it(scene);
   EXPECT_TRUE(falls_asleep(result, 0));
   EXPECT_EQ(times_of(result, EventKind::kWake, 0), std::vector<double>{2.0});

@@ -5,8 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
-#include "framework/dynamics/build_world.h"
 #include "framework/dynamics/methods.h"
+#include "framework/effects/build_world.h"
+#include "framework/effects/drag/drag.h"
 #include "framework/engines/stepping/stability.h"
 #include "framework/engines/truths/memory_scene.h"
 #include "tests/engines/reference_laws.h"
@@ -51,7 +52,7 @@ scene::Scene dragged(double linear, double angular) {
   body.inertia_body_kg_m2 = Vector3d(1, 2, 3).asDiagonal();
   body.omega_world_rad_s = {0.1, 0, 0};
   scene::Scene scene = scene_of({body}, 1.0);
-  scene.drags.push_back({"spoon", linear, angular});
+  scene.effects.of<effects::DragSpec>().push_back({"spoon", linear, angular});
   return scene;
 }
 
@@ -89,7 +90,7 @@ TEST(LargestStep, OfATurningThatAJointHoldsIsNone) {
   bar.collides = false;
   scene::Scene scene = scene_of({bar}, 1.0, Vector3d(0, 0, -9.81));
   scene.joints.push_back({"pin", scene::JointKind::kHinge, "bar", "", Vector3d::Zero(), Vector3d::UnitY()});
-  scene.drags.push_back({"bar", 0.0, 0.05});
+  scene.effects.of<effects::DragSpec>().push_back({"bar", 0.0, 0.05});
   EXPECT_EQ(answer(scene, reference_laws(), 1.0 / 120), "");
   scene.joints.clear();
   EXPECT_TRUE(holds(answer(scene, reference_laws(), 1.0 / 120), "refused"));

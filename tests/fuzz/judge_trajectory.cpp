@@ -7,8 +7,9 @@
 #include <fmt/format.h>
 
 #include "framework/collision/gap.h"
-#include "framework/dynamics/build_world.h"
 #include "framework/dynamics/world.h"
+#include "framework/effects/build_world.h"
+#include "framework/effects/point_force/point_force.h"
 
 namespace tumble::fuzz {
 namespace {
@@ -99,7 +100,7 @@ Energy energy_of(const Judge& judge, const Frame& frame) {
 /// What constant forces have done from one frame to the next: force times the way of their point. Forces switch at frames.
 double work_of_point_forces(const Judge& judge, const Frame& from, const Frame& to) {
   double work = 0.0;
-  for (const PointForce& force : judge.world.point_forces) {
+  for (const effects::PointForce& force : judge.world.effects.of<effects::PointForce>()) {
     if (!(to.time <= force.end + 1e-9 && from.time >= force.start - 1e-9)) continue;
     const BodyPose &start = judge.pose(judge.run.frames.front(), force.body), &a = judge.pose(from, force.body), &b = judge.pose(to, force.body);
     const Vector3d point_body = start.world_from_body.conjugate() * (force.point_world - start.com_world);   // all begin at 0

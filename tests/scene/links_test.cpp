@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
+#include "framework/effects/drag/drag.h"
 #include "framework/scene/load_scene.h"
 
 namespace tumble::scene {
@@ -23,7 +24,7 @@ constexpr double kRounding = 50 * 2.3e-16;
 
 TEST(Links, ASceneThatNamesNoneHasNone) {
   const Scene scene = scene_with(R"("step_s": 0.01)");
-  EXPECT_TRUE(scene.springs.empty() && scene.rods.empty() && scene.joints.empty() && scene.drags.empty() && scene.motors.empty() && scene.apart.empty());
+  EXPECT_TRUE(scene.springs.empty() && scene.rods.empty() && scene.joints.empty() && scene.effects.of<effects::DragSpec>().empty() && scene.motors.empty() && scene.apart.empty());
   EXPECT_FALSE(scene.contact.has_value());
   EXPECT_FALSE(scene.stabilisation.has_value());
 }
@@ -82,8 +83,8 @@ TEST(Links, DragMotorsContactFrictionAndPairsApartAreRead) {
     "joints": [{ "name": "shoulder", "kind": "hinge", "body_a": "box", "body_b": "ball", "point_m": [1, 0, 5], "axis": [0, 0, 1] }],
     "motors": [{ "joint": "shoulder", "amplitude_rad": 0.5, "frequency_hz": 2, "stiffness_n_m_rad": 10, "damping_n_m_s_rad": 1, "largest_torque_n_m": 3, "period_s": 0.002 }],
     "contact": { "impact_law": "simultaneous", "plastic_impacts": "in_step", "sleep": true }, "apart": [["ball", "box"]])");
-  EXPECT_EQ(scene.drags[0].linear_n_s_m, 0.5);
-  EXPECT_EQ(scene.drags[0].angular_n_m_s, 0.0);
+  EXPECT_EQ(scene.effects.of<effects::DragSpec>()[0].linear_n_s_m, 0.5);
+  EXPECT_EQ(scene.effects.of<effects::DragSpec>()[0].angular_n_m_s, 0.0);
   EXPECT_EQ(scene.motors[0].joint, "shoulder");
   EXPECT_EQ(scene.motors[0].largest_torque_n_m, 3.0);
   EXPECT_EQ(scene.motors[0].period_s, 0.002);

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
-#include "framework/dynamics/build_world.h"
+#include "framework/effects/build_world.h"
 #include "framework/engines/stepping/stability.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/methods.h"

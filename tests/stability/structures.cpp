@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/files.h"
+#include "framework/effects/point_force/point_force.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/support.h"
 
@@ -100,7 +101,7 @@ scene::Scene nip(double a, double mu) {
   scene.stabilisation = scene::StabilisationSpec{};
   scene.joints = {{"hinge", scene::JointKind::kHinge, "jaw", "", Vector3d::Zero(), Vector3d::UnitY()}};
   scene.apart = {{"jaw", "floor"}};
-  scene.point_forces = {{"jaw", -100.0 * up, along + 0.05 * up, 0.0, 100.0}};
+  scene.effects.of<effects::PointForceSpec>() = {{"jaw", -100.0 * up, along + 0.05 * up, 0.0, 100.0}};
   return scene;
 }
 

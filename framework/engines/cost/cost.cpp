@@ -11,6 +11,7 @@
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
 #include "framework/core/not_implemented.h"
+#include "framework/effects/registry.h"
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/judging/judge.h"
 #include "framework/engines/truths/memory_scene.h"
@@ -71,7 +72,7 @@ class Measurement final : public TrajectorySink {
 };
 
 bool links_meet(const scene::Scene& scene) {
-  const bool linked = !(scene.springs.empty() && scene.rods.empty() && scene.joints.empty() && scene.drags.empty());
+  const bool linked = !(scene.springs.empty() && scene.rods.empty() && scene.joints.empty()) || effects::asks_for(scene, [](const effects::Traits& traits) { return traits.ties; });
   return linked && std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const scene::BodySpec& body) { return body.collides; }) > 1;
 }
 

@@ -8,10 +8,11 @@
 
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
-#include "framework/dynamics/build_world.h"
 #include "framework/dynamics/world.h"
-#include "framework/engines/cost/cost.h"
+#include "framework/effects/build_world.h"
+#include "framework/effects/registry.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/cost/cost.h"
 #include "framework/engines/truths/memory_scene.h"
 
 namespace tumble::engines {
@@ -268,7 +269,7 @@ void refine(const scene::Scene& scene, const Laws& laws, const Window& window, d
 }  // namespace
 
 bool goes_in_closed_form(const scene::Scene& scene) {
-  return scene.springs.empty() && scene.rods.empty() && scene.joints.empty() && scene.drags.empty() && scene.motors.empty() && scene.point_forces.empty() && !scene.contact;
+  return scene.springs.empty() && scene.rods.empty() && scene.joints.empty() && scene.motors.empty() && !scene.contact && !effects::asks_for(scene, [](const effects::Traits& traits) { return !traits.leaves_flight; });
 }
 
 std::optional<CostTruth> try_truth(const scene::Scene& scene, const Laws& laws, const CostOptions& options, std::string& why) {

@@ -4,20 +4,16 @@
 
 namespace tumble::engines {
 
-LinkMeasures::LinkMeasures(const FlightWorld& world, const Laws& laws) : world_(world), laws_(laws) {
+LinkMeasures::LinkMeasures(const FlightWorld& world, const Laws& laws) : world_(world) {
+  for (std::size_t k = 0; k < effects::all().size(); ++k)
+    if (auto forces = effects::all()[k]->steady_forces({world.world(), laws, uncounted_.effect_calls[k]})) forces_.emplace(static_cast<int>(k), std::move(forces));
   for (std::vector<int>& bodies : groups_of_linked_bodies(world.world()))
     groups_.emplace_back(world.world(), laws, uncounted_, [this](int body, const RigidBodyState& state) { return wrench_on(body, state); }, std::move(bodies));
 }
 
 Wrench LinkMeasures::wrench_on(int body, const RigidBodyState& state) const {
   Wrench sum{world_.world().gravity_world ? Vector3d(world_.inertia(body).mass * *world_.world().gravity_world) : Vector3d(Vector3d::Zero()), Vector3d::Zero()};
-  for (const auto& [index, point_body] : *points_body_) {
-    const PointForce& force = world_.world().point_forces[static_cast<std::size_t>(index)];
-    if (force.body != body) continue;
-    const Wrench wrench = laws_.wrench_of_point_force(force.force_world, state.com_world + state.world_from_body.normalized() * point_body, state.com_world);
-    sum.force_world += wrench.force_world;
-    sum.torque_world += wrench.torque_world;
-  }
+  for (const auto& [effect, forces] : forces_) forces->add(body, state, sum);
   return sum;
 }
 
@@ -41,7 +37,10 @@ void LinkMeasures::measure(Frame& frame, const FlightOf& flight_of) {
       looks.push_back(0.0);
     }
     group.remember(std::move(torques), std::move(looks));
-    points_body_ = &from.force_points_body;
+    for (const auto& [effect, forces] : forces_) {
+      const auto memory = from.remembered.find(effect);
+      forces->stand_at(from.time, memory == from.remembered.end() ? effects::Memory{} : memory->second, states);
+    }
     group.measure(states, frame.time, frame.contacts, forces);
   }
   frame.spring_forces = std::move(forces.springs);
@@ -51,12 +50,9 @@ void LinkMeasures::measure(Frame& frame, const FlightOf& flight_of) {
 
 std::vector<Event> force_switches(const World& world, double until) {
   std::vector<Event> events;
-  for (const PointForce& force : world.point_forces)
-    for (const auto& [time, kind] : {std::pair{force.start, EventKind::kForceOn}, std::pair{force.end, EventKind::kForceOff}}) {
-      if (!(time <= until) || !(force.start < force.end)) continue;
-      const double size = force.force_world.norm();
-      events.push_back({time, kind, force.body, -1, force.point_world, size > 0 ? Vector3d(force.force_world / size) : Vector3d(Vector3d::UnitZ()), 0.0, 0.0});
-    }
+  for (const effects::Effect* effect : effects::all())
+    for (const effects::Switch& one : effect->switches(world))
+      if (one.event.time <= until) events.push_back(one.event);
   std::stable_sort(events.begin(), events.end(), [](const Event& a, const Event& b) { return a.time < b.time; });
   return events;
 }

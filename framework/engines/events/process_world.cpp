@@ -25,7 +25,7 @@ std::vector<const collision::CollisionShape*> shapes_of(const WorldPart& part, c
 
 const RigidBodyState& ProcessState::state_of(int body) const { return states[static_cast<std::size_t>(std::lower_bound(members.begin(), members.end(), body) - members.begin())]; }
 
-ProcessState ProcessState::without_memory() const { return {time, members, states, motors, force_points_body, met, lasting, near, std::nullopt}; }
+ProcessState ProcessState::without_memory() const { return {time, members, states, motors, remembered, met, lasting, near, std::nullopt}; }
 
 RigidBodyState ProcessStep::state_at(std::size_t member, double t) const { return t == from.time || paths.empty() ? from.states[member] : paths[member].at(t); }
 
@@ -77,25 +77,22 @@ void ProcessWorld::load(const ProcessState& from, std::optional<LastingContacts>
   collector_.events.clear();
 }
 
-// Forces act in [start, end). Those that begin now take hold of their point. @return when the next one is switched [s]
-double ProcessWorld::load_forces(const ProcessState& from) {
-  double next = std::numeric_limits<double>::infinity();
-  if (!built::kPointForce) return next;
-  const auto& forces = moving_.world().point_forces;
-  std::vector<int> active;
-  std::vector<Vector3d> points(forces.size(), Vector3d::Zero());
-  for (std::size_t k = 0; k < forces.size(); ++k) {
-    for (const double time : {forces[k].start, forces[k].end})
-      if (time > from.time) next = std::min(next, time);
-    if (!(from.time >= forces[k].start && from.time < forces[k].end)) continue;
-    active.push_back(static_cast<int>(k));
-    const auto held = from.force_points_body.find(part_.forces[k]);
-    const RigidBodyState& state = moving_.state(forces[k].body);
-    points[k] = held != from.force_points_body.end() ? held->second : state.world_from_body.conjugate() * (forces[k].point_world - state.com_world);
+// Entries of the part by their indices in the whole, or the other way round.
+std::map<int, effects::Memory> ProcessWorld::renamed(const std::map<int, effects::Memory>& memory, bool to_whole) const {
+  std::map<int, effects::Memory> renamed;
+  for (const auto& [effect, entries] : memory) {
+    const std::vector<int>& whole = part_.entries[static_cast<std::size_t>(effect)];
+    for (const auto& [entry, numbers] : entries) {
+      const auto local = std::lower_bound(whole.begin(), whole.end(), entry);
+      if (to_whole) renamed[effect].emplace(whole[static_cast<std::size_t>(entry)], numbers);
+      else if (local != whole.end() && *local == entry) renamed[effect].emplace(static_cast<int>(local - whole.begin()), numbers);
+    }
   }
-  moving_.set_active_forces(std::move(active), std::move(points));
-  return next;
+  return renamed;
 }
+
+// @return when the next steady force is switched [s]
+double ProcessWorld::load_forces(const ProcessState& from) { return moving_.load_forces(renamed(from.remembered, false)); }
 
 // What contacts remember goes with the state: the next load brings its own.
 ProcessState ProcessWorld::save() {
@@ -134,8 +131,7 @@ void ProcessWorld::save_controls(ProcessState& state) const {
   for (const LinkedBodies& group : moving_.linked_groups())
     for (std::size_t k = 0; k < group.motors().size(); ++k)
       state.motors[part_.motors[static_cast<std::size_t>(group.motors()[k])]] = {group.torques()[k], group.next_looks()[k]};
-  state.force_points_body.clear();
-  for (const int force : moving_.active_forces()) state.force_points_body[part_.forces[static_cast<std::size_t>(force)]] = moving_.force_points_body()[static_cast<std::size_t>(force)];
+  state.remembered = renamed(moving_.force_memory(), true);
 }
 
 ProcessState ProcessWorld::at_start(const std::vector<RigidBodyState>& states) {

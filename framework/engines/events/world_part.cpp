@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "framework/effects/registry.h"
+
 namespace tumble::engines {
 namespace {
 
@@ -44,7 +46,14 @@ void take_links(const std::vector<Link>& whole, const std::vector<int>& indices,
 }  // namespace
 
 EntriesByBody::EntriesByBody(const World& whole) {
-  for (Places* places : {&springs_, &rods_, &joints_, &drags_, &forces_, &apart_}) places->resize(whole.bodies.size());
+  for (Places* places : {&springs_, &rods_, &joints_, &apart_}) places->resize(whole.bodies.size());
+  for (const effects::Effect* effect : effects::all()) {
+    Places& places = effects_.emplace_back();
+    const int count = effect->count_in(whole);
+    if (count > 0) places.resize(whole.bodies.size());
+    for (int entry = 0; entry < count; ++entry)
+      for (const int body : effect->bodies_of(whole, entry)) note(places, body, static_cast<std::size_t>(entry));
+  }
   motors_.resize(whole.joints.size());
   const auto note_ends = [](const auto& links, Places& places) {
     for (std::size_t k = 0; k < links.size(); ++k)
@@ -53,8 +62,6 @@ EntriesByBody::EntriesByBody(const World& whole) {
   note_ends(whole.springs, springs_);
   note_ends(whole.rods, rods_);
   note_ends(whole.joints, joints_);
-  for (std::size_t k = 0; k < whole.drags.size(); ++k) note(drags_, whole.drags[k].body, k);
-  for (std::size_t k = 0; k < whole.point_forces.size(); ++k) note(forces_, whole.point_forces[k].body, k);
   for (std::size_t k = 0; k < whole.apart.size(); ++k)
     for (const int body : {whole.apart[k].first, whole.apart[k].second}) note(apart_, body, k);
   for (std::size_t k = 0; k < whole.motors.size(); ++k) note(motors_, whole.motors[k].joint, k);
@@ -71,6 +78,11 @@ struct PartMaker {
     const std::vector<int> springs = of_members(entries.springs_, members), rods = of_members(entries.rods_, members), joints = of_members(entries.joints_, members);
     part.bodies = members;
     part.bodies.insert(part.bodies.end(), still.begin(), still.end());
+    for (const auto& places : entries.effects_) part.entries.push_back(places.empty() ? std::vector<int>{} : of_members(places, members));
+    for (std::size_t k = 0; k < part.entries.size(); ++k)
+      for (const int entry : part.entries[k])
+        for (const int body : effects::all()[k]->bodies_of(whole, entry))
+          if (body >= 0) part.bodies.push_back(body);
     add_ends(whole.springs, springs, part.bodies);
     add_ends(whole.rods, rods, part.bodies);
     add_ends(whole.joints, joints, part.bodies);
@@ -99,19 +111,12 @@ struct PartMaker {
   void take_pushes(const std::vector<int>& joints, WorldPart& part) const {
     World& world = part.world;
     const auto in_part = [&](int body) { return place_of(part.bodies, body); };
-    for (const int k : of_members(entries.drags_, members)) {
-      const Drag& drag = whole.drags[static_cast<std::size_t>(k)];
-      world.drags.push_back({in_part(drag.body), drag.linear, drag.angular});
-    }
+    for (std::size_t k = 0; k < part.entries.size(); ++k)
+      if (!part.entries[k].empty()) effects::all()[k]->copy_entries(whole, part.entries[k], [&](int body) { return body < 0 ? body : in_part(body); }, world);
     part.motors = of_members(entries.motors_, joints);
     for (const int k : part.motors) {
       const auto& motor = whole.motors[static_cast<std::size_t>(k)];
       world.motors.push_back({place_of(joints, motor.joint), motor.law});
-    }
-    part.forces = of_members(entries.forces_, members);
-    for (const int k : part.forces) {
-      world.point_forces.push_back(whole.point_forces[static_cast<std::size_t>(k)]);
-      world.point_forces.back().body = in_part(world.point_forces.back().body);
     }
     for (const int k : of_members(entries.apart_, members)) {
       const auto& [a, b] = whole.apart[static_cast<std::size_t>(k)];

@@ -15,7 +15,8 @@ class EntriesByBody {
  private:
   friend struct PartMaker;
   using Places = std::vector<std::vector<int>>;   // by body: indices, ascending
-  Places springs_, rods_, joints_, drags_, forces_, apart_;
+  std::vector<Places> effects_;                   // by place in effects::all(); empty of those that do not act in this world
+  Places springs_, rods_, joints_, apart_;
   Places motors_;                                 // by joint
 };
 
@@ -23,7 +24,8 @@ struct WorldPart {
   World world;
   std::vector<int> bodies;          // by body of the part: its index in the whole, ascending
   std::vector<int> members;         // by member (in the order they were asked for): its index in the part
-  std::vector<int> motors, forces;  // by motor and point force of the part: its index in the whole
+  std::vector<int> motors;          // by motor of the part: its index in the whole
+  std::vector<std::vector<int>> entries;   // by place in effects::all() and by entry of the part: its index in the whole
 };
 
 /// @param entries  of this very world

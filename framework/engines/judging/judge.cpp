@@ -12,8 +12,8 @@
 
 #include "framework/core/error.h"
 #include "framework/core/numbers.h"
-#include "framework/dynamics/build_world.h"
 #include "framework/dynamics/world.h"
+#include "framework/effects/build_world.h"
 #include "framework/engines/contact/lasting_contacts.h"
 #include "framework/engines/judging/measures.h"
 

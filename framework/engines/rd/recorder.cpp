@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "framework/dynamics/invariants.h"
+#include "framework/effects/invariants.h"
 #include "framework/engines/contact/sleeping.h"
 
 namespace tumble::engines {

@@ -7,14 +7,15 @@
 
 #include <fmt/format.h>
 
-#include "framework/dynamics/build_world.h"
+#include "framework/effects/build_world.h"
+#include "framework/effects/registry.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/step_limits.h"
 #include "framework/engines/contact/meetings.h"
-#include "framework/engines/rd/recorder.h"
 #include "framework/engines/contact/sequential_impacts.h"
 #include "framework/engines/contact/sleeping.h"
+#include "framework/engines/rd/recorder.h"
 #include "framework/engines/stepping/stability.h"
-#include "framework/engines/base/step_limits.h"
 
 namespace tumble::engines {
 namespace {
@@ -105,18 +106,10 @@ double RetroactiveRun::next_target() const {
 }
 
 void RetroactiveRun::switch_forces() {
-  if (!built::kPointForce) return;
-  const auto& forces = moving_.world().point_forces;
-  for (int k = 0; k < static_cast<int>(forces.size()); ++k) {
-    const auto& active = moving_.active_forces();
-    const bool is_on = std::find(active.begin(), active.end(), k) != active.end();
-    const bool should_be_on = moving_.time() >= forces[k].start && moving_.time() < forces[k].end;
-    if (is_on == should_be_on) continue;
-    if (has_sleepers()) sleepers_->wake(forces[k].body, -1);
-    moving_.switch_force(k, should_be_on);
-    const double size = forces[k].force_world.norm();
-    sink_.event({moving_.time(), should_be_on ? EventKind::kForceOn : EventKind::kForceOff, forces[k].body, -1, forces[k].point_world,
-                 size > 0 ? Vector3d(forces[k].force_world / size) : Vector3d::UnitZ(), 0.0, 0.0});
+  for (const auto& due : moving_.due_switches()) {
+    if (has_sleepers()) sleepers_->wake(due.second.event.body_a, -1);
+    moving_.turn(due);
+    sink_.event(due.second.event);
   }
 }
 
@@ -185,8 +178,7 @@ bool RetroactiveRun::stays_on(const TouchingPair& pair, int body, const Vector3d
   const double radius = moving_.shape(body).bounding_radius(), rounding = meetings_.touching_distance({pair.a, pair.b});
   const double level = std::max(kLevelSupport, radius > rounding ? rounding / radius : 0.0);   // the normal's own rounding
   if (!(gravity.dot(up) < 0) || (gravity - gravity.dot(up) * up).norm() > level * gravity.norm()) return false;
-  for (const int index : moving_.active_forces())
-    if (moving_.world().point_forces[index].body == body) return false;
+  if (!moving_.is_left_alone(body)) return false;
   const Matrix3d& inertia = moving_.world().bodies[body].inertia.inertia_body;
   return moving_.state(body).angular_momentum_world.isZero(0.0) || (inertia - inertia(0, 0) * Matrix3d::Identity()).norm() <= kTouching * inertia.norm();
 }
@@ -314,10 +306,8 @@ void RetroactiveRun::run() {
   const std::string where = scene_.file.empty() ? scene_.name : scene_.file.string();
   meetings_.refuse_overlap(where, scene_);
   refuse_unstable_steps(moving_.world(), laws_, {step_, duration_}, where, counters_.notices);
-  for (const PointForce& force : moving_.world().point_forces) {
-    switch_times_.insert(force.start);
-    switch_times_.insert(force.end);
-  }
+  for (const effects::Effect* effect : effects::all())
+    for (const effects::Switch& one : effect->switches(moving_.world())) switch_times_.insert(one.event.time);
   try {
     if (!moving_.world().rods.empty() || !moving_.world().joints.empty()) tell_of_light_bodies();
     run_to_the_end();

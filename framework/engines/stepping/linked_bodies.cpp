@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "framework/dynamics/joint_rows.h"
+#include "framework/effects/registry.h"
 #include "framework/engines/base/guarded_laws.h"
 
 namespace tumble::engines {
@@ -75,7 +76,16 @@ std::vector<std::vector<int>> groups_of_linked_bodies(const World& world) {
   for (const SpringLink& link : world.springs) tie(link.a.body, link.b.body);
   for (const RodLink& link : world.rods) tie(link.a.body, link.b.body);
   for (const JointLink& link : world.joints) tie(link.a.body, link.b.body);
-  for (const Drag& drag : world.drags) tie(drag.body, -1);
+  for (const effects::Effect* effect : effects::all()) {
+    if (!effect->traits().ties) continue;
+    for (int entry = 0; entry < effect->count_in(world); ++entry) {
+      int first = -1;   // movable one
+      for (const int body : effect->bodies_of(world, entry)) {
+        tie(first, body);
+        if (first < 0 && movable(body)) first = body;
+      }
+    }
+  }
   std::vector<std::vector<int>> by_leader(n), groups;
   for (int i = 0; i < n; ++i)
     if (linked[i]) by_leader[find(i)].push_back(i);
@@ -96,22 +106,24 @@ LinkedBodies::LinkedBodies(const World& world, const Laws& laws, RunCounters& co
   collect(world.springs, springs_);
   collect(world.rods, rods_);
   collect(world.joints, joints_);
-  for (int k = 0; k < static_cast<int>(world.drags.size()); ++k)
-    if (std::binary_search(bodies_.begin(), bodies_.end(), world.drags[k].body)) drags_.push_back(k);
   for (int k = 0; k < static_cast<int>(world.motors.size()); ++k)
     if (std::any_of(joints_.begin(), joints_.end(), [&](const Link& joint) { return joint.index == world.motors[k].joint; })) motors_.push_back(k);
   most_rows_ = rods_.size();
   for (const Link& link : joints_) most_rows_ += static_cast<std::size_t>(row_count(world.joints[link.index].kind));
+  for (std::size_t k = 0; k < effects::all().size(); ++k)
+    if (auto terms = effects::all()[k]->group_terms({world_, laws_, counters_.effect_calls[k]}, *this)) terms_.push_back(std::move(terms));
   torques_.assign(motors_.size(), 0.0);
   next_looks_.assign(motors_.size(), 0.0);
 }
 
-LinkedBodies::End LinkedBodies::end_of(const Anchor& anchor) {
-  const auto found = std::lower_bound(bodies_.begin(), bodies_.end(), anchor.body);
-  if (found != bodies_.end() && *found == anchor.body) return {static_cast<int>(found - bodies_.begin()), anchor.point_body};
-  auto fixed = std::find(fixed_.begin(), fixed_.end(), anchor.body);
-  if (fixed == fixed_.end()) fixed = fixed_.insert(fixed_.end(), anchor.body);
-  return {static_cast<int>(bodies_.size() + (fixed - fixed_.begin())), anchor.point_body};
+bool LinkedBodies::has(int body) const { return std::binary_search(bodies_.begin(), bodies_.end(), body); }
+
+int LinkedBodies::place_of(int body) {
+  const auto found = std::lower_bound(bodies_.begin(), bodies_.end(), body);
+  if (found != bodies_.end() && *found == body) return static_cast<int>(found - bodies_.begin());
+  auto fixed = std::find(fixed_.begin(), fixed_.end(), body);
+  if (fixed == fixed_.end()) fixed = fixed_.insert(fixed_.end(), body);
+  return static_cast<int>(bodies_.size() + static_cast<std::size_t>(fixed - fixed_.begin()));
 }
 
 std::vector<RigidBodyState> LinkedBodies::take(const std::vector<RigidBodyState>& states) const {
@@ -147,7 +159,7 @@ std::vector<Wrench> LinkedBodies::forces(const std::vector<RigidBodyState>& loca
   std::vector<Wrench> wrenches(bodies.size(), {Vector3d::Zero(), Vector3d::Zero()});
   for (std::size_t i = 0; i < bodies_.size(); ++i) wrenches[i] = outer_wrench_(bodies_[i], local[i]);
   if (built::kSpring) add_springs(bodies, wrenches);
-  if (built::kDrag) add_drags(bodies, wrenches);
+  for (const auto& terms : terms_) terms->add_forces(bodies, wrenches);
   if (built::kMotor) add_motors(bodies, wrenches);
   return wrenches;
 }
@@ -160,16 +172,6 @@ void LinkedBodies::add_springs(const std::vector<Body>& bodies, std::vector<Wren
     const Vector3d force = of_link("spring", spring.name, [&] { return laws_.spring_force(spring.spring, a, b); });
     add_force(bodies[link.a.place], force, a.point_world, wrenches[link.a.place]);
     add_force(bodies[link.b.place], -force, b.point_world, wrenches[link.b.place]);
-  }
-}
-
-void LinkedBodies::add_drags(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches) {
-  for (const int index : drags_) {
-    ++counters_.drag_calls;
-    const Drag& drag = world_.drags[index];
-    const auto place = std::lower_bound(bodies_.begin(), bodies_.end(), drag.body) - bodies_.begin();
-    wrenches[place].force_world -= drag.linear * bodies[place].velocity_world;
-    wrenches[place].torque_world -= drag.angular * bodies[place].omega_world;
   }
 }
 

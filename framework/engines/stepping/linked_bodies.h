@@ -8,6 +8,7 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "framework/dynamics/contact_problem.h"
 #include "framework/dynamics/laws.h"
 #include "framework/dynamics/world.h"
+#include "framework/effects/effect.h"
 #include "framework/engines/base/effects_built.h"
 #include "framework/engines/base/run_counters.h"
 
@@ -25,7 +27,7 @@ struct LinkForces {
   std::vector<double> springs, rods, joints;
 };
 
-class LinkedBodies {
+class LinkedBodies final : effects::GroupPlaces {
  public:
   /// Gravity and point forces on a body (index in the world) in a state.
   using OuterWrench = std::function<Wrench(int body, const RigidBodyState& state)>;
@@ -95,11 +97,12 @@ class LinkedBodies {
   std::string whose() const;   // in words
   double size_of_joint(const Link& joint) const;
   double open_part(const std::vector<Body>& bodies, const std::vector<Constraint>& rows) const;
-  End end_of(const Anchor& anchor);
+  bool has(int body) const override;
+  int place_of(int body) override;
+  End end_of(const Anchor& anchor) { return {place_of(anchor.body), anchor.point_body}; }
   std::vector<Body> place_bodies(const std::vector<RigidBodyState>& local, double t) const;
   std::vector<Wrench> forces(const std::vector<RigidBodyState>& local, const std::vector<Body>& bodies);
   void add_springs(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches);
-  void add_drags(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches);
   void add_motors(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches) const;
   std::vector<Constraint> rows(const std::vector<Body>& bodies);
   void append_rods(const std::vector<Body>& bodies, std::vector<Constraint>& rows);
@@ -121,7 +124,8 @@ class LinkedBodies {
   std::vector<int> bodies_;
   std::vector<int> fixed_;            // immovable ends: bodies of the world, -1 for the world itself
   std::vector<Link> springs_, rods_, joints_;
-  std::vector<int> drags_, motors_;   // in the world's lists
+  std::vector<int> motors_;           // in the world's list
+  std::vector<std::unique_ptr<effects::GroupTerms>> terms_;   // of the effects that act on the group
   std::size_t most_rows_ = 0;   // of rods and joints
   std::vector<double> torques_, next_looks_;   // by motors_
   double time_of_stage_ = 0.0;

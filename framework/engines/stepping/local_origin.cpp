@@ -6,6 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "framework/scene/words.h"
+
 namespace tumble::engines {
 namespace {
 
@@ -23,6 +25,12 @@ void for_each_place(Scene& scene, const Visit& visit) {
     for (auto* anchor : {&rod.a, &rod.b})
       if (anchor->body.empty()) visit(anchor->point_m);
   for (auto& joint : scene.joints) visit(joint.point_m);
+}
+
+/// The same for what the scene asks of effects.
+template <class Visit>
+void for_each_place_of_effects(TypedLists& effects, const Visit& visit) {
+  for (const scene::Words* words : scene::all_words()) words->visit_places(effects, visit);
 }
 
 // Whoever writes 1000000.1 means a tenth more than 10^6, not the nearest number that a double can hold, which is 2e-11 less: a box would
@@ -49,6 +57,12 @@ Vector3d local_origin(const scene::Scene& scene) {
     low = low.cwiseMin(place);
     high = high.cwiseMax(place);
   });
+  TypedLists effects = scene.effects;
+  for_each_place_of_effects(effects, [&](const Vector3d& place, scene::PlaceKind kind) {
+    if (kind != scene::PlaceKind::kHolds) return;
+    low = low.cwiseMin(place);
+    high = high.cwiseMax(place);
+  });
   double extent = (high - low).maxCoeff();
   if (extent == 0.0) extent = scene.duration_s * scene.bodies.front().velocity_m_s.norm();   // one body: its way
   const Vector3d middle = low + 0.5 * (high - low);
@@ -65,7 +79,7 @@ scene::Scene seen_from(const Vector3d& origin_world, scene::Scene scene) {
     for (int axis = 0; axis < 3; ++axis) place[axis] = as_written ? difference_as_written(place[axis], origin_world[axis]) : place[axis] - origin_world[axis];
   };
   for_each_place(scene, see);
-  for (scene::PointForceSpec& force : scene.point_forces) see(force.point_m);
+  for_each_place_of_effects(scene.effects, [&](Vector3d& place, scene::PlaceKind) { see(place); });
   return scene;
 }
 

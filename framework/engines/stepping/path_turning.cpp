@@ -45,9 +45,7 @@ Vector3d turn_between(const Quaterniond& a, const Quaterniond& b) {
 
 double MovingWorld::torque_bound(int body) const {
   double bound = 0.0;
-  if (!built::kPointForce || active_forces_.empty()) return bound;
-  for (const int index : active_forces_)
-    if (world_.point_forces[index].body == body) bound += world_.point_forces[index].force_world.norm() * force_points_body_[index].norm();
+  for (const Steady& forces : steady_) bound += forces.acting->torque_bound(body);
   return bound;
 }
 

@@ -11,7 +11,7 @@
 #include "framework/core/decompositions.h"
 #include "framework/core/error.h"
 #include "framework/dynamics/anchors.h"
-#include "framework/dynamics/invariants.h"
+#include "framework/effects/invariants.h"
 #include "framework/engines/base/guarded_laws.h"
 
 namespace tumble::engines {
@@ -95,15 +95,17 @@ double largest_stable_step(const Laws& laws, double frequency, double damping, d
 
 std::vector<StepLimit> judge_decays(const World& world, const Laws& laws, double step) {
   std::vector<StepLimit> limits;
-  for (const Drag& drag : world.drags) {
-    const WorldBody& body = world.bodies[drag.body];
-    if (body.immovable() || is_jointed(world, drag.body)) continue;
+  std::vector<effects::Drain> drains;
+  for (const effects::Effect* effect : effects::all()) effect->append_drains(world, drains);
+  for (const effects::Drain& drain : drains) {
+    const WorldBody& body = world.bodies[drain.body];
+    if (body.immovable() || is_jointed(world, drain.body)) continue;
     const double least_moment = 1.0 / symmetric_eigen(body.inertia.inverse_inertia_body).values.maxCoeff();
-    const double turning = is_held_beside_its_centre(world, drag.body) ? 0.0 : drag.angular / least_moment;
-    for (const auto& [rate, way] : {std::pair{drag.linear * body.inertia.inverse_mass, "velocity"}, std::pair{turning, "turning"}}) {
+    const double turning = is_held_beside_its_centre(world, drain.body) ? 0.0 : drain.angular / least_moment;
+    for (const auto& [rate, way] : {std::pair{drain.linear * body.inertia.inverse_mass, "velocity"}, std::pair{turning, "turning"}}) {
       const auto amplified = [&laws, rate = rate](double h) { return amplification_of_decay(laws, rate, h); };
       if (amplified(step) > 1.0 + kNotAtAll)
-        limits.push_back({fmt::format("what the drag of body '{}' takes from its {} ({:.4g} 1/s)", body.name, way, rate), amplified(step), largest_stable_step(amplified, rate, step), "less drag"});
+        limits.push_back({fmt::format("what {} takes from its {} ({:.4g} 1/s)", drain.of, way, rate), amplified(step), largest_stable_step(amplified, rate, step), drain.remedy});
     }
   }
   if (!world.stabilisation || world.stabilisation->kind != scene::StabilisationKind::kBaumgarte || (world.rods.empty() && world.joints.empty()) || !laws.baumgarte_acceleration) return limits;
@@ -282,22 +284,16 @@ void EnergyWatch::tell(const World& world, RunWatch& watch) const {
     watch.note(RunWatch::Kind::kEnergyRises, fmt::format("'{}'", world.bodies[static_cast<std::size_t>(rise.body)].name), {rise.size / whole, kEnergyRises, rise.time, step_});
 }
 
-// What point forces have done since the last look (force times the way of their point, exact where they are constant), and the most that motors can
-// have done: their largest torque over how far the hinge turned at the faster of its two rates, twice for what lies between.
+// What effects have brought in since the last look; of motors the most that they can have done: their largest torque over how far the hinge turned at
+// the faster of its two rates, twice for what lies between.
 double EnergyWatch::work_since(double time, const World& world, const std::vector<RigidBodyState>& states) {
   double work = 0.0;
-  pushed_body_.resize(world.point_forces.size(), unset_vector());
-  pushed_world_.resize(world.point_forces.size(), unset_vector());
-  for (std::size_t k = 0; k < world.point_forces.size(); ++k) {
-    const PointForce& force = world.point_forces[k];
-    if (time < force.start) continue;
-    const RigidBodyState& state = states[static_cast<std::size_t>(force.body)];
-    if (std::isnan(pushed_body_[k].x())) pushed_body_[k] = state.world_from_body.conjugate() * (force.point_world - state.com_world);
-    const Vector3d now = state.com_world + state.world_from_body * pushed_body_[k];
-    if (!std::isnan(pushed_world_[k].x()) && time <= force.end) work += force.force_world.dot(now - pushed_world_[k]);
-    pushed_world_[k] = now;
-  }
   double most = 0.0;
+  for (const auto& meter : meters_) {
+    const effects::Work since = meter->since_last(time, states);
+    work += since.done;
+    most += since.most;
+  }
   turning_.resize(world.motors.size(), 0.0);
   for (std::size_t k = 0; k < world.motors.size(); ++k) {
     const JointLink& joint = world.joints[static_cast<std::size_t>(world.motors[k].joint)];
@@ -315,7 +311,12 @@ std::optional<Runaway> EnergyWatch::look(double time, const World& world, const 
   const auto driven = [](const WorldBody& b) { return b.immovable() && !(b.motion.velocity_m_s.isZero(0.0) && b.motion.amplitude_m.isZero(0.0)); };
   const auto is_unlimited = [](const Motor& motor) { return !std::isfinite(motor.law.largest_torque_n_m); };
   if (std::any_of(world.motors.begin(), world.motors.end(), is_unlimited)) return std::nullopt;
-  if ((!sees_switches_ && (!world.point_forces.empty() || !world.motors.empty())) || std::any_of(world.bodies.begin(), world.bodies.end(), driven)) return std::nullopt;
+  if (!has_meters_) {
+    has_meters_ = true;
+    for (const effects::Effect* effect : effects::all())
+      if (auto meter = effect->work_meter(world)) meters_.push_back(std::move(meter));
+  }
+  if ((!sees_switches_ && (!meters_.empty() || !world.motors.empty())) || std::any_of(world.bodies.begin(), world.bodies.end(), driven)) return std::nullopt;
   const Invariants sums = invariants_of(world, states);
   work_ += work_since(time, world, states);
   const double energy = sums.kinetic_energy + sums.potential_energy - work_;
@@ -330,6 +331,14 @@ std::optional<Runaway> EnergyWatch::look(double time, const World& world, const 
   if (available() == 0.0 && first_energy_ == 0.0 && !(sums.kinetic_energy > 0)) return std::nullopt;
   return Runaway{body_with_most_energy(world, states), energy, first_energy_, by_blows_};
 }
+
+namespace {
+
+bool brings_energy(const World& world) {
+  return !world.motors.empty() || std::any_of(effects::all().begin(), effects::all().end(), [&](const effects::Effect* effect) { return effect->work_meter(world) != nullptr; });
+}
+
+}  // namespace
 
 std::string told_runaway(double time, const World& world, const Runaway& runaway, const ActingForces& acting, const Laws& laws) {
   std::string effect;
@@ -354,7 +363,7 @@ std::string told_runaway(double time, const World& world, const Runaway& runaway
   else if (effect.empty()) effect = fmt::format("integration (integrate_step, state_derivative of {})", laws.integrator_source);
   return fmt::format("at t = {:.6f} s, body '{}': runaway energy: the world has {:.4g} J, it began with {:.4g} J{}. Most likely it comes from {}; a shorter step or another method "
                      "(here {}) is needed, or that is wrong", time, world.bodies[static_cast<std::size_t>(runaway.body)].name, runaway.energy, runaway.first_energy,
-                     world.point_forces.empty() && world.motors.empty() ? " and nothing brings energy in" : ", without what forces and motors bring in", effect, laws.integrator_source);
+                     !brings_energy(world) ? " and nothing brings energy in" : ", without what forces and motors bring in", effect, laws.integrator_source);
 }
 
 }  // namespace tumble::engines

@@ -1,13 +1,15 @@
 /// Whether a step is within the range in which the laws' method can follow a world: its springs, its drag, Baumgarte's term, light bodies on rods.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "framework/dynamics/invariants.h"
 #include "framework/dynamics/laws.h"
 #include "framework/dynamics/world.h"
+#include "framework/effects/invariants.h"
+#include "framework/effects/registry.h"
 #include "framework/engines/base/run_watch.h"
 #include "framework/trajectory/trajectory.h"
 
@@ -128,7 +130,8 @@ class EnergyWatch {
 
   double rest_speed_, step_;
   bool sees_switches_, is_first_step_ = true;
-  std::vector<Vector3d> pushed_body_, pushed_world_;   // of each point force, where it acts: body frame, and where that was at the last look [m]
+  std::vector<std::unique_ptr<effects::WorkMeter>> meters_;     // of the effects that bring energy into the world, from the first look on
+  bool has_meters_ = false;
   std::vector<double> turning_;                        // of each motor's hinge at the last look [rad/s]
   double last_look_ = 0.0, work_ = 0.0, given_ = 0.0;  // [s]; what forces and, at most, motors have brought in, and without its sign [J]
   double first_energy_ = kUnset, scale_ = 0.0, first_potential_ = 0.0, lowest_potential_ = 0.0, by_blows_ = 0.0;   // [J]

@@ -1,7 +1,10 @@
 #include "framework/engines/truths/known_places.h"
 
+#include <algorithm>
 #include <cmath>
 #include <variant>
+
+#include "framework/scene/words.h"
 
 namespace tumble::truths {
 namespace {
@@ -13,7 +16,10 @@ bool same(const Vector3d& a, const Vector3d& b) { return (a - b).norm() <= kSame
 
 bool falls_along_z(const scene::Scene& scene, double g) { return scene.gravity_m_s2 && same(*scene.gravity_m_s2, Vector3d(0.0, 0.0, -g)); }
 
-bool has_only_rods(const scene::Scene& scene) { return scene.springs.empty() && scene.joints.empty() && scene.drags.empty() && scene.motors.empty() && scene.point_forces.empty() && !scene.contact; }
+bool has_only_rods(const scene::Scene& scene) {
+  const auto& words = scene::all_words();
+  return scene.springs.empty() && scene.joints.empty() && scene.motors.empty() && !scene.contact && std::none_of(words.begin(), words.end(), [&](const scene::Words* one) { return one->is_asked(scene); });
+}
 
 /// Bob i hangs on bob i - 1, the first on the world's origin, each by its centre.
 bool hangs_in_a_row(const scene::Scene& scene, const VectorXd& lengths) {

@@ -30,7 +30,7 @@ class Bytes {
   }
   Bytes& operator<<(const ContactPoint& p) { return *this << p.body_a << p.body_b << p.point_world << p.normal_b_to_a_world << p.force_on_a_world; }
   Bytes& operator<<(const engines::ProcessState& s) {
-    return *this << s.time << s.members << s.states << s.motors << s.force_points_body << s.met << s.lasting << s.near;
+    return *this << s.time << s.members << s.states << s.motors << s.remembered << s.met << s.lasting << s.near;
   }
   Bytes& operator<<(const Flight& f) {
     return *this << f.begin << f.com_world << f.velocity_world << f.world_from_body << f.omega_body << f.partner << f.partner_serial << f.generation << f.serial << f.is_resting;

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "framework/cli/read_truth.h"
-#include "framework/dynamics/invariants.h"
+#include "framework/effects/invariants.h"
 #include "tests/support/overlap.h"
 
 namespace tumble::peers {

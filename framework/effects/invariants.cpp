@@ -1,4 +1,4 @@
-#include "framework/dynamics/invariants.h"
+#include "framework/effects/invariants.h"
 
 #include "framework/dynamics/anchors.h"
 

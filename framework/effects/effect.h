@@ -1,0 +1,168 @@
+/// An effect: a force, a potential or a constraint, as one folder. This is all that the rest of the program knows of it.
+///
+/// A folder says what its effect is in a scene (scene/words.h), what becomes of that in a world, how it acts there, what it does to the world's
+/// energy, what it asks of a step, and what of it is drawn. Each part that an effect does not have is left out: what stands here does nothing.
+/// A world whose scene does not ask for an effect holds no object of it, so that no step pays for it.
+///
+/// An effect acts in one of two ways:
+///   steady forces   on each body by itself, constant within a step: the body stays one that flies alone (gravity, a point force)
+///   a group's terms on bodies that are integrated together as one system of equations, asked at every stage of the method (all others)
+///
+/// Frames and units as in dynamics/body.h. How to add one: framework/README.md, "Adding an effect".
+#pragma once
+
+#include <array>
+#include <functional>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "framework/dynamics/laws.h"
+#include "framework/dynamics/world.h"
+#include "framework/effects/body_index.h"
+#include "framework/effects/drawables.h"
+#include "framework/scene/words.h"
+#include "framework/trajectory/trajectory.h"
+
+namespace tumble::effects {
+
+/// What an effect acts with: the world that holds its entries, the laws that it asks, and its own count of calls.
+struct Acting {
+  const World& world;
+  const Laws& laws;
+  std::uint64_t& calls;
+};
+
+/// Numbers that entries remember from an instant at which they change to the next, by entry. Beside the states of bodies they are all that a process
+/// goes on from, so that an engine can go back in time.
+using Memory = std::map<int, std::array<double, 3>>;
+
+/// An instant at which an entry begins or ends to act, known before the run.
+struct Switch {
+  int entry;
+  bool on;
+  Event event;                 // body_a: the body that it acts on
+};
+
+/// Forces that are constant within a step, on each body by itself.
+class SteadyForces {
+ public:
+  virtual ~SteadyForces() = default;
+
+  /// Adds what acts on a body in a state. @param body  in the world
+  virtual void add(int body, const RigidBodyState& state, Wrench& sum) = 0;
+  /// Adds the acceleration of the body's centre. [m/s^2]
+  virtual void add_acceleration(int body, Vector3d& sum_world) const = 0;
+  /// Bounds the torque about the body's centre. [N m]
+  virtual double torque_bound(int) const { return 0.0; }
+  /// Whether nothing of this acts on the body now but what World::gravity_world says.
+  virtual bool leaves_flight(int) const { return true; }
+
+  /// What has to be switched where the time is `time`, in the order of entries.
+  virtual std::vector<Switch> due(double) const { return {}; }
+  /// Switches one of these. @param states  by body of the world
+  virtual void turn(const Switch&, const std::vector<RigidBodyState>&) {}
+  /// Stands at another time, in other states: what acts then does so as `memory` says, or as it would where it begins now.
+  /// @return when the next entry is switched; infinite without [s]
+  virtual double stand_at(double, const Memory&, const std::vector<RigidBodyState>&) { return std::numeric_limits<double>::infinity(); }
+  /// What acts now goes on from.
+  virtual Memory memory() const { return {}; }
+};
+
+/// The bodies of a group, and where an effect finds them in the lists that it is asked with. Asked only while the group is put together.
+class GroupPlaces {
+ public:
+  virtual ~GroupPlaces() = default;
+  /// Whether the group moves this body.
+  virtual bool has(int body) const = 0;
+  /// Its place among the group's bodies; of an immovable one, or of the world (-1), its place behind them.
+  virtual int place_of(int body) = 0;
+};
+
+/// What an effect adds to the equations of motion of one group.
+class GroupTerms {
+ public:
+  virtual ~GroupTerms() = default;
+
+  /// Adds forces and torques. @param bodies, wrenches  by place
+  virtual void add_forces(const std::vector<Body>&, std::vector<Wrench>&) {}
+};
+
+/// What an effect brought into a world. [J]
+struct Work {
+  double done = 0.0;           // as far as it is known
+  double most = 0.0;           // besides, at most
+};
+class WorkMeter {
+ public:
+  virtual ~WorkMeter() = default;
+  /// Since it was asked last. @param states  by body of the world that it was made for
+  virtual Work since_last(double time, const std::vector<RigidBodyState>& states) = 0;
+};
+
+/// Takes evenly from the velocities of a body: m v' = -linear v, I w' = -angular w.
+struct Drain {
+  int body;
+  double linear, angular;      // [N s/m], [N m s]
+  std::string of, remedy;      // in words: "the drag of body 'a'", "less drag"
+};
+
+/// A law that an effect asks, and whether somebody provides it.
+struct NeededLaw {
+  bool is_there;
+  std::string what;            // "the force of a spring"
+  std::string assignment;      // "a3"
+};
+
+/// What kind of thing an effect is.
+struct Traits {
+  bool leaves_flight = false;  // where it alone acts, bodies go in closed form: a parabola, free rotation
+  bool ties = false;           // the bodies that an entry names move together, as one system of equations
+};
+
+class Effect : public scene::Words {
+ public:
+  virtual Traits traits() const = 0;
+
+  /// Whether a scene's lists hold an entry of this effect.
+  virtual bool is_kept_in(const TypedLists& lists) const = 0;
+
+  // In a world -------------------------------------------------------------------------------------------------------------------------
+
+  /// Turns what the scene says into entries of the world: names into indices, points into frames. Bodies are there.
+  virtual void build(const scene::Scene& scene, const BodyIndex& index, World& world) const = 0;
+  /// How many entries of it a world holds; 0 where it does not act.
+  virtual int count_in(const World& world) const = 0;
+  /// The bodies that an entry names; -1 is the world.
+  virtual std::vector<int> bodies_of(const World& world, int entry) const = 0;
+  /// Copies entries into a part of the world, in this order. @param in_part  by body of the whole: its index in the part; -1 stays
+  virtual void copy_entries(const World& whole, const std::vector<int>& entries, const std::function<int(int body)>& in_part, World& part) const = 0;
+
+  // How it acts: none of both where it does not act in this world ------------------------------------------------------------------------
+
+  virtual std::unique_ptr<SteadyForces> steady_forces(const Acting&) const { return nullptr; }
+  virtual std::unique_ptr<GroupTerms> group_terms(const Acting&, GroupPlaces&) const { return nullptr; }
+  virtual std::vector<NeededLaw> needed_laws(const scene::Scene&, const Laws&) const { return {}; }
+
+  /// All switches of a run, in the order of entries.
+  virtual std::vector<Switch> switches(const World&) const { return {}; }
+  /// Whether something steady, but for what World::gravity_world says, acts on the body at this time or later.
+  virtual bool pushes(const World&, int, double) const { return false; }
+
+  // Energy -----------------------------------------------------------------------------------------------------------------------------
+
+  /// For an effect that brings energy in; nothing for one that keeps it or takes it out.
+  virtual std::unique_ptr<WorkMeter> work_meter(const World&) const { return nullptr; }
+
+  // What it asks of a step -------------------------------------------------------------------------------------------------------------
+
+  virtual void append_drains(const World&, std::vector<Drain>&) const {}
+
+  // What is drawn of it ----------------------------------------------------------------------------------------------------------------
+
+  virtual void draw(const scene::Scene&, Drawables&) const {}
+};
+
+}  // namespace tumble::effects

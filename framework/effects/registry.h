@@ -1,0 +1,27 @@
+/// The effects that the program is built with. Each registers itself by its line in framework/effects/CMakeLists.txt.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "framework/effects/effect.h"
+
+namespace tumble::effects {
+
+/// Always in the same order: that of the lines, in which forces are added and effects are listed.
+const std::vector<const Effect*>& all();
+
+inline constexpr std::size_t kMost = 32;   // counts stand in arrays of this size
+
+/// Everything that the scene asks effects to draw.
+Drawables drawn(const scene::Scene& scene);
+
+/// Whether the scene asks for an effect of which this holds. @param holds  is asked with Traits
+template <class Holds>
+bool asks_for(const scene::Scene& scene, const Holds& holds) {
+  for (const Effect* effect : all())
+    if (holds(effect->traits()) && effect->is_asked(scene)) return true;
+  return false;
+}
+
+}  // namespace tumble::effects

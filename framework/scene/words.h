@@ -1,0 +1,63 @@
+/// What a scene file may say of an effect: its key, the schema of what stands there, reading and checking it, and what `tumble explain` tells of it.
+///
+/// The folders under framework/effects implement this (framework/effects/effect.h); whoever reads a scene asks them all, and knows none.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "framework/scene/entry.h"
+#include "framework/scene/names.h"
+#include "framework/scene/scene.h"
+
+namespace tumble::scene {
+
+/// Who asked for an effect.
+struct Asker {
+  std::string pointer;        // JSON pointer of the entry; empty where the scene was made in memory
+  std::string what;           // in words, such as "rod 1: ball_1 to the world, 0.5 m"
+  int line = 0;               // of the scene's file, where the entry begins; 0 where the scene was made in memory
+};
+
+/// Whether a place is one that bodies are held at: such places are part of where a scene stands (local_origin.h).
+enum class PlaceKind { kHolds, kOther };
+/// Called with a place in the world's coordinates; may change it. [m]
+using VisitPlace = std::function<void(Vector3d& place_world, PlaceKind kind)>;
+
+class Words {
+ public:
+  virtual ~Words() = default;
+
+  virtual std::string name() const = 0;                  // "drag", "point force"
+  virtual std::string key() const = 0;                   // of a scene file: "drag", "point_forces"
+  virtual std::string stage() const = 0;                 // the part of a run that its code stands in: "integration", "forces", "constraints", "control"
+  virtual std::string counter() const = 0;               // the count of a run that tells how often it was asked: "drag_calls"
+  /// A JSON object: {"properties": {KEY: what stands there}, "definitions": {...}}, in the language of scene.schema.json and with its definitions.
+  virtual std::string schema() const = 0;
+
+  /// Adds an entry to the scene: each of a list, or the one thing that stands under the key. Bodies and chains are there.
+  /// @throws UserError at what cannot be
+  virtual void read(Entry& entry, Scene& scene) const = 0;
+  /// Refuses what a schema cannot: what is impossible, or would do nothing.
+  virtual void check(const Scene&, const Refuse&) const {}
+
+  /// The entries that ask for the effect, in the file's order; none: the effect is off.
+  virtual std::vector<Asker> askers(const Scene& scene) const = 0;
+  virtual bool is_asked(const Scene& scene) const = 0;
+  /// Something to tell of what the file says, or "".
+  virtual std::string note(const Scene&) const { return ""; }
+  /// Takes its entries out of the scene.
+  virtual void clear(Scene& scene) const = 0;
+
+  /// Every place in the world that its entries name.
+  virtual void visit_places(TypedLists&, const VisitPlace&) const {}
+};
+
+/// Of all effects that the program is built with, in the order in which they are listed. Said by framework/effects/registry.h, which knows them.
+const std::vector<const Words*>& all_words();
+
+/// The effect that a key of a scene file belongs to; nullptr where the program is built with none of that key.
+const Words* words_of(const std::string& key);
+
+}  // namespace tumble::scene
