@@ -163,7 +163,7 @@ void poke(Context& context, const PokeWords& words) {
 
   const Push push{target.body, force, target.point_world, words.push_s};
   scene::remove_entries(scene, "point_forces");   // instead of the scene's own: what is seen comes of this push
-  scene::EntryWriter(scene)("point_forces", {{"body", push.body}, {"force_n", push.force_world}, {"point_m", push.point_world}, {"duration_s", push.duration_s}});
+  scene::EntryWriter{scene}("point_forces", {{"body", push.body}, {"force_n", push.force_world}, {"point_m", push.point_world}, {"duration_s", push.duration_s}});
   scene.duration_s = std::max(scene.duration_s, words.push_s + 2.0);   // s: time to see what comes of it
   scene.title = "Poked by hand: scene " + scene.name;
   scene.about.clear();

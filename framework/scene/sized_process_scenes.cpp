@@ -317,7 +317,7 @@ Scene dominoes(int n) {
     domino.friction = 0.6;
     scene.bodies.push_back(domino);
   }
-  EntryWriter(scene)("point_forces", {{"body", "domino_1"}, {"force_n", Vector3d(40, 0, 0)}, {"point_m", Vector3d(first - 0.04, 0, 0.48)}, {"duration_s", 0.04}});
+  EntryWriter{scene}("point_forces", {{"body", "domino_1"}, {"force_n", Vector3d(40, 0, 0)}, {"point_m", Vector3d(first - 0.04, 0, 0.48)}, {"duration_s", 0.04}});
   scene.camera.eye_m = {0.3 * kApart * n, -0.7 * kApart * n - 2, 0.3 * kApart * n + 1};
   scene.camera.target_m = {0, 0, 0.15};
   return scene;
