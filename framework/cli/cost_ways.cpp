@@ -9,11 +9,12 @@
 
 #include <fmt/format.h>
 
-#include "framework/cli/sandboxed_module.h"
 #include "framework/cli/find_scene.h"
+#include "framework/cli/sandboxed_module.h"
 #include "framework/core/error.h"
 #include "framework/dynamics/iterative_solvers.h"
 #include "framework/dynamics/root_methods.h"
+#include "framework/effects/registry.h"
 #include "framework/engines/cost/showcase.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 
@@ -124,7 +125,7 @@ CostWay by_solver(const std::string& word, const scene::Scene& scene, const Laws
 std::vector<std::string> methods_for(const scene::Scene& scene, const CostWords& words) {
   if (!words.methods.empty()) return is_none(words.methods) ? std::vector<std::string>{} : words.methods;
   std::vector<std::string> chosen = {"euler", "symplectic", "midpoint", "rk4", "dopri5", "fehlberg78", "bulirsch-stoer"};
-  if (!scene.springs.empty()) chosen.push_back("rosenbrock4");
+  if (effects::asks_for(scene, [](const effects::Traits& traits) { return traits.may_be_stiff; })) chosen.push_back("rosenbrock4");
   return chosen;
 }
 

@@ -97,7 +97,7 @@ struct AfterPush {
 
 /// @return nothing where gravity or an immovable body may exchange momentum
 std::optional<AfterPush> after_push(const Context& context, const scene::Scene& scene, const Push& push) {
-  if (scene.gravity_m_s2) return std::nullopt;
+  if (scene::has_entries(scene, "gravity_m_s2")) return std::nullopt;
   AfterPush after;
   const double time = push.duration_s;
   after.momentum = time * push.force_world;

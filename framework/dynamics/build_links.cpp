@@ -18,11 +18,6 @@ class LinkBuilder {
   }
 
   void build() {
-    for (const scene::SpringSpec& spec : scene_.springs) {
-      const std::string who = "spring '" + spec.name + "'";
-      world_.springs.push_back({spec.name, anchor(spec.a, who), anchor(spec.b, who), {spec.stiffness_n_m, spec.damping_n_s_m, spec.rest_length_m}});
-      refuse_immovable(world_.springs.back().a, world_.springs.back().b, who);
-    }
     for (const scene::RodSpec& spec : scene_.rods) {
       const std::string who = "rod '" + spec.name + "'";
       world_.rods.push_back({spec.name, anchor(spec.a, who), anchor(spec.b, who), spec.length_m});

@@ -5,7 +5,7 @@
 
 namespace tumble {
 
-/// Fills springs, rods, joints, motors, contact, stabilisation and apart. @pre world.bodies are built
+/// Fills rods, joints, motors, contact, stabilisation and apart. @pre world.bodies are built
 /// @throws UserError naming the link and the body that is not there
 void build_links(const scene::Scene& scene, World& world);
 

@@ -36,12 +36,6 @@ struct Anchor {
   Vector3d point_body;       // body frame; world frame for the world [m]
 };
 
-struct SpringLink {
-  std::string name;
-  Anchor a, b;
-  Spring spring;
-};
-
 struct RodLink {
   std::string name;
   Anchor a, b;
@@ -66,7 +60,6 @@ struct World {
   std::vector<WorldBody> bodies;
   TypedLists effects;                             // what acts on them: lists of the types in framework/effects/NAME/NAME.h, such as effects.of<Drag>()
   std::optional<Vector3d> gravity_world;          // [m/s^2]
-  std::vector<SpringLink> springs;
   std::vector<RodLink> rods;
   std::vector<JointLink> joints;
   std::vector<Motor> motors;

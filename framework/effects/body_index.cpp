@@ -16,4 +16,9 @@ int BodyIndex::of(const std::string& name, const std::string& who) const {
 
 Anchor BodyIndex::anchor(const scene::AnchorSpec& spec, const std::string& who) const { return {spec.body.empty() ? -1 : of(spec.body, who), spec.point_m}; }
 
+void refuse_immovable(int a, int b, const World& world, const std::string& who) {
+  const auto can_move = [&](int body) { return body >= 0 && !world.bodies[static_cast<std::size_t>(body)].immovable(); };
+  if (!can_move(a) && !can_move(b)) throw UserError(who, "neither of its ends can move", "tie a movable body");
+}
+
 }  // namespace tumble::effects

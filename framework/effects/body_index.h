@@ -22,4 +22,7 @@ class BodyIndex {
   std::map<std::string, int> index_;
 };
 
+/// @throws UserError where neither of two bodies can move (-1: the world)
+void refuse_immovable(int a, int b, const World& world, const std::string& who);
+
 }  // namespace tumble::effects

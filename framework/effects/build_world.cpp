@@ -50,7 +50,6 @@ World build_world(const scene::Scene& scene) {
   scene::check_ellipsoids(scene, [&](const std::string&, const std::string& problem, const std::string& remedy) { throw UserError(scene.name, problem, remedy); });
   std::vector<scene::Solid> solids = scene::build_solids(scene);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) world.bodies.push_back(build_body(scene.bodies[i], std::move(solids[i])));
-  world.gravity_world = scene.gravity_m_s2;
   const effects::BodyIndex index(world);
   refuse_unknown(scene.effects, scene.name);
   for (const effects::Effect* effect : effects::all()) effect->build(scene, index, world);

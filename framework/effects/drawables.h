@@ -16,7 +16,21 @@ struct DrawnArrow {
   double start_s, duration_s;
 };
 
+/// A point of a body, by the body's name, or of the world (an empty name).
+struct DrawnPoint {
+  std::string body;
+  Vector3d point;              // body frame, or world [m]
+};
+
+/// A coil between two points: a spring.
+struct DrawnCoil {
+  std::string name;
+  DrawnPoint a, b;
+  double rest_length;          // at which its turns stand close [m]
+};
+
 struct Drawables {
+  std::vector<DrawnCoil> coils;
   std::vector<DrawnArrow> arrows;
 };
 

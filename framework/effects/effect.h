@@ -88,6 +88,8 @@ class GroupTerms {
 
   /// Adds forces and torques. @param bodies, wrenches  by place
   virtual void add_forces(const std::vector<Body>&, std::vector<Wrench>&) {}
+  /// What its entries pull with, for whoever records it; Effect::measured_as says where. @param forces  by entry of the world; of the group's alone
+  virtual void measure(const std::vector<Body>&, std::vector<double>&) {}
 };
 
 /// What an effect brought into a world. [J]
@@ -109,6 +111,23 @@ struct Drain {
   std::string of, remedy;      // in words: "the drag of body 'a'", "less drag"
 };
 
+/// Draws bodies back along one direction: K = J^T stiffness J, C = J^T damping J. What swings fastest by all of these limits the step.
+struct StiffRow {
+  int body_a, body_b;          // -1: the world
+  Vector6d jacobian_a, jacobian_b;   // (6): (linear, angular), world
+  double stiffness, damping;   // along it [N/m], [N s/m]
+  std::string of;              // in words: "spring 'a'"
+  std::string remedy;          // beside a shorter step: "a softer spring or more damping"
+  std::string last_remedy;     // where the method follows it at no step: "damp the spring"
+};
+
+/// What pulls at bodies at an instant, for what is said of a run that gets out of hand.
+struct Pull {
+  int body_a, body_b;          // -1: the world
+  double force;                // its size [N]
+  std::string words;           // who pulls, by whose law: "spring 'a' (spring_force of reference)"
+};
+
 /// A law that an effect asks, and whether somebody provides it.
 struct NeededLaw {
   bool is_there;
@@ -120,6 +139,8 @@ struct NeededLaw {
 struct Traits {
   bool leaves_flight = false;  // where it alone acts, bodies go in closed form: a parabola, free rotation
   bool ties = false;           // the bodies that an entry names move together, as one system of equations
+  bool stores_energy = false;  // gives back what it has taken, without anything falling
+  bool may_be_stiff = false;   // a method for stiff equations may pay
 };
 
 class Effect : public scene::Words {
@@ -128,6 +149,7 @@ class Effect : public scene::Words {
 
   /// Whether a scene's lists hold an entry of this effect.
   virtual bool is_kept_in(const TypedLists& lists) const = 0;
+  bool is_asked(const scene::Scene& scene) const final { return is_kept_in(scene.effects); }
 
   // In a world -------------------------------------------------------------------------------------------------------------------------
 
@@ -153,12 +175,25 @@ class Effect : public scene::Words {
 
   // Energy -----------------------------------------------------------------------------------------------------------------------------
 
+  /// Adds the potential energy of its entries in these states. [J] @param states  by body; of immovable bodies the place alone is looked at
+  virtual void add_potential_energy(const World&, const std::vector<RigidBodyState>&, double&) const {}
+  /// Adds the size of the terms that this energy is a sum of, each as large as its parts make it: what rounding is relative to. [J]
+  virtual void add_energy_terms(const World&, const std::vector<RigidBodyState>&, double&) const {}
   /// For an effect that brings energy in; nothing for one that keeps it or takes it out.
   virtual std::unique_ptr<WorkMeter> work_meter(const World&) const { return nullptr; }
 
   // What it asks of a step -------------------------------------------------------------------------------------------------------------
 
   virtual void append_drains(const World&, std::vector<Drain>&) const {}
+  /// Where the run starts. @param start  by body
+  virtual void append_stiff_rows(const World&, const std::vector<RigidBodyState>&, std::vector<StiffRow>&) const {}
+
+  // What is recorded and told of it ------------------------------------------------------------------------------------------------------
+
+  /// Where a frame keeps what its entries pull with; nullptr where nothing of it is recorded.
+  virtual std::vector<double> Frame::*measured_as() const { return nullptr; }
+  /// @param measured  what group_terms have measured, by entry; empty where they measure nothing
+  virtual void append_pulls(const World&, const std::vector<RigidBodyState>&, const std::vector<double>&, const Laws&, std::vector<Pull>&) const {}
 
   // What is drawn of it ----------------------------------------------------------------------------------------------------------------
 

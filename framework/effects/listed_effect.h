@@ -23,7 +23,6 @@ class ListedEffect : public Effect {
     return askers;
   }
   bool is_kept_in(const TypedLists& lists) const override { return !lists.of<Spec>().empty(); }
-  bool is_asked(const scene::Scene& scene) const override { return is_kept_in(scene.effects); }
   void clear(scene::Scene& scene) const override { scene.effects.of<Spec>().clear(); }
 
   int count_in(const World& world) const override { return static_cast<int>(held(world).size()); }

@@ -10,6 +10,14 @@ Drawables drawn(const scene::Scene& scene) {
   return drawables;
 }
 
+bool asks_laws_of(const std::string& assignment, const scene::Scene& scene) {
+  for (const Effect* effect : all())
+    if (effect->is_asked(scene))
+      for (const NeededLaw& law : effect->needed_laws(scene, {}))
+        if (law.assignment == assignment) return true;
+  return false;
+}
+
 }  // namespace tumble::effects
 
 namespace tumble::scene {

@@ -43,7 +43,6 @@ void check_laws(const scene::Scene& scene, const Laws& laws) {
   for (const effects::Effect* effect : effects::all())
     if (effect->is_asked(scene))
       for (const effects::NeededLaw& law : effect->needed_laws(scene, laws)) need(law.is_there, scene, law.what.c_str(), law.assignment.c_str());
-  if (!scene.springs.empty()) need(laws.spring_force, scene, "the force of a spring", "a3");
   if (!scene.rods.empty()) need(laws.rod_row, scene, "the constraint of a rod", "a3");
   if (!scene.rods.empty() || !scene.joints.empty()) {
     need(laws.constraint_multipliers, scene, "the multipliers of rods and joints", "a3");
@@ -187,9 +186,10 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& as
   if (origin_world.isZero(0.0)) return run_from_apart(engine, scene, laws, options, watch, counted);
   const scene::Scene local = seen_from(origin_world, scene);
   double mass = 0.0;
-  for (const WorldBody& body : build_world(local).bodies)
+  const World seen = build_world(local);
+  for (const WorldBody& body : seen.bodies)
     if (!body.immovable()) mass += body.inertia.mass;
-  WorldSink world(counted, origin_world, mass, scene.gravity_m_s2.value_or(Vector3d::Zero()));
+  WorldSink world(counted, origin_world, mass, seen.gravity_world.value_or(Vector3d::Zero()));
   run_from_apart(engine, local, laws, options, watch, world);
 }
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 
+#include "framework/effects/registry.h"
 #include "framework/render/stage_geometries.h"
 #include "framework/render/surfaces.h"
 
@@ -108,9 +109,11 @@ SceneLinks::SceneLinks(const scene::Scene& scene, const Frame& first, double sig
       if (body >= 0 && radius_m[static_cast<std::size_t>(body)] > 0.0) width = std::min(width, 0.4 * radius_m[static_cast<std::size_t>(body)]);
     return width;
   };
-  for (const auto& spring : scene.springs) {
-    const Anchor a = anchor(spring.a), b = anchor(spring.b);
-    const double length = std::max((place(b) - place(a)).norm(), std::isfinite(spring.rest_length_m) ? spring.rest_length_m : 0.0);
+  const effects::Drawables drawn = effects::drawn(scene);
+  const auto point = [&](const effects::DrawnPoint& drawn_point) { return Anchor{body_of(drawn_point.body), drawn_point.point}; };
+  for (const effects::DrawnCoil& coil : drawn.coils) {
+    const Anchor a = point(coil.a), b = point(coil.b);
+    const double length = std::max((place(b) - place(a)).norm(), std::isfinite(coil.rest_length) ? coil.rest_length : 0.0);
     const double wound = std::max(length, 0.05 * sight_m);
     links_.push_back({LinkKind::kSpring, a, b, std::min(kCoilRadius * sight_m, wound / 7.0), wound});
   }

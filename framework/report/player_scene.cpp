@@ -59,6 +59,7 @@ class Anchors {
   }
   int body(const std::string& name) const { return name.empty() ? -1 : index_.at(name); }
   Json of(const scene::AnchorSpec& spec) const { return {{"body", body(spec.body)}, {"point", triple(spec.point_m)}}; }
+  Json of(const effects::DrawnPoint& point) const { return {{"body", body(point.body)}, {"point", triple(point.point)}}; }
   /// A point given in the world at the start.
   Json fixed(const std::string& name, const Vector3d& point_world) const {
     const int index = body(name);
@@ -74,8 +75,9 @@ class Anchors {
 
 void add_links(const scene::Scene& scene, const Anchors& anchors, Json& page) {
   page["springs"] = page["rods"] = page["joints"] = page["forces"] = Json::array();
-  for (const auto& spring : scene.springs)
-    page["springs"].push_back({{"name", spring.name}, {"a", anchors.of(spring.a)}, {"b", anchors.of(spring.b)}, {"rest", spring.rest_length_m}});
+  const effects::Drawables drawn = effects::drawn(scene);
+  for (const effects::DrawnCoil& coil : drawn.coils)
+    page["springs"].push_back({{"name", coil.name}, {"a", anchors.of(coil.a)}, {"b", anchors.of(coil.b)}, {"rest", coil.rest_length}});
   for (const auto& rod : scene.rods) page["rods"].push_back({{"name", rod.name}, {"a", anchors.of(rod.a)}, {"b", anchors.of(rod.b)}});
   for (const auto& joint : scene.joints) {
     const bool is_hinge = joint.kind == scene::JointKind::kHinge;
@@ -85,7 +87,7 @@ void add_links(const scene::Scene& scene, const Anchors& anchors, Json& page) {
     if (is_hinge) entry["b"] = anchors.fixed(joint.body_a, joint.point_m + joint.axis.normalized());
     page["joints"].push_back(std::move(entry));
   }
-  for (const effects::DrawnArrow& force : effects::drawn(scene).arrows)
+  for (const effects::DrawnArrow& force : drawn.arrows)
     page["forces"].push_back({{"body", anchors.body(force.body)}, {"force", triple(force.force_world)}, {"point", triple(force.point_world)},
                               {"start", force.start_s}, {"duration", force.duration_s}});
 }

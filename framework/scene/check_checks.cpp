@@ -2,6 +2,8 @@
 
 #include <map>
 
+#include "framework/scene/words.h"
+
 namespace tumble::scene {
 namespace {
 
@@ -46,15 +48,16 @@ const std::map<std::string, CheckNeeds>& check_needs() {
 
 /// The links that a kind may name.
 struct LinkNames {
-  std::vector<std::string> springs, rods, joints;
+  std::vector<std::string> said, rods, joints;   // of effects; of those that stand here
 
   explicit LinkNames(const Scene& scene) {
-    for (const auto& spring : scene.springs) springs.push_back(spring.name);
+    for (const Words* words : all_words())
+      for (const Link& link : words->links(scene)) said.push_back(link.name);
     for (const auto& rod : scene.rods) rods.push_back(rod.name);
     for (const auto& joint : scene.joints) joints.push_back(joint.name);
   }
   std::vector<std::string> all() const {
-    std::vector<std::string> names = springs;
+    std::vector<std::string> names = said;
     names.insert(names.end(), rods.begin(), rods.end());
     names.insert(names.end(), joints.begin(), joints.end());
     return names;

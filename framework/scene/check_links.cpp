@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "framework/scene/document.h"
+#include "framework/scene/words.h"
 
 namespace tumble::scene {
 namespace {
@@ -27,13 +28,11 @@ class LinkChecker {
   LinkChecker(const Scene& scene, const Refuse& refuse) : scene_(scene), refuse_(refuse), bodies_(scene) {}
 
   void check() {
-    for (const SpringSpec& spring : scene_.springs) {
-      take_name(spring.name, spring.pointer);
-      check_ends("spring '" + spring.name + "'", spring.a, spring.b, spring.pointer);
-    }
+    for (const Words* words : all_words())
+      for (const Link& link : words->links(scene_)) take_name(link.name, link.pointer);
     for (const RodSpec& rod : scene_.rods) {
       take_name(rod.name, rod.pointer);
-      check_ends("rod '" + rod.name + "'", rod.a, rod.b, rod.pointer);
+      check_ends("rod '" + rod.name + "'", rod.a, rod.b, rod.pointer, bodies_, refuse_);
       check_length(rod);
     }
     for (const JointSpec& joint : scene_.joints) check_joint(joint);
@@ -52,14 +51,6 @@ class LinkChecker {
   void take_name(const std::string& name, const std::string& pointer) {
     const auto [at, is_new] = names_.emplace(name, pointer);
     if (!is_new) refuse_(pointer, "the name '" + name + "' is taken by " + at->second, "Give every spring, rod and joint a name of its own.");
-  }
-
-  void check_ends(const std::string& who, const AnchorSpec& a, const AnchorSpec& b, const std::string& pointer) const {
-    if (a.body == b.body && !a.body.empty()) {
-      const bool is_one_point = (a.point_m - b.point_m).isZero(0.0);
-      refuse_(pointer, who + " goes from body '" + a.body + "' to " + (is_one_point ? "the same point of it" : "itself, which moves nothing"), "Name another body at one end, or a point of the world.");
-    }
-    if (!can_move(a.body) && !can_move(b.body)) refuse_(pointer, who + " ties " + ending(a) + " to " + ending(b) + ": neither can move", "Name a movable body at one end.");
   }
 
   void check_length(const RodSpec& rod) const {
@@ -108,6 +99,14 @@ class LinkChecker {
 };
 
 }  // namespace
+
+void check_ends(const std::string& who, const AnchorSpec& a, const AnchorSpec& b, const std::string& pointer, const BodiesByName& bodies, const Refuse& refuse) {
+  if (a.body == b.body && !a.body.empty()) {
+    const bool is_one_point = (a.point_m - b.point_m).isZero(0.0);
+    refuse(pointer, who + " goes from body '" + a.body + "' to " + (is_one_point ? "the same point of it" : "itself, which moves nothing"), "Name another body at one end, or a point of the world.");
+  }
+  if (!bodies.can_move(a.body) && !bodies.can_move(b.body)) refuse(pointer, who + " ties " + ending(a) + " to " + ending(b) + ": neither can move", "Name a movable body at one end.");
+}
 
 void check_links(const Scene& scene, const Refuse& refuse) { LinkChecker(scene, refuse).check(); }
 

@@ -10,22 +10,6 @@ namespace {
 std::string ending(const std::string& body) { return body.empty() ? "the world" : body; }
 std::string between(const AnchorSpec& a, const AnchorSpec& b) { return ending(a.body) + " to " + ending(b.body); }
 
-EffectUse gravity(const Scene& scene) {
-  EffectUse effect{"gravity", "integration", "gravity_calls", {}, ""};
-  if (!scene.gravity_m_s2) return effect;
-  const Vector3d& g = *scene.gravity_m_s2;
-  if (g.isZero(0.0)) effect.note = "/gravity_m_s2 is zero, and is applied all the same: delete it";
-  effect.askers.push_back({"/gravity_m_s2", fmt::format("({:g}, {:g}, {:g}) m/s^2", g.x(), g.y(), g.z())});
-  return effect;
-}
-
-EffectUse spring(const Scene& scene) {
-  EffectUse effect{"spring", "forces", "spring_calls", {}, ""};
-  for (const auto& one : scene.springs)
-    effect.askers.push_back({one.pointer, fmt::format("{}: {}, {:g} N/m, {:g} N s/m, {:.4g} m at rest", one.name, between(one.a, one.b), one.stiffness_n_m, one.damping_n_s_m, one.rest_length_m)});
-  return effect;
-}
-
 EffectUse rod(const Scene& scene) {
   EffectUse effect{"rod", "constraints", "rod_calls", {}, ""};
   for (const auto& one : scene.rods) effect.askers.push_back({one.pointer, fmt::format("{}: {}, {:.4g} m", one.name, between(one.a, one.b), one.length_m)});
@@ -98,9 +82,9 @@ std::vector<EffectUse> effects_of(const Scene& scene) {
   const auto add_said = [&](const char* key) {
     if (const Words* words = words_of(key)) effects.push_back({words->name(), words->stage(), words->counter(), words->askers(scene), words->note(scene)});
   };
-  effects.push_back(gravity(scene));
+  add_said("gravity_m_s2");
   add_said("point_forces");
-  effects.push_back(spring(scene));
+  add_said("springs");
   add_said("drag");
   for (const auto& use : {rod, joint, motor, collision, contact, friction, sleep}) effects.push_back(use(scene));
   for (EffectUse& effect : effects)

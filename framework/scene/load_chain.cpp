@@ -7,7 +7,9 @@
 #include "framework/core/shortest_turn.h"
 #include "framework/scene/load_body.h"
 #include "framework/scene/load_links.h"
+#include "framework/scene/read_entry.h"
 #include "framework/scene/read_json.h"
+#include "framework/scene/words.h"
 
 namespace tumble::scene {
 namespace {
@@ -104,14 +106,23 @@ class ChainWriter {
     if (kind_ == "rods") {
       scene_.rods.push_back({name, a, b, distance_m, pointer_});
     } else if (kind_ == "springs") {
-      SpringSpec spring{name, a, b, value_.at("stiffness_n_m"), 0.0, distance_m, pointer_};
-      read(value_, "damping_n_s_m", spring.damping_n_s_m);
-      read(value_, "rest_length_m", spring.rest_length_m);
-      scene_.springs.push_back(spring);
+      json entry{{"name", name}, {"a", json_of(a)}, {"b", json_of(b)}, {"rest_length_m", distance_m}};
+      for (const char* key : {"stiffness_n_m", "damping_n_s_m", "rest_length_m"})
+        if (value_.contains(key)) entry[key] = value_.at(key);
+      add_entry("springs", entry);
     } else {
       add_joint(a, b, k, name);
     }
     if (value_.value("neighbours_apart", false) && !a.body.empty() && !b.body.empty()) scene_.apart.emplace_back(a.body, b.body);
+  }
+
+  /// What a file would say under a key, with the chain's own place for messages.
+  void add_entry(const char* key, const json& entry) {
+    const Words* words = words_of(key);
+    if (words == nullptr) document_.refuse(pointer_ + "/kind", std::string("this program is built without \"") + key + "\"");
+    EntrySource source{entry, document_, anchors_};
+    Entry read(source, pointer_, 1);
+    words->read(read, scene_);
   }
 
   void add_joint(const AnchorSpec& a, const AnchorSpec& b, int k, const std::string& name) {

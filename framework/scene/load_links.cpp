@@ -7,19 +7,6 @@ namespace {
 
 using nlohmann::json;
 
-SpringSpec spring(const json& value, Anchors& anchors, const std::string& pointer, const std::string& name) {
-  SpringSpec spec;
-  spec.pointer = pointer;
-  spec.name = value.value("name", name);
-  spec.a = anchors.read_anchor(value.at("a"), pointer + "/a");
-  spec.b = anchors.read_anchor(value.at("b"), pointer + "/b");
-  spec.stiffness_n_m = value.at("stiffness_n_m");
-  read(value, "damping_n_s_m", spec.damping_n_s_m);
-  spec.rest_length_m = (anchors.place_at_start(spec.b) - anchors.place_at_start(spec.a)).norm();
-  read(value, "rest_length_m", spec.rest_length_m);
-  return spec;
-}
-
 RodSpec rod(const json& value, Anchors& anchors, const std::string& pointer, const std::string& name) {
   RodSpec spec;
   spec.pointer = pointer;
@@ -101,7 +88,6 @@ void each(const json& root, const std::string& key, const ReadOne& read_one) {
 void read_links(const Document& document, Anchors& anchors, Scene& scene) {
   const json& root = document.json;
   using Text = const std::string&;
-  each(root, "springs", [&](const json& value, Text at, Text n) { scene.springs.push_back(spring(value, anchors, at, "spring " + n)); });
   each(root, "rods", [&](const json& value, Text at, Text n) { scene.rods.push_back(rod(value, anchors, at, "rod " + n)); });
   each(root, "joints", [&](const json& value, Text at, Text n) { scene.joints.push_back(joint(value, document, anchors, at, "joint " + n)); });
   each(root, "motors", [&](const json& value, Text at, Text) { scene.motors.push_back(motor(value, at)); });

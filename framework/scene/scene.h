@@ -67,16 +67,6 @@ struct AnchorSpec {
   Vector3d point_m = Vector3d::Zero();   // body frame (origin at the centre of mass); world frame for the world
 };
 
-/// A damped spring between two anchors.
-struct SpringSpec {
-  std::string name;
-  AnchorSpec a, b;
-  double stiffness_n_m = kUnset;
-  double damping_n_s_m = 0.0;
-  double rest_length_m = kUnset;    // load_scene fills the distance at the start where the file leaves it out
-  std::string pointer{};            // JSON pointer of the entry that asked for it, for messages; empty: made in memory
-};
-
 /// A rod without mass: keeps two anchors at a distance.
 struct RodSpec {
   std::string name;
@@ -157,10 +147,8 @@ struct Scene {
   double duration_s = 0.0;
   double step_s = 1.0 / 60.0;
   double rest_speed_m_s = 1e-3;     // an impact that separates more slowly than this ends in rest
-  std::optional<Vector3d> gravity_m_s2;
   std::vector<BodySpec> bodies;
   TypedLists effects;               // what it says of effects: lists of the types in framework/effects/NAME/NAME.h, such as effects.of<DragSpec>()
-  std::vector<SpringSpec> springs;
   std::vector<RodSpec> rods;
   std::vector<JointSpec> joints;
   std::vector<MotorSpec> motors;

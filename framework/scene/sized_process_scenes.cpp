@@ -46,7 +46,7 @@ CheckSpec no_overlap() {
 
 Scene scene_of(double duration, double step) {
   Scene scene;
-  scene.gravity_m_s2 = Vector3d(0, 0, -9.81);
+  EntryWriter{scene}("gravity_m_s2", Vector3d(0, 0, -9.81));
   scene.needs = {"a1", "a2", "a3"};
   scene.duration_s = duration;
   scene.step_s = step;

@@ -25,6 +25,14 @@ enum class PlaceKind { kHolds, kOther };
 /// Called with a place in the world's coordinates; may change it. [m]
 using VisitPlace = std::function<void(Vector3d& place_world, PlaceKind kind)>;
 
+/// Something between two points that has a name of its own: a spring, a rod, a joint.
+struct Link {
+  std::string name;
+  AnchorSpec a, b;
+  double length_m;            // that it keeps, or has at rest; NaN where it has none
+  std::string pointer;        // of its entry
+};
+
 class Words {
  public:
   virtual ~Words() = default;
@@ -50,6 +58,8 @@ class Words {
   /// Takes its entries out of the scene.
   virtual void clear(Scene& scene) const = 0;
 
+  /// Its entries, where they are links. No two links of a scene have the same name.
+  virtual std::vector<Link> links(const Scene&) const { return {}; }
   /// Every place in the world that its entries name.
   virtual void visit_places(TypedLists&, const VisitPlace&) const {}
 };

@@ -9,11 +9,6 @@ namespace {
 
 using nlohmann::json;
 
-json json_of(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
-json json_of(const AnchorSpec& anchor) {
-  if (anchor.body.empty()) return {{"point_world_m", json_of(anchor.point_m)}};
-  return {{"body", anchor.body}, {"point_body_m", json_of(anchor.point_m)}};
-}
 template <class Value>
 json json_of(const Value& value) {
   return value;

@@ -7,6 +7,7 @@
 
 #include "framework/core/error.h"
 #include "framework/effects/drag/drag.h"
+#include "framework/effects/spring/spring.h"
 #include "tests/engines/effect_scenes.h"
 #include "tests/engines/reference_laws.h"
 
@@ -36,7 +37,7 @@ scene::Scene tied(double duration, const std::string& link) {
   scene::Scene scene = flying(duration);
   for (int i = 0; i < 6; ++i) {
     const std::string a = "ball " + std::to_string(i), b = "box " + std::to_string(i), name = "link " + std::to_string(i);
-    if (link == "spring") scene.springs.push_back({name, {a, Vector3d::Zero()}, {b, Vector3d::Zero()}, 10.0, 0.1, 2.0});
+    if (link == "spring") scene.effects.of<effects::SpringSpec>().push_back({name, {a, Vector3d::Zero()}, {b, Vector3d::Zero()}, 10.0, 0.1, 2.0});
     if (link == "drag") scene.effects.of<effects::DragSpec>().push_back({a, 0.1, 0.1});
     if (link == "rod") scene.rods.push_back({name, {a, Vector3d::Zero()}, {b, Vector3d::Zero()}, 2.0});
     if (link == "joint") scene.joints.push_back({name, scene::JointKind::kHinge, a, b, {1.0 * i, 1, 0}, Vector3d::UnitZ()});

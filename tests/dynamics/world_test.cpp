@@ -2,6 +2,7 @@
 #include "framework/dynamics/world.h"
 #include "framework/effects/build_world.h"
 #include "framework/effects/drag/drag.h"
+#include "framework/effects/gravity/gravity.h"
 #include "framework/effects/invariants.h"
 
 #include <cmath>
@@ -12,6 +13,7 @@
 #include "framework/core/error.h"
 #include "framework/dynamics/anchors.h"
 #include "framework/effects/point_force/point_force.h"
+#include "framework/effects/spring/spring.h"
 #include "tests/dynamics/tops.h"
 
 namespace tumble::testing {
@@ -98,7 +100,7 @@ TEST(World, MovesAWallAsPrescribedWithTheRateOfItsPosition) {
 
 TEST(World, SumsInvariantsOverMovableBodiesAboutTheOrigin) {
   scene::Scene scene = scene_of({ball("a", 2.0), ball("b", 3.0)});
-  scene.gravity_m_s2 = Vector3d(0, 0, -10);
+  effects::set_gravity(scene, Vector3d(0, 0, -10));
   scene.bodies[0].position_m = {1, 0, 4};
   scene.bodies[0].velocity_m_s = {0, 1, 0};
   scene.bodies[1].immovable = true;
@@ -114,7 +116,7 @@ TEST(World, SumsInvariantsOverMovableBodiesAboutTheOrigin) {
 
 TEST(World, HasNoLinksThatTheSceneDoesNotAskFor) {
   const World world = build_world(scene_of({ball("a", 2.0), ball("b", 2.0)}));
-  EXPECT_TRUE(world.springs.empty() && world.rods.empty() && world.joints.empty() && world.effects.of<effects::Drag>().empty() && world.motors.empty() && world.apart.empty());
+  EXPECT_TRUE(world.effects.of<effects::SpringLink>().empty() && world.rods.empty() && world.joints.empty() && world.effects.of<effects::Drag>().empty() && world.motors.empty() && world.apart.empty());
   EXPECT_FALSE(world.contact.has_value());
   EXPECT_FALSE(world.stabilisation.has_value());
 }
@@ -129,9 +131,9 @@ scene::Scene two_balls() {
 
 TEST(World, AnchorsMoveWithTheirBodies) {
   scene::Scene scene = two_balls();
-  scene.springs.push_back({"coil", {"b", {1, 0, 0}}, {"", {4, 7, 0}}, 10.0, 1.0, 2.0, ""});
+  scene.effects.of<effects::SpringSpec>().push_back({"coil", {"b", {1, 0, 0}}, {"", {4, 7, 0}}, 10.0, 1.0, 2.0, ""});
   World world = build_world(scene);
-  const SpringLink& link = world.springs[0];
+  const effects::SpringLink& link = world.effects.of<effects::SpringLink>()[0];
   EXPECT_EQ(link.a.body, 1);
   EXPECT_EQ(link.b.body, -1);
   std::vector<RigidBodyState> states = {world.bodies[0].state, world.bodies[1].state};
@@ -192,9 +194,9 @@ TEST(World, RodsDoNotKeepFromCollidingAndPairsApartAreSortedOnce) {
 
 TEST(World, RefusesLinksThatCannotBe) {
   scene::Scene scene = two_balls();
-  scene.springs.push_back({"coil", {"c", {0, 0, 0}}, {"", {0, 0, 0}}, 1, 0, 1, ""});
+  scene.effects.of<effects::SpringSpec>().push_back({"coil", {"c", {0, 0, 0}}, {"", {0, 0, 0}}, 1, 0, 1, ""});
   EXPECT_THROW(build_world(scene), UserError);
-  scene.springs.clear();
+  scene.effects.of<effects::SpringSpec>().clear();
   scene.rods.push_back({"stick", {"", {0, 0, 0}}, {"", {1, 0, 0}}, 1, ""});
   EXPECT_THROW(build_world(scene), UserError);
   scene.rods.clear();

@@ -6,7 +6,9 @@
 #include <vector>
 
 #include "framework/effects/drag/drag.h"
+#include "framework/effects/gravity/gravity.h"
 #include "framework/effects/point_force/point_force.h"
+#include "framework/effects/spring/spring.h"
 #include "tests/engines/scenes.h"
 
 namespace tumble::testing {
@@ -44,8 +46,8 @@ inline scene::Scene bare() {
 }
 
 inline const std::map<std::string, AddsEffect> kEffects = {
-    {"gravity", [](scene::Scene& s) { s.gravity_m_s2 = Vector3d(0, 0, -1); }},
-    {"spring", [](scene::Scene& s) { s.springs.push_back({"s", {"", {0, 0, 2}}, {"a", Vector3d::Zero()}, 10.0, 0.1, 1.0}); }},
+    {"gravity", [](scene::Scene& s) { effects::set_gravity(s, Vector3d(0, 0, -1)); }},
+    {"spring", [](scene::Scene& s) { s.effects.of<effects::SpringSpec>().push_back({"s", {"", {0, 0, 2}}, {"a", Vector3d::Zero()}, 10.0, 0.1, 1.0}); }},
     {"rod",
      [](scene::Scene& s) {
        s.rods.push_back({"r", {"", {0, 0, 2}}, {"a", Vector3d::Zero()}, 1.0});

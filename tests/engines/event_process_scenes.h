@@ -2,6 +2,7 @@
 #pragma once
 
 #include "framework/effects/drag/drag.h"
+#include "framework/effects/gravity/gravity.h"
 #include "framework/effects/point_force/point_force.h"
 #include "framework/scene/load_scene.h"
 #include "tests/engines/event_scenes.h"
@@ -26,7 +27,7 @@ inline scene::Scene pendula_and_balls(int pendula, double duration) {
   scene.name = "pendula";
   scene.bodies = std::move(bodies);
   scene.duration_s = duration;
-  scene.gravity_m_s2 = kEarth;
+  effects::set_gravity(scene, kEarth);
   scene.stabilisation = scene::StabilisationSpec{};
   scene.effects.of<effects::DragSpec>().push_back({"bob0", 0.2, 0.0});
   scene.effects.of<effects::PointForceSpec>().push_back({"ball0", {0.5, 0, 1.0}, {0.05, 0.35, 0.38}, 0.1, 0.3});

@@ -8,6 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
+#include "framework/effects/gravity/gravity.h"
+#include "framework/effects/spring/spring.h"
 
 namespace tumble::engines {
 namespace {
@@ -110,7 +112,7 @@ TEST(Judge, AHingeOpensByTheDistanceOfItsPointsAndTheAngleOfItsAxes) {
 
 TEST(Judge, TheForceInALinkIsComparedAsAPartOfTheTruth) {
   HandMade made(stays({0, 0, 0}), stays({1, 0, 0}));
-  made.scene.springs.push_back({"coil", {}, {}, 1, 0, 1, ""});
+  made.scene.effects.of<effects::SpringSpec>().push_back({"coil", {}, {}, 1, 0, 1, ""});
   made.scene.rods.push_back({"stick", {}, {}, 1, ""});
   for (Frame& frame : made.run.frames) {
     frame.spring_forces = {-3.0};
@@ -245,7 +247,7 @@ TEST(Judge, DominoesFallInTheirOrder) {
 /// At rest a hundred metres up: its energy trembles by roundings of m g z = 1962 J, and nothing else is there to compare that with.
 HandMade at_rest_high_up(double tremble_j) {
   HandMade made(stays({0, 0, 100}), stays({0, 0, 50}));
-  made.scene.gravity_m_s2 = Vector3d(0, 0, -9.81);
+  effects::set_gravity(made.scene, Vector3d(0, 0, -9.81));
   made.scene.step_s = 0.01;
   for (std::size_t k = 0; k < made.run.frames.size(); ++k) {
     made.run.frames[k].kinetic_energy = 0.0;

@@ -9,6 +9,7 @@
 #include "framework/effects/build_world.h"
 #include "framework/effects/drag/drag.h"
 #include "framework/effects/point_force/point_force.h"
+#include "framework/effects/spring/spring.h"
 #include "framework/engines/base/run_watch.h"
 #include "framework/engines/judging/judge.h"
 #include "framework/engines/stepping/stability.h"
@@ -159,12 +160,12 @@ TEST(RunWatch, EnergyThatAMethodMakesIsAFault) {
 // A ball on a spring, pushed by a constant force: what the force brings in is no fault, what the method makes beside it is. The first step counts.
 TEST(RunWatch, WhatAForceBringsInIsNoFault) {
   scene::Scene scene = scene_of({ball("ball", 0.1, 1.0, {1, 0, 0}, Vector3d::Zero())}, 1.0, Vector3d::Zero());
-  scene::SpringSpec spring;
+  effects::SpringSpec spring;
   spring.a.body = "ball";
   spring.b.point_m = Vector3d(0, 0, 0);
   spring.stiffness_n_m = 100.0;
   spring.rest_length_m = 0.5;
-  scene.springs.push_back(spring);
+  scene.effects.of<effects::SpringSpec>().push_back(spring);
   scene.effects.of<effects::PointForceSpec>().push_back({"ball", {50, 0, 0}, {1, 0, 0}, 0.0, 0.5});
   scene.step_s = 0.01;
   EXPECT_FALSE(has_fault(run_by("rd", scene), "energy_rises"));

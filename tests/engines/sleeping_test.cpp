@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/effects/gravity/gravity.h"
 #include "framework/effects/point_force/point_force.h"
 #include "tests/engines/reference_laws.h"
 
@@ -122,7 +123,7 @@ TEST(Sleeping, WhatOnlyPassesByWakesNobody) {
   scene::Scene scene = block_on_floor(3.0);
   auto passer = ball("passer", 0.2, 1.0, {0.75, -4, 0.5}, {0, 3, 0});   // 5 cm beside the block, at t = 1.3 s
   passer.collides = true;
-  scene.gravity_m_s2 = kGravity;
+  effects::set_gravity(scene, kGravity);
   passer.position_m.z() = 0.5;
   scene.bodies.push_back(passer);
   scene.bodies.push_back(rough(box("rail", {0.3, 6, 0.1}, 1.0, {0.85, 0, 0.2 - 1e-9}, Vector3d::Zero()), 0.0));

@@ -8,6 +8,7 @@
 #include "framework/dynamics/methods.h"
 #include "framework/effects/build_world.h"
 #include "framework/effects/drag/drag.h"
+#include "framework/effects/spring/spring.h"
 #include "framework/engines/stepping/stability.h"
 #include "framework/engines/truths/memory_scene.h"
 #include "tests/engines/reference_laws.h"
@@ -101,7 +102,7 @@ TEST(LargestStep, OfATurningThatAJointHoldsIsNone) {
 /// A ball of 0.5 kg on a spring of no length to the world, pulled 1 m along it.
 scene::Scene on_springs(const std::vector<std::pair<double, double>>& stiffness_and_damping) {
   scene::Scene scene = scene_of({ball("weight", 0.1, 0.5, Vector3d::UnitX(), Vector3d::Zero())}, 1.0);
-  for (const auto& [k, c] : stiffness_and_damping) scene.springs.push_back({"spring " + std::to_string(scene.springs.size() + 1), {"", Vector3d::Zero()}, {"weight", Vector3d::Zero()}, k, c, 0.0});
+  for (const auto& [k, c] : stiffness_and_damping) scene.effects.of<effects::SpringSpec>().push_back({"spring " + std::to_string(scene.effects.of<effects::SpringSpec>().size() + 1), {"", Vector3d::Zero()}, {"weight", Vector3d::Zero()}, k, c, 0.0});
   return scene;
 }
 
@@ -136,7 +137,7 @@ TEST(LargestStep, OfASpringOnAHingedBodyIsThatOfTheSwingItsHingeAllows) {
     door.collides = false;
     scene::Scene scene = scene_of({door}, 1.0);
     scene.joints.push_back({"pin", kind, "door", "", Vector3d::Zero(), Vector3d::UnitY()});
-    scene.springs.push_back({"closer", {"", Vector3d(d, 0, 1.0)}, {"door", Vector3d(d - r, 0, 0)}, k, 0.0, 1.0});
+    scene.effects.of<effects::SpringSpec>().push_back({"closer", {"", Vector3d(d, 0, 1.0)}, {"door", Vector3d(d - r, 0, 0)}, k, 0.0, 1.0});
     const auto judged = engines::judge_springs(build_world(scene), reference_laws(), 0.1);
     ASSERT_TRUE(judged);
     EXPECT_NEAR(judged->angular_frequency, frequency, 1e-6 * frequency);   // rounding of 1e-6 of what the hinge holds
@@ -153,9 +154,9 @@ TEST(LargestStep, OfManySpringsIsThatOfTheRow) {
     scene::Scene scene = scene_of({}, 1.0);
     for (int i = 0; i < n; ++i) {
       scene.bodies.push_back(ball("bead" + std::to_string(i), 0.01, 0.5, Vector3d(i + 1, 0, 0), Vector3d::Zero()));
-      scene.springs.push_back({"spring" + std::to_string(i), {i == 0 ? "" : scene.bodies[static_cast<std::size_t>(i) - 1].name, Vector3d::Zero()}, {scene.bodies.back().name, Vector3d::Zero()}, 200.0, 0.0, 1.0});
+      scene.effects.of<effects::SpringSpec>().push_back({"spring" + std::to_string(i), {i == 0 ? "" : scene.bodies[static_cast<std::size_t>(i) - 1].name, Vector3d::Zero()}, {scene.bodies.back().name, Vector3d::Zero()}, 200.0, 0.0, 1.0});
     }
-    scene.springs.push_back({"last", {scene.bodies.back().name, Vector3d::Zero()}, {"", Vector3d(n + 1, 0, 0)}, 200.0, 0.0, 1.0});
+    scene.effects.of<effects::SpringSpec>().push_back({"last", {scene.bodies.back().name, Vector3d::Zero()}, {"", Vector3d(n + 1, 0, 0)}, 200.0, 0.0, 1.0});
     const auto judged = engines::judge_springs(build_world(scene), reference_laws(), 0.1);
     ASSERT_TRUE(judged);
     const double exact = 40.0 * std::sin(M_PI * n / (2.0 * n + 2.0));

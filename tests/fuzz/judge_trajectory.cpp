@@ -10,6 +10,7 @@
 #include "framework/dynamics/world.h"
 #include "framework/effects/build_world.h"
 #include "framework/effects/point_force/point_force.h"
+#include "framework/effects/spring/spring.h"
 
 namespace tumble::fuzz {
 namespace {
@@ -89,7 +90,7 @@ Energy energy_of(const Judge& judge, const Frame& frame) {
     add(energy.kinetic, 0.5 * omega_body.dot(body.inertia.inertia_body * omega_body));
     if (world.gravity_world) add(energy.potential, -body.inertia.mass * world.gravity_world->dot(at.com_world));
   }
-  for (const SpringLink& spring : world.springs) {
+  for (const effects::SpringLink& spring : world.effects.of<effects::SpringLink>()) {
     const double stretch = (judge.place(frame, spring.a) - judge.place(frame, spring.b)).norm() - spring.spring.rest_length;
     add(energy.potential, 0.5 * spring.spring.stiffness * stretch * stretch);
     energy.in_springs += 0.5 * spring.spring.stiffness * stretch * stretch;

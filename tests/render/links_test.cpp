@@ -1,6 +1,7 @@
 // Springs, rods and joints are seen where the scene puts them, in every frame.
 #include <gtest/gtest.h>
 
+#include "framework/effects/spring/spring.h"
 #include "framework/render/links.h"
 #include "framework/render/stage.h"
 #include "framework/render/stage_geometries.h"
@@ -13,7 +14,7 @@ namespace {
 /// The falling ball, hung from (0, 0, 2.5) by a spring at its top and by a rod at its side; a hinge through its middle.
 scene::Scene hung_ball() {
   scene::Scene scene = falling_ball();
-  scene.springs = {{"spring", {"", {0, 0, 2.5}}, {"ball", {0, 0, 0.3}}, 10.0, 0.0, 0.5}};
+  scene.effects.of<effects::SpringSpec>() = {{"spring", {"", {0, 0, 2.5}}, {"ball", {0, 0, 0.3}}, 10.0, 0.0, 0.5}};
   scene.rods = {{"rod", {"", {1, 0, 2.5}}, {"ball", {0.3, 0, 0}}, 1.0}};
   scene::JointSpec hinge;
   hinge.kind = scene::JointKind::kHinge;

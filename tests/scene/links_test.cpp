@@ -5,6 +5,7 @@
 
 #include "framework/core/error.h"
 #include "framework/effects/drag/drag.h"
+#include "framework/effects/spring/spring.h"
 #include "framework/scene/load_scene.h"
 
 namespace tumble::scene {
@@ -24,7 +25,7 @@ constexpr double kRounding = 50 * 2.3e-16;
 
 TEST(Links, ASceneThatNamesNoneHasNone) {
   const Scene scene = scene_with(R"("step_s": 0.01)");
-  EXPECT_TRUE(scene.springs.empty() && scene.rods.empty() && scene.joints.empty() && scene.effects.of<effects::DragSpec>().empty() && scene.motors.empty() && scene.apart.empty());
+  EXPECT_TRUE(scene.effects.of<effects::SpringSpec>().empty() && scene.rods.empty() && scene.joints.empty() && scene.effects.of<effects::DragSpec>().empty() && scene.motors.empty() && scene.apart.empty());
   EXPECT_FALSE(scene.contact.has_value());
   EXPECT_FALSE(scene.stabilisation.has_value());
 }
@@ -35,17 +36,17 @@ TEST(Links, AnchorsAreFoundInTheBodysOwnFrame) {
     { "a": { "body": "box", "point_world_m": [0, 1, 5] }, "b": { "body": "ball" }, "stiffness_n_m": 10 },
     { "a": { "body": "box", "point_body_m": [0, 1, 0] }, "b": { "point_world_m": [-1, 0, 7] }, "stiffness_n_m": 10, "damping_n_s_m": 2, "rest_length_m": 0.5 },
     { "name": "corner", "a": { "body": "box", "vertex_towards": [1, 1, 1] }, "b": { "body": "ball", "point_body_m": [0, 0, 0.1] }, "stiffness_n_m": 10 }])");
-  ASSERT_EQ(scene.springs.size(), 3u);
-  EXPECT_EQ(scene.springs[0].name, "spring 1");
-  EXPECT_LE((scene.springs[0].a.point_m - Vector3d(1, 0, 0)).norm(), kRounding);
-  EXPECT_NEAR(scene.springs[0].rest_length_m, std::sqrt(10.0), kRounding);
-  EXPECT_EQ(scene.springs[1].a.point_m, Vector3d(0, 1, 0));
-  EXPECT_EQ(scene.springs[1].b.body, "");
-  EXPECT_EQ(scene.springs[1].rest_length_m, 0.5);
-  EXPECT_EQ(scene.springs[1].damping_n_s_m, 2.0);
-  EXPECT_EQ(scene.springs[2].name, "corner");
-  EXPECT_LE((scene.springs[2].a.point_m - Vector3d(1, 1, 1)).norm(), kRounding);
-  EXPECT_EQ(scene.springs[2].pointer, "/springs/2");
+  ASSERT_EQ(scene.effects.of<effects::SpringSpec>().size(), 3u);
+  EXPECT_EQ(scene.effects.of<effects::SpringSpec>()[0].name, "spring 1");
+  EXPECT_LE((scene.effects.of<effects::SpringSpec>()[0].a.point_m - Vector3d(1, 0, 0)).norm(), kRounding);
+  EXPECT_NEAR(scene.effects.of<effects::SpringSpec>()[0].rest_length_m, std::sqrt(10.0), kRounding);
+  EXPECT_EQ(scene.effects.of<effects::SpringSpec>()[1].a.point_m, Vector3d(0, 1, 0));
+  EXPECT_EQ(scene.effects.of<effects::SpringSpec>()[1].b.body, "");
+  EXPECT_EQ(scene.effects.of<effects::SpringSpec>()[1].rest_length_m, 0.5);
+  EXPECT_EQ(scene.effects.of<effects::SpringSpec>()[1].damping_n_s_m, 2.0);
+  EXPECT_EQ(scene.effects.of<effects::SpringSpec>()[2].name, "corner");
+  EXPECT_LE((scene.effects.of<effects::SpringSpec>()[2].a.point_m - Vector3d(1, 1, 1)).norm(), kRounding);
+  EXPECT_EQ(scene.effects.of<effects::SpringSpec>()[2].pointer, "/springs/2");
 }
 
 TEST(Links, AVertexOfAModelIsTakenByItsNumber) {
@@ -54,10 +55,10 @@ TEST(Links, AVertexOfAModelIsTakenByItsNumber) {
   const auto scene_at = [&](const std::string& vertex) {
     return parse_scene(R"({ "title": "t", "duration_s": 1, )" + bodies + R"(, "springs": [{ "a": { "body": "pawn", )" + vertex + R"( }, "b": { "point_world_m": [0, 0, 9] }, "stiffness_n_m": 1 }] })", file);
   };
-  const Vector3d first = scene_at(R"("vertex": 0)").springs[0].a.point_m, second = scene_at(R"("vertex": 1)").springs[0].a.point_m;
+  const Vector3d first = scene_at(R"("vertex": 0)").effects.of<effects::SpringSpec>()[0].a.point_m, second = scene_at(R"("vertex": 1)").effects.of<effects::SpringSpec>()[0].a.point_m;
   EXPECT_GT(first.norm(), 0.0);
   EXPECT_NE(first, second);
-  EXPECT_GE(scene_at(R"("vertex_towards": [0, 0, 1])").springs[0].a.point_m.z(), std::max(first.z(), second.z()));
+  EXPECT_GE(scene_at(R"("vertex_towards": [0, 0, 1])").effects.of<effects::SpringSpec>()[0].a.point_m.z(), std::max(first.z(), second.z()));
   try {
     scene_at(R"("vertex": 100000)");
     ADD_FAILURE() << "vertex 100000 was accepted";
@@ -126,10 +127,10 @@ TEST(Links, AChainOfBallJointsBetweenTwoPointsIsABridge) {
 TEST(Links, AChainOfSpringsIsAsLongAsItIsLaidUnlessSaidOtherwise) {
   const Scene scene = scene_with(R"("chains": [{ "kind": "springs", "links": 3, "from": { "body": "box" }, "direction": [0, 0, -1], "spacing_m": 1.5, "stiffness_n_m": 7, "damping_n_s_m": 0.1, "neighbours_apart": true,
     "link": { "name": "bead", "shape": { "sphere": { "radius_m": 0.1 } }, "mass_kg": 1 } }])");
-  ASSERT_EQ(scene.springs.size(), 3u);
-  EXPECT_NEAR(scene.springs[2].rest_length_m, 1.5, kRounding);
-  EXPECT_EQ(scene.springs[2].stiffness_n_m, 7.0);
-  EXPECT_EQ(scene.springs[2].damping_n_s_m, 0.1);
+  ASSERT_EQ(scene.effects.of<effects::SpringSpec>().size(), 3u);
+  EXPECT_NEAR(scene.effects.of<effects::SpringSpec>()[2].rest_length_m, 1.5, kRounding);
+  EXPECT_EQ(scene.effects.of<effects::SpringSpec>()[2].stiffness_n_m, 7.0);
+  EXPECT_EQ(scene.effects.of<effects::SpringSpec>()[2].damping_n_s_m, 0.1);
   EXPECT_EQ(scene.apart.size(), 3u);   // with the box, too
   EXPECT_FALSE(scene.stabilisation.has_value());
 }

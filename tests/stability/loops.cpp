@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/shortest_turn.h"
+#include "framework/effects/gravity/gravity.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/methods.h"
 #include "tests/stability/support.h"
@@ -25,7 +26,7 @@ scene::BodySpec link(const std::string& name, const Vector3d& from, const Vector
 /// N four-bars side by side (IFToMM benchmark A02): N + 1 cranks on the ground, N couplers; the cranks stand upright and go at 1 m/s.
 scene::Scene four_bars(int n) {
   scene::Scene scene = truths::empty_scene("four-bars", 1.0, 1e-9);
-  scene.gravity_m_s2 = kDown;
+  effects::set_gravity(scene, kDown);
   scene.stabilisation = scene::StabilisationSpec{};
   const Vector3d y = Vector3d::UnitY();
   for (int i = 0; i <= n; ++i) {

@@ -12,8 +12,6 @@ namespace tumble::engines::built {
 
 constexpr std::string_view kWithout = TUMBLE_WITHOUT;
 
-constexpr bool kGravity = kWithout != "gravity";
-constexpr bool kSpring = kWithout != "spring";
 constexpr bool kRod = kWithout != "rod";
 constexpr bool kJoint = kWithout != "joint";
 constexpr bool kMotor = kWithout != "motor";

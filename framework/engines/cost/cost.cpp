@@ -72,7 +72,7 @@ class Measurement final : public TrajectorySink {
 };
 
 bool links_meet(const scene::Scene& scene) {
-  const bool linked = !(scene.springs.empty() && scene.rods.empty() && scene.joints.empty()) || effects::asks_for(scene, [](const effects::Traits& traits) { return traits.ties; });
+  const bool linked = !(scene.rods.empty() && scene.joints.empty()) || effects::asks_for(scene, [](const effects::Traits& traits) { return traits.ties; });
   return linked && std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const scene::BodySpec& body) { return body.collides; }) > 1;
 }
 

@@ -269,7 +269,7 @@ void refine(const scene::Scene& scene, const Laws& laws, const Window& window, d
 }  // namespace
 
 bool goes_in_closed_form(const scene::Scene& scene) {
-  return scene.springs.empty() && scene.rods.empty() && scene.joints.empty() && scene.motors.empty() && !scene.contact && !effects::asks_for(scene, [](const effects::Traits& traits) { return !traits.leaves_flight; });
+  return scene.rods.empty() && scene.joints.empty() && scene.motors.empty() && !scene.contact && !effects::asks_for(scene, [](const effects::Traits& traits) { return !traits.leaves_flight; });
 }
 
 std::optional<CostTruth> try_truth(const scene::Scene& scene, const Laws& laws, const CostOptions& options, std::string& why) {

@@ -12,14 +12,14 @@ LinkMeasures::LinkMeasures(const FlightWorld& world, const Laws& laws) : world_(
 }
 
 Wrench LinkMeasures::wrench_on(int body, const RigidBodyState& state) const {
-  Wrench sum{world_.world().gravity_world ? Vector3d(world_.inertia(body).mass * *world_.world().gravity_world) : Vector3d(Vector3d::Zero()), Vector3d::Zero()};
+  Wrench sum{Vector3d::Zero(), Vector3d::Zero()};
   for (const auto& [effect, forces] : forces_) forces->add(body, state, sum);
   return sum;
 }
 
 void LinkMeasures::measure(Frame& frame, const FlightOf& flight_of) {
   const World& world = world_.world();
-  LinkForces forces{std::vector<double>(world.springs.size()), std::vector<double>(world.rods.size()), std::vector<double>(world.joints.size())};
+  LinkForces forces(world);
   std::vector<RigidBodyState> states;
   for (int i = 0; i < world_.size(); ++i) states.push_back(world_.state(i, flight_of(i), frame.time));
   for (const int body : world_.movers()) {
@@ -43,9 +43,7 @@ void LinkMeasures::measure(Frame& frame, const FlightOf& flight_of) {
     }
     group.measure(states, frame.time, frame.contacts, forces);
   }
-  frame.spring_forces = std::move(forces.springs);
-  frame.rod_tensions = std::move(forces.rods);
-  frame.joint_forces = std::move(forces.joints);
+  record(std::move(forces), frame);
 }
 
 std::vector<Event> force_switches(const World& world, double until) {

@@ -43,7 +43,7 @@ bool holds_effects(const World& world) {
 
 Processes::Processes(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules)
     : whole_(whole), passages_(whole, std::move(shape_of), laws, rules),
-      holds_any_(!whole.springs.empty() || !whole.rods.empty() || !whole.joints.empty() || holds_effects(whole) || whole.contact.has_value()), linked_(whole.bodies.size(), -1) {
+      holds_any_(!whole.rods.empty() || !whole.joints.empty() || holds_effects(whole) || whole.contact.has_value()), linked_(whole.bodies.size(), -1) {
   for (const std::vector<int>& group : groups_of_linked_bodies(whole))
     for (const int body : group) linked_[static_cast<std::size_t>(body)] = group.front();
   passages_.ask([this](const ProcessState& state) { return components_of(state).size() > 1; });

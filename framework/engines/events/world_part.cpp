@@ -46,7 +46,7 @@ void take_links(const std::vector<Link>& whole, const std::vector<int>& indices,
 }  // namespace
 
 EntriesByBody::EntriesByBody(const World& whole) {
-  for (Places* places : {&springs_, &rods_, &joints_, &apart_}) places->resize(whole.bodies.size());
+  for (Places* places : {&rods_, &joints_, &apart_}) places->resize(whole.bodies.size());
   for (const effects::Effect* effect : effects::all()) {
     Places& places = effects_.emplace_back();
     const int count = effect->count_in(whole);
@@ -59,7 +59,6 @@ EntriesByBody::EntriesByBody(const World& whole) {
     for (std::size_t k = 0; k < links.size(); ++k)
       for (const int body : {links[k].a.body, links[k].b.body}) note(places, body, k);
   };
-  note_ends(whole.springs, springs_);
   note_ends(whole.rods, rods_);
   note_ends(whole.joints, joints_);
   for (std::size_t k = 0; k < whole.apart.size(); ++k)
@@ -75,7 +74,7 @@ struct PartMaker {
   WorldPart make(const std::vector<int>& still) const {
     WorldPart part;
     World& world = part.world;
-    const std::vector<int> springs = of_members(entries.springs_, members), rods = of_members(entries.rods_, members), joints = of_members(entries.joints_, members);
+    const std::vector<int> rods = of_members(entries.rods_, members), joints = of_members(entries.joints_, members);
     part.bodies = members;
     part.bodies.insert(part.bodies.end(), still.begin(), still.end());
     for (const auto& places : entries.effects_) part.entries.push_back(places.empty() ? std::vector<int>{} : of_members(places, members));
@@ -83,7 +82,6 @@ struct PartMaker {
       for (const int entry : part.entries[k])
         for (const int body : effects::all()[k]->bodies_of(whole, entry))
           if (body >= 0) part.bodies.push_back(body);
-    add_ends(whole.springs, springs, part.bodies);
     add_ends(whole.rods, rods, part.bodies);
     add_ends(whole.joints, joints, part.bodies);
     std::sort(part.bodies.begin(), part.bodies.end());
@@ -93,7 +91,6 @@ struct PartMaker {
     world.gravity_world = whole.gravity_world;
     world.contact = whole.contact;
     world.stabilisation = whole.stabilisation;
-    take_links(whole.springs, springs, part.bodies, world.springs);
     take_links(whole.rods, rods, part.bodies, world.rods);
     take_links(whole.joints, joints, part.bodies, world.joints);
     take_pushes(joints, part);

@@ -16,7 +16,7 @@ class EntriesByBody {
   friend struct PartMaker;
   using Places = std::vector<std::vector<int>>;   // by body: indices, ascending
   std::vector<Places> effects_;                   // by place in effects::all(); empty of those that do not act in this world
-  Places springs_, rods_, joints_, apart_;
+  Places rods_, joints_, apart_;
   Places motors_;                                 // by joint
 };
 

@@ -14,6 +14,7 @@
 #include "framework/core/numbers.h"
 #include "framework/dynamics/world.h"
 #include "framework/effects/build_world.h"
+#include "framework/effects/registry.h"
 #include "framework/engines/contact/lasting_contacts.h"
 #include "framework/engines/judging/measures.h"
 
@@ -43,14 +44,19 @@ class EnergyRounding {
   EnergyRounding(const Scene& scene, const Trajectory& run) : world_(build_world(scene)), step_s_(run.info.step_s > 0 ? run.info.step_s : scene.step_s) {}
 
   double operator()(const Frame& frame) const {
-    double terms = frame.kinetic_energy + spring_terms(frame);   // all positive
-    for (std::size_t i = 0; i < world_.bodies.size(); ++i)
-      if (!world_.bodies[i].immovable() && world_.gravity_world) terms += world_.bodies[i].inertia.mass * world_.gravity_world->cwiseAbs().dot(frame.poses[i].com_world.cwiseAbs());
+    double terms = frame.kinetic_energy;   // all positive
+    for (const effects::Effect* effect : effects::all()) effect->add_energy_terms(world_, states_of(frame), terms);
     constexpr double kDeviations = 8.0;
     return kDeviations * std::numeric_limits<double>::epsilon() * (1.0 + std::sqrt(frame.time / step_s_)) * terms + lift(frame);
   }
 
  private:
+  /// Places alone.
+  static std::vector<RigidBodyState> states_of(const Frame& frame) {
+    std::vector<RigidBodyState> states;
+    for (const BodyPose& pose : frame.poses) states.push_back({pose.com_world, pose.world_from_body, Vector3d::Zero(), Vector3d::Zero()});
+    return states;
+  }
   double lift(const Frame& frame) const {
     if (frame.contacts.empty() || !world_.gravity_world) return 0.0;
     std::set<int> in_contact;
@@ -63,21 +69,6 @@ class EnergyRounding {
       weight += body.inertia.mass * world_.gravity_world->norm();
     }
     return 2.0 * kContactMargin * sizes * weight;
-  }
-
-  double spring_terms(const Frame& frame) const {
-    const auto place = [&](const Anchor& anchor) -> Vector3d {
-      if (anchor.body < 0) return anchor.point_body;
-      const BodyPose& pose = frame.poses[static_cast<std::size_t>(anchor.body)];
-      return pose.com_world + pose.world_from_body * anchor.point_body;
-    };
-    double terms = 0.0;
-    for (const SpringLink& link : world_.springs) {   // its length is rounded as places are, so that its stretch is off by that
-      const Vector3d a = place(link.a), b = place(link.b);
-      const double stretch = std::abs((a - b).norm() - link.spring.rest_length);
-      terms += link.spring.stiffness * stretch * (stretch + a.norm() + b.norm());
-    }
-    return terms;
   }
 
   World world_;

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/numbers.h"
+#include "framework/effects/registry.h"
 #include "framework/engines/judging/measures.h"
 
 namespace tumble::engines {
@@ -95,7 +96,9 @@ Finding joint_angle(const CheckSpec& check, const Scene& scene, const Trajectory
 Finding link_force(const CheckSpec& check, const Scene& scene, const Trajectory& run) {
   const Frame* frame = frame_at(check.at_s, run);
   if (frame == nullptr) return {kInfinity, fmt::format("no frame was recorded {}", at_time(check.at_s))};
-  const double* found = force_in(scene.springs, frame->spring_forces, check.link);
+  const double* found = nullptr;
+  for (const effects::Effect* effect : effects::all())
+    if (const auto kept = effect->measured_as(); kept && found == nullptr) found = force_in(effect->links(scene), frame->*kept, check.link);
   if (found == nullptr) found = force_in(scene.rods, frame->rod_tensions, check.link);
   if (found == nullptr) found = force_in(scene.joints, frame->joint_forces, check.link);
   if (found == nullptr) return {kInfinity, fmt::format("the run has no force of '{}'", check.link)};

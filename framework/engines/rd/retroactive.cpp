@@ -321,7 +321,7 @@ void RetroactiveRun::run() {
 void RetroactiveRun::stop_for(const Runaway& runaway) {
   const std::vector<ContactPoint> none, &contacts = has_contacts() ? contacts_->forces() : none;
   const LinkForces links = moving_.measure_links(moving_.states(), moving_.time(), contacts);
-  stopped_by_ = told_runaway(moving_.time(), moving_.world(), runaway, {links.springs, links.rods, links.joints, contacts}, laws_);
+  stopped_by_ = told_runaway(moving_.time(), moving_.world(), runaway, {moving_.states(), links, contacts}, laws_);
 }
 
 void RetroactiveRun::run_to_the_end() {

@@ -73,7 +73,6 @@ std::vector<std::vector<int>> groups_of_linked_bodies(const World& world) {
     const int i = find(a), j = find(b);
     leader[std::max(i, j)] = std::min(i, j);
   };
-  for (const SpringLink& link : world.springs) tie(link.a.body, link.b.body);
   for (const RodLink& link : world.rods) tie(link.a.body, link.b.body);
   for (const JointLink& link : world.joints) tie(link.a.body, link.b.body);
   for (const effects::Effect* effect : effects::all()) {
@@ -103,15 +102,14 @@ LinkedBodies::LinkedBodies(const World& world, const Laws& laws, RunCounters& co
     for (int k = 0; k < static_cast<int>(links.size()); ++k)
       if (ours(links[k].a, links[k].b)) into.push_back({k, end_of(links[k].a), end_of(links[k].b)});
   };
-  collect(world.springs, springs_);
+  for (std::size_t k = 0; k < effects::all().size(); ++k)
+    if (auto terms = effects::all()[k]->group_terms({world_, laws_, counters_.effect_calls[k]}, *this)) terms_.push_back({k, std::move(terms)});
   collect(world.rods, rods_);
   collect(world.joints, joints_);
   for (int k = 0; k < static_cast<int>(world.motors.size()); ++k)
     if (std::any_of(joints_.begin(), joints_.end(), [&](const Link& joint) { return joint.index == world.motors[k].joint; })) motors_.push_back(k);
   most_rows_ = rods_.size();
   for (const Link& link : joints_) most_rows_ += static_cast<std::size_t>(row_count(world.joints[link.index].kind));
-  for (std::size_t k = 0; k < effects::all().size(); ++k)
-    if (auto terms = effects::all()[k]->group_terms({world_, laws_, counters_.effect_calls[k]}, *this)) terms_.push_back(std::move(terms));
   torques_.assign(motors_.size(), 0.0);
   next_looks_.assign(motors_.size(), 0.0);
 }
@@ -158,21 +156,9 @@ std::vector<Wrench> LinkedBodies::forces(const std::vector<RigidBodyState>& loca
   const StageTimer timer(counters_.force_seconds);
   std::vector<Wrench> wrenches(bodies.size(), {Vector3d::Zero(), Vector3d::Zero()});
   for (std::size_t i = 0; i < bodies_.size(); ++i) wrenches[i] = outer_wrench_(bodies_[i], local[i]);
-  if (built::kSpring) add_springs(bodies, wrenches);
-  for (const auto& terms : terms_) terms->add_forces(bodies, wrenches);
+  for (const Terms& terms : terms_) terms.acting->add_forces(bodies, wrenches);
   if (built::kMotor) add_motors(bodies, wrenches);
   return wrenches;
-}
-
-void LinkedBodies::add_springs(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches) {
-  for (const Link& link : springs_) {
-    ++counters_.spring_calls;
-    const AnchorState a = anchor_of(bodies[link.a.place], link.a.point_body), b = anchor_of(bodies[link.b.place], link.b.point_body);
-    const SpringLink& spring = world_.springs[link.index];
-    const Vector3d force = of_link("spring", spring.name, [&] { return laws_.spring_force(spring.spring, a, b); });
-    add_force(bodies[link.a.place], force, a.point_world, wrenches[link.a.place]);
-    add_force(bodies[link.b.place], -force, b.point_world, wrenches[link.b.place]);
-  }
 }
 
 void LinkedBodies::add_motors(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches) const {
@@ -491,7 +477,8 @@ void LinkedBodies::measure(const std::vector<RigidBodyState>& states, double t, 
   const std::vector<RigidBodyState> local = take(states);
   time_of_stage_ = t;
   const std::vector<Body> bodies = place_bodies(local, t);
-  if (built::kSpring) measure_springs(bodies, measured);
+  for (const Terms& terms : terms_)
+    if (!measured.of_effects[terms.effect].empty()) terms.acting->measure(bodies, measured.of_effects[terms.effect]);
   if (!has_constraints()) return;
   std::vector<Wrench> wrenches = forces(local, bodies);
   if (built::kContact) add_contacts(bodies, contacts, wrenches);
@@ -522,12 +509,15 @@ void LinkedBodies::add_contacts(const std::vector<Body>& bodies, const std::vect
     }
 }
 
-void LinkedBodies::measure_springs(const std::vector<Body>& bodies, LinkForces& measured) {
-  for (const Link& link : springs_) {
-    const AnchorState a = anchor_of(bodies[link.a.place], link.a.point_body), b = anchor_of(bodies[link.b.place], link.b.point_body);
-    const Vector3d force = laws_.spring_force(world_.springs[link.index].spring, a, b), way = b.point_world - a.point_world;
-    measured.springs[link.index] = force.dot(way) < 0 ? -force.norm() : force.norm();
-  }
+LinkForces::LinkForces(const World& world) : rods(world.rods.size()), joints(world.joints.size()) {
+  for (const effects::Effect* effect : effects::all()) of_effects.emplace_back(effect->measured_as() == nullptr ? 0 : effect->count_in(world));
+}
+
+void record(LinkForces forces, Frame& frame) {
+  for (std::size_t k = 0; k < forces.of_effects.size(); ++k)
+    if (const auto kept = effects::all()[k]->measured_as()) frame.*kept = std::move(forces.of_effects[k]);
+  frame.rod_tensions = std::move(forces.rods);
+  frame.joint_forces = std::move(forces.joints);
 }
 
 }  // namespace tumble::engines

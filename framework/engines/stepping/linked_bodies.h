@@ -22,10 +22,15 @@
 
 namespace tumble::engines {
 
-/// What the links of a world pull with, by their places in World's lists; zero for links of other groups. [N]
+/// What the links of a world pull with, by their places in its lists; zero for links of other groups. [N]
 struct LinkForces {
-  std::vector<double> springs, rods, joints;
+  explicit LinkForces(const World& world);
+
+  std::vector<std::vector<double>> of_effects;   // by place in effects::all(); empty of those that are not recorded
+  std::vector<double> rods, joints;
 };
+/// Puts them where a frame keeps them.
+void record(LinkForces forces, Frame& frame);
 
 class LinkedBodies final : effects::GroupPlaces {
  public:
@@ -102,13 +107,11 @@ class LinkedBodies final : effects::GroupPlaces {
   End end_of(const Anchor& anchor) { return {place_of(anchor.body), anchor.point_body}; }
   std::vector<Body> place_bodies(const std::vector<RigidBodyState>& local, double t) const;
   std::vector<Wrench> forces(const std::vector<RigidBodyState>& local, const std::vector<Body>& bodies);
-  void add_springs(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches);
   void add_motors(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches) const;
   std::vector<Constraint> rows(const std::vector<Body>& bodies);
   void append_rods(const std::vector<Body>& bodies, std::vector<Constraint>& rows);
   void append_joints(const std::vector<Body>& bodies, std::vector<Constraint>& rows);
   void add_contacts(const std::vector<Body>& bodies, const std::vector<ContactPoint>& contacts, std::vector<Wrench>& wrenches) const;
-  void measure_springs(const std::vector<Body>& bodies, LinkForces& measured);
   VectorXd add_constraint_forces(const std::vector<Body>& bodies, const std::vector<RigidBodyState>& local, std::vector<Wrench>& wrenches);
   VectorXd derivative(double t, const VectorXd& y);
   static std::vector<ConstrainedBody> constrained(const std::vector<Body>& bodies);
@@ -123,9 +126,13 @@ class LinkedBodies final : effects::GroupPlaces {
   OuterWrench outer_wrench_;
   std::vector<int> bodies_;
   std::vector<int> fixed_;            // immovable ends: bodies of the world, -1 for the world itself
-  std::vector<Link> springs_, rods_, joints_;
+  std::vector<Link> rods_, joints_;
   std::vector<int> motors_;           // in the world's list
-  std::vector<std::unique_ptr<effects::GroupTerms>> terms_;   // of the effects that act on the group
+  struct Terms {
+    std::size_t effect;               // its place in effects::all()
+    std::unique_ptr<effects::GroupTerms> acting;
+  };
+  std::vector<Terms> terms_;          // of the effects that act on the group
   std::size_t most_rows_ = 0;   // of rods and joints
   std::vector<double> torques_, next_looks_;   // by motors_
   double time_of_stage_ = 0.0;

@@ -1,5 +1,6 @@
 #include "framework/engines/stepping/local_origin.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -18,9 +19,6 @@ constexpr double kFar = 1000.0;
 template <class Scene, class Visit>
 void for_each_place(Scene& scene, const Visit& visit) {
   for (auto& body : scene.bodies) visit(body.position_m);
-  for (auto& spring : scene.springs)
-    for (auto* anchor : {&spring.a, &spring.b})
-      if (anchor->body.empty()) visit(anchor->point_m);
   for (auto& rod : scene.rods)
     for (auto* anchor : {&rod.a, &rod.b})
       if (anchor->body.empty()) visit(anchor->point_m);
@@ -46,6 +44,15 @@ double difference_as_written(double place, double origin) {
   const std::string behind = "0" + text.substr(point);
   std::from_chars(behind.data(), behind.data() + behind.size(), fraction);
   return (std::trunc(place) - origin) + std::copysign(fraction, place);
+}
+
+// Whether some link spans from one place to another.
+bool spans_places(const scene::Scene& scene) {
+  const auto& words = scene::all_words();
+  return std::any_of(words.begin(), words.end(), [&](const scene::Words* one) {
+    const std::vector<scene::Link> links = one->links(scene);
+    return std::any_of(links.begin(), links.end(), [](const scene::Link& link) { return !std::isnan(link.length_m); });
+  });
 }
 
 }  // namespace
@@ -74,7 +81,7 @@ Vector3d local_origin(const scene::Scene& scene) {
 
 scene::Scene seen_from(const Vector3d& origin_world, scene::Scene scene) {
   // Lengths and points of bodies that a file leaves to be measured were measured between the doubles.
-  const bool as_written = scene.springs.empty() && scene.rods.empty();
+  const bool as_written = !spans_places(scene) && scene.rods.empty();
   const auto see = [&](Vector3d& place) {
     for (int axis = 0; axis < 3; ++axis) place[axis] = as_written ? difference_as_written(place[axis], origin_world[axis]) : place[axis] - origin_world[axis];
   };

@@ -138,7 +138,7 @@ void MovingWorld::refuse_whirl(int body) const {
 }
 
 LinkForces MovingWorld::measure_links(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts) {
-  LinkForces forces{std::vector<double>(world_.springs.size()), std::vector<double>(world_.rods.size()), std::vector<double>(world_.joints.size())};
+  LinkForces forces(world_);
   for (LinkedBodies& group : linked_) group.measure(states, t, contacts, forces);
   return forces;
 }
@@ -212,10 +212,6 @@ Vector3d MovingWorld::velocity_of(int body, double t) const {
 
 Wrench MovingWorld::wrench_on(int body, const RigidBodyState& state) {
   Wrench sum{Vector3d::Zero(), Vector3d::Zero()};
-  if (built::kGravity && world_.gravity_world) {
-    ++counters_.gravity_calls;
-    sum.force_world += world_.bodies[body].inertia.mass * *world_.gravity_world;
-  }
   for (Steady& forces : steady_) forces.acting->add(body, state, sum);
   return sum;
 }
@@ -282,7 +278,6 @@ void MovingWorld::begin_path(int body) {
   path.start = pack(states_[body]);
   path.acceleration_world.setZero();
   for (const Steady& forces : steady_) forces.acting->add_acceleration(body, path.acceleration_world);
-  if (built::kGravity && world_.gravity_world) path.acceleration_world += *world_.gravity_world;
   path.acceleration_world *= path_bend_;
   path.end = integrate(body, target_ - time_, time_, path.start);
 }

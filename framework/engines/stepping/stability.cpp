@@ -203,8 +203,8 @@ void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfAR
   if (const auto dampers = judge_dampers(world, laws, steps.step)) refuse_or_tell(*dampers, laws, steps, where, notices);
   const auto springs = judge_springs(world, laws, steps.step);
   if (springs && springs->amplification > 1.0 && !springs->is_overdamped())
-    refuse_or_tell({fmt::format("the swing of spring '{}' ({:.4g} rad/s where the run starts)", springs->spring, springs->angular_frequency), springs->amplification, springs->largest_step,
-                    springs->largest_step > 0 ? "a softer spring or more damping" : "damp the spring"},
+    refuse_or_tell({fmt::format("the swing of {} ({:.4g} rad/s where the run starts)", springs->of, springs->angular_frequency), springs->amplification, springs->largest_step,
+                    springs->largest_step > 0 ? springs->remedy : springs->last_remedy},
                    laws, steps, where, notices);
   for (const StepLimit& limit : judge_decays(world, laws, steps.step)) refuse_or_tell(limit, laws, steps, where, notices);
 } catch (const StoppedRun&) {
@@ -243,13 +243,11 @@ int body_with_most_energy(const World& world, const std::vector<RigidBodyState>&
   return fastest;
 }
 
-// What moves, and what springs hold. [J]
+// What moves, and what effects have stored. [J]
 double energy_at_work(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums) {
   double scale = sums.kinetic_energy;
-  for (const SpringLink& link : world.springs) {
-    const double stretch = (anchor_point(link.a, states) - anchor_point(link.b, states)).norm() - link.spring.rest_length;
-    scale += 0.5 * link.spring.stiffness * stretch * stretch;
-  }
+  for (const effects::Effect* effect : effects::all())
+    if (effect->traits().stores_energy) effect->add_potential_energy(world, states, scale);
   return scale;
 }
 
@@ -348,12 +346,13 @@ std::string told_runaway(double time, const World& world, const Runaway& runaway
     hardest = std::abs(force);
     effect = fmt::format("{}, with {:.3g} N", words(), hardest);
   };
-  for (std::size_t k = 0; k < acting.springs.size(); ++k)
-    pulls(world.springs[k].a.body, world.springs[k].b.body, acting.springs[k], [&] { return fmt::format("spring '{}' (spring_force of {})", world.springs[k].name, laws.constraint_source); });
-  for (std::size_t k = 0; k < acting.rods.size(); ++k)
-    pulls(world.rods[k].a.body, world.rods[k].b.body, acting.rods[k], [&] { return fmt::format("rod '{}' (rod_row, constraint_multipliers, constraint_correction of {})", world.rods[k].name, laws.constraint_source); });
-  for (std::size_t k = 0; k < acting.joints.size(); ++k)
-    pulls(world.joints[k].a.body, world.joints[k].b.body, acting.joints[k], [&] { return fmt::format("joint '{}' (constraint_multipliers, constraint_correction of {})", world.joints[k].name, laws.constraint_source); });
+  std::vector<effects::Pull> all;
+  for (std::size_t k = 0; k < effects::all().size(); ++k) effects::all()[k]->append_pulls(world, acting.states, acting.links.of_effects[k], laws, all);
+  for (const effects::Pull& pull : all) pulls(pull.body_a, pull.body_b, pull.force, [&] { return pull.words; });
+  for (std::size_t k = 0; k < acting.links.rods.size(); ++k)
+    pulls(world.rods[k].a.body, world.rods[k].b.body, acting.links.rods[k], [&] { return fmt::format("rod '{}' (rod_row, constraint_multipliers, constraint_correction of {})", world.rods[k].name, laws.constraint_source); });
+  for (std::size_t k = 0; k < acting.links.joints.size(); ++k)
+    pulls(world.joints[k].a.body, world.joints[k].b.body, acting.links.joints[k], [&] { return fmt::format("joint '{}' (constraint_multipliers, constraint_correction of {})", world.joints[k].name, laws.constraint_source); });
   for (const ContactPoint& contact : acting.contacts)
     pulls(contact.body_a, contact.body_b, contact.force_on_a_world.norm(), [&] {
       const int other = contact.body_a == runaway.body ? contact.body_b : contact.body_a;

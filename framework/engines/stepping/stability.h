@@ -11,6 +11,7 @@
 #include "framework/effects/invariants.h"
 #include "framework/effects/registry.h"
 #include "framework/engines/base/run_watch.h"
+#include "framework/engines/stepping/linked_bodies.h"
 #include "framework/trajectory/trajectory.h"
 
 namespace tumble::engines {
@@ -26,18 +27,20 @@ inline constexpr double kNotAtAll = 1e-9;
 double largest_stable_step(const Laws& laws, double angular_frequency, double damping, double step);
 
 struct SpringStability {
-  std::string spring;              // the one that takes most part in the fastest swing
+  std::string of;                  // what takes most part in the fastest swing, in words: "spring 'a'"
   double angular_frequency;        // of that swing where the run starts [rad/s]
   double damping;                  // c of  y'' = -w^2 y - c y'  for it [1/s]
   double amplification;            // a step
   double largest_step;             // that does not lengthen it [s]; 0 where none does not
 
+  std::string remedy, last_remedy; // beside a shorter step; where no step does
+
   bool is_overdamped() const { return damping > 2.0 * angular_frequency; }   // no swing: its damper's matter
 };
 
-/// The fastest swing of the springs of a world where it starts, along the springs, with what rods and joints hold kept still: the eigenvalues of
+/// The fastest swing of what draws the bodies of a world back where it starts (springs), along these directions, with what rods and joints hold kept still: the eigenvalues of
 /// J N J^T K, where N is M^-1 without the directions that rods and joints do not allow.
-/// @return nothing for a world without springs that can stretch. Where more than 60 bodies are linked, springs on bodies that rods or joints
+/// @return nothing for a world in which nothing does. Where more than 60 bodies are linked, springs on bodies that rods or joints
 ///         hold are not judged
 std::optional<SpringStability> judge_springs(const World& world, const Laws& laws, double step);
 
@@ -141,7 +144,8 @@ class EnergyWatch {
 
 /// What acts on bodies at an instant.
 struct ActingForces {
-  const std::vector<double>&springs, &rods, &joints;   // by the world's lists [N]
+  const std::vector<RigidBodyState>& states;
+  const LinkForces& links;
   const std::vector<ContactPoint>& contacts;
 };
 

@@ -1,7 +1,6 @@
 // The fastest swing of a world's springs, and what its dampers take soonest: eigenvalues where the run starts.
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include <Eigen/SparseCore>
 #include <fmt/format.h>
@@ -22,9 +21,9 @@ constexpr Eigen::Index kMostHeldBodies = 60;
 /// The movable bodies that links end on, and their coordinates M^1/2 u, in which every direction is as easy to move.
 class LinkedCoordinates {
  public:
-  explicit LinkedCoordinates(const World& world) : world_(world), place_(world.bodies.size(), -1) {
+  LinkedCoordinates(const World& world, const std::vector<effects::StiffRow>& rows) : world_(world), place_(world.bodies.size(), -1) {
     for (const WorldBody& body : world.bodies) states_.push_back(body.state);
-    for (const SpringLink& spring : world.springs) take(spring.a.body), take(spring.b.body);
+    for (const effects::StiffRow& row : rows) take(row.body_a), take(row.body_b);
     for (const RodLink& rod : world.rods) take(rod.a.body), take(rod.b.body);
     for (const JointLink& joint : world.joints) take(joint.a.body), take(joint.b.body);
   }
@@ -44,17 +43,11 @@ class LinkedCoordinates {
     row.segment<3>(place_[static_cast<std::size_t>(body)] + 3) += root * (R.transpose() * jacobian.tail<3>());
   }
 
-  /// How the distance of two anchors changes, which springs and rods share.
+  /// How the distance of two anchors changes.
   void add_distance(const Anchor& a, const Anchor& b, Eigen::Ref<VectorXd> row) const {
-    const Vector3d at_a = anchor_point(a, states_), at_b = anchor_point(b, states_);
-    const double length = (at_a - at_b).norm();
-    const Vector3d along = length > 0 ? Vector3d((at_a - at_b) / length) : Vector3d(Vector3d::UnitZ());
-    for (const auto& [anchor, point, sign] : {std::tuple{&a, at_a, 1.0}, std::tuple{&b, at_b, -1.0}}) {
-      if (!is_movable(anchor->body)) continue;
-      Vector6d jacobian;
-      jacobian << sign * along, sign * (point - world_.bodies[static_cast<std::size_t>(anchor->body)].state.com_world).cross(along);
-      add(anchor->body, jacobian, row);
-    }
+    const auto [of_a, of_b] = distance_jacobians(a, b, states_);
+    add(a.body, of_a, row);
+    add(b.body, of_b, row);
   }
 
  private:
@@ -95,9 +88,9 @@ MatrixXd held_directions(const World& world, const LinkedCoordinates& linked) {
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-/// J M^-1/2 of each spring, one column a spring, without what rods and joints hold; zero for springs that are not judged.
-Sparse ways_of_springs(const World& world) {
-  const LinkedCoordinates linked(world);
+/// J M^-1/2 of each row, one column a row, without what rods and joints hold; zero for rows that are not judged.
+Sparse ways_of(const World& world, const std::vector<effects::StiffRow>& rows) {
+  const LinkedCoordinates linked(world, rows);
   const bool holds = !world.rods.empty() || !world.joints.empty(), is_small = linked.size() <= 6 * kMostHeldBodies;
   std::vector<bool> is_held(world.bodies.size(), false);
   const auto note = [&](const Anchor& anchor) {
@@ -106,16 +99,17 @@ Sparse ways_of_springs(const World& world) {
   for (const RodLink& rod : world.rods) note(rod.a), note(rod.b);
   for (const JointLink& joint : world.joints) note(joint.a), note(joint.b);
 
-  Sparse ways(linked.size(), static_cast<Eigen::Index>(world.springs.size()));
+  Sparse ways(linked.size(), static_cast<Eigen::Index>(rows.size()));
   VectorXd way = VectorXd::Zero(linked.size());
-  for (std::size_t k = 0; k < world.springs.size(); ++k) {
-    const SpringLink& spring = world.springs[k];
-    const auto held = [&](const Anchor& anchor) { return anchor.body >= 0 && is_held[static_cast<std::size_t>(anchor.body)]; };
-    if (!is_small && (held(spring.a) || held(spring.b))) continue;
-    linked.add_distance(spring.a, spring.b, way);
-    for (const Anchor* anchor : {&spring.a, &spring.b}) {
-      if (!linked.is_movable(anchor->body)) continue;
-      for (Eigen::Index i = linked.place(anchor->body); i < linked.place(anchor->body) + 6; ++i) {
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const effects::StiffRow& row = rows[k];
+    const auto held = [&](int body) { return body >= 0 && is_held[static_cast<std::size_t>(body)]; };
+    if (!is_small && (held(row.body_a) || held(row.body_b))) continue;
+    linked.add(row.body_a, row.jacobian_a, way);
+    linked.add(row.body_b, row.jacobian_b, way);
+    for (const int body : {row.body_a, row.body_b}) {
+      if (!linked.is_movable(body)) continue;
+      for (Eigen::Index i = linked.place(body); i < linked.place(body) + 6; ++i) {
         if (way[i] != 0.0) ways.coeffRef(i, static_cast<Eigen::Index>(k)) = way[i];
         way[i] = 0.0;
       }
@@ -126,9 +120,9 @@ Sparse ways_of_springs(const World& world) {
   return MatrixXd(free - directions * least_squares(directions, free)).sparseView();   // redundant rows are allowed
 }
 
-/// The way of moving on which a diagonal D over the springs acts most: x^T J^T D J x where x^T M x = 1.
+/// The way of moving on which a diagonal D over the rows acts most: x^T J^T D J x where x^T M x = 1.
 struct MostActedOn {
-  Eigen::Index spring = 0;   // that takes most part in it
+  Eigen::Index row = 0;      // that takes most part in it
   double most = 0.0;         // of D
   double other = 0.0;        // the same sum of another diagonal
 };
@@ -138,52 +132,62 @@ MostActedOn most_acted_on(const Sparse& shared, const VectorXd& diagonal, const 
   const Sparse scaled = root.asDiagonal() * shared * root.asDiagonal();
   MostActedOn result;
   if (shared.rows() > kMostSprings) {
-    result.most = (scaled.cwiseAbs() * VectorXd::Ones(shared.rows())).maxCoeff(&result.spring);
-    result.other = diagonal[result.spring] > 0 ? result.most * other[result.spring] / diagonal[result.spring] : 0.0;
+    result.most = (scaled.cwiseAbs() * VectorXd::Ones(shared.rows())).maxCoeff(&result.row);
+    result.other = diagonal[result.row] > 0 ? result.most * other[result.row] / diagonal[result.row] : 0.0;
     return result;
   }
   const SymmetricEigen eigen = symmetric_eigen(MatrixXd(scaled));
   const VectorXd part = eigen.vectors.rightCols<1>();
   result.most = eigen.values[shared.rows() - 1];
-  part.cwiseAbs().maxCoeff(&result.spring);
+  part.cwiseAbs().maxCoeff(&result.row);
   if (result.most > 0) result.other = other.dot((shared * root.cwiseProduct(part)).cwiseAbs2()) / result.most;
   return result;
 }
 
-/// What springs share of the ways in which bodies can move, and their constants.
-struct Springs {
-  explicit Springs(const World& world) : stiffness(static_cast<Eigen::Index>(world.springs.size())), damping(stiffness.size()) {
-    const Sparse ways = ways_of_springs(world);
-    shared = ways.transpose() * ways;
+/// What draws bodies back where the run starts, what its directions share of the ways in which bodies can move, and its constants.
+struct StiffRows {
+  explicit StiffRows(const World& world) {
+    std::vector<RigidBodyState> start;
+    for (const WorldBody& body : world.bodies) start.push_back(body.state);
+    for (const effects::Effect* effect : effects::all()) effect->append_stiff_rows(world, start, rows);
+    stiffness.resize(static_cast<Eigen::Index>(rows.size()));
+    damping.resize(stiffness.size());
     for (Eigen::Index i = 0; i < stiffness.size(); ++i) {
-      stiffness[i] = world.springs[static_cast<std::size_t>(i)].spring.stiffness;
-      damping[i] = world.springs[static_cast<std::size_t>(i)].spring.damping;
+      stiffness[i] = rows[static_cast<std::size_t>(i)].stiffness;
+      damping[i] = rows[static_cast<std::size_t>(i)].damping;
     }
   }
+  Sparse shared(const World& world) const {
+    const Sparse ways = ways_of(world, rows);
+    return ways.transpose() * ways;
+  }
+  const effects::StiffRow& at(Eigen::Index k) const { return rows[static_cast<std::size_t>(k)]; }
+
+  std::vector<effects::StiffRow> rows;
   VectorXd stiffness, damping;
-  Sparse shared;
 };
 
 }  // namespace
 
 std::optional<SpringStability> judge_springs(const World& world, const Laws& laws, double step) {
-  if (world.springs.empty()) return std::nullopt;
-  const Springs springs(world);
-  const MostActedOn swing = most_acted_on(springs.shared, springs.stiffness, springs.damping);
+  const StiffRows springs(world);
+  if (springs.rows.empty()) return std::nullopt;
+  const MostActedOn swing = most_acted_on(springs.shared(world), springs.stiffness, springs.damping);
   if (!(swing.most > 0)) return std::nullopt;
   const double frequency = std::sqrt(swing.most), damping = swing.other;
-  return SpringStability{world.springs[static_cast<std::size_t>(swing.spring)].name, frequency, damping, amplification(laws, frequency, damping, step), largest_stable_step(laws, frequency, damping, step)};
+  const effects::StiffRow& most = springs.at(swing.row);
+  return SpringStability{most.of, frequency, damping, amplification(laws, frequency, damping, step), largest_stable_step(laws, frequency, damping, step), most.remedy, most.last_remedy};
 }
 
 std::optional<StepLimit> judge_dampers(const World& world, const Laws& laws, double step) {
-  if (std::none_of(world.springs.begin(), world.springs.end(), [](const SpringLink& link) { return link.spring.damping > 0; })) return std::nullopt;
-  const Springs springs(world);
-  const MostActedOn decay = most_acted_on(springs.shared, springs.damping, springs.stiffness);
+  const StiffRows springs(world);
+  if (std::none_of(springs.rows.begin(), springs.rows.end(), [](const effects::StiffRow& row) { return row.damping > 0; })) return std::nullopt;
+  const MostActedOn decay = most_acted_on(springs.shared(world), springs.damping, springs.stiffness);
   const double frequency = std::sqrt(decay.other), damping = decay.most;
   if (!(damping > 2.0 * frequency)) return std::nullopt;
   const double amplified = amplification(laws, frequency, damping, step);
   if (!(amplified > 1.0 + kNotAtAll)) return std::nullopt;
-  return StepLimit{fmt::format("what the damper of spring '{}' takes from velocities ({:.4g} 1/s where the run starts)", world.springs[static_cast<std::size_t>(decay.spring)].name, damping), amplified,
+  return StepLimit{fmt::format("what the damper of {} takes from velocities ({:.4g} 1/s where the run starts)", springs.at(decay.row).of, damping), amplified,
                    largest_stable_step(laws, frequency, damping, step), "less damping"};
 }
 

@@ -8,6 +8,7 @@
 #include "framework/engines/truths/families.h"
 #include "framework/engines/truths/memory_scene.h"
 #include "framework/engines/truths/refined_run.h"
+#include "framework/scene/write_entries.h"
 
 namespace tumble::truths {
 namespace {
@@ -33,7 +34,7 @@ struct Chain {
 
 scene::Scene Chain::scene(const std::string& name) const {
   scene::Scene scene = empty_scene(name, 1.0, 1e-9);
-  scene.gravity_m_s2 = Vector3d(0, -g, 0);
+  scene::EntryWriter{scene}("gravity_m_s2", Vector3d(0, -g, 0));
   scene.stabilisation = scene::StabilisationSpec{};
   Vector3d place = Vector3d::Zero(), velocity = Vector3d::Zero();
   std::string above;   // the first rod hangs on the world
@@ -151,7 +152,7 @@ struct CompoundPendulum {
 
 scene::Scene CompoundPendulum::scene(const std::string& name) const {
   scene::Scene scene = empty_scene(name, 1.0, 1e-9);
-  scene.gravity_m_s2 = Vector3d(0, -g, 0);
+  scene::EntryWriter{scene}("gravity_m_s2", Vector3d(0, -g, 0));
   scene.stabilisation = scene::StabilisationSpec{};
   scene::BodySpec body = point_mass("body", m, d * along(angle), Vector3d::Zero());
   body.world_from_body = Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitZ()));   // body -y points from the pivot to the centre of mass

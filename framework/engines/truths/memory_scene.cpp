@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "framework/core/shortest_turn.h"
+#include "framework/scene/write_entries.h"
 
 namespace tumble::truths {
 
@@ -37,7 +38,7 @@ scene::BodySpec point_mass(const std::string& name, double mass, const Vector3d&
 
 scene::Scene straight_chain(const std::vector<double>& masses, double length, const Vector3d& direction, const Vector3d& gravity) {
   scene::Scene scene = empty_scene("chain", 1.0, 1e-9);
-  scene.gravity_m_s2 = gravity;
+  scene::EntryWriter{scene}("gravity_m_s2", gravity);
   scene.stabilisation = scene::StabilisationSpec{};
   std::string above;
   for (std::size_t i = 0; i < masses.size(); ++i) {
