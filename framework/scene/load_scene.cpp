@@ -60,8 +60,10 @@ void check_names(const Document& document, const Scene& scene) {
 const json& scene_schema() {
   static const json schema = [] {
     json whole = json::parse(kSceneSchema);
-    for (const Words* words : all_words())
-      for (const auto& [part, entries] : json::parse(words->schema()).items()) whole[part].update(entries);
+    for (const Words* words : all_words()) {
+      const json said = json::parse(words->schema());
+      for (const auto& [part, entries] : said.items()) whole[part].update(entries);
+    }
     return whole;
   }();
   return schema;
