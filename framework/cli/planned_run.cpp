@@ -10,9 +10,9 @@
 #include "framework/cli/cost_measure.h"
 #include "framework/cli/cost_ways.h"
 #include "framework/core/cpu_time.h"
-#include "framework/effects/registry.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/report/cost_page.h"
+#include "framework/scene/words.h"
 
 namespace tumble::cli {
 namespace {
@@ -64,7 +64,7 @@ std::vector<CostWay> ways_for(const Context& context, const scene::Scene& scene,
   } else {
     for (const char* word : {"dopri5", "rk4", "fehlberg78", "bulirsch-stoer"}) ways.push_back(way_by_method(method_named(word), chosen.laws));
   }
-  if (effects::asks_for(scene, [](const effects::Traits& traits) { return traits.may_be_stiff; })) ways.push_back(way_by_method(method_named("rosenbrock4"), chosen.laws));
+  if (scene::asks_for(scene, [](const scene::Traits& traits) { return traits.may_be_stiff; })) ways.push_back(way_by_method(method_named("rosenbrock4"), chosen.laws));
   for (const char* word : {"midpoint", "verlet", "symplectic"}) ways.push_back(way_by_method(method_named(word), chosen.laws));
   return ways;
 }

@@ -36,7 +36,7 @@ using engines::CheckResult;
 
 std::string modules_line(const scene::Scene& scene, const Laws& laws) {
   std::string line = fmt::format("impulses by {} · motion by {}", laws.impulse_source, laws.integrator_source);
-  if (scene.contact || !scene.rods.empty() || !scene.joints.empty() || effects::asks_laws_of("a3", scene)) line += " · springs, rods and contact by " + laws.constraint_source;
+  if (scene.contact || effects::asks_laws_of("a3", scene)) line += " · springs, rods and contact by " + laws.constraint_source;
   return laws.scheduling ? line + " · scheduled by " + laws.scheduling_source : line;
 }
 

@@ -1,7 +1,8 @@
 #include "framework/effects/build_world.h"
 
+#include <algorithm>
+
 #include "framework/core/error.h"
-#include "framework/dynamics/build_links.h"
 #include "framework/effects/registry.h"
 #include "framework/scene/build_shape.h"
 #include "framework/scene/check_scene.h"
@@ -35,6 +36,19 @@ WorldBody build_body(const scene::BodySpec& spec, scene::Solid solid) {
   return body;
 }
 
+bool is_constrained(const World& world) {
+  return std::any_of(effects::all().begin(), effects::all().end(), [&](const effects::Effect* effect) { return effect->traits().constrains && effect->count_in(world) > 0; });
+}
+
+void keep_apart(const scene::Scene& scene, const effects::BodyIndex& index, World& world) {
+  std::vector<std::pair<std::string, std::string>> pairs = scene.apart;
+  for (const effects::Effect* effect : effects::all())
+    for (auto& pair : effect->pairs_apart(scene)) pairs.push_back(std::move(pair));
+  for (const auto& [a, b] : pairs) world.apart.push_back(std::minmax({index.of(a, "apart"), index.of(b, "apart")}));
+  std::sort(world.apart.begin(), world.apart.end());
+  world.apart.erase(std::unique(world.apart.begin(), world.apart.end()), world.apart.end());
+}
+
 // What no effect of this program reads would be left out of the run without a word.
 void refuse_unknown(const TypedLists& lists, const std::string& name) {
   std::size_t known = 0;
@@ -53,7 +67,9 @@ World build_world(const scene::Scene& scene) {
   const effects::BodyIndex index(world);
   refuse_unknown(scene.effects, scene.name);
   for (const effects::Effect* effect : effects::all()) effect->build(scene, index, world);
-  build_links(scene, world);
+  world.contact = scene.contact;
+  if (is_constrained(world)) world.stabilisation = scene.stabilisation.value_or(scene::StabilisationSpec{});
+  keep_apart(scene, index, world);
   return world;
 }
 

@@ -29,8 +29,24 @@ struct DrawnCoil {
   double rest_length;          // at which its turns stand close [m]
 };
 
+/// A bar between two points: a rod.
+struct DrawnBar {
+  std::string name;
+  DrawnPoint a, b;
+};
+
+/// Where two bodies turn about each other: a small ball, or a pin along an axis. A weld is not drawn, and told of all the same.
+struct DrawnPivot {
+  std::string name;
+  enum class Kind { kBall, kPin, kWeld } kind;
+  std::string body_a, body_b;  // names; empty: the world
+  Vector3d point_world, axis_world;   // at the start, fixed in body_a [m], unit
+};
+
 struct Drawables {
   std::vector<DrawnCoil> coils;
+  std::vector<DrawnBar> bars;
+  std::vector<DrawnPivot> pivots;
   std::vector<DrawnArrow> arrows;
 };
 

@@ -81,15 +81,43 @@ class GroupPlaces {
   virtual int place_of(int body) = 0;
 };
 
-/// What an effect adds to the equations of motion of one group.
+/// A law that looks at its bodies at instants of its own, and holds what it has decided until it looks again.
+class Control {
+ public:
+  virtual ~Control() = default;
+  /// Looks, where its time has come. @param bodies  by place @return when it looks next [s]
+  virtual double look(double time, const std::vector<Body>& bodies) = 0;
+  /// What it holds, by entry; and the same brought back: entries that it does not name look at once.
+  virtual Memory memory() const = 0;
+  virtual void remember(const Memory& memory) = 0;
+  /// Whether it drives bodies otherwise than by what it held before, beyond what those of bodies at rest change.
+  virtual bool differs_from(const Memory& before) const = 0;
+};
+
+/// Called with a link that is open, and by which part of its size or which angle.
+using NoteOpen = std::function<void(const std::string& name, double open)>;
+
+/// What an effect adds to the equations of motion of one group: forces, or equations that hold (rows), or a control law.
 class GroupTerms {
  public:
   virtual ~GroupTerms() = default;
 
   /// Adds forces and torques. @param bodies, wrenches  by place
   virtual void add_forces(const std::vector<Body>&, std::vector<Wrench>&) {}
-  /// What its entries pull with, for whoever records it; Effect::measured_as says where. @param forces  by entry of the world; of the group's alone
-  virtual void measure(const std::vector<Body>&, std::vector<double>&) {}
+
+  /// How many equations hold its bodies; append_rows appends them where the bodies are now. @param bodies  by place, which rows name them by
+  virtual std::size_t row_count() const { return 0; }
+  virtual void append_rows(const std::vector<Body>&, std::vector<Constraint>&) {}
+  /// The largest length that they keep: what errors of places are compared with. [m]
+  virtual double size() const { return 0.0; }
+  virtual void note_open(const std::vector<Body>&, const NoteOpen&) const {}
+
+  /// nullptr where it looks at nothing.
+  virtual Control* control() { return nullptr; }
+
+  /// What its entries pull with; Effect::measured_as says where it is recorded. @param multipliers  of its rows, in their order
+  /// @param forces  by entry of the world: those of the group are filled in
+  virtual void measure(const std::vector<Body>&, const VectorXd&, std::vector<double>&) {}
 };
 
 /// What an effect brought into a world. [J]
@@ -102,6 +130,8 @@ class WorkMeter {
   virtual ~WorkMeter() = default;
   /// Since it was asked last. @param states  by body of the world that it was made for
   virtual Work since_last(double time, const std::vector<RigidBodyState>& states) = 0;
+  /// Whether any amount may come in, so that energy says nothing.
+  virtual bool is_unlimited() const { return false; }
 };
 
 /// Takes evenly from the velocities of a body: m v' = -linear v, I w' = -angular w.
@@ -121,12 +151,23 @@ struct StiffRow {
   std::string last_remedy;     // where the method follows it at no step: "damp the spring"
 };
 
+/// Something that keeps two anchors at a distance, or at one place, and carries what hangs on it.
+struct Carrier {
+  Anchor a, b;
+  double length;               // 0: at one place [m]
+  bool turns;                  // bodies turn about the place
+  int entry;                   // of its effect
+};
+
 /// What pulls at bodies at an instant, for what is said of a run that gets out of hand.
 struct Pull {
   int body_a, body_b;          // -1: the world
   double force;                // its size [N]
   std::string words;           // who pulls, by whose law: "spring 'a' (spring_force of reference)"
 };
+
+/// Where a body of a scene is in a frame, by its name; nullptr for the world (an empty name).
+using PoseOf = std::function<const BodyPose*(const std::string& body)>;
 
 /// A law that an effect asks, and whether somebody provides it.
 struct NeededLaw {
@@ -135,18 +176,10 @@ struct NeededLaw {
   std::string assignment;      // "a3"
 };
 
-/// What kind of thing an effect is.
-struct Traits {
-  bool leaves_flight = false;  // where it alone acts, bodies go in closed form: a parabola, free rotation
-  bool ties = false;           // the bodies that an entry names move together, as one system of equations
-  bool stores_energy = false;  // gives back what it has taken, without anything falling
-  bool may_be_stiff = false;   // a method for stiff equations may pay
-};
+using scene::Traits;
 
 class Effect : public scene::Words {
  public:
-  virtual Traits traits() const = 0;
-
   /// Whether a scene's lists hold an entry of this effect.
   virtual bool is_kept_in(const TypedLists& lists) const = 0;
   bool is_asked(const scene::Scene& scene) const final { return is_kept_in(scene.effects); }
@@ -187,6 +220,9 @@ class Effect : public scene::Words {
   virtual void append_drains(const World&, std::vector<Drain>&) const {}
   /// Where the run starts. @param start  by body
   virtual void append_stiff_rows(const World&, const std::vector<RigidBodyState>&, std::vector<StiffRow>&) const {}
+  /// The directions in which its entries let nothing move: rows between bodies of the world (-1: the world itself).
+  virtual void append_held_rows(const World&, const std::vector<RigidBodyState>&, std::vector<Constraint>&) const {}
+  virtual void append_carriers(const World&, std::vector<Carrier>&) const {}
 
   // What is recorded and told of it ------------------------------------------------------------------------------------------------------
 
@@ -194,6 +230,9 @@ class Effect : public scene::Words {
   virtual std::vector<double> Frame::*measured_as() const { return nullptr; }
   /// @param measured  what group_terms have measured, by entry; empty where they measure nothing
   virtual void append_pulls(const World&, const std::vector<RigidBodyState>&, const std::vector<double>&, const Laws&, std::vector<Pull>&) const {}
+
+  /// How far an entry is off in a frame, by the places of bodies alone, and what is found: of one of its link_checks.
+  virtual std::pair<double, std::string> error_of(const std::string&, const scene::Scene&, std::size_t, const PoseOf&) const { return {0.0, ""}; }
 
   // What is drawn of it ----------------------------------------------------------------------------------------------------------------
 

@@ -18,10 +18,10 @@ struct PlacedEnd {
   int place;
   Vector3d point_body;
 
+  Vector3d point_among(const std::vector<Body>& bodies) const { return bodies[place].com_world + bodies[place].world_from_body * point_body; }
   AnchorState state_among(const std::vector<Body>& bodies) const {
-    const Body& body = bodies[place];
-    const Vector3d point_world = body.com_world + body.world_from_body * point_body;
-    return {point_world, body.velocity_world + body.omega_world.cross(point_world - body.com_world)};
+    const Vector3d point_world = point_among(bodies);
+    return {point_world, bodies[place].velocity_world + bodies[place].omega_world.cross(point_world - bodies[place].com_world)};
   }
 };
 struct PlacedLink {
@@ -31,7 +31,7 @@ struct PlacedLink {
 
 /// The links that end at a body of the group. @tparam Held  has anchors a and b
 template <class Held>
-std::vector<PlacedLink> ends_in_group(const std::vector<Held>& all, GroupPlaces& places) {
+std::vector<PlacedLink> links_in_group(const std::vector<Held>& all, GroupPlaces& places) {
   std::vector<PlacedLink> links;
   const auto placed = [&](const Anchor& anchor) { return PlacedEnd{places.place_of(anchor.body), anchor.point_body}; };
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -45,6 +45,14 @@ std::vector<PlacedLink> ends_in_group(const std::vector<Held>& all, GroupPlaces&
 inline void add_force(const Body& body, const Vector3d& force_world, const Vector3d& point_world, Wrench& wrench) {
   wrench.force_world += force_world;
   wrench.torque_world += (point_world - body.com_world).cross(force_world);
+}
+
+/// The laws that anything asks which holds by rows.
+inline void append_laws_of_rows(const scene::Scene& scene, const Laws& laws, std::vector<NeededLaw>& needed) {
+  needed.push_back({static_cast<bool>(laws.constraint_multipliers), "the multipliers of rods and joints", "a3"});
+  needed.push_back({static_cast<bool>(laws.constraint_correction), "the correction onto rods and joints", "a3"});
+  if (scene.stabilisation && scene.stabilisation->kind == scene::StabilisationKind::kBaumgarte)
+    needed.push_back({static_cast<bool>(laws.baumgarte_acceleration), "Baumgarte's acceleration", "a3"});
 }
 
 /// Does `work`; a StoppedRun out of it is told again with the link in front. Words are made where they are needed only: this is asked at every stage.

@@ -19,12 +19,4 @@ Drawables drawn(const scene::Scene& scene);
 /// Whether an effect that the scene asks for asks a law of this assignment, such as "a3".
 bool asks_laws_of(const std::string& assignment, const scene::Scene& scene);
 
-/// Whether the scene asks for an effect of which this holds. @param holds  is asked with Traits
-template <class Holds>
-bool asks_for(const scene::Scene& scene, const Holds& holds) {
-  for (const Effect* effect : all())
-    if (holds(effect->traits()) && effect->is_asked(scene)) return true;
-  return false;
-}
-
 }  // namespace tumble::effects

@@ -43,12 +43,6 @@ void check_laws(const scene::Scene& scene, const Laws& laws) {
   for (const effects::Effect* effect : effects::all())
     if (effect->is_asked(scene))
       for (const effects::NeededLaw& law : effect->needed_laws(scene, laws)) need(law.is_there, scene, law.what.c_str(), law.assignment.c_str());
-  if (!scene.rods.empty()) need(laws.rod_row, scene, "the constraint of a rod", "a3");
-  if (!scene.rods.empty() || !scene.joints.empty()) {
-    need(laws.constraint_multipliers, scene, "the multipliers of rods and joints", "a3");
-    need(laws.constraint_correction, scene, "the correction onto rods and joints", "a3");
-    if (scene.stabilisation && scene.stabilisation->kind == scene::StabilisationKind::kBaumgarte) need(laws.baumgarte_acceleration, scene, "Baumgarte's acceleration", "a3");
-  }
   if (scene.contact) {
     need(laws.ends_in_contact, scene, "the beginning of a lasting contact", "a3");
     need(laws.contact_forces, scene, "the forces of lasting contacts", "a3");

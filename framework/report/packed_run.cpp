@@ -148,8 +148,6 @@ class RunPacker {
     };
     for (const effects::Effect* effect : effects::all())
       if (const auto kept = effect->measured_as()) add_forces(effect->links(scene), effect->key().c_str(), kept);
-    add_forces(scene.rods, "rods", &Frame::rod_tensions);
-    add_forces(scene.joints, "joints", &Frame::joint_forces);
     return all;
   }
 

@@ -58,7 +58,6 @@ class Anchors {
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) index_[scene.bodies[i].name] = static_cast<int>(i);
   }
   int body(const std::string& name) const { return name.empty() ? -1 : index_.at(name); }
-  Json of(const scene::AnchorSpec& spec) const { return {{"body", body(spec.body)}, {"point", triple(spec.point_m)}}; }
   Json of(const effects::DrawnPoint& point) const { return {{"body", body(point.body)}, {"point", triple(point.point)}}; }
   /// A point given in the world at the start.
   Json fixed(const std::string& name, const Vector3d& point_world) const {
@@ -78,13 +77,14 @@ void add_links(const scene::Scene& scene, const Anchors& anchors, Json& page) {
   const effects::Drawables drawn = effects::drawn(scene);
   for (const effects::DrawnCoil& coil : drawn.coils)
     page["springs"].push_back({{"name", coil.name}, {"a", anchors.of(coil.a)}, {"b", anchors.of(coil.b)}, {"rest", coil.rest_length}});
-  for (const auto& rod : scene.rods) page["rods"].push_back({{"name", rod.name}, {"a", anchors.of(rod.a)}, {"b", anchors.of(rod.b)}});
-  for (const auto& joint : scene.joints) {
-    const bool is_hinge = joint.kind == scene::JointKind::kHinge;
+  for (const effects::DrawnBar& bar : drawn.bars) page["rods"].push_back({{"name", bar.name}, {"a", anchors.of(bar.a)}, {"b", anchors.of(bar.b)}});
+  for (const effects::DrawnPivot& pivot : drawn.pivots) {
+    using Kind = effects::DrawnPivot::Kind;
+    const bool is_pin = pivot.kind == Kind::kPin;
     // Of a joint with the world, body_a is the one that moves.
-    Json entry{{"name", joint.name}, {"kind", is_hinge ? "hinge" : joint.kind == scene::JointKind::kBall ? "ball" : "weld"}};
-    entry["a"] = anchors.fixed(joint.body_a, joint.point_m);
-    if (is_hinge) entry["b"] = anchors.fixed(joint.body_a, joint.point_m + joint.axis.normalized());
+    Json entry{{"name", pivot.name}, {"kind", is_pin ? "hinge" : pivot.kind == Kind::kBall ? "ball" : "weld"}};
+    entry["a"] = anchors.fixed(pivot.body_a, pivot.point_world);
+    if (is_pin) entry["b"] = anchors.fixed(pivot.body_a, pivot.point_world + pivot.axis_world.normalized());
     page["joints"].push_back(std::move(entry));
   }
   for (const effects::DrawnArrow& force : drawn.arrows)

@@ -7,29 +7,6 @@
 namespace tumble::scene {
 namespace {
 
-std::string ending(const std::string& body) { return body.empty() ? "the world" : body; }
-std::string between(const AnchorSpec& a, const AnchorSpec& b) { return ending(a.body) + " to " + ending(b.body); }
-
-EffectUse rod(const Scene& scene) {
-  EffectUse effect{"rod", "constraints", "rod_calls", {}, ""};
-  for (const auto& one : scene.rods) effect.askers.push_back({one.pointer, fmt::format("{}: {}, {:.4g} m", one.name, between(one.a, one.b), one.length_m)});
-  return effect;
-}
-
-EffectUse joint(const Scene& scene) {
-  static const char* const kinds[] = {"ball joint", "hinge", "weld"};
-  EffectUse effect{"joint", "constraints", "joint_calls", {}, ""};
-  for (const auto& one : scene.joints)
-    effect.askers.push_back({one.pointer, fmt::format("{}: {}, {} to {}", one.name, kinds[static_cast<int>(one.kind)], one.body_a, ending(one.body_b))});
-  return effect;
-}
-
-EffectUse motor(const Scene& scene) {
-  EffectUse effect{"motor", "control", "motor_calls", {}, ""};
-  for (const auto& one : scene.motors) effect.askers.push_back({one.pointer, fmt::format("in {}, looks every {:g} s", one.joint, one.period_s)});
-  return effect;
-}
-
 /// Bodies that something may touch; none where all of them stand still or there is only one.
 std::vector<const BodySpec*> colliding_bodies(const Scene& scene) {
   std::vector<const BodySpec*> bodies;
@@ -79,14 +56,8 @@ EffectUse sleep(const Scene& scene) {
 
 std::vector<EffectUse> effects_of(const Scene& scene) {
   std::vector<EffectUse> effects;
-  const auto add_said = [&](const char* key) {
-    if (const Words* words = words_of(key)) effects.push_back({words->name(), words->stage(), words->counter(), words->askers(scene), words->note(scene)});
-  };
-  add_said("gravity_m_s2");
-  add_said("point_forces");
-  add_said("springs");
-  add_said("drag");
-  for (const auto& use : {rod, joint, motor, collision, contact, friction, sleep}) effects.push_back(use(scene));
+  for (const Words* words : all_words()) effects.push_back({words->name(), words->stage(), words->counter(), words->askers(scene), words->note(scene)});
+  for (const auto& use : {collision, contact, friction, sleep}) effects.push_back(use(scene));
   for (EffectUse& effect : effects)
     for (Asker& asker : effect.askers) asker.line = line_of(scene, asker.pointer);
   return effects;

@@ -104,7 +104,7 @@ class ChainWriter {
   void tie(const AnchorSpec& a, const AnchorSpec& b, int k, const std::string& name) {
     const double distance_m = (anchors_.place_at_start(b) - anchors_.place_at_start(a)).norm();
     if (kind_ == "rods") {
-      scene_.rods.push_back({name, a, b, distance_m, pointer_});
+      add_entry("rods", {{"name", name}, {"a", json_of(a)}, {"b", json_of(b)}, {"length_m", distance_m}});
     } else if (kind_ == "springs") {
       json entry{{"name", name}, {"a", json_of(a)}, {"b", json_of(b)}, {"rest_length_m", distance_m}};
       for (const char* key : {"stiffness_n_m", "damping_n_s_m", "rest_length_m"})
@@ -126,19 +126,11 @@ class ChainWriter {
   }
 
   void add_joint(const AnchorSpec& a, const AnchorSpec& b, int k, const std::string& name) {
-    JointSpec joint;
-    joint.pointer = pointer_;
-    joint.name = name;
-    joint.kind = kind_ == "hinges" ? JointKind::kHinge : JointKind::kBall;
-    joint.body_a = a.body.empty() ? b.body : a.body;   // the world is always the second
-    joint.body_b = a.body.empty() ? "" : b.body;
-    joint.point_m = line_.start_m + (k - 1) * line_.spacing_m * line_.direction;
-    if (kind_ == "hinges") {
-      joint.axis = read_vector(value_.at("axis"));
-      if (joint.axis.isZero(0.0)) document_.refuse(pointer_ + "/axis", "found the zero vector, expected a direction");
-      joint.axis.normalize();
-    }
-    scene_.joints.push_back(joint);
+    json entry{{"name", name}, {"kind", kind_ == "hinges" ? "hinge" : "ball"}, {"body_a", a.body.empty() ? b.body : a.body},   // the world is always the second
+               {"point_m", json_of(Vector3d(line_.start_m + (k - 1) * line_.spacing_m * line_.direction))}};
+    if (!a.body.empty() && !b.body.empty()) entry["body_b"] = b.body;
+    if (kind_ == "hinges") entry["axis"] = value_.at("axis");
+    add_entry("joints", entry);
   }
 
   const json& value_;

@@ -60,9 +60,11 @@ void check_names(const Document& document, const Scene& scene) {
 const json& scene_schema() {
   static const json schema = [] {
     json whole = json::parse(kSceneSchema);
+    json& check_kinds = whole["definitions"]["check"]["properties"]["kind"]["enum"];
     for (const Words* words : all_words()) {
       const json said = json::parse(words->schema());
       for (const auto& [part, entries] : said.items()) whole[part].update(entries);
+      for (const LinkCheck& check : words->link_checks()) check_kinds.push_back(check.kind);
     }
     return whole;
   }();
@@ -132,8 +134,8 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& file) {
   Anchors anchors(document, scene);
   read_chains(document, anchors, scene);
   check_names(document, scene);   // before anything is looked up by name
-  read_links(document, anchors, scene);
   read_effects(document, anchors, scene);
+  read_links(document, anchors, scene);
   read_view(root, scene);
   for (const auto& entry : entries(root, "checks")) scene.checks.push_back(check(entry));
 

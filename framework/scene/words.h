@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "framework/scene/entry.h"
@@ -25,6 +26,22 @@ enum class PlaceKind { kHolds, kOther };
 /// Called with a place in the world's coordinates; may change it. [m]
 using VisitPlace = std::function<void(Vector3d& place_world, PlaceKind kind)>;
 
+/// What kind of thing an effect is.
+struct Traits {
+  bool leaves_flight = false;  // where it alone acts, bodies go in closed form: a parabola, free rotation
+  bool ties = false;           // the bodies that an entry names move together, as one system of equations
+  bool constrains = false;     // holds bodies by equations, from which they drift: the scene says how they are brought back (StabilisationSpec)
+  bool looks = false;          // decides once in a while, and holds that until it looks again
+  bool stores_energy = false;  // gives back what it has taken, without anything falling
+  bool may_be_stiff = false;   // a method for stiff equations may pay
+};
+
+/// A kind of check about the links of an effect.
+struct LinkCheck {
+  std::string kind;            // "rod_length"
+  std::string unit;            // "m"
+};
+
 /// Something between two points that has a name of its own: a spring, a rod, a joint.
 struct Link {
   std::string name;
@@ -41,6 +58,7 @@ class Words {
   virtual std::string key() const = 0;                   // of a scene file: "drag", "point_forces"
   virtual std::string stage() const = 0;                 // the part of a run that its code stands in: "integration", "forces", "constraints", "control"
   virtual std::string counter() const = 0;               // the count of a run that tells how often it was asked: "drag_calls"
+  virtual Traits traits() const = 0;
   /// A JSON object: {"properties": {KEY: what stands there}, "definitions": {...}}, in the language of scene.schema.json and with its definitions.
   virtual std::string schema() const = 0;
 
@@ -60,12 +78,28 @@ class Words {
 
   /// Its entries, where they are links. No two links of a scene have the same name.
   virtual std::vector<Link> links(const Scene&) const { return {}; }
+  /// Checks of a scene that are about them.
+  virtual std::vector<LinkCheck> link_checks() const { return {}; }
+  /// Bodies that never collide because of it, by name.
+  virtual std::vector<std::pair<std::string, std::string>> pairs_apart(const Scene&) const { return {}; }
   /// Every place in the world that its entries name.
   virtual void visit_places(TypedLists&, const VisitPlace&) const {}
 };
 
 /// Of all effects that the program is built with, in the order in which they are listed. Said by framework/effects/registry.h, which knows them.
 const std::vector<const Words*>& all_words();
+
+/// Whether the scene asks for an effect of which this holds. @param holds  is asked with Traits
+template <class Holds>
+bool asks_for(const Scene& scene, const Holds& holds) {
+  for (const Words* words : all_words())
+    if (holds(words->traits()) && words->is_asked(scene)) return true;
+  return false;
+}
+/// Whether the scene has rods, joints, or what else holds bodies by equations.
+inline bool is_constrained(const Scene& scene) {
+  return asks_for(scene, [](const Traits& traits) { return traits.constrains; });
+}
 
 /// The effect that a key of a scene file belongs to; nullptr where the program is built with none of that key.
 const Words* words_of(const std::string& key);

@@ -7,6 +7,8 @@
 
 #include "framework/core/error.h"
 #include "framework/effects/drag/drag.h"
+#include "framework/effects/joint/joint.h"
+#include "framework/effects/rod/rod.h"
 #include "framework/effects/spring/spring.h"
 #include "tests/engines/effect_scenes.h"
 #include "tests/engines/reference_laws.h"
@@ -39,8 +41,8 @@ scene::Scene tied(double duration, const std::string& link) {
     const std::string a = "ball " + std::to_string(i), b = "box " + std::to_string(i), name = "link " + std::to_string(i);
     if (link == "spring") scene.effects.of<effects::SpringSpec>().push_back({name, {a, Vector3d::Zero()}, {b, Vector3d::Zero()}, 10.0, 0.1, 2.0});
     if (link == "drag") scene.effects.of<effects::DragSpec>().push_back({a, 0.1, 0.1});
-    if (link == "rod") scene.rods.push_back({name, {a, Vector3d::Zero()}, {b, Vector3d::Zero()}, 2.0});
-    if (link == "joint") scene.joints.push_back({name, scene::JointKind::kHinge, a, b, {1.0 * i, 1, 0}, Vector3d::UnitZ()});
+    if (link == "rod") scene.effects.of<effects::RodSpec>().push_back({name, {a, Vector3d::Zero()}, {b, Vector3d::Zero()}, 2.0});
+    if (link == "joint") scene.effects.of<effects::JointSpec>().push_back({name, effects::JointKind::kHinge, a, b, {1.0 * i, 1, 0}, Vector3d::UnitZ()});
   }
   if (link == "rod" || link == "joint") scene.stabilisation.emplace();
   return scene;

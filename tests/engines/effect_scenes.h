@@ -7,7 +7,10 @@
 
 #include "framework/effects/drag/drag.h"
 #include "framework/effects/gravity/gravity.h"
+#include "framework/effects/joint/joint.h"
+#include "framework/effects/motor/motor.h"
 #include "framework/effects/point_force/point_force.h"
+#include "framework/effects/rod/rod.h"
 #include "framework/effects/spring/spring.h"
 #include "tests/engines/scenes.h"
 
@@ -50,22 +53,22 @@ inline const std::map<std::string, AddsEffect> kEffects = {
     {"spring", [](scene::Scene& s) { s.effects.of<effects::SpringSpec>().push_back({"s", {"", {0, 0, 2}}, {"a", Vector3d::Zero()}, 10.0, 0.1, 1.0}); }},
     {"rod",
      [](scene::Scene& s) {
-       s.rods.push_back({"r", {"", {0, 0, 2}}, {"a", Vector3d::Zero()}, 1.0});
+       s.effects.of<effects::RodSpec>().push_back({"r", {"", {0, 0, 2}}, {"a", Vector3d::Zero()}, 1.0});
        s.stabilisation.emplace();
      }},
     {"joint",
      [](scene::Scene& s) {
-       s.joints.push_back({"j", scene::JointKind::kHinge, "b", "", {1, 0, 2}, Vector3d::UnitY()});
+       s.effects.of<effects::JointSpec>().push_back({"j", effects::JointKind::kHinge, "b", "", {1, 0, 2}, Vector3d::UnitY()});
        s.stabilisation.emplace();
      }},
     {"drag", [](scene::Scene& s) { s.effects.of<effects::DragSpec>().push_back({"a", 0.1, 0.1}); }},
     {"motor",
      [](scene::Scene& s) {
        kEffects.at("joint")(s);
-       scene::MotorSpec motor;
+       effects::MotorSpec motor;
        motor.joint = "j";
        motor.stiffness_n_m_rad = motor.offset_rad = 1.0;
-       s.motors.push_back(motor);
+       s.effects.of<effects::MotorSpec>().push_back(motor);
      }},
     {"contact",
      [](scene::Scene& s) {

@@ -9,6 +9,8 @@
 
 #include "framework/core/error.h"
 #include "framework/effects/gravity/gravity.h"
+#include "framework/effects/joint/joint.h"
+#include "framework/effects/rod/rod.h"
 #include "framework/effects/spring/spring.h"
 
 namespace tumble::engines {
@@ -78,11 +80,11 @@ void expect_value(const HandMade& made, CheckSpec check, double value) {
 TEST(Judge, ARodIsAsLongAsItsEndsAreFarApart) {
   // The second body turns about its centre: the end of the rod goes from 1 m to 2 m.
   HandMade made(stays({0, 0, 0}), [](double t) { return at({1.5, 0, 0}, turned(kPi * t, Vector3d::UnitZ())); });
-  made.scene.rods.push_back({"stick", {"first", {0, 0, 0}}, {"second", {-0.5, 0, 0}}, 1.0, ""});
+  made.scene.effects.of<effects::RodSpec>().push_back({"stick", {"first", {0, 0, 0}}, {"second", {-0.5, 0, 0}}, 1.0, ""});
   expect_value(made, check_of("rod_length", 1e-6), 1.0);
   made.run.frames.resize(1);
   expect_value(made, check_of("rod_length", 1e-6), 0.0);
-  made.scene.rods.clear();
+  made.scene.effects.of<effects::RodSpec>().clear();
   EXPECT_FALSE(judged(made, check_of("rod_length", 1e-6)).passed) << "nothing to judge is not right";
 }
 
@@ -93,27 +95,27 @@ TEST(Judge, AHingeOpensByTheDistanceOfItsPointsAndTheAngleOfItsAxes) {
     const Quaterniond lean = turned(0.3 * t, Vector3d::UnitX());
     return at(point + 0.02 * t * Vector3d::UnitY() + lean * Vector3d(0.5, 0, 0), lean);
   });
-  scene::JointSpec hinge;
+  effects::JointSpec hinge;
   hinge.name = "hinge";
-  hinge.kind = scene::JointKind::kHinge;
+  hinge.kind = effects::JointKind::kHinge;
   hinge.body_a = "first";
   hinge.body_b = "second";
   hinge.point_m = point;
-  made.scene.joints.push_back(hinge);
+  made.scene.effects.of<effects::JointSpec>().push_back(hinge);
   expect_value(made, check_of("joint_gap", 1e-6), 0.02);
   expect_value(made, check_of("joint_angle", 1e-6), 0.3);
-  made.scene.joints[0].axis = Vector3d::UnitX();   // turning about its own axis is what a hinge is for
+  made.scene.effects.of<effects::JointSpec>()[0].axis = Vector3d::UnitX();   // turning about its own axis is what a hinge is for
   expect_value(made, check_of("joint_angle", 1e-6), 0.0);
-  made.scene.joints[0].kind = scene::JointKind::kWeld;
+  made.scene.effects.of<effects::JointSpec>()[0].kind = effects::JointKind::kWeld;
   expect_value(made, check_of("joint_angle", 1e-6), 0.3);
-  made.scene.joints[0].body_b = "";                // to the world: the first body does not move
+  made.scene.effects.of<effects::JointSpec>()[0].body_b = "";                // to the world: the first body does not move
   expect_value(made, check_of("joint_gap", 1e-6), 0.0);
 }
 
 TEST(Judge, TheForceInALinkIsComparedAsAPartOfTheTruth) {
   HandMade made(stays({0, 0, 0}), stays({1, 0, 0}));
   made.scene.effects.of<effects::SpringSpec>().push_back({"coil", {}, {}, 1, 0, 1, ""});
-  made.scene.rods.push_back({"stick", {}, {}, 1, ""});
+  made.scene.effects.of<effects::RodSpec>().push_back({"stick", {}, {}, 1, ""});
   for (Frame& frame : made.run.frames) {
     frame.spring_forces = {-3.0};
     frame.rod_tensions = {20.0 * frame.time};

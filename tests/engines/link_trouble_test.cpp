@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/effects/drag/drag.h"
+#include "framework/effects/rod/rod.h"
 #include "framework/effects/spring/spring.h"
 #include "framework/engines/truths/memory_scene.h"
 #include "tests/engines/effect_scenes.h"
@@ -32,7 +33,7 @@ scene::Scene swinging(const std::string& link) {
   if (link == "spring") scene.effects.of<effects::SpringSpec>().push_back({"coil", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 50.0, 0.0, 0.8});
   if (link == "drag") scene.effects.of<effects::DragSpec>().push_back({"bob", 0.5, 0.0});
   if (link == "rod" || link == "stabilised rod") {
-    scene.rods.push_back({"wire", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 1.0});
+    scene.effects.of<effects::RodSpec>().push_back({"wire", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 1.0});
     scene.stabilisation.emplace();
     if (link == "stabilised rod") scene.stabilisation->kind = scene::StabilisationKind::kBaumgarte;
   }

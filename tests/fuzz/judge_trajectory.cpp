@@ -9,7 +9,10 @@
 #include "framework/collision/gap.h"
 #include "framework/dynamics/world.h"
 #include "framework/effects/build_world.h"
+#include "framework/effects/joint/joint.h"
+#include "framework/effects/motor/motor.h"
 #include "framework/effects/point_force/point_force.h"
+#include "framework/effects/rod/rod.h"
 #include "framework/effects/spring/spring.h"
 
 namespace tumble::fuzz {
@@ -113,8 +116,8 @@ double work_of_point_forces(const Judge& judge, const Frame& from, const Frame& 
 /// The most that motors can have done: their largest torque times how far the joint turned, twice for what frames do not show.
 double work_of_motors(const Judge& judge, const Frame& from, const Frame& to) {
   double work = 0.0;
-  for (const Motor& motor : judge.world.motors) {
-    const JointLink& joint = judge.world.joints[static_cast<std::size_t>(motor.joint)];
+  for (const effects::Motor& motor : judge.world.effects.of<effects::Motor>()) {
+    const effects::JointLink& joint = motor.hinge;
     const auto rate = [&](const Frame& frame) {
       Vector3d omega = judge.pose(frame, joint.a.body).omega_world;
       if (joint.b.body >= 0) omega -= judge.pose(frame, joint.b.body).omega_world;
@@ -169,7 +172,7 @@ void Judge::check_gaps() {
   for (const WorldBody& body : world.bodies) shapes.emplace_back(body.shape);
   double worst = 0.0;
   std::string words;
-  const bool has_links = !world.rods.empty() || !world.joints.empty();
+  const bool has_links = !world.effects.of<effects::RodLink>().empty() || !world.effects.of<effects::JointLink>().empty();
   for (int i = 0; i < static_cast<int>(world.bodies.size()); ++i)
     for (int j = i + 1; j < static_cast<int>(world.bodies.size()); ++j) {
       const WorldBody &a = world.bodies[static_cast<std::size_t>(i)], &b = world.bodies[static_cast<std::size_t>(j)];
@@ -204,11 +207,11 @@ void Judge::check_links() {
   };
   const auto arm_of = [&](const Anchor& anchor) { return anchor.body < 0 ? 0.0 : anchor.point_body.norm() + std::min(1e300, bounding_radius(world.bodies[static_cast<std::size_t>(anchor.body)].shape)); };
   for (const Frame& frame : run.frames) {
-    for (const RodLink& rod : world.rods) {
+    for (const effects::RodLink& rod : world.effects.of<effects::RodLink>()) {
       const Vector3d a = place(frame, rod.a), b = place(frame, rod.b);
       look(rod.name, std::abs((a - b).norm() - rod.length), rod.length, a.norm() + b.norm(), frame.time);
     }
-    for (const JointLink& joint : world.joints) {
+    for (const effects::JointLink& joint : world.effects.of<effects::JointLink>()) {
       const Vector3d a = place(frame, joint.a), b = place(frame, joint.b);
       look(joint.name, (a - b).norm(), arm_of(joint.a) + arm_of(joint.b), a.norm() + b.norm(), frame.time);
     }

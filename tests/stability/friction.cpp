@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/effects/joint/joint.h"
 #include "framework/effects/point_force/point_force.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/support.h"
@@ -183,7 +184,7 @@ scene::Scene turntable(double part, double mu) {
   block.omega_world_rad_s = Vector3d(0, 0, omega);
   scene::Scene scene = with_contact("turntable", {block, table});
   scene.stabilisation = scene::StabilisationSpec{};
-  scene.joints = {{"axle", scene::JointKind::kHinge, "table", "", Vector3d(0, 0, -0.1), Vector3d::UnitZ()}};
+  scene.effects.of<effects::JointSpec>() = {{"axle", effects::JointKind::kHinge, "table", "", Vector3d(0, 0, -0.1), Vector3d::UnitZ()}};
   return scene;
 }
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "framework/effects/gravity/gravity.h"
+#include "framework/effects/rod/rod.h"
 #include "framework/geometry/closed.h"
 #include "framework/geometry/mass_properties.h"
 #include "framework/geometry/shape.h"
@@ -158,7 +159,7 @@ void scenes_far_off(const Given& given, Findings& findings) {
   const auto compare = [&](const std::string& name, const scene::Scene& near, const std::string& why) {
     scene::Scene far = near;
     for (scene::BodySpec& body : far.bodies) body.position_m += origin;
-    for (scene::RodSpec& rod : far.rods)
+    for (effects::RodSpec& rod : far.effects.of<effects::RodSpec>())
       if (rod.a.body.empty()) rod.a.point_m += origin;
     const Trajectory here = run_by_steps(near, given.laws, duration, 1.0 / 60, 600), there = run_by_steps(far, given.laws, duration, 1.0 / 60, 600);
     double worst = here.frames.size() == there.frames.size() ? 0.0 : INFINITY;

@@ -7,6 +7,7 @@
 
 #include "framework/core/files.h"
 #include "framework/effects/gravity/gravity.h"
+#include "framework/effects/joint/joint.h"
 #include "framework/effects/point_force/point_force.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/support.h"
@@ -100,7 +101,7 @@ scene::Scene nip(double a, double mu) {
   scene::Scene scene = with_contact("nip", {ball, jaw, floor_of(mu)});
   scene.effects.of<effects::GravitySpec>().clear();
   scene.stabilisation = scene::StabilisationSpec{};
-  scene.joints = {{"hinge", scene::JointKind::kHinge, "jaw", "", Vector3d::Zero(), Vector3d::UnitY()}};
+  scene.effects.of<effects::JointSpec>() = {{"hinge", effects::JointKind::kHinge, "jaw", "", Vector3d::Zero(), Vector3d::UnitY()}};
   scene.apart = {{"jaw", "floor"}};
   scene.effects.of<effects::PointForceSpec>() = {{"jaw", -100.0 * up, along + 0.05 * up, 0.0, 100.0}};
   return scene;

@@ -6,6 +6,7 @@
 
 #include "framework/dynamics/free_rotation.h"
 #include "framework/effects/gravity/gravity.h"
+#include "framework/effects/joint/joint.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/methods.h"
 #include "tests/stability/support.h"
@@ -205,7 +206,7 @@ scene::Scene top_on_its_tip(double m, double l, double across, double axial, con
   top.world_from_body = q;
   top.omega_world_rad_s = q * Vector3d(0, 0, spin);
   scene.bodies = {top};
-  scene.joints = {{"tip", scene::JointKind::kBall, "top", "", Vector3d::Zero(), Vector3d::UnitZ()}};
+  scene.effects.of<effects::JointSpec>() = {{"tip", effects::JointKind::kBall, "top", "", Vector3d::Zero(), Vector3d::UnitZ()}};
   return scene;
 }
 

@@ -15,7 +15,7 @@ namespace {
 
 class SpringTerms final : public GroupTerms {
  public:
-  SpringTerms(const Acting& acting, GroupPlaces& places) : laws_(acting.laws), calls_(acting.calls), all_(acting.world.effects.of<SpringLink>()), springs_(ends_in_group(all_, places)) {}
+  SpringTerms(const Acting& acting, GroupPlaces& places) : laws_(acting.laws), calls_(acting.calls), all_(acting.world.effects.of<SpringLink>()), springs_(links_in_group(all_, places)) {}
   bool empty() const { return springs_.empty(); }
 
   void add_forces(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches) override {
@@ -28,7 +28,7 @@ class SpringTerms final : public GroupTerms {
       add_force(bodies[link.b.place], -force, b.point_world, wrenches[link.b.place]);
     }
   }
-  void measure(const std::vector<Body>& bodies, std::vector<double>& forces) override {
+  void measure(const std::vector<Body>& bodies, const VectorXd&, std::vector<double>& forces) override {
     for (const PlacedLink& link : springs_) {
       const AnchorState a = link.a.state_among(bodies), b = link.b.state_among(bodies);
       const Vector3d force = laws_.spring_force(all_[static_cast<std::size_t>(link.entry)].spring, a, b), way = b.point_world - a.point_world;

@@ -12,9 +12,6 @@ namespace tumble::engines::built {
 
 constexpr std::string_view kWithout = TUMBLE_WITHOUT;
 
-constexpr bool kRod = kWithout != "rod";
-constexpr bool kJoint = kWithout != "joint";
-constexpr bool kMotor = kWithout != "motor";
 constexpr bool kCollision = kWithout != "collision";
 constexpr bool kContact = kCollision && kWithout != "contact";   // begins where bodies collide
 constexpr bool kFriction = kWithout != "friction";

@@ -30,13 +30,7 @@ void LinkMeasures::measure(Frame& frame, const FlightOf& flight_of) {
   }
   for (LinkedBodies& group : groups_) {
     const ProcessState& from = world_.processes()->passages().step_at(flight_of(group.bodies().front()).passage, frame.time).from;
-    std::vector<double> torques, looks;
-    for (const int motor : group.motors()) {
-      const auto held = from.motors.find(motor);
-      torques.push_back(held == from.motors.end() ? 0.0 : held->second.torque);
-      looks.push_back(0.0);
-    }
-    group.remember(std::move(torques), std::move(looks));
+    group.remember(from.remembered);
     for (const auto& [effect, forces] : forces_) {
       const auto memory = from.remembered.find(effect);
       forces->stand_at(from.time, memory == from.remembered.end() ? effects::Memory{} : memory->second, states);

@@ -25,7 +25,7 @@ std::vector<const collision::CollisionShape*> shapes_of(const WorldPart& part, c
 
 const RigidBodyState& ProcessState::state_of(int body) const { return states[static_cast<std::size_t>(std::lower_bound(members.begin(), members.end(), body) - members.begin())]; }
 
-ProcessState ProcessState::without_memory() const { return {time, members, states, motors, remembered, met, lasting, near, std::nullopt}; }
+ProcessState ProcessState::without_memory() const { return {time, members, states, remembered, met, lasting, near, std::nullopt}; }
 
 RigidBodyState ProcessStep::state_at(std::size_t member, double t) const { return t == from.time || paths.empty() ? from.states[member] : paths[member].at(t); }
 
@@ -51,14 +51,9 @@ void ProcessWorld::load(const ProcessState& from, std::optional<LastingContacts>
   std::vector<RigidBodyState> states = moving_.states();
   for (std::size_t k = 0; k < members_.size(); ++k) states[static_cast<std::size_t>(part_.members[k])] = from.states[k];
   moving_.stand_at(from.time, states);
-  for (LinkedBodies& group : moving_.linked_groups()) {
-    std::vector<double> torques, looks;
-    for (const int motor : group.motors()) {
-      const auto held = from.motors.find(part_.motors[static_cast<std::size_t>(motor)]);
-      torques.push_back(held == from.motors.end() ? 0.0 : held->second.torque);
-      looks.push_back(held == from.motors.end() ? 0.0 : held->second.next_look);
-    }
-    group.remember(std::move(torques), std::move(looks));
+  if (!moving_.linked_groups().empty()) {
+    const std::map<int, effects::Memory> remembered = renamed(from.remembered, false);
+    for (LinkedBodies& group : moving_.linked_groups()) group.remember(remembered);
   }
   std::map<BodyPair, double> met;
   for (const auto& [pair, time] : from.met) met.emplace(local(pair), time);
@@ -128,10 +123,10 @@ void ProcessWorld::note_near(ProcessState& state) const {
 }
 
 void ProcessWorld::save_controls(ProcessState& state) const {
+  std::map<int, effects::Memory> held = moving_.force_memory();
   for (const LinkedBodies& group : moving_.linked_groups())
-    for (std::size_t k = 0; k < group.motors().size(); ++k)
-      state.motors[part_.motors[static_cast<std::size_t>(group.motors()[k])]] = {group.torques()[k], group.next_looks()[k]};
-  state.remembered = renamed(moving_.force_memory(), true);
+    for (const auto& [effect, memory] : group.held()) held[effect].insert(memory.begin(), memory.end());
+  state.remembered = renamed(held, true);
 }
 
 ProcessState ProcessWorld::at_start(const std::vector<RigidBodyState>& states) {

@@ -20,18 +20,11 @@ namespace tumble::engines {
 
 using BodyPair = std::pair<int, int>;   // first < second
 
-/// What a motor holds until it looks again.
-struct MotorHold {
-  double torque = 0.0;      // [N m]
-  double next_look = 0.0;   // [s]
-};
-
 /// Everything that a process goes on from. Indices are those of the whole world.
 struct ProcessState {
   double time = 0.0;                            // [s]
   std::vector<int> members;                     // movable bodies, ascending
   std::vector<RigidBodyState> states;           // by member
-  std::map<int, MotorHold> motors;
   std::map<int, effects::Memory> remembered;               // what entries remember, by place of the effect in effects::all()
   std::map<BodyPair, double> met;               // when pairs met last [s]
   std::set<BodyPair> lasting;                   // pairs in lasting contact

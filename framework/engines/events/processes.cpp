@@ -43,7 +43,7 @@ bool holds_effects(const World& world) {
 
 Processes::Processes(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules)
     : whole_(whole), passages_(whole, std::move(shape_of), laws, rules),
-      holds_any_(!whole.rods.empty() || !whole.joints.empty() || holds_effects(whole) || whole.contact.has_value()), linked_(whole.bodies.size(), -1) {
+      holds_any_(holds_effects(whole) || whole.contact.has_value()), linked_(whole.bodies.size(), -1) {
   for (const std::vector<int>& group : groups_of_linked_bodies(whole))
     for (const int body : group) linked_[static_cast<std::size_t>(body)] = group.front();
   passages_.ask([this](const ProcessState& state) { return components_of(state).size() > 1; });
@@ -103,7 +103,6 @@ ProcessState Processes::together(const ProcessState& a, const ProcessState& b) {
   std::merge(a.members.begin(), a.members.end(), b.members.begin(), b.members.end(), std::back_inserter(both.members));
   for (const int body : both.members) both.states.push_back(std::binary_search(a.members.begin(), a.members.end(), body) ? a.state_of(body) : b.state_of(body));
   for (const ProcessState* state : {&a, &b}) {
-    both.motors.insert(state->motors.begin(), state->motors.end());
     for (const auto& [effect, memory] : state->remembered) both.remembered[effect].insert(memory.begin(), memory.end());
     both.met.insert(state->met.begin(), state->met.end());
     both.lasting.insert(state->lasting.begin(), state->lasting.end());
@@ -163,10 +162,6 @@ ProcessState Processes::component(const ProcessState& state, const std::vector<i
   part.time = state.time;
   part.members = members;
   for (const int body : members) part.states.push_back(state.state_of(body));
-  for (const auto& [motor, hold] : state.motors) {
-    const JointLink& joint = whole_.joints[static_cast<std::size_t>(whole_.motors[static_cast<std::size_t>(motor)].joint)];
-    if (ours(joint.a.body) || ours(joint.b.body)) part.motors.emplace(motor, hold);
-  }
   for (const auto& [effect, memory] : state.remembered)
     for (const auto& [entry, numbers] : memory) {
       const std::vector<int> bodies = effects::all()[static_cast<std::size_t>(effect)]->bodies_of(whole_, entry);

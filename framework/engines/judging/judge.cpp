@@ -243,12 +243,19 @@ enum class Right { kAtMost, kAtLeast, kAtLeastMinus };   // value <= tolerance, 
 
 struct Kind {
   Measure measure;
-  const char* unit;
+  std::string unit;
   Right right = Right::kAtMost;
 };
 
+std::map<std::string, Kind> with_those_of_effects(std::map<std::string, Kind> table) {
+  for (const effects::Effect* effect : effects::all())
+    for (const scene::LinkCheck& check : effect->link_checks())
+      table[check.kind] = {[effect](const CheckSpec& spec, const Scene& scene, const Trajectory& run) { return link_error(*effect, spec, scene, run); }, check.unit};
+  return table;
+}
+
 const std::map<std::string, Kind>& kinds() {
-  static const std::map<std::string, Kind> table = {
+  static const std::map<std::string, Kind> table = with_those_of_effects({
       {"energy", {energy, ""}},
       {"energy_not_rising", {energy_not_rising, ""}},
       {"momentum", {momentum, "kg m/s"}},
@@ -262,9 +269,6 @@ const std::map<std::string, Kind>& kinds() {
       {"restitution_law", {restitution_law, ""}},
       {"side_of_wall", {side_of_wall, "m", Right::kAtLeastMinus}},
       {"flips", {flips, ""}},
-      {"rod_length", {rod_length, "m"}},
-      {"joint_gap", {joint_gap, "m"}},
-      {"joint_angle", {joint_angle, "rad"}},
       {"link_force", {link_force, ""}},
       {"reaction", {reaction, ""}},
       {"drift", {drift, "m"}},
@@ -275,7 +279,7 @@ const std::map<std::string, Kind>& kinds() {
       {"stands", {stands, "rad"}},
       {"falls", {falls, "rad", Right::kAtLeast}},
       {"order_of_falls", {order_of_falls, ""}},
-  };
+  });
   return table;
 }
 

@@ -297,9 +297,9 @@ void RetroactiveRun::advance_to(double target) {
 // On rods between heavy ones, or between joints.
 void RetroactiveRun::tell_of_light_bodies() {
   const RunCounters before = counters_;   // what is looked at must not show in what a run counts
-  const std::vector<double> tensions = moving_.measure_links(moving_.states(), 0.0, {}).rods;
+  const LinkForces at_start = moving_.measure_links(moving_.states(), 0.0, {});
   counters_ = before;
-  if (const auto step = tell_of_unstable_links(moving_.world(), tensions, laws_, {step_, duration_}, counters_.notices)) counters_.watch.name_step(*step);
+  if (const auto step = tell_of_unstable_links(moving_.world(), at_start, laws_, {step_, duration_}, counters_.notices)) counters_.watch.name_step(*step);
 }
 
 void RetroactiveRun::run() {
@@ -309,7 +309,7 @@ void RetroactiveRun::run() {
   for (const effects::Effect* effect : effects::all())
     for (const effects::Switch& one : effect->switches(moving_.world())) switch_times_.insert(one.event.time);
   try {
-    if (!moving_.world().rods.empty() || !moving_.world().joints.empty()) tell_of_light_bodies();
+    if (moving_.world().stabilisation) tell_of_light_bodies();
     run_to_the_end();
   } catch (const StoppedRun& stop) {
     stopped_by_ = fmt::format("at t = {:.6f} s, {}", moving_.time(), stop.what());

@@ -6,8 +6,6 @@
 #include <fmt/format.h>
 
 #include "framework/core/decompositions.h"
-#include "framework/dynamics/anchors.h"
-#include "framework/dynamics/joint_rows.h"
 #include "framework/engines/stepping/stability.h"
 
 namespace tumble::engines {
@@ -21,15 +19,12 @@ constexpr Eigen::Index kMostHeldBodies = 60;
 /// The movable bodies that links end on, and their coordinates M^1/2 u, in which every direction is as easy to move.
 class LinkedCoordinates {
  public:
-  LinkedCoordinates(const World& world, const std::vector<effects::StiffRow>& rows) : world_(world), place_(world.bodies.size(), -1) {
-    for (const WorldBody& body : world.bodies) states_.push_back(body.state);
+  LinkedCoordinates(const World& world, const std::vector<effects::StiffRow>& rows, const std::vector<Constraint>& held) : world_(world), place_(world.bodies.size(), -1) {
     for (const effects::StiffRow& row : rows) take(row.body_a), take(row.body_b);
-    for (const RodLink& rod : world.rods) take(rod.a.body), take(rod.b.body);
-    for (const JointLink& joint : world.joints) take(joint.a.body), take(joint.b.body);
+    for (const Constraint& row : held) take(row.body_a), take(row.body_b);
   }
 
   Eigen::Index size() const { return 6 * bodies_; }
-  const std::vector<RigidBodyState>& states() const { return states_; }
   Eigen::Index place(int body) const { return place_[static_cast<std::size_t>(body)]; }   // of its first coordinate
   bool is_movable(int body) const { return body >= 0 && place_[static_cast<std::size_t>(body)] >= 0; }
 
@@ -43,13 +38,6 @@ class LinkedCoordinates {
     row.segment<3>(place_[static_cast<std::size_t>(body)] + 3) += root * (R.transpose() * jacobian.tail<3>());
   }
 
-  /// How the distance of two anchors changes.
-  void add_distance(const Anchor& a, const Anchor& b, Eigen::Ref<VectorXd> row) const {
-    const auto [of_a, of_b] = distance_jacobians(a, b, states_);
-    add(a.body, of_a, row);
-    add(b.body, of_b, row);
-  }
-
  private:
   void take(int body) {
     if (body < 0 || world_.bodies[static_cast<std::size_t>(body)].immovable() || is_movable(body)) return;
@@ -57,47 +45,34 @@ class LinkedCoordinates {
   }
 
   const World& world_;
-  std::vector<RigidBodyState> states_;
   std::vector<Eigen::Index> place_;
   Eigen::Index bodies_ = 0;
 };
 
-Body at_rest(const World& world, int index) {
-  Body body{infinite_inertia(), Vector3d::Zero(), Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero()};
-  if (index >= 0) {
-    const RigidBodyState& state = world.bodies[static_cast<std::size_t>(index)].state;
-    body.com_world = state.com_world;
-    body.world_from_body = state.world_from_body;
-  }
-  return body;
-}
-
 /// One column for each thing that rods and joints hold.
-MatrixXd held_directions(const World& world, const LinkedCoordinates& linked) {
-  std::vector<Constraint> joints;
-  for (const JointLink& joint : world.joints) append_joint_rows(joint, at_rest(world, joint.a.body), joint.a.body, at_rest(world, joint.b.body), joint.b.body, joints);
-  const Eigen::Index rods = static_cast<Eigen::Index>(world.rods.size());
-  MatrixXd held = MatrixXd::Zero(linked.size(), rods + static_cast<Eigen::Index>(joints.size()));
-  for (Eigen::Index k = 0; k < rods; ++k) linked.add_distance(world.rods[static_cast<std::size_t>(k)].a, world.rods[static_cast<std::size_t>(k)].b, held.col(k));
-  for (std::size_t k = 0; k < joints.size(); ++k) {
-    linked.add(joints[k].body_a, joints[k].row.jacobian_a, held.col(rods + static_cast<Eigen::Index>(k)));
-    linked.add(joints[k].body_b, joints[k].row.jacobian_b, held.col(rods + static_cast<Eigen::Index>(k)));
+MatrixXd held_directions(const std::vector<Constraint>& held, const LinkedCoordinates& linked) {
+  MatrixXd directions = MatrixXd::Zero(linked.size(), static_cast<Eigen::Index>(held.size()));
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    linked.add(held[k].body_a, held[k].row.jacobian_a, directions.col(static_cast<Eigen::Index>(k)));
+    linked.add(held[k].body_b, held[k].row.jacobian_b, directions.col(static_cast<Eigen::Index>(k)));
   }
-  return held;
+  return directions;
 }
 
 using Sparse = Eigen::SparseMatrix<double>;
 
 /// J M^-1/2 of each row, one column a row, without what rods and joints hold; zero for rows that are not judged.
 Sparse ways_of(const World& world, const std::vector<effects::StiffRow>& rows) {
-  const LinkedCoordinates linked(world, rows);
-  const bool holds = !world.rods.empty() || !world.joints.empty(), is_small = linked.size() <= 6 * kMostHeldBodies;
+  std::vector<RigidBodyState> start;
+  for (const WorldBody& body : world.bodies) start.push_back(body.state);
+  std::vector<Constraint> holding;
+  for (const effects::Effect* effect : effects::all()) effect->append_held_rows(world, start, holding);
+  const LinkedCoordinates linked(world, rows, holding);
+  const bool is_small = linked.size() <= 6 * kMostHeldBodies;
   std::vector<bool> is_held(world.bodies.size(), false);
-  const auto note = [&](const Anchor& anchor) {
-    if (anchor.body >= 0) is_held[static_cast<std::size_t>(anchor.body)] = true;
-  };
-  for (const RodLink& rod : world.rods) note(rod.a), note(rod.b);
-  for (const JointLink& joint : world.joints) note(joint.a), note(joint.b);
+  for (const Constraint& row : holding)
+    for (const int body : {row.body_a, row.body_b})
+      if (body >= 0) is_held[static_cast<std::size_t>(body)] = true;
 
   Sparse ways(linked.size(), static_cast<Eigen::Index>(rows.size()));
   VectorXd way = VectorXd::Zero(linked.size());
@@ -115,8 +90,8 @@ Sparse ways_of(const World& world, const std::vector<effects::StiffRow>& rows) {
       }
     }
   }
-  if (!holds || !is_small) return ways;
-  const MatrixXd directions = held_directions(world, linked), free(ways);
+  if (holding.empty() || !is_small) return ways;
+  const MatrixXd directions = held_directions(holding, linked), free(ways);
   return MatrixXd(free - directions * least_squares(directions, free)).sparseView();   // redundant rows are allowed
 }
 

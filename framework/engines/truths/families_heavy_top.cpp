@@ -39,7 +39,7 @@ scene::Scene HeavyTop::scene(const std::string& name) const {
   const double transverse = It - m * l * l;   // about the centre of mass (Steiner)
   top.inertia_body_kg_m2 = Vector3d(transverse, transverse, I3).asDiagonal();
   scene.bodies.push_back(top);
-  scene.joints.push_back({"point", scene::JointKind::kBall, "top", "", Vector3d::Zero()});
+  scene::EntryWriter{scene}("joints", {{"name", "point"}, {"kind", "ball"}, {"body_a", "top"}, {"point_m", Vector3d(Vector3d::Zero())}});
   return scene;
 }
 

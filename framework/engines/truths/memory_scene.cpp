@@ -44,7 +44,7 @@ scene::Scene straight_chain(const std::vector<double>& masses, double length, co
   for (std::size_t i = 0; i < masses.size(); ++i) {
     const std::string bob = "bob" + std::to_string(i);
     scene.bodies.push_back(point_mass(bob, masses[i], length * static_cast<double>(i + 1) * direction, Vector3d::Zero()));
-    scene.rods.push_back({"rod" + std::to_string(i), {above, Vector3d::Zero()}, {bob, Vector3d::Zero()}, length});
+    scene::EntryWriter{scene}("rods", {{"name", "rod" + std::to_string(i)}, {"a", scene::AnchorSpec{above}}, {"b", scene::AnchorSpec{bob}}, {"length_m", length}});
     above = bob;
   }
   return scene;

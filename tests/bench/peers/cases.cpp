@@ -7,6 +7,7 @@
 
 #include "framework/core/random.h"
 #include "framework/effects/gravity/gravity.h"
+#include "framework/effects/joint/joint.h"
 #include "framework/engines/truths/memory_scene.h"
 
 namespace tumble::peers {
@@ -64,7 +65,7 @@ Scene chain_of_hinges(const std::string& name, int links, double length, double 
     link.world_from_body = Quaterniond::FromTwoVectors(Vector3d::UnitX(), direction);
     link.collides = false;
     scene.bodies.push_back(link);
-    scene.joints.push_back({"joint" + std::to_string(k), scene::JointKind::kHinge, link.name, above, k * length * direction, Vector3d::UnitY()});
+    scene.effects.of<effects::JointSpec>().push_back({"joint" + std::to_string(k), effects::JointKind::kHinge, link.name, above, k * length * direction, Vector3d::UnitY()});
     above = link.name;
   }
   return scene;
@@ -157,7 +158,7 @@ BenchCase heavy_bob(bool quick) {
                   .sample_times = times(0.1, quick ? 5 : 100), .steps = halvings(1.0 / 960, quick ? 2 : 5)};
   BodySpec bob = ball("bob", 10.0, 0.12, 10 * kBobLink * direction, Vector3d::Zero(), 1.0);
   bob.collides = false;
-  bench.scene.joints.push_back({"last", scene::JointKind::kHinge, bob.name, bench.scene.bodies.back().name, bob.position_m, Vector3d::UnitY()});
+  bench.scene.effects.of<effects::JointSpec>().push_back({"last", effects::JointKind::kHinge, bob.name, bench.scene.bodies.back().name, bob.position_m, Vector3d::UnitY()});
   bench.scene.bodies.push_back(bob);
   bench.scene.duration_s = bench.sample_times.back();
   return bench;
