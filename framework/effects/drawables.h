@@ -43,11 +43,18 @@ struct DrawnPivot {
   Vector3d point_world, axis_world;   // at the start, fixed in body_a [m], unit
 };
 
+/// A level sheet that one sees through: a surface of something that bodies lie in.
+struct DrawnSheet {
+  double height_m;             // z
+  Vector3d color;              // linear RGB
+};
+
 struct Drawables {
   std::vector<DrawnCoil> coils;
   std::vector<DrawnBar> bars;
   std::vector<DrawnPivot> pivots;
   std::vector<DrawnArrow> arrows;
+  std::vector<DrawnSheet> sheets;
 };
 
 }  // namespace tumble::effects

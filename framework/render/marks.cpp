@@ -21,6 +21,8 @@ constexpr int kMaxCorners = 200;             // the first; a ball that bounces e
 const Vector3d kImpulseColor(0.72, 0.10, 0.01);
 const Vector3d kFlashColor(1.0, 0.78, 0.22);
 const Vector3d kForceColor(0.45, 0.02, 0.20);
+constexpr double kSheetReach = 2.6;          // of the sight
+constexpr double kSheetOpacity = 0.35;
 const Vector3d kBarColor(0.03, 0.05, 0.07);
 
 // Frames that a path is drawn through: some of all, and those on both sides of an impact, so that its corners are corners.
@@ -136,6 +138,18 @@ void Stage::add_impacts(const Frame& frame, Drawing& drawing) const {
   }
   for (Batch* batch : {&arrows, &flashes})
     if (!batch->instances.empty()) drawing.batches.push_back(std::move(*batch));
+}
+
+// So wide that its edges are far beyond what is looked at.
+void Stage::add_sheets(Drawing& drawing) const {
+  if (drawables_.sheets.empty()) return;
+  const double half = kSheetReach * sight_m();
+  Batch sheets{kPlate, Pass::kGlass, {}};
+  for (const effects::DrawnSheet& sheet : drawables_.sheets) {
+    const Vector3d middle(scene_.camera.target_m.x(), scene_.camera.target_m.y(), sheet.height_m);
+    sheets.instances.push_back(placed(middle, Eigen::Matrix3d::Identity(), Vector3d(half, half, 1.0), sheet.color, kSheetOpacity));
+  }
+  drawing.batches.push_back(std::move(sheets));
 }
 
 // A force is an arrow that pushes: its head at the point, which moves with the body.

@@ -202,6 +202,7 @@ Moment Stage::moment(std::size_t index) const {
   drawing.far_m = 1.2 * reach + (view.eye_world - extent_.center()).norm();
   drawing.near_m = drawing.far_m / 2000.0;
   add_bodies(frame, drawing);
+  add_sheets(drawing);
   draw_links(links_.at(frame), options_.height, drawing);
   if (options_.paths) add_path(index, drawing);
   add_scale_bar(moment);

@@ -67,6 +67,7 @@ class Stage {
   void add_scale_bar(Moment& moment) const;
   void add_path(std::size_t frame, Drawing& drawing) const;
   void add_forces(const Frame& frame, Moment& moment) const;
+  void add_sheets(Drawing& drawing) const;
   void add_impacts(const Frame& frame, Drawing& drawing) const;
   View view_at(const Frame& frame) const;
   TriangleMesh surface(const Actor& actor) const;   // body frame; empty for balls and planes

@@ -73,7 +73,7 @@ class Anchors {
 };
 
 void add_links(const scene::Scene& scene, const Anchors& anchors, Json& page) {
-  page["springs"] = page["rods"] = page["joints"] = page["forces"] = Json::array();
+  page["springs"] = page["rods"] = page["joints"] = page["forces"] = page["sheets"] = Json::array();
   const effects::Drawables drawn = effects::drawn(scene);
   for (const effects::DrawnCoil& coil : drawn.coils)
     page["springs"].push_back({{"name", coil.name}, {"a", anchors.of(coil.a)}, {"b", anchors.of(coil.b)}, {"rest", coil.rest_length}});
@@ -90,6 +90,7 @@ void add_links(const scene::Scene& scene, const Anchors& anchors, Json& page) {
   for (const effects::DrawnArrow& force : drawn.arrows)
     page["forces"].push_back({{"body", anchors.body(force.body)}, {"force", triple(force.force_world)}, {"point", triple(force.point_world)},
                               {"start", force.start_s}, {"duration", force.duration_s}});
+  for (const effects::DrawnSheet& sheet : drawn.sheets) page["sheets"].push_back({{"height", sheet.height_m}, {"color", triple(sheet.color)}});
 }
 
 }  // namespace
