@@ -14,6 +14,7 @@
 #include "framework/engines/cost/reading.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/scene/sized_scenes.h"
+#include "framework/scene/words.h"
 
 namespace tumble::cli {
 namespace {
@@ -54,7 +55,7 @@ std::string fineness_of(const CostRung& rung) {
 
 bool is_smooth(const scene::Scene& scene) {
   const auto collide = std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const scene::BodySpec& body) { return body.collides; });
-  return collide < 2 && scene.rods.empty() && scene.joints.empty() && scene.motors.empty();
+  return collide < 2 && !scene::asks_for(scene, [](const scene::Traits& traits) { return traits.constrains || traits.looks; });
 }
 
 /// Runs whose error is no answer cost nothing worth comparing.

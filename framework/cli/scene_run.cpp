@@ -18,9 +18,10 @@
 #include "framework/cli/scene_pictures.h"
 #include "framework/core/cpu_time.h"
 #include "framework/core/nearest_word.h"
+#include "framework/effects/registry.h"
+#include "framework/engines/base/run_counters.h"
 #include "framework/engines/judging/judge.h"
 #include "framework/engines/run.h"
-#include "framework/engines/base/run_counters.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/grading/worker/worker_connection.h"
 #include "framework/scene/load_scene.h"
@@ -36,7 +37,7 @@ using engines::CheckResult;
 
 std::string modules_line(const scene::Scene& scene, const Laws& laws) {
   std::string line = fmt::format("impulses by {} · motion by {}", laws.impulse_source, laws.integrator_source);
-  if (scene.contact || !scene.springs.empty() || !scene.rods.empty() || !scene.joints.empty()) line += " · springs, rods and contact by " + laws.constraint_source;
+  if (scene.contact || effects::asks_laws_of("a3", scene)) line += " · springs, rods and contact by " + laws.constraint_source;
   return laws.scheduling ? line + " · scheduled by " + laws.scheduling_source : line;
 }
 

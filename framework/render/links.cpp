@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 
+#include "framework/effects/registry.h"
 #include "framework/render/stage_geometries.h"
 #include "framework/render/surfaces.h"
 
@@ -92,7 +93,6 @@ SceneLinks::SceneLinks(const scene::Scene& scene, const Frame& first, double sig
   std::map<std::string, int> index;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) index[scene.bodies[i].name] = static_cast<int>(i);
   const auto body_of = [&](const std::string& name) { return name.empty() ? -1 : index.at(name); };
-  const auto anchor = [&](const scene::AnchorSpec& spec) { return Anchor{body_of(spec.body), spec.point_m}; };
   const auto fixed = [&](int body, const Vector3d& point_world) {   // a point given in the world at the start
     if (body < 0) return Anchor{body, point_world};
     const BodyPose& pose = first.poses[static_cast<std::size_t>(body)];
@@ -109,23 +109,26 @@ SceneLinks::SceneLinks(const scene::Scene& scene, const Frame& first, double sig
       if (body >= 0 && radius_m[static_cast<std::size_t>(body)] > 0.0) width = std::min(width, 0.4 * radius_m[static_cast<std::size_t>(body)]);
     return width;
   };
-  for (const auto& spring : scene.springs) {
-    const Anchor a = anchor(spring.a), b = anchor(spring.b);
-    const double length = std::max((place(b) - place(a)).norm(), std::isfinite(spring.rest_length_m) ? spring.rest_length_m : 0.0);
+  const effects::Drawables drawn = effects::drawn(scene);
+  const auto point = [&](const effects::DrawnPoint& drawn_point) { return Anchor{body_of(drawn_point.body), drawn_point.point}; };
+  for (const effects::DrawnCoil& coil : drawn.coils) {
+    const Anchor a = point(coil.a), b = point(coil.b);
+    const double length = std::max((place(b) - place(a)).norm(), std::isfinite(coil.rest_length) ? coil.rest_length : 0.0);
     const double wound = std::max(length, 0.05 * sight_m);
     links_.push_back({LinkKind::kSpring, a, b, std::min(kCoilRadius * sight_m, wound / 7.0), wound});
   }
-  for (const auto& rod : scene.rods) {
-    const Anchor a = anchor(rod.a), b = anchor(rod.b);
+  for (const effects::DrawnBar& bar : drawn.bars) {
+    const Anchor a = point(bar.a), b = point(bar.b);
     links_.push_back({LinkKind::kRod, a, b, slim(kRodRadius, {a.body, b.body}), 0.0});
   }
-  for (const auto& joint : scene.joints) {
-    const int a = body_of(joint.body_a), b = body_of(joint.body_b);
+  for (const effects::DrawnPivot& pivot : drawn.pivots) {
+    using Kind = effects::DrawnPivot::Kind;
+    const int a = body_of(pivot.body_a), b = body_of(pivot.body_b);
     const double width = slim(kBallRadius, {a, b});
-    if (joint.kind == scene::JointKind::kBall) links_.push_back({LinkKind::kBallJoint, fixed(a, joint.point_m), fixed(a, joint.point_m), width, 0.0});
-    if (joint.kind != scene::JointKind::kHinge) continue;   // a weld is not drawn
-    const Vector3d half = 2.2 * width * joint.axis.normalized();
-    links_.push_back({LinkKind::kHinge, fixed(a, joint.point_m - half), fixed(a, joint.point_m + half), 0.7 * width, 0.0});
+    if (pivot.kind == Kind::kBall) links_.push_back({LinkKind::kBallJoint, fixed(a, pivot.point_world), fixed(a, pivot.point_world), width, 0.0});
+    if (pivot.kind != Kind::kPin) continue;   // a weld is not drawn
+    const Vector3d half = 2.2 * width * pivot.axis_world.normalized();
+    links_.push_back({LinkKind::kHinge, fixed(a, pivot.point_world - half), fixed(a, pivot.point_world + half), 0.7 * width, 0.0});
   }
 }
 

@@ -21,6 +21,8 @@ constexpr int kMaxCorners = 200;             // the first ones; later bounces of
 const Vector3d kImpulseColor(0.72, 0.10, 0.01);
 const Vector3d kFlashColor(1.0, 0.78, 0.22);
 const Vector3d kForceColor(0.45, 0.02, 0.20);
+constexpr double kSheetReach = 2.6;          // of the sight
+constexpr double kSheetOpacity = 0.35;
 const Vector3d kBarColor(0.03, 0.05, 0.07);
 
 // Frames through which a path is drawn: a subset of all, and those before and after each impact, so
@@ -140,24 +142,36 @@ void Stage::add_impacts(const Frame& frame, Drawing& drawing) const {
     if (!batch->instances.empty()) drawing.batches.push_back(std::move(*batch));
 }
 
+// So wide that its edges are far beyond what is looked at.
+void Stage::add_sheets(Drawing& drawing) const {
+  if (drawables_.sheets.empty()) return;
+  const double half = kSheetReach * sight_m();
+  Batch sheets{kPlate, Pass::kGlass, {}};
+  for (const effects::DrawnSheet& sheet : drawables_.sheets) {
+    const Vector3d middle(scene_.camera.target_m.x(), scene_.camera.target_m.y(), sheet.height_m);
+    sheets.instances.push_back(placed(middle, Eigen::Matrix3d::Identity(), Vector3d(half, half, 1.0), sheet.color, kSheetOpacity));
+  }
+  drawing.batches.push_back(std::move(sheets));
+}
+
 // A force is an arrow with its head at the point of application, which moves with the body.
 void Stage::add_forces(const Frame& frame, Moment& moment) const {
   double strongest = 0.0;
-  for (const auto& force : scene_.point_forces) strongest = std::max(strongest, force.force_n.norm());
+  for (const effects::DrawnArrow& force : drawables_.arrows) strongest = std::max(strongest, force.force_world.norm());
   Batch arrows{kArrow, Pass::kMark, {}};
-  for (const auto& force : scene_.point_forces) {
+  for (const effects::DrawnArrow& force : drawables_.arrows) {
     const double end = force.start_s + force.duration_s + kForceLinger * options_.speed;
-    if (frame.time < force.start_s - 1e-9 || frame.time > end || !(force.force_n.norm() > 0.0)) continue;
+    if (frame.time < force.start_s - 1e-9 || frame.time > end || !(force.force_world.norm() > 0.0)) continue;
     const auto body = std::find_if(scene_.bodies.begin(), scene_.bodies.end(), [&](const auto& spec) { return spec.name == force.body; });
     if (body == scene_.bodies.end()) continue;
     const auto index = static_cast<std::size_t>(body - scene_.bodies.begin());
     const BodyPose& then = run_.frames[frame_at(force.start_s)].poses[index];
     const BodyPose& now = frame.poses[index];
-    const Vector3d tip = now.com_world + now.world_from_body * (then.world_from_body.conjugate() * (force.point_m - then.com_world));
-    const double length = 0.17 * sight_m() * std::sqrt(force.force_n.norm() / strongest);
-    const Vector3d tail = tip - length * force.force_n.normalized();
+    const Vector3d tip = now.com_world + now.world_from_body * (then.world_from_body.conjugate() * (force.point_world - then.com_world));
+    const double length = 0.17 * sight_m() * std::sqrt(force.force_world.norm() / strongest);
+    const Vector3d tail = tip - length * force.force_world.normalized();
     arrows.instances.push_back(laid_between(tail, tip, length, kForceColor));
-    moment.labels.push_back({tail, fmt::format("{:.3g} N", force.force_n.norm()), 0.0});
+    moment.labels.push_back({tail, fmt::format("{:.3g} N", force.force_world.norm()), 0.0});
   }
   if (!arrows.instances.empty()) moment.drawing.batches.push_back(std::move(arrows));
 }

@@ -52,6 +52,7 @@ Stage::Stage(const scene::Scene& scene, const Trajectory& run, const PictureOpti
     if (event.kind == EventKind::kCollision) strongest_impulse_ = std::max(strongest_impulse_, event.impulse);
   std::vector<double> radii;
   for (const Actor& actor : actors_) radii.push_back(actor.radius_m);
+  drawables_ = effects::drawn(scene);
   links_ = SceneLinks(scene, run.frames.front(), sight_m(), radii);
   find_extent();
   lay_ground();
@@ -205,6 +206,7 @@ Moment Stage::moment(std::size_t index) const {
   drawing.far_m = 1.2 * reach + (view.eye_world - extent_.center()).norm();
   drawing.near_m = drawing.far_m / 2000.0;
   add_bodies(frame, drawing);
+  add_sheets(drawing);
   draw_links(links_.at(frame), options_.height, drawing);
   if (options_.paths) add_path(index, drawing);
   add_scale_bar(moment);

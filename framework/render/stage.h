@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "framework/effects/registry.h"
 #include "framework/geometry/shape.h"
 #include "framework/render/drawing.h"
 #include "framework/render/links.h"
@@ -67,6 +68,7 @@ class Stage {
   void add_scale_bar(Moment& moment) const;
   void add_path(std::size_t frame, Drawing& drawing) const;
   void add_forces(const Frame& frame, Moment& moment) const;
+  void add_sheets(Drawing& drawing) const;
   void add_impacts(const Frame& frame, Drawing& drawing) const;
   View view_at(const Frame& frame) const;
   TriangleMesh surface(const Actor& actor) const;   // body frame; empty for balls and planes
@@ -79,6 +81,7 @@ class Stage {
   std::vector<TriangleMesh> meshes_;        // of geometries_ from kFirstMesh on, to find models that are used twice
   std::vector<Actor> actors_;               // by body index
   SceneLinks links_;
+  effects::Drawables drawables_;
   Eigen::AlignedBox3d extent_;              // of all finite bodies, over the run
   Ground ground_;
   int floor_ = -1;                          // the body whose plane is the ground

@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/effects/registry.h"
 #include "framework/report/channels.h"
 #include "framework/report/comparison.h"
 #include "framework/trajectory/fault_words.h"
@@ -148,9 +149,8 @@ class RunPacker {
       for (std::size_t i = 0; i < links.size(); ++i)
         add(plot, links[i].name, "N", [&, i, forces](std::size_t k) { return i < (frame(k).*forces).size() ? (frame(k).*forces)[i] : kUnset; });
     };
-    add_forces(scene.springs, "springs", &Frame::spring_forces);
-    add_forces(scene.rods, "rods", &Frame::rod_tensions);
-    add_forces(scene.joints, "joints", &Frame::joint_forces);
+    for (const effects::Effect* effect : effects::all())
+      if (const auto kept = effect->measured_as()) add_forces(effect->links(scene), effect->key().c_str(), kept);
     return all;
   }
 

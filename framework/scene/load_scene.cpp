@@ -8,24 +8,15 @@
 #include "framework/scene/check_scene.h"
 #include "framework/scene/load_body.h"
 #include "framework/scene/load_links.h"
+#include "framework/scene/read_entry.h"
 #include "framework/scene/read_json.h"
 #include "framework/scene/scene_schema.h"
+#include "framework/scene/words.h"
 
 namespace tumble::scene {
 namespace {
 
 using nlohmann::json;
-
-PointForceSpec point_force(const json& value, const std::string& pointer) {
-  PointForceSpec spec;
-  spec.pointer = pointer;
-  spec.body = value.at("body");
-  spec.force_n = read_vector(value.at("force_n"));
-  spec.point_m = read_vector(value.at("point_m"));
-  read(value, "start_s", spec.start_s);
-  spec.duration_s = value.at("duration_s");
-  return spec;
-}
 
 CheckSpec check(const json& value) {
   CheckSpec spec;
@@ -69,6 +60,35 @@ void check_names(const Document& document, const Scene& scene) {
   }
 }
 
+/// scene.schema.json, and what each effect adds to it.
+const json& scene_schema() {
+  static const json schema = [] {
+    json whole = json::parse(kSceneSchema);
+    json& check_kinds = whole["definitions"]["check"]["properties"]["kind"]["enum"];
+    for (const Words* words : all_words()) {
+      const json said = json::parse(words->schema());
+      for (const auto& [part, entries] : said.items()) whole[part].update(entries);
+      for (const LinkCheck& check : words->link_checks()) check_kinds.push_back(check.kind);
+    }
+    return whole;
+  }();
+  return schema;
+}
+
+void read_effects(const Document& document, Anchors& anchors, Scene& scene) {
+  for (const Words* words : all_words()) {
+    const std::string key = words->key();
+    if (!document.json.contains(key)) continue;
+    const json& value = document.json.at(key);
+    const bool is_list = scene_schema().at("properties").at(key).value("type", "") == "array";
+    for (std::size_t i = 0; i < (is_list ? value.size() : 1); ++i) {
+      EntrySource source{is_list ? value.at(i) : value, document, anchors};
+      Entry entry(source, "/" + key + (is_list ? "/" + std::to_string(i) : ""), static_cast<int>(i) + 1);
+      words->read(entry, scene);
+    }
+  }
+}
+
 void read_view(const json& root, Scene& scene) {
   if (root.contains("camera")) {
     const json& entry = root.at("camera");
@@ -87,7 +107,7 @@ void read_view(const json& root, Scene& scene) {
 
 Scene parse_scene(const std::string& text, const std::filesystem::path& file) {
   const Document document = parse_document(text, file);
-  check_against_schema(document, json::parse(kSceneSchema));
+  check_against_schema(document, scene_schema());
   const json& root = document.json;
 
   Scene scene;
@@ -102,13 +122,12 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& file) {
   scene.duration_s = root.at("duration_s");
   read(root, "step_s", scene.step_s);
   read(root, "rest_speed_m_s", scene.rest_speed_m_s);
-  read(root, "gravity_m_s2", scene.gravity_m_s2);
   read_bodies(document, scene);
   Anchors anchors(document, scene);
   read_chains(document, anchors, scene);
   check_names(document, scene);   // before anything is looked up by name
+  read_effects(document, anchors, scene);
   read_links(document, anchors, scene);
-  for (std::size_t i = 0; i < entries(root, "point_forces").size(); ++i) scene.point_forces.push_back(point_force(entries(root, "point_forces").at(i), "/point_forces/" + std::to_string(i)));
   read_view(root, scene);
   for (const auto& entry : entries(root, "checks")) scene.checks.push_back(check(entry));
 

@@ -5,6 +5,13 @@
 #include <string>
 #include <vector>
 
+#include "framework/effects/drag/drag.h"
+#include "framework/effects/gravity/gravity.h"
+#include "framework/effects/joint/joint.h"
+#include "framework/effects/motor/motor.h"
+#include "framework/effects/point_force/point_force.h"
+#include "framework/effects/rod/rod.h"
+#include "framework/effects/spring/spring.h"
 #include "tests/engines/scenes.h"
 
 namespace tumble::testing {
@@ -42,26 +49,26 @@ inline scene::Scene bare() {
 }
 
 inline const std::map<std::string, AddsEffect> kEffects = {
-    {"gravity", [](scene::Scene& s) { s.gravity_m_s2 = Vector3d(0, 0, -1); }},
-    {"spring", [](scene::Scene& s) { s.springs.push_back({"s", {"", {0, 0, 2}}, {"a", Vector3d::Zero()}, 10.0, 0.1, 1.0}); }},
+    {"gravity", [](scene::Scene& s) { effects::set_gravity(s, Vector3d(0, 0, -1)); }},
+    {"spring", [](scene::Scene& s) { s.effects.of<effects::SpringSpec>().push_back({"s", {"", {0, 0, 2}}, {"a", Vector3d::Zero()}, 10.0, 0.1, 1.0}); }},
     {"rod",
      [](scene::Scene& s) {
-       s.rods.push_back({"r", {"", {0, 0, 2}}, {"a", Vector3d::Zero()}, 1.0});
+       s.effects.of<effects::RodSpec>().push_back({"r", {"", {0, 0, 2}}, {"a", Vector3d::Zero()}, 1.0});
        s.stabilisation.emplace();
      }},
     {"joint",
      [](scene::Scene& s) {
-       s.joints.push_back({"j", scene::JointKind::kHinge, "b", "", {1, 0, 2}, Vector3d::UnitY()});
+       s.effects.of<effects::JointSpec>().push_back({"j", effects::JointKind::kHinge, "b", "", {1, 0, 2}, Vector3d::UnitY()});
        s.stabilisation.emplace();
      }},
-    {"drag", [](scene::Scene& s) { s.drags.push_back({"a", 0.1, 0.1}); }},
+    {"drag", [](scene::Scene& s) { s.effects.of<effects::DragSpec>().push_back({"a", 0.1, 0.1}); }},
     {"motor",
      [](scene::Scene& s) {
        kEffects.at("joint")(s);
-       scene::MotorSpec motor;
+       effects::MotorSpec motor;
        motor.joint = "j";
        motor.stiffness_n_m_rad = motor.offset_rad = 1.0;
-       s.motors.push_back(motor);
+       s.effects.of<effects::MotorSpec>().push_back(motor);
      }},
     {"contact",
      [](scene::Scene& s) {
@@ -75,7 +82,7 @@ inline const std::map<std::string, AddsEffect> kEffects = {
        kEffects.at("contact")(s);
        for (scene::BodySpec& body : s.bodies) body.friction = 0.5;
      }},
-    {"point force", [](scene::Scene& s) { s.point_forces.push_back({"a", {1, 0, 0}, {0, 0, 1}, 0.0, 0.1}); }},
+    {"point force", [](scene::Scene& s) { s.effects.of<effects::PointForceSpec>().push_back({"a", {1, 0, 0}, {0, 0, 1}, 0.0, 0.1}); }},
     {"collision",
      [](scene::Scene& s) {
        s.bodies[0].velocity_m_s = {5, 0, 0};

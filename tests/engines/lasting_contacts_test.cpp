@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
+#include "framework/effects/spring/spring.h"
 #include "tests/engines/reference_laws.h"
 #include "tests/engines/scenes.h"
 
@@ -166,7 +167,7 @@ scene::Scene stiff_spring(double step) {
   auto bob = ball("bob", 0.01, 1.0, {1.1, 0, 0}, Vector3d::Zero());
   bob.collides = false;
   scene::Scene scene = scene_of({bob}, 1.0);
-  scene.springs.push_back({"stiff", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 1e6, 0.0, 1.0});
+  scene.effects.of<effects::SpringSpec>().push_back({"stiff", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 1e6, 0.0, 1.0});
   scene.step_s = step;
   return scene;
 }
@@ -188,7 +189,7 @@ TEST(Stability, EnergyThatNothingBroughtInStopsTheRunWithTheBodyNamed) {
   Laws wrong = reference_laws();
   wrong.spring_force = [right = wrong.spring_force](const Spring& spring, const AnchorState& a, const AnchorState& b) { return Vector3d(-right(spring, a, b)); };
   scene::Scene scene = stiff_spring(1e-3);
-  scene.springs[0].stiffness_n_m = 100.0;   // 10 rad/s: a hyperbolic cosine that reaches ten times the energy after some frames
+  scene.effects.of<effects::SpringSpec>()[0].stiffness_n_m = 100.0;   // 10 rad/s: a hyperbolic cosine that reaches ten times the energy after some frames
   const Trajectory result = run(scene, wrong);
   EXPECT_NE(result.stopped_by.find("'bob'"), std::string::npos) << result.stopped_by;
   EXPECT_NE(result.stopped_by.find("runaway energy"), std::string::npos) << result.stopped_by;

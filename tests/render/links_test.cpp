@@ -1,6 +1,9 @@
 // Springs, rods and joints are drawn where the scene puts them, in every frame.
 #include <gtest/gtest.h>
 
+#include "framework/effects/joint/joint.h"
+#include "framework/effects/rod/rod.h"
+#include "framework/effects/spring/spring.h"
 #include "framework/render/links.h"
 #include "framework/render/stage.h"
 #include "framework/render/stage_geometries.h"
@@ -14,14 +17,14 @@ namespace {
 /// hinge through its centre.
 scene::Scene hung_ball() {
   scene::Scene scene = falling_ball();
-  scene.springs = {{"spring", {"", {0, 0, 2.5}}, {"ball", {0, 0, 0.3}}, 10.0, 0.0, 0.5}};
-  scene.rods = {{"rod", {"", {1, 0, 2.5}}, {"ball", {0.3, 0, 0}}, 1.0}};
-  scene::JointSpec hinge;
-  hinge.kind = scene::JointKind::kHinge;
+  scene.effects.of<effects::SpringSpec>() = {{"spring", {"", {0, 0, 2.5}}, {"ball", {0, 0, 0.3}}, 10.0, 0.0, 0.5}};
+  scene.effects.of<effects::RodSpec>() = {{"rod", {"", {1, 0, 2.5}}, {"ball", {0.3, 0, 0}}, 1.0}};
+  effects::JointSpec hinge;
+  hinge.kind = effects::JointKind::kHinge;
   hinge.body_a = "ball";
   hinge.point_m = {0, 0, 2.0};
   hinge.axis = {0, 1, 0};
-  scene.joints = {hinge};
+  scene.effects.of<effects::JointSpec>() = {hinge};
   return scene;
 }
 

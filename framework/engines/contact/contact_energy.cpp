@@ -25,14 +25,9 @@ bool LastingContacts::gains_energy(const ContactIsland& island) {
     const double mass = body.inertia.mass;
     moves_before += kinetic_energy(start, body.inertia);
     moves_after += kinetic_energy(end, body.inertia);
-    gain -= mass * gravity.dot(end.com_world - start.com_world);
+    gain -= moving_.steady_work(index, start, end);
     terms += mass * gravity.cwiseAbs().dot(start.com_world.cwiseAbs());
     unseen += mass * (rest_speed_ * rest_speed_ + kContact.lifted * gravity.norm() * moving_.shape(index).bounding_radius());
-    for (const int force : moving_.active_forces()) {
-      if (world.point_forces[static_cast<std::size_t>(force)].body != index) continue;
-      const Vector3d& at_body = moving_.force_points_body()[static_cast<std::size_t>(force)];
-      gain -= world.point_forces[static_cast<std::size_t>(force)].force_world.dot(end.com_world + end.world_from_body * at_body - start.com_world - start.world_from_body * at_body);
-    }
   }
   gain += moves_after - moves_before;
   return gain > kContact.gain * std::max(moves_before, moves_after) + unseen + kContact.energy_roundings * kEpsilon * terms;

@@ -28,7 +28,7 @@ std::vector<const collision::CollisionShape*> shapes_of(const WorldPart& part, c
 
 const RigidBodyState& ProcessState::state_of(int body) const { return states[static_cast<std::size_t>(std::lower_bound(members.begin(), members.end(), body) - members.begin())]; }
 
-ProcessState ProcessState::without_memory() const { return {time, members, states, motors, force_points_body, met, lasting, near, std::nullopt}; }
+ProcessState ProcessState::without_memory() const { return {time, members, states, remembered, met, lasting, near, std::nullopt}; }
 
 RigidBodyState ProcessStep::state_at(std::size_t member, double t) const { return t == from.time || paths.empty() ? from.states[member] : paths[member].at(t); }
 
@@ -54,14 +54,9 @@ void ProcessWorld::load(const ProcessState& from, std::optional<ContactMemory> m
   std::vector<RigidBodyState> states = moving_.states();
   for (std::size_t k = 0; k < members_.size(); ++k) states[static_cast<std::size_t>(part_.members[k])] = from.states[k];
   moving_.stand_at(from.time, states);
-  for (LinkedBodies& group : moving_.linked_groups()) {
-    std::vector<double> torques, looks;
-    for (const int motor : group.motors()) {
-      const auto held = from.motors.find(part_.motors[static_cast<std::size_t>(motor)]);
-      torques.push_back(held == from.motors.end() ? 0.0 : held->second.torque);
-      looks.push_back(held == from.motors.end() ? 0.0 : held->second.next_look);
-    }
-    group.remember(std::move(torques), std::move(looks));
+  if (!moving_.linked_groups().empty()) {
+    const std::map<int, effects::Memory> remembered = renamed(from.remembered, false);
+    for (LinkedBodies& group : moving_.linked_groups()) group.remember(remembered);
   }
   std::map<BodyPair, double> met;
   for (const auto& [pair, time] : from.met) met.emplace(local(pair), time);
@@ -76,25 +71,22 @@ void ProcessWorld::load(const ProcessState& from, std::optional<ContactMemory> m
   collector_.events.clear();
 }
 
-// Forces act in [start, end). Those that begin now take hold of their point. @return when the next one is switched [s]
-double ProcessWorld::load_forces(const ProcessState& from) {
-  double next = std::numeric_limits<double>::infinity();
-  if (!built::kPointForce) return next;
-  const auto& forces = moving_.world().point_forces;
-  std::vector<int> active;
-  std::vector<Vector3d> points(forces.size(), Vector3d::Zero());
-  for (std::size_t k = 0; k < forces.size(); ++k) {
-    for (const double time : {forces[k].start, forces[k].end})
-      if (time > from.time) next = std::min(next, time);
-    if (!(from.time >= forces[k].start && from.time < forces[k].end)) continue;
-    active.push_back(static_cast<int>(k));
-    const auto held = from.force_points_body.find(part_.forces[k]);
-    const RigidBodyState& state = moving_.state(forces[k].body);
-    points[k] = held != from.force_points_body.end() ? held->second : state.world_from_body.conjugate() * (forces[k].point_world - state.com_world);
+// Entries of the part by their indices in the whole, or the other way round.
+std::map<int, effects::Memory> ProcessWorld::renamed(const std::map<int, effects::Memory>& memory, bool to_whole) const {
+  std::map<int, effects::Memory> renamed;
+  for (const auto& [effect, entries] : memory) {
+    const std::vector<int>& whole = part_.entries[static_cast<std::size_t>(effect)];
+    for (const auto& [entry, numbers] : entries) {
+      const auto local = std::lower_bound(whole.begin(), whole.end(), entry);
+      if (to_whole) renamed[effect].emplace(whole[static_cast<std::size_t>(entry)], numbers);
+      else if (local != whole.end() && *local == entry) renamed[effect].emplace(static_cast<int>(local - whole.begin()), numbers);
+    }
   }
-  moving_.set_active_forces(std::move(active), std::move(points));
-  return next;
+  return renamed;
 }
+
+// @return when the next steady force is switched [s]
+double ProcessWorld::load_forces(const ProcessState& from) { return moving_.load_forces(renamed(from.remembered, false)); }
 
 // What contacts remember goes with the state: the next load brings its own.
 ProcessState ProcessWorld::save() {
@@ -130,11 +122,10 @@ void ProcessWorld::note_near(ProcessState& state) const {
 }
 
 void ProcessWorld::save_controls(ProcessState& state) const {
+  std::map<int, effects::Memory> held = moving_.force_memory();
   for (const LinkedBodies& group : moving_.linked_groups())
-    for (std::size_t k = 0; k < group.motors().size(); ++k)
-      state.motors[part_.motors[static_cast<std::size_t>(group.motors()[k])]] = {group.torques()[k], group.next_looks()[k]};
-  state.force_points_body.clear();
-  for (const int force : moving_.active_forces()) state.force_points_body[part_.forces[static_cast<std::size_t>(force)]] = moving_.force_points_body()[static_cast<std::size_t>(force)];
+    for (const auto& [effect, memory] : group.held()) held[effect].insert(memory.begin(), memory.end());
+  state.remembered = renamed(held, true);
 }
 
 ProcessState ProcessWorld::at_start(const std::vector<RigidBodyState>& states) {

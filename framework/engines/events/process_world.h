@@ -20,19 +20,12 @@ namespace tumble::engines {
 
 using BodyPair = std::pair<int, int>;   // first < second
 
-/// What a motor holds until it looks again.
-struct MotorHold {
-  double torque = 0.0;      // [N m]
-  double next_look = 0.0;   // [s]
-};
-
 /// Everything that a process goes on from. Indices are those of the whole world.
 struct ProcessState {
   double time = 0.0;                            // [s]
   std::vector<int> members;                     // movable bodies, ascending
   std::vector<RigidBodyState> states;           // by member
-  std::map<int, MotorHold> motors;
-  std::map<int, Vector3d> force_points_body;    // by force that acts
+  std::map<int, effects::Memory> remembered;               // what entries remember, by place of the effect in effects::all()
   std::map<BodyPair, double> met;               // when pairs met last [s]
   std::set<BodyPair> lasting;                   // pairs in lasting contact
   std::set<BodyPair> near;                      // pairs without restitution that meet within a step or two: they stay together (in_step)
@@ -115,6 +108,7 @@ class ProcessWorld {
   void save_controls(ProcessState& state) const;
   void note_near(ProcessState& state) const;
   double load_forces(const ProcessState& from);
+  std::map<int, effects::Memory> renamed(const std::map<int, effects::Memory>& memory, bool to_whole) const;
   void begin_step(double target);
   void require_numbers() const;
   bool has_contacts() const { return contacts_.has_value(); }

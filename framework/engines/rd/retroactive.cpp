@@ -7,17 +7,17 @@
 
 #include <fmt/format.h>
 
-#include "framework/dynamics/build_world.h"
+#include "framework/effects/build_world.h"
+#include "framework/effects/registry.h"
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/contact/contact_paths.h"
 #include "framework/engines/contact/impact_law.h"
 #include "framework/engines/contact/impact_response.h"
 #include "framework/engines/contact/meetings.h"
-#include "framework/engines/rd/recorder.h"
 #include "framework/engines/contact/sequential_impacts.h"
 #include "framework/engines/contact/sleeping.h"
+#include "framework/engines/rd/recorder.h"
 #include "framework/engines/stepping/stability.h"
-#include "framework/engines/base/step_limits.h"
 
 namespace tumble::engines {
 namespace {
@@ -64,10 +64,6 @@ class RetroactiveRun {
   std::vector<std::pair<int, int>> pairs_in_step();
   void advance_to(double target);
   void resolve_at(const std::vector<std::pair<int, int>>& pairs, std::pair<int, int> trigger);
-  bool is_pushed(int body) const {
-    const auto& active = moving_.active_forces();
-    return std::any_of(active.begin(), active.end(), [&](int force) { return moving_.world().point_forces[force].body == body; });
-  }
   void note_touching(const std::vector<std::pair<int, int>>& near);
   void begin_again();
   void settle(const std::vector<TouchingPair>& touching, const std::vector<Event>& events);
@@ -107,18 +103,10 @@ double RetroactiveRun::next_target() const {
 }
 
 void RetroactiveRun::switch_forces() {
-  if (!built::kPointForce) return;
-  const auto& forces = moving_.world().point_forces;
-  for (int k = 0; k < static_cast<int>(forces.size()); ++k) {
-    const auto& active = moving_.active_forces();
-    const bool is_on = std::find(active.begin(), active.end(), k) != active.end();
-    const bool should_be_on = moving_.time() >= forces[k].start && moving_.time() < forces[k].end;
-    if (is_on == should_be_on) continue;
-    if (has_sleepers()) sleepers_->wake(forces[k].body, -1);
-    moving_.switch_force(k, should_be_on);
-    const double size = forces[k].force_world.norm();
-    sink_.event({moving_.time(), should_be_on ? EventKind::kForceOn : EventKind::kForceOff, forces[k].body, -1, forces[k].point_world,
-                 size > 0 ? Vector3d(forces[k].force_world / size) : Vector3d::UnitZ(), 0.0, 0.0});
+  for (const auto& due : moving_.due_switches()) {
+    if (has_sleepers()) sleepers_->wake(due.second.event.body_a, -1);
+    moving_.turn(due);
+    sink_.event(due.second.event);
   }
 }
 
@@ -172,7 +160,7 @@ void RetroactiveRun::settle(const std::vector<TouchingPair>& touching, const std
     const int support = a_is_support ? pair.a : pair.b, body = a_is_support ? pair.b : pair.a;
     const Vector3d up = a_is_support ? Vector3d(-pair.gap.normal_b_to_a_world) : pair.gap.normal_b_to_a_world;
     if (moving_.world().bodies[support].motion.angular_frequency_rad_s != 0.0) continue;
-    if (!moving_.shape(body).is_ball() || is_pushed(body)) continue;
+    if (!moving_.shape(body).is_ball() || !moving_.is_left_alone(body)) continue;
     const bool rests = comes_to_rest({*moving_.world().gravity_world, up, moving_.shape(body).bounding_radius(), meetings_.touching_distance({pair.a, pair.b}), moving_.world().bodies[body].inertia.inertia_body,
                                       !moving_.state(body).angular_momentum_world.isZero(0.0), moving_.velocity_of(body, moving_.time()) - moving_.velocity_of(support, moving_.time()),
                                       std::min(moving_.world().bodies[body].restitution, moving_.world().bodies[support].restitution), scene_.rest_speed_m_s, fastest});
@@ -265,21 +253,19 @@ void RetroactiveRun::advance_to(double target) {
 // On rods between heavy ones, or between joints.
 void RetroactiveRun::tell_of_light_bodies() {
   const RunCounters before = counters_;   // what is looked at must not show in what a run counts
-  const std::vector<double> tensions = moving_.measure_links(moving_.states(), 0.0, {}).rods;
+  const LinkForces at_start = moving_.measure_links(moving_.states(), 0.0, {});
   counters_ = before;
-  if (const auto step = tell_of_unstable_links(moving_.world(), tensions, laws_, {step_, duration_}, counters_.notices)) counters_.watch.name_step(*step);
+  if (const auto step = tell_of_unstable_links(moving_.world(), at_start, laws_, {step_, duration_}, counters_.notices)) counters_.watch.name_step(*step);
 }
 
 void RetroactiveRun::run() {
   const std::string where = scene_.file.empty() ? scene_.name : scene_.file.string();
   meetings_.refuse_overlap(where, scene_);
   refuse_unstable_steps(moving_.world(), laws_, {step_, duration_}, where, counters_.notices);
-  for (const PointForce& force : moving_.world().point_forces) {
-    switch_times_.insert(force.start);
-    switch_times_.insert(force.end);
-  }
+  for (const effects::Effect* effect : effects::all())
+    for (const effects::Switch& one : effect->switches(moving_.world())) switch_times_.insert(one.event.time);
   try {
-    if (!moving_.world().rods.empty() || !moving_.world().joints.empty()) tell_of_light_bodies();
+    if (moving_.world().stabilisation) tell_of_light_bodies();
     run_to_the_end();
   } catch (const StoppedRun& stop) {
     stopped_by_ = fmt::format("at t = {:.6f} s, {}", moving_.time(), stop.what());
@@ -291,7 +277,7 @@ void RetroactiveRun::run() {
 void RetroactiveRun::stop_for(const Runaway& runaway) {
   const std::vector<ContactPoint> none, &contacts = has_contacts() ? contacts_->forces() : none;
   const LinkForces links = moving_.measure_links(moving_.states(), moving_.time(), contacts);
-  stopped_by_ = told_runaway(moving_.time(), moving_.world(), runaway, {links.springs, links.rods, links.joints, contacts}, laws_);
+  stopped_by_ = told_runaway(moving_.time(), moving_.world(), runaway, {moving_.states(), links, contacts}, laws_);
 }
 
 void RetroactiveRun::run_to_the_end() {

@@ -21,6 +21,7 @@ class Stage {
     this.addGround();
     this.marks = new Marks(this.scene, run, about, this.sight);
     this.addLinks();
+    this.addSheets();
     this.addHalo();
   }
 
@@ -204,6 +205,17 @@ class Stage {
       });
     }
     this.linked = [...this.about.springs, ...this.about.rods, ...this.about.joints];
+  }
+
+  // Level surfaces that one sees through, so wide that their edges are far beyond what is looked at.
+  addSheets() {
+    for (const sheet of this.about.sheets) {
+      const material = new THREE.MeshLambertMaterial({ color: new THREE.Color(...sheet.color), transparent: true, opacity: 0.35, depthWrite: false, side: THREE.DoubleSide });
+      const surface = new THREE.Mesh(new THREE.PlaneBufferGeometry(5.2 * this.sight, 5.2 * this.sight), material);
+      surface.position.set(this.target.x, this.target.y, sheet.height);
+      surface.renderOrder = 1;
+      this.scene.add(surface);
+    }
   }
 
   anchorAt(anchor, at) {

@@ -13,12 +13,12 @@
 #include <vector>
 
 #include "framework/dynamics/constraint.h"
-#include "framework/dynamics/world.h"
+#include "framework/effects/joint/joint.h"
 
-namespace tumble {
+namespace tumble::effects {
 
 /// How many rows a joint has: 3, 5 or 6.
-int row_count(scene::JointKind kind);
+int row_count(JointKind kind);
 
 /// Appends the rows of a joint where its bodies are now. For the world's end pass a body at the origin that does not move.
 /// @param index_a, index_b  what Constraint::body_a and body_b shall say
@@ -31,4 +31,4 @@ struct HingeMotion {
 };
 HingeMotion hinge_motion(const JointLink& joint, const Body& a, const Body& b);
 
-}  // namespace tumble
+}  // namespace tumble::effects

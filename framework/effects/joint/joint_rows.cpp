@@ -1,8 +1,8 @@
-#include "framework/dynamics/joint_rows.h"
+#include "framework/effects/joint/joint_rows.h"
 
 #include <cmath>
 
-namespace tumble {
+namespace tumble::effects {
 namespace {
 
 // What the three rows of a point share: how B's point moves against A's, and what it accelerates by turning.
@@ -52,11 +52,11 @@ void append_axes_row(const Vector3d& x_a, const Body& a, int index_a, const Vect
 
 }  // namespace
 
-int row_count(scene::JointKind kind) {
+int row_count(JointKind kind) {
   switch (kind) {
-    case scene::JointKind::kBall: return 3;
-    case scene::JointKind::kHinge: return 5;
-    case scene::JointKind::kWeld: return 6;
+    case JointKind::kBall: return 3;
+    case JointKind::kHinge: return 5;
+    case JointKind::kWeld: return 6;
   }
   return 0;
 }
@@ -65,11 +65,11 @@ void append_joint_rows(const JointLink& joint, const Body& a, int index_a, const
   const Vector3d r_a = a.world_from_body * joint.a.point_body, r_b = b.world_from_body * joint.b.point_body;
   const PointMotion motion = point_motion(a, r_a, b, r_b);
   append_point_rows(motion, r_a, r_b, index_a, index_b, rows);
-  if (joint.kind == scene::JointKind::kBall) return;
+  if (joint.kind == JointKind::kBall) return;
   const Matrix3d axes_a = (a.world_from_body * joint.a_from_joint).toRotationMatrix(), axes_b = (b.world_from_body * joint.b_from_joint).toRotationMatrix();
   append_axes_row(axes_a.col(0), a, index_a, axes_b.col(2), b, index_b, rows);
   append_axes_row(axes_a.col(1), a, index_a, axes_b.col(2), b, index_b, rows);
-  if (joint.kind == scene::JointKind::kWeld) append_axes_row(axes_a.col(0), a, index_a, axes_b.col(1), b, index_b, rows);
+  if (joint.kind == JointKind::kWeld) append_axes_row(axes_a.col(0), a, index_a, axes_b.col(1), b, index_b, rows);
 }
 
 HingeMotion hinge_motion(const JointLink& joint, const Body& a, const Body& b) {
@@ -82,4 +82,4 @@ HingeMotion hinge_motion(const JointLink& joint, const Body& a, const Body& b) {
   return {angle, axis_world.dot(b.omega_world - a.omega_world), axis_world};
 }
 
-}  // namespace tumble
+}  // namespace tumble::effects

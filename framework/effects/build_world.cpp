@@ -1,7 +1,9 @@
-#include "framework/dynamics/build_world.h"
+#include "framework/effects/build_world.h"
+
+#include <algorithm>
 
 #include "framework/core/error.h"
-#include "framework/dynamics/build_links.h"
+#include "framework/effects/registry.h"
 #include "framework/scene/build_shape.h"
 #include "framework/scene/check_scene.h"
 
@@ -34,10 +36,25 @@ WorldBody build_body(const scene::BodySpec& spec, scene::Solid solid) {
   return body;
 }
 
-int find_body(const World& world, const std::string& name) {
-  for (std::size_t i = 0; i < world.bodies.size(); ++i)
-    if (world.bodies[i].name == name) return static_cast<int>(i);
-  throw UserError("point force on '" + name + "'", "no body has that name", "name one of the scene's bodies");
+bool is_constrained(const World& world) {
+  return std::any_of(effects::all().begin(), effects::all().end(), [&](const effects::Effect* effect) { return effect->traits().constrains && effect->count_in(world) > 0; });
+}
+
+void keep_apart(const scene::Scene& scene, const effects::BodyIndex& index, World& world) {
+  std::vector<std::pair<std::string, std::string>> pairs = scene.apart;
+  for (const effects::Effect* effect : effects::all())
+    for (auto& pair : effect->pairs_apart(scene)) pairs.push_back(std::move(pair));
+  for (const auto& [a, b] : pairs) world.apart.push_back(std::minmax({index.of(a, "apart"), index.of(b, "apart")}));
+  std::sort(world.apart.begin(), world.apart.end());
+  world.apart.erase(std::unique(world.apart.begin(), world.apart.end()), world.apart.end());
+}
+
+// What no effect of this program reads would be left out of the run without a word.
+void refuse_unknown(const TypedLists& lists, const std::string& name) {
+  std::size_t known = 0;
+  for (const effects::Effect* effect : effects::all()) known += effect->is_kept_in(lists) ? 1 : 0;
+  if (lists.types().size() > known)
+    throw UserError(name, "asks for an effect that this program is not built with", "add its line to framework/effects/CMakeLists.txt and build again");
 }
 
 }  // namespace
@@ -47,14 +64,12 @@ World build_world(const scene::Scene& scene) {
   scene::check_ellipsoids(scene, [&](const std::string&, const std::string& problem, const std::string& remedy) { throw UserError(scene.name, problem, remedy); });
   std::vector<scene::Solid> solids = scene::build_solids(scene);
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) world.bodies.push_back(build_body(scene.bodies[i], std::move(solids[i])));
-  world.gravity_world = scene.gravity_m_s2;
-  for (const scene::PointForceSpec& spec : scene.point_forces) {
-    const int body = find_body(world, spec.body);
-    if (world.bodies[body].immovable())
-      throw UserError("point force on '" + spec.body + "'", "the body is immovable", "push a movable body");
-    world.point_forces.push_back({body, spec.force_n, spec.point_m, spec.start_s, spec.start_s + spec.duration_s});
-  }
-  build_links(scene, world);
+  const effects::BodyIndex index(world);
+  refuse_unknown(scene.effects, scene.name);
+  for (const effects::Effect* effect : effects::all()) effect->build(scene, index, world);
+  world.contact = scene.contact;
+  if (is_constrained(world)) world.stabilisation = scene.stabilisation.value_or(scene::StabilisationSpec{});
+  keep_apart(scene, index, world);
   return world;
 }
 
