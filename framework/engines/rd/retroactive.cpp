@@ -10,6 +10,7 @@
 #include "framework/effects/build_world.h"
 #include "framework/effects/registry.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/step_limits.h"
 #include "framework/engines/contact/contact_paths.h"
 #include "framework/engines/contact/impact_law.h"
 #include "framework/engines/contact/impact_response.h"

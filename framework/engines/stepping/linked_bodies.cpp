@@ -421,4 +421,11 @@ void record(LinkForces forces, Frame& frame) {
     if (const auto kept = effects::all()[k]->measured_as()) frame.*kept = std::move(forces.of_effects[k]);
 }
 
+LinkForces recorded_forces(const World& world, const Frame& frame) {
+  LinkForces forces(world);
+  for (std::size_t k = 0; k < forces.of_effects.size(); ++k)
+    if (const auto kept = effects::all()[k]->measured_as()) forces.of_effects[k] = frame.*kept;
+  return forces;
+}
+
 }  // namespace tumble::engines

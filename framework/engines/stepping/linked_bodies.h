@@ -30,6 +30,8 @@ struct LinkForces {
 };
 /// Puts them where a frame keeps them.
 void record(LinkForces forces, Frame& frame);
+/// What a frame keeps of them.
+LinkForces recorded_forces(const World& world, const Frame& frame);
 
 class LinkedBodies final : effects::GroupPlaces {
  public:
