@@ -56,6 +56,7 @@ std::vector<Velocity> LastingContacts::velocities_now(const ContactIsland& islan
 // Without that they would end at rest where half of their first velocity has taken them: an edge that rocks would be lifted by
 // v0 h / 2 each time, which is more energy than it has wherever v0 < g h. @return whether there are any
 bool LastingContacts::let_part(const ContactIsland& island, std::vector<StepContact>& touches, ContactProblem& problem) const {
+  if (!island.linked.empty()) return false;   // what hangs on links is not lifted by itself: their reactions are part of what parts it
   const std::vector<Velocity> now = velocities_now(island, touches, problem);
   bool any = false;
   for (std::size_t i = 0; i < touches.size(); ++i) {
