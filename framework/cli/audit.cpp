@@ -129,7 +129,7 @@ void add_audit(CLI::App& app, Context& context) {
   verb.option("--jobs", words->jobs, "At a time").between(1, 256).default_text("number of cores");
   verb.flag("--lines", words->lines, "List the lines of the reference that no slip touches, and judge nothing");
   verb.flag("--json", words->json, "For machines");
-  verb.footer("A known-wrong solution is a slip (NAME.slip: what differs from a right solution, README.md) or a whole file (NAME.cpp). A line of the reference is touched\n"
+  verb.footer("A known-wrong solution is a slip (NAME.slip: what differs from a right solution; framework/grading/course/slip.h) or a whole file (NAME.cpp). A line of the reference is touched\n"
               "where a slip takes it out or writes it anew; comments, #include, namespaces and braces alone do not count.\n"
               "Exit: 0 all caught and no right solution accused, 1 otherwise.");
   verb.runs([&context, words] { audit(context, *words); });

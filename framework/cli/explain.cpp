@@ -9,6 +9,7 @@
 #include "framework/cli/find_scene.h"
 #include "framework/engines/run.h"
 #include "framework/scene/effects.h"
+#include "framework/core/version.h"
 
 namespace tumble::cli {
 namespace {
@@ -203,8 +204,10 @@ void print_page(const scene::Scene& scene, const std::vector<EffectUse>& effects
   else if (!run->stopped_by.empty()) fmt::print("\n  STOPPED: {}\n", run->stopped_by);
 }
 
-void print_json(const scene::Scene& scene, const std::vector<EffectUse>& effects, const std::vector<Stage>& stages, const Trajectory* run) {
+void print_json(const Context& context, const scene::Scene& scene, const std::vector<EffectUse>& effects, const std::vector<Stage>& stages, const Trajectory* run) {
   nlohmann::ordered_json page;
+  page["command"] = context.command_line;
+  page["version"] = kProgramVersion;
   page["scene"] = scene.name;
   page["title"] = scene.title;
   page["file"] = scene.file.string();
@@ -243,7 +246,7 @@ void explain(Context& context, const ExplainWords& words) {
     if (!recorder.trajectory().stopped_by.empty()) context.exit = ExitCode::kCheckFailed;
   }
   const Trajectory* run = words.run ? &recorder.trajectory() : nullptr;
-  if (words.json) print_json(scene, effects, stages, run);
+  if (words.json) print_json(context, scene, effects, stages, run);
   else print_page(scene, effects, stages, run);
 }
 

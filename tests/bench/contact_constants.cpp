@@ -1,5 +1,5 @@
 // How much each tolerance of contacts matters: every constant of framework/engines/contact/contact_constants.h times ten and divided by ten,
-// and which scenes notice. By hand: contact_constants.sh. A constant that nobody notices is a candidate to go.
+// and which scenes notice. A constant that nobody notices is a candidate to go.
 //
 //   bench_contact_constants                 all constants
 //   bench_contact_constants margin reach    these

@@ -159,7 +159,7 @@ TEST_F(FindSubmissions, AFolderThatIsALinkToItsParentEnds) {
 TEST_F(FindSubmissions, APipeIsNotWaitedFor) {
   fs::create_directory(root / "adam");
   ASSERT_EQ(::mkfifo((root / "adam/a9_thing.cpp").c_str(), 0600), 0);
-  EXPECT_NE(only().problem.find("no ordinary file"), std::string::npos) << only().problem;
+  EXPECT_NE(only().problem.find("not an ordinary file"), std::string::npos) << only().problem;
 }
 
 TEST_F(FindSubmissions, HugeAndEmptySourcesAreRefused) {

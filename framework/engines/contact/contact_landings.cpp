@@ -1,4 +1,4 @@
-// ContactManifold that come down within a step: when they do, and the blow they strike. Part of LastingContacts.
+// Points that come down within a step: when they do, and the blow they strike. Part of LastingContacts.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -51,11 +51,12 @@ std::vector<Velocity> LastingContacts::velocities_now(const ContactIsland& islan
   return now;
 }
 
-// ContactManifold that touch and part at the step's start, more slowly than they could leave in it: they hop, and have come down again by its end,
+// Points that touch and part at the step's start, more slowly than they could leave in it: they hop, and have come down again by its end,
 //   gap(h) = h (v0 + v1) / 2 = 0,  so that  v1 = -v0.
 // Without that they would end at rest where half of their first velocity has taken them: an edge that rocks would be lifted by
 // v0 h / 2 each time, which is more energy than it has wherever v0 < g h. @return whether there are any
 bool LastingContacts::let_part(const ContactIsland& island, std::vector<StepContact>& touches, ContactProblem& problem) const {
+  if (!island.linked.empty()) return false;   // what hangs on links is not lifted by itself: their reactions are part of what parts it
   const std::vector<Velocity> now = velocities_now(island, touches, problem);
   bool any = false;
   for (std::size_t i = 0; i < touches.size(); ++i) {
@@ -108,7 +109,7 @@ std::vector<LastingContacts::Landing> LastingContacts::predict_landings(const Co
   return landings;
 }
 
-// ContactManifold that are apart at the step's start: where one comes down faster than the rest speed the step ends; slower ones stay, with the
+// Points that are apart at the step's start: where one comes down faster than the rest speed the step ends; slower ones stay, with the
 // velocity at the end that takes them down by then; others must not come farther.
 // @return an earlier target (or the same after a blow) to begin the step again with
 std::optional<double> LastingContacts::sort_out_landings(const ContactIsland& island, std::vector<StepContact>& touches, double h) {
@@ -138,7 +139,7 @@ std::optional<double> LastingContacts::sort_out_landings(const ContactIsland& is
   return std::nullopt;
 }
 
-// ContactManifold that touch and come together: their velocities jump. @return whether any did
+// Points that touch and come together: their velocities jump. @return whether any did
 bool LastingContacts::strike_what_is_down(const ContactIsland& island, const std::vector<StepContact>& touches) {
   if (std::none_of(touches.begin(), touches.end(), [&](const StepContact& touch) { return is_down(touch); })) return false;
   // Corners of an edge that comes down flat strike together, though rounding takes one of them down first.

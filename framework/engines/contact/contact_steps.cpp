@@ -1,5 +1,4 @@
-// One step of a island in contact: the impulses, where they lead, and the shifts that take back what is left of overlaps. Part of
-// LastingContacts.
+// One step of an island in contact: its impulses, and the paths that they lead to. Part of LastingContacts.
 #include <algorithm>
 #include <cmath>
 
@@ -255,7 +254,7 @@ double LastingContacts::turn_of_normals(const ContactIsland& island, const std::
   return turn;
 }
 
-// Contacts of a island that turns: at the middle of the step, where their forces act evenly, with targets that make the velocities at the
+// Contacts of an island that turns: at the middle of the step, where their forces act evenly, with targets that make the velocities at the
 // step's end fit the surfaces there: J_middle v' = target - (J_end - J_middle) v'. Without that a body that tips over its edge gains or
 // loses energy in proportion to the step.
 std::vector<LastingContacts::StepContact> LastingContacts::touches_midway(const ContactIsland& island, const std::vector<StepContact>& touches, const std::vector<RigidBodyState>& ends,

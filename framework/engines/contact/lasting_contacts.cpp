@@ -290,6 +290,12 @@ std::optional<double> LastingContacts::take_step(const ContactIsland& island, do
     for (std::size_t i = 0; i < used.size(); ++i) problem.contacts[i].guess_world = solution.impulses_world[i];   // the same points, a little farther on
     solution = solve(island, problem, h);
     landing = lands(used, solution);
+    if (!landing || !parts) continue;
+    // A point lands after all: paths are straight then, and what was to hop stays.
+    for (std::size_t i = 0; i < used.size(); ++i)
+      if (!touches[i].lands) problem.contacts[i].target = used[i].target -= touches[i].target;
+    solution = solve(island, problem, h);
+    landing = lands(used, solution);
   }
   require_numbers(island, solution);
   // A pair that stops sliding ends the step there.

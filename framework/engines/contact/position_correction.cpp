@@ -51,7 +51,7 @@ bool PositionCorrection::apply_shift(int body, const Velocity& shift, std::vecto
   return true;
 }
 
-// The island's contacts as they are in these places: what each has to move by. ContactManifold farther apart than `reach` are no concern.
+// The island's contacts as they are in these places: what each has to move by. Points farther apart than `reach` are no concern.
 // @return the farthest that any too near, or held too far, has to move; 0 where none is
 double PositionCorrection::add_shifts(const ContactIsland& island, const std::vector<Pair>& pairs, const std::vector<RigidBodyState>& states, double t, const std::vector<ActiveContact>& held, double reach,
                                    std::map<int, int>& places, ContactProblem& problem) {
@@ -108,7 +108,7 @@ bool PositionCorrection::keep_apart(const ContactIsland& island, const std::vect
     const bool open = problem.row_targets.size() > 0 && problem.row_targets.cwiseAbs().maxCoeff() > 1e-13 * size;
     if (wrong == 0.0 && !open) return true;
     ++counters_.nudges;
-    // The solver measures its answers by the farthest point, which need not move at all. ActiveContact points, rods and joints are drawn together by what
+    // The solver measures its answers by the farthest point, which need not move at all. Active points, rods and joints are drawn together by what
     // is of another size.
     double part = 1.0;
     if (problem.rows.empty()) {

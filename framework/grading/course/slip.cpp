@@ -305,7 +305,8 @@ std::string in_places_of_slip(const std::string& story, const std::string& compi
     } else if (std::regex_match(line, m, gutter)) {
       const auto origin = is_of_made ? origin_of(m[2]) : std::nullopt;
       if (origin) line = m[1].str() + std::to_string(origin->line) + m[3].str();
-    } else if (line.find(": error: ") != std::string::npos) {
+    } else if (line.find(": error: ") != std::string::npos || line.find(": note: ") != std::string::npos ||
+               line.find(": warning: ") != std::string::npos) {
       is_of_made = false;
     }
     told += line + '\n';
