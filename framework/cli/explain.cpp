@@ -52,7 +52,7 @@ std::vector<Stage> stages_of(const std::vector<EffectUse>& effects) {
   return {
       {"integration", "moves bodies by their forces, and takes back what went too far", true,
        counts_of(effects, "integration", {"steps", "synchronisations", "shortened_steps", "integrations", "undone_integrations", "derivative_evaluations", "rollbacks"}, {})},
-      {"forces", "springs, drag and motors, with the gravity of what they hold", forced, counts_of(effects, "forces", {}, {})},
+      {"forces", "forces on bodies that are tied or do not fly freely, with their gravity", forced, counts_of(effects, "forces", {}, {})},
       {"constraints", "the forces that hold rods and joints, and bringing them back", constrained, counts_of(effects, "constraints", {}, {"constraint_solves", "constraint_corrections"})},
       {"control", "motors look and set their torques", is_stage_asked(effects, "control"), counts_of(effects, "control", {}, {})},
       {"collision", "which bodies are near, how far apart, when they meet", colliding, {"candidate_pairs", "gap_evaluations", "root_findings"}},

@@ -38,7 +38,7 @@ struct Anchor {
 
 struct World {
   std::vector<WorldBody> bodies;
-  TypedLists effects;                             // what acts on them: lists of the types in framework/effects/NAME/NAME.h, such as effects.of<Drag>()
+  TypedLists effects;                             // what acts on them: lists of the types in framework/effects/NAME/NAME.h, such as effects.of<SpringLink>()
   std::optional<Vector3d> gravity_world;          // [m/s^2]
   std::optional<scene::ContactSpec> contact;      // lasting contact; absent where the scene does not ask for it
   std::optional<scene::StabilisationSpec> stabilisation;

@@ -140,7 +140,7 @@ class WorkMeter {
 struct Drain {
   int body;
   double linear, angular;      // [N s/m], [N m s]
-  std::string of, remedy;      // in words: "the drag of body 'a'", "less drag"
+  std::string of, remedy;      // in words: "the resistance of body 'a'", "less resistance"
 };
 
 /// Draws bodies back along one direction: K = J^T stiffness J, C = J^T damping J. What swings fastest by all of these limits the step.

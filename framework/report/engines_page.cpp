@@ -96,7 +96,8 @@ Plot plot_of_energy(const std::vector<EngineRow>& rows) {
   plot.y = {"|E - E0| / (kinetic + |potential|)", "", Scale::kLog};
   for (const EngineRow& row : rows)
     if (!row.frame_times.empty()) plot.curves.push_back({row.label + ": " + row.meaning, row.frame_times, row.energy_error, false});
-  plot.caption = "Where energy is lost or added by the physics (restitution below 1, friction, drag, motors), this includes the energy lost or added.";
+  plot.caption =
+      "Where energy is lost or added by the physics (restitution below 1, friction, effects that slow bodies down or drive them), this includes the energy lost or added.";
   return plot;
 }
 

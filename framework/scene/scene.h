@@ -119,7 +119,7 @@ struct Scene {
   double step_s = 1.0 / 60.0;
   double rest_speed_m_s = 1e-3;     // an impact that separates more slowly than this ends in rest
   std::vector<BodySpec> bodies;
-  TypedLists effects;               // what it says of effects: lists of the types in framework/effects/NAME/NAME.h, such as effects.of<DragSpec>()
+  TypedLists effects;               // what it says of effects: lists of the types in framework/effects/NAME/NAME.h, such as effects.of<SpringSpec>()
   std::optional<ContactSpec> contact;     // absent: bodies bounce until they rest, nothing lies, slides or rolls
   std::optional<StabilisationSpec> stabilisation;   // present exactly where something constrains (words.h: rods, joints)
   std::vector<std::pair<std::string, std::string>> apart;   // pairs that do not collide (links of a chain); joined bodies never do

@@ -54,10 +54,10 @@ class Words {
  public:
   virtual ~Words() = default;
 
-  virtual std::string name() const = 0;                  // "drag", "point force"
-  virtual std::string key() const = 0;                   // of a scene file: "drag", "point_forces"
+  virtual std::string name() const = 0;                  // "spring", "point force"
+  virtual std::string key() const = 0;                   // of a scene file: "springs", "point_forces"
   virtual std::string stage() const = 0;                 // the part of a run that its code stands in: "integration", "forces", "constraints", "control"
-  virtual std::string counter() const = 0;               // the count of a run that tells how often it was asked: "drag_calls"
+  virtual std::string counter() const = 0;               // the count of a run that tells how often it was asked: "spring_calls"
   virtual Traits traits() const = 0;
   /// A JSON object: {"properties": {KEY: what stands there}, "definitions": {...}}, in the language of scene.schema.json and with its definitions.
   virtual std::string schema() const = 0;

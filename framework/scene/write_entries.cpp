@@ -16,8 +16,8 @@ json json_of(const Value& value) {
 
 }  // namespace
 
-struct EntryWriter::Reader {
-  explicit Reader(Scene& scene) : scene(scene), document{{}, {}, scene.file}, anchors(document, scene) {}
+struct EntryWriter::EntryReader {
+  explicit EntryReader(Scene& scene) : scene(scene), document{{}, {}, scene.file}, anchors(document, scene) {}
 
   void read(const std::string& key, const json& value) {
     const Words* words = words_of(key);
@@ -32,7 +32,7 @@ struct EntryWriter::Reader {
   Anchors anchors;
 };
 
-EntryWriter::EntryWriter(Scene& scene) : reader_(std::make_unique<Reader>(scene)) {}
+EntryWriter::EntryWriter(Scene& scene) : reader_(std::make_unique<EntryReader>(scene)) {}
 EntryWriter::~EntryWriter() = default;
 
 void EntryWriter::operator()(const std::string& key, const std::vector<std::pair<std::string, Value>>& entry) {

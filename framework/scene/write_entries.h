@@ -27,8 +27,8 @@ class EntryWriter {
   void operator()(const std::string& key, const Vector3d& value);
 
  private:
-  struct Reader;
-  std::unique_ptr<Reader> reader_;
+  struct EntryReader;
+  std::unique_ptr<EntryReader> reader_;
 };
 
 /// Takes all entries of a key out of a scene.

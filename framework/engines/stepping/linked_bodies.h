@@ -1,8 +1,8 @@
-/// Bodies that move together because springs, rods, joints or motors tie them to each other or to the world, or a medium slows
-/// them: one system of differential equations, integrated by the laws' method as a whole.
+/// Bodies that move together because effects tie them to each other or to the world, or act on them otherwise than evenly through a step:
+/// one system of differential equations, integrated by the laws' method as a whole.
 ///
-/// Forces of springs and drag are evaluated at every stage of the method; rods and joints add what holds them (Lagrange
-/// multipliers at every stage), and are brought back by the stabilisation the scene chose: Baumgarte's term in the multipliers, or
+/// Forces are evaluated at every stage of the method; what constrains (rods, joints) adds what holds it (Lagrange
+/// multipliers at every stage), and is brought back by the stabilisation the scene chose: Baumgarte's term in the multipliers, or
 /// a projection of places and velocities at the end of each step.
 #pragma once
 

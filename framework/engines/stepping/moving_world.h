@@ -94,7 +94,7 @@ class MovingWorld {
     return true;
   }
 
-  /// Bodies tied by springs, rods, joints, drag: groups that are integrated as one.
+  /// Bodies that effects tie (effects::Traits::ties): groups that are integrated as one.
   std::vector<LinkedBodies>& linked_groups() { return linked_; }
   const std::vector<LinkedBodies>& linked_groups() const { return linked_; }
   /// Place of a body's group in linked_groups(); -1 for a body without links.

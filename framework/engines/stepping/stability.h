@@ -1,4 +1,4 @@
-/// Whether a step is within the range in which the laws' method can follow a world: its springs, its drag, Baumgarte's term, light bodies on rods.
+/// Whether a step is within the range in which the laws' method can follow a world: what draws its bodies back or slows them down, Baumgarte's term, light bodies on rods.
 #pragma once
 
 #include <memory>
@@ -57,7 +57,7 @@ struct StepLimit {
 /// @return nothing where the method follows it; the same are not judged
 std::optional<StepLimit> judge_dampers(const World& world, const Laws& laws, double step);
 
-/// What drag takes from a body's velocities, y' = -c/m y and -c/I y (the least moment), and what Baumgarte's term takes from errors of rods and
+/// What effects take evenly from a body's velocities (effects::Drain), y' = -c/m y and -c/I y (the least moment), and what Baumgarte's term takes from errors of rods and
 /// joints, e'' = -k e - c e' with the laws' own gains. Those that the method lengthens at this step.
 std::vector<StepLimit> judge_decays(const World& world, const Laws& laws, double step);
 
@@ -95,8 +95,8 @@ struct StepsOfARun {
   double step, duration;           // [s]
 };
 
-/// Refuses a run in which the method would lengthen a thousand times what springs, drag or Baumgarte's term take part in; tells of one where it can be seen.
-/// @throws UserError naming the spring, body or term, what happens to it and the largest step that does not do it
+/// Refuses a run in which the method would lengthen a thousand times what effects or Baumgarte's term take part in; tells of one where it can be seen.
+/// @throws UserError naming the effect, the body or the term, what happens to it and the largest step that does not do it
 void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfARun& steps, const std::string& where, std::vector<std::string>& notices);
 
 /// Tells of rods and joints whose bodies swing too fast for the step of a method that has a range, with the step that follows them all through the run. Not

@@ -1,6 +1,5 @@
-#include "framework/scene/entry.h"
-
 #include "framework/scene/read_entry.h"
+
 #include "framework/scene/read_json.h"
 
 namespace tumble::scene {
