@@ -12,6 +12,7 @@
 #include "framework/effects/point_force/point_force.h"
 #include "framework/effects/rod/rod.h"
 #include "framework/effects/spring/spring.h"
+#include "framework/effects/water/water.h"
 #include "tests/engines/scenes.h"
 
 namespace tumble::testing {
@@ -24,6 +25,7 @@ inline const std::map<std::string, std::vector<std::string>> kCountersOf = {
     {"joint", {"joint_calls"}},
     {"drag", {"drag_calls"}},
     {"motor", {"motor_calls"}},
+    {"water", {"water_calls"}},
     {"contact", {"contact_solves", "contact_points", "contacts_begun"}},
     {"friction", {"friction_points"}},
     {"point force", {"point_force_calls"}},
@@ -69,6 +71,11 @@ inline const std::map<std::string, AddsEffect> kEffects = {
        motor.joint = "j";
        motor.stiffness_n_m_rad = motor.offset_rad = 1.0;
        s.effects.of<effects::MotorSpec>().push_back(motor);
+     }},
+    {"water",
+     [](scene::Scene& s) {
+       kEffects.at("gravity")(s);
+       s.effects.of<effects::WaterSpec>().emplace_back().surface_m.z() = 1.0;
      }},
     {"contact",
      [](scene::Scene& s) {
