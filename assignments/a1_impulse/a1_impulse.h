@@ -44,14 +44,14 @@ std::optional<RayHit> intersect_ray_triangle(const Ray& ray, const Triangle& tri
 /// @param point_world  p, (3), world: where it acts [m]
 /// @param com_world    x, (3), world: centre of mass [m]
 /// @return F (3), world [N] and tau (3), world, about the centre of mass [N m]
-/// Source: Baraff I, section 2.6; Hecker part 2.   Tests: PointForce.*   Hints: handouts/a1_impulse.md#hint-wrench
+/// Source: Baraff I, section 2.7; Hecker part 2.   Tests: PointForce.*   Hints: handouts/a1_impulse.md#hint-wrench
 Wrench wrench_of_point_force(const Vector3d& force_world, const Vector3d& point_world, const Vector3d& com_world);
 
 /// Acceleration of the centre of mass.
 ///   a = F / m                                                                                                (A1.3)
 /// @param force_world  F, (3), world: sum of all forces [N]
 /// @return a, (3), world [m/s^2]; exactly zero for infinite mass
-/// Source: Baraff I, section 2.7.   Tests: LinearAcceleration.*   Hints: handouts/a1_impulse.md#hint-linear
+/// Source: Baraff I, section 2.8.   Tests: LinearAcceleration.*   Hints: handouts/a1_impulse.md#hint-linear
 Vector3d linear_acceleration(const Body& body, const Vector3d& force_world);
 
 /// Time derivative of a body's angular velocity: Newton-Euler, with the gyroscopic term.
@@ -60,7 +60,7 @@ Vector3d linear_acceleration(const Body& body, const Vector3d& force_world);
 /// @param body          I: inertia_body (3,3), about the centre of mass [kg m^2]; R: world_from_body; w: omega_world [rad/s]
 /// @param torque_world  tau, (3), world, about the centre of mass [N m]
 /// @return w', (3), world [rad/s^2]; exactly zero for infinite mass; not zero for a free body that tumbles
-/// Source: Baraff I, section 2.10 and eq. 2-39; Goldstein, Classical Mechanics, section 5.5.
+/// Source: Baraff I, sections 2.9 and 2.10; Goldstein, Classical Mechanics, section 5.5.
 /// Tests: AngularAcceleration.*   Hints: handouts/a1_impulse.md#hint-angular
 Vector3d angular_acceleration(const Body& body, const Vector3d& torque_world);
 
@@ -81,7 +81,7 @@ enum class RelativeMotion { kApproaching, kResting, kSeparating };
 ///   approaching  u_n < -tolerance;   resting  |u_n| <= tolerance;   separating  u_n > tolerance              (A1.6)
 /// @param normal_velocity  u_n [m/s]
 /// @param tolerance        >= 0 [m/s]; a value exactly at it is resting
-/// Source: Baraff II, section 8.1.   Tests: RelativeMotionCases.*   Hints: handouts/a1_impulse.md#hint-cases
+/// Source: Baraff II, section 8.   Tests: RelativeMotionCases.*   Hints: handouts/a1_impulse.md#hint-cases
 RelativeMotion classify_relative_motion(double normal_velocity, double tolerance);
 
 // ---- Contact normals of polygons in the plane: all unit, all from B to A ---------------------------------------------
@@ -135,7 +135,7 @@ double collision_impulse(const Contact& contact, const Body& a, const Body& b, d
 /// @param impulse_world  J, (3), world [N s]: a vector, already with the sign that is right for this body
 /// @param point_world    p, (3), world [m]
 /// @return v', w' (3), world; bit for bit the old ones for a body of infinite mass
-/// Source: Hecker part 3, eq. 8; Baraff II, eq. 8-9.   Tests: ApplyImpulse.*   Hints: handouts/a1_impulse.md#hint-apply
+/// Source: Hecker part 3, eq. 8; Baraff II, section 8.   Tests: ApplyImpulse.*   Hints: handouts/a1_impulse.md#hint-apply
 Velocity apply_impulse(const Body& body, const Vector3d& impulse_world, const Vector3d& point_world);
 
 /// Velocities of two bodies just after a collision.

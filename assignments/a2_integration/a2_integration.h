@@ -35,7 +35,7 @@ namespace tumble::a2 {
 /// @param y  state at t, (n), n >= 1
 /// @param h  length of the step [s]; may be negative (backwards in time) or 0
 /// @return the state at t + h, (n)
-/// Source: Baraff, section 1.2; Hairer, I.7.   Tests: EulerStep.*, LectureExample.*
+/// Source: Hairer, I.7.   Tests: EulerStep.*, LectureExample.*
 /// Hints: handouts/a2_integration.md#hint-euler
 VectorXd euler_step(const OdeFunction& f, double t, const VectorXd& y, double h);
 
@@ -59,7 +59,7 @@ VectorXd rk4_step(const OdeFunction& f, double t, const VectorXd& y, double h);
 /// @param world_from_body  q, unit; R is its rotation matrix
 /// @return I_world, (3,3), world frame, about the centre of mass [kg m^2]
 /// @post  symmetric to round-off; principal moments are those of I_body.  The same formula serves an inverse inertia.
-/// Source: Baraff, eq. 2-40.   Tests: InertiaInWorld.*   Hints: handouts/a2_integration.md#hint-inertia
+/// Source: Baraff, section 2.10.   Tests: InertiaInWorld.*   Hints: handouts/a2_integration.md#hint-inertia
 Matrix3d inertia_in_world(const Matrix3d& inertia_body, const Quaterniond& world_from_body);
 
 /// Time derivative of a rigid body's state under a force and a torque: the f of (A2.2).
@@ -76,7 +76,7 @@ Matrix3d inertia_in_world(const Matrix3d& inertia_body, const Quaterniond& world
 /// @return (13), in the layout of pack() in framework/dynamics/ode.h: x' [m/s] (3), q' as w x y z [1/s] (4), P' [N] (3),
 ///         L' [N m] (3)
 /// @post  q . q' == 0 to round-off: turning does not change the length of q
-/// Source: Baraff, sections 2.8-2.11 and appendix B.   Tests: RigidBodyDerivative.*
+/// Source: Baraff, sections 2.8-2.11, section 4 and appendix B.   Tests: RigidBodyDerivative.*
 /// Hints: handouts/a2_integration.md#hint-derivative
 VectorXd rigid_body_derivative(const RigidBodyState& state, const Inertia& inertia, const Wrench& wrench);
 
@@ -86,7 +86,7 @@ VectorXd rigid_body_derivative(const RigidBodyState& state, const Inertia& inert
 ///   q / |q|                                                                                                  (A2.6)
 /// @param world_from_body  q, not zero, any length
 /// @return unit to round-off, not negated: q and -q are one rotation, but a jump between them would spoil interpolation
-/// Source: Baraff, section 2.11.   Tests: Renormalize.*   Hints: handouts/a2_integration.md#hint-renormalize
+/// Source: Baraff, section 4.   Tests: Renormalize.*   Hints: handouts/a2_integration.md#hint-renormalize
 Quaterniond renormalize(const Quaterniond& world_from_body);
 
 /// The rotation that Gram-Schmidt makes from a drifted rotation matrix, column by column from the left.
@@ -94,7 +94,7 @@ Quaterniond renormalize(const Quaterniond& world_from_body);
 /// with a, b, c the columns of the argument and x, y, z those of the result. For a right-handed argument z equals x cross y.
 /// @param drifted_world_from_body  (3,3), columns independent and right-handed (determinant > 0)
 /// @return (3,3): R^T R == 1 to round-off, determinant +1. x keeps the direction of a; y stays in the plane of a and b
-/// Source: Golub, section 5.2.7; Baraff, section 2.11.   Tests: Orthonormalize.*
+/// Source: Golub, section 5.2.7; Baraff, section 4.   Tests: Orthonormalize.*
 /// Hints: handouts/a2_integration.md#hint-gram-schmidt
 Matrix3d orthonormalize(const Matrix3d& drifted_world_from_body);
 

@@ -45,7 +45,7 @@ Vector3d anchor_position(const Body& body, const Vector3d& point_body);
 /// @param body        v: velocity_world [m/s];  omega: omega_world [rad/s]
 /// @param point_body  as above
 /// @return p', (3), world frame [m/s]
-/// Source: the same, section 2.7.   Tests: AnchorVelocity.*   Hints: handouts/a3_constraints.md#hint-anchors
+/// Source: the same, section 2.5.   Tests: AnchorVelocity.*   Hints: handouts/a3_constraints.md#hint-anchors
 Vector3d anchor_velocity(const Body& body, const Vector3d& point_body);
 
 /// Force of a damped spring on the body at its end A; the body at B feels the opposite.
