@@ -8,7 +8,7 @@
 ///   steady forces   on each body by itself, constant within a step: the body stays one that flies alone (gravity, a point force)
 ///   a group's terms on bodies that are integrated together as one system of equations, asked at every stage of the method (all others)
 ///
-/// Frames and units as in dynamics/body.h. How to add one: framework/README.md, "Adding an effect".
+/// Frames and units as in dynamics/body.h. How to add one: README.md beside this.
 #pragma once
 
 #include <array>
@@ -200,7 +200,8 @@ class Effect : public scene::Words {
   // How it acts: none of both where it does not act in this world ------------------------------------------------------------------------
 
   virtual std::unique_ptr<SteadyForces> steady_forces(const Acting&) const { return nullptr; }
-  virtual std::unique_ptr<GroupTerms> group_terms(const Acting&, GroupPlaces&) const { return nullptr; }
+  /// @param entries  those that name bodies of the group, ascending; one at least
+  virtual std::unique_ptr<GroupTerms> group_terms(const Acting&, const std::vector<int>& /*entries*/, GroupPlaces&) const { return nullptr; }
   virtual std::vector<NeededLaw> needed_laws(const scene::Scene&, const Laws&) const { return {}; }
 
   /// All switches of a run, in the order of entries.

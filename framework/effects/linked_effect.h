@@ -29,15 +29,15 @@ struct PlacedLink {
   PlacedEnd a, b;
 };
 
-/// The links that end at a body of the group. @tparam Held  has anchors a and b
+/// These links, with their places in the group. @tparam Held  has anchors a and b
 template <class Held>
-std::vector<PlacedLink> links_in_group(const std::vector<Held>& all, GroupPlaces& places) {
+std::vector<PlacedLink> placed_links(const std::vector<Held>& all, const std::vector<int>& entries, GroupPlaces& places) {
   std::vector<PlacedLink> links;
   const auto placed = [&](const Anchor& anchor) { return PlacedEnd{places.place_of(anchor.body), anchor.point_body}; };
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    if (!places.has(all[k].a.body) && !places.has(all[k].b.body)) continue;
-    const PlacedEnd a = placed(all[k].a);
-    links.push_back({static_cast<int>(k), a, placed(all[k].b)});
+  for (const int entry : entries) {
+    const Held& link = all[static_cast<std::size_t>(entry)];
+    const PlacedEnd a = placed(link.a);
+    links.push_back({entry, a, placed(link.b)});
   }
   return links;
 }

@@ -63,7 +63,7 @@ TEST(Submerged, BoxUnderALevelIsABox) {
 // What lies on both sides of a plane makes the whole, in every moment; of solids that are hollow in places, too.
 TEST(Submerged, BothSidesMakeTheWhole) {
   Random random(7);
-  for (const Floatable& solid : {Floatable(Box{{0.5, 0.2, 0.1}}), model("gear.3ds"), model("pawn.3ds"), Floatable(Ellipsoid{{0.5, 0.3, 0.2}, {0.1, 0, -0.1}})}) {
+  for (const Floatable& solid : {Floatable(Box{{0.5, 0.2, 0.1}}), model("gear.3ds"), model("chess_pawn.3ds"), Floatable(Ellipsoid{{0.5, 0.3, 0.2}, {0.1, 0, -0.1}})}) {
     const Submerged& whole = solid.whole();
     const double r = solid.radius();
     for (int i = 0; i < 50; ++i) {

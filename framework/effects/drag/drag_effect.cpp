@@ -12,11 +12,12 @@ namespace {
 
 class DragTerms final : public GroupTerms {
  public:
-  DragTerms(const Acting& acting, GroupPlaces& places) : calls_(acting.calls) {
-    for (const Drag& drag : acting.world.effects.of<Drag>())
-      if (places.has(drag.body)) drags_.push_back({places.place_of(drag.body), drag.linear, drag.angular});
+  DragTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) : calls_(acting.calls) {
+    for (const int entry : entries) {
+      const Drag& drag = acting.world.effects.of<Drag>()[static_cast<std::size_t>(entry)];
+      drags_.push_back({places.place_of(drag.body), drag.linear, drag.angular});
+    }
   }
-  bool empty() const { return drags_.empty(); }
 
   void add_forces(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches) override {
     for (const Drag& drag : drags_) {
@@ -64,9 +65,8 @@ class DragEffect final : public ListedEffect<DragSpec, Drag> {
   std::vector<int> ends_of(const Drag& drag) const override { return {drag.body}; }
   void rename_ends(Drag& drag, const std::function<int(int)>& other) const override { drag.body = other(drag.body); }
 
-  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, GroupPlaces& places) const override {
-    auto terms = std::make_unique<DragTerms>(acting, places);
-    return terms->empty() ? nullptr : std::move(terms);
+  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) const override {
+    return std::make_unique<DragTerms>(acting, entries, places);
   }
   void append_drains(const World& world, std::vector<Drain>& drains) const override {
     for (const Drag& drag : held(world)) drains.push_back({drag.body, drag.linear, drag.angular, fmt::format("the drag of body '{}'", world.bodies[static_cast<std::size_t>(drag.body)].name), "less drag"});

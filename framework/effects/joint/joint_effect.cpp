@@ -17,13 +17,12 @@ namespace {
 
 class JointTerms final : public GroupTerms {
  public:
-  JointTerms(const Acting& acting, GroupPlaces& places) : calls_(acting.calls), all_(acting.world.effects.of<JointLink>()), joints_(links_in_group(all_, places)) {
+  JointTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) : calls_(acting.calls), all_(acting.world.effects.of<JointLink>()), joints_(placed_links(all_, entries, places)) {
     for (const PlacedLink& link : joints_) {
       rows_ += static_cast<std::size_t>(effects::row_count(of(link).kind));
       sizes_.push_back(size_of(of(link), acting.world, places));
     }
   }
-  bool empty() const { return joints_.empty(); }
 
   std::size_t row_count() const override { return rows_; }
   void append_rows(const std::vector<Body>& bodies, std::vector<Constraint>& rows) override {
@@ -156,9 +155,8 @@ class JointEffect final : public ListedEffect<JointSpec, JointLink> {
       if (anchor->body >= 0) anchor->body = other(anchor->body);
   }
 
-  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, GroupPlaces& places) const override {
-    auto terms = std::make_unique<JointTerms>(acting, places);
-    return terms->empty() ? nullptr : std::move(terms);
+  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) const override {
+    return std::make_unique<JointTerms>(acting, entries, places);
   }
   std::vector<NeededLaw> needed_laws(const scene::Scene& scene, const Laws& laws) const override {
     std::vector<NeededLaw> needed;

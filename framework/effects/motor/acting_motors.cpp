@@ -26,12 +26,11 @@ void refuse_lost(const std::string& hinge, const MotorSpec& law, const HingeMoti
 
 }  // namespace
 
-MotorTerms::MotorTerms(const Acting& acting, GroupPlaces& places) : calls_(acting.calls), all_(acting.world.effects.of<Motor>()) {
-  for (std::size_t k = 0; k < all_.size(); ++k) {
-    const JointLink& hinge = all_[k].hinge;
-    if (!places.has(hinge.a.body) && !places.has(hinge.b.body)) continue;
+MotorTerms::MotorTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) : calls_(acting.calls), all_(acting.world.effects.of<Motor>()) {
+  for (const int entry : entries) {
+    const JointLink& hinge = all_[static_cast<std::size_t>(entry)].hinge;
     const int a = places.place_of(hinge.a.body);
-    motors_.push_back({static_cast<int>(k), a, places.place_of(hinge.b.body)});
+    motors_.push_back({entry, a, places.place_of(hinge.b.body)});
   }
 }
 
@@ -77,8 +76,8 @@ void MotorTerms::remember(const Memory& memory) {
 
 bool MotorTerms::differs_from(const Memory& before) const {
   double largest = 0.0, stiffest = 0.0, change = 0.0;
-  for (const Motor& motor : all_) stiffest = std::max(stiffest, motor.law.stiffness_n_m_rad);
   for (const Acts& motor : motors_) {
+    stiffest = std::max(stiffest, of(motor).law.stiffness_n_m_rad);
     const auto held = before.find(motor.entry);
     const double torque = held == before.end() ? 0.0 : held->second[0];
     largest = std::max(largest, std::abs(torque));

@@ -8,8 +8,7 @@ namespace tumble::effects {
 
 class MotorTerms final : public GroupTerms, public Control {
  public:
-  MotorTerms(const Acting& acting, GroupPlaces& places);
-  bool empty() const { return motors_.empty(); }
+  MotorTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places);
 
   void add_forces(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches) override;
   Control* control() override { return this; }

@@ -56,9 +56,8 @@ class MotorEffect final : public ListedEffect<MotorSpec, Motor> {
       if (anchor->body >= 0) anchor->body = other(anchor->body);
   }
 
-  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, GroupPlaces& places) const override {
-    auto terms = std::make_unique<MotorTerms>(acting, places);
-    return terms->empty() ? nullptr : std::move(terms);
+  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) const override {
+    return std::make_unique<MotorTerms>(acting, entries, places);
   }
   std::unique_ptr<WorkMeter> work_meter(const World& world) const override { return count_in(world) > 0 ? std::make_unique<MotorMeter>(world) : nullptr; }
 

@@ -28,8 +28,7 @@ std::string digits(double value) {
 
 class RodTerms final : public GroupTerms {
  public:
-  RodTerms(const Acting& acting, GroupPlaces& places) : laws_(acting.laws), calls_(acting.calls), all_(acting.world.effects.of<RodLink>()), rods_(links_in_group(all_, places)) {}
-  bool empty() const { return rods_.empty(); }
+  RodTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) : laws_(acting.laws), calls_(acting.calls), all_(acting.world.effects.of<RodLink>()), rods_(placed_links(all_, entries, places)) {}
 
   std::size_t row_count() const override { return rods_.size(); }
   void append_rows(const std::vector<Body>& bodies, std::vector<Constraint>& rows) override {
@@ -95,9 +94,8 @@ class RodEffect final : public LinkedEffect<RodSpec, RodLink> {
     }
   }
 
-  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, GroupPlaces& places) const override {
-    auto terms = std::make_unique<RodTerms>(acting, places);
-    return terms->empty() ? nullptr : std::move(terms);
+  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) const override {
+    return std::make_unique<RodTerms>(acting, entries, places);
   }
   std::vector<NeededLaw> needed_laws(const scene::Scene& scene, const Laws& laws) const override {
     std::vector<NeededLaw> needed{{static_cast<bool>(laws.rod_row), "the constraint of a rod", "a3"}};

@@ -15,8 +15,7 @@ namespace {
 
 class SpringTerms final : public GroupTerms {
  public:
-  SpringTerms(const Acting& acting, GroupPlaces& places) : laws_(acting.laws), calls_(acting.calls), all_(acting.world.effects.of<SpringLink>()), springs_(links_in_group(all_, places)) {}
-  bool empty() const { return springs_.empty(); }
+  SpringTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) : laws_(acting.laws), calls_(acting.calls), all_(acting.world.effects.of<SpringLink>()), springs_(placed_links(all_, entries, places)) {}
 
   void add_forces(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches) override {
     for (const PlacedLink& link : springs_) {
@@ -77,9 +76,8 @@ class SpringEffect final : public LinkedEffect<SpringSpec, SpringLink> {
     }
   }
 
-  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, GroupPlaces& places) const override {
-    auto terms = std::make_unique<SpringTerms>(acting, places);
-    return terms->empty() ? nullptr : std::move(terms);
+  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) const override {
+    return std::make_unique<SpringTerms>(acting, entries, places);
   }
   std::vector<NeededLaw> needed_laws(const scene::Scene&, const Laws& laws) const override { return {{static_cast<bool>(laws.spring_force), "the force of a spring", "a3"}}; }
 

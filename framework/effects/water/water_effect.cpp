@@ -55,11 +55,12 @@ double energy_of(const Floating& floating, const RigidBodyState& state) {
 
 class WaterTerms final : public GroupTerms {
  public:
-  WaterTerms(const Acting& acting, GroupPlaces& places) : calls_(acting.calls) {
-    for (const Floating& floating : acting.world.effects.of<Floating>())
-      if (places.has(floating.body)) floating_.push_back({places.place_of(floating.body), &floating});
+  WaterTerms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) : calls_(acting.calls) {
+    for (const int entry : entries) {
+      const Floating& floating = acting.world.effects.of<Floating>()[static_cast<std::size_t>(entry)];
+      floating_.push_back({places.place_of(floating.body), &floating});
+    }
   }
-  bool empty() const { return floating_.empty(); }
 
   void add_forces(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches) override {
     for (const auto& [place, floating] : floating_) {
@@ -140,9 +141,8 @@ class WaterEffect final : public ListedEffect<WaterSpec, Floating> {
   std::vector<int> ends_of(const Floating& floating) const override { return {floating.body}; }
   void rename_ends(Floating& floating, const std::function<int(int)>& other) const override { floating.body = other(floating.body); }
 
-  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, GroupPlaces& places) const override {
-    auto terms = std::make_unique<WaterTerms>(acting, places);
-    return terms->empty() ? nullptr : std::move(terms);
+  std::unique_ptr<GroupTerms> group_terms(const Acting& acting, const std::vector<int>& entries, GroupPlaces& places) const override {
+    return std::make_unique<WaterTerms>(acting, entries, places);
   }
 
   void add_potential_energy(const World& world, const std::vector<RigidBodyState>& states, double& sum) const override {

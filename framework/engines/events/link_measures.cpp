@@ -7,8 +7,8 @@ namespace tumble::engines {
 LinkMeasures::LinkMeasures(const FlightWorld& world, const Laws& laws) : world_(world) {
   for (std::size_t k = 0; k < effects::all().size(); ++k)
     if (auto forces = effects::all()[k]->steady_forces({world.world(), laws, uncounted_.effect_calls[k]})) forces_.emplace(static_cast<int>(k), std::move(forces));
-  for (std::vector<int>& bodies : groups_of_linked_bodies(world.world()))
-    groups_.emplace_back(world.world(), laws, uncounted_, [this](int body, const RigidBodyState& state) { return wrench_on(body, state); }, std::move(bodies));
+  for (LinkedGroup& group : groups_of_linked_bodies(world.world()))
+    groups_.emplace_back(world.world(), laws, uncounted_, [this](int body, const RigidBodyState& state) { return wrench_on(body, state); }, std::move(group));
 }
 
 Wrench LinkMeasures::wrench_on(int body, const RigidBodyState& state) const {

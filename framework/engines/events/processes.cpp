@@ -38,8 +38,8 @@ bool holds_effects(const World& world) {
 Processes::Processes(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules)
     : whole_(whole), passages_(whole, std::move(shape_of), laws, rules),
       holds_any_(holds_effects(whole) || whole.contact.has_value()), linked_(whole.bodies.size(), -1) {
-  for (const std::vector<int>& group : groups_of_linked_bodies(whole))
-    for (const int body : group) linked_[static_cast<std::size_t>(body)] = group.front();
+  for (const LinkedGroup& group : groups_of_linked_bodies(whole))
+    for (const int body : group.bodies) linked_[static_cast<std::size_t>(body)] = group.bodies.front();
   passages_.ask([this](const ProcessState& state) { return components_of(state).size() > 1; });
 }
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include <fmt/format.h>
 
+#include "framework/core/disjoint_sets.h"
 #include "framework/effects/registry.h"
 #include "framework/engines/base/guarded_laws.h"
 
@@ -35,45 +35,49 @@ void add_force(const Body& body, const Vector3d& force, const Vector3d& point, W
 
 }  // namespace
 
-std::vector<std::vector<int>> groups_of_linked_bodies(const World& world) {
+std::vector<LinkedGroup> groups_of_linked_bodies(const World& world) {
   const int n = static_cast<int>(world.bodies.size());
-  std::vector<int> leader(n);
-  std::iota(leader.begin(), leader.end(), 0);
+  DisjointSets sets(n);
   std::vector<bool> linked(n, false);
-  const auto find = [&](int i) {
-    while (leader[i] != i) i = leader[i] = leader[leader[i]];
-    return i;
-  };
   const auto movable = [&](int body) { return body >= 0 && !world.bodies[body].immovable(); };
-  const auto tie = [&](int a, int b) {
-    for (const int body : {a, b})
-      if (movable(body)) linked[body] = true;
-    if (!movable(a) || !movable(b)) return;
-    const int i = find(a), j = find(b);
-    leader[std::max(i, j)] = std::min(i, j);
-  };
-  for (const effects::Effect* effect : effects::all()) {
-    if (!effect->traits().ties) continue;
-    for (int entry = 0; entry < effect->count_in(world); ++entry) {
-      int first = -1;   // movable one
-      for (const int body : effect->bodies_of(world, entry)) {
-        tie(first, body);
-        if (first < 0 && movable(body)) first = body;
+  // Entry by entry: the first movable body that it names, to which it ties the others; -1 where none can move.
+  std::vector<std::pair<std::size_t, std::vector<int>>> first_bodies;   // of an effect's entries
+  for (std::size_t k = 0; k < effects::all().size(); ++k) {
+    const effects::Effect& effect = *effects::all()[k];
+    if (!effect.traits().ties || effect.count_in(world) == 0) continue;
+    std::vector<int>& first_of = first_bodies.emplace_back(k, std::vector<int>{}).second;
+    for (int entry = 0; entry < effect.count_in(world); ++entry) {
+      int first = -1;
+      for (const int body : effect.bodies_of(world, entry)) {
+        if (!movable(body)) continue;
+        linked[body] = true;
+        if (first < 0) first = body;
+        sets.unite(first, body);
       }
+      first_of.push_back(first);
     }
   }
-  std::vector<std::vector<int>> by_leader(n), groups;
-  for (int i = 0; i < n; ++i)
-    if (linked[i]) by_leader[find(i)].push_back(i);
-  for (auto& group : by_leader)
-    if (!group.empty()) groups.push_back(std::move(group));
+  std::vector<int> group_of(n, -1);   // by the name of a set
+  std::vector<LinkedGroup> groups;
+  for (int i = 0; i < n; ++i) {
+    if (!linked[i]) continue;
+    int& group = group_of[sets.find(i)];
+    if (group < 0) {
+      group = static_cast<int>(groups.size());
+      groups.emplace_back();
+    }
+    groups[group].bodies.push_back(i);
+  }
+  for (const auto& [effect, first_of] : first_bodies)
+    for (std::size_t entry = 0; entry < first_of.size(); ++entry)
+      if (first_of[entry] >= 0) groups[group_of[sets.find(first_of[entry])]].entries[effect].push_back(static_cast<int>(entry));
   return groups;
 }
 
-LinkedBodies::LinkedBodies(const World& world, const Laws& laws, RunCounters& counters, OuterWrench outer_wrench, std::vector<int> bodies)
-    : world_(world), laws_(laws), counters_(counters), outer_wrench_(std::move(outer_wrench)), bodies_(std::move(bodies)) {
-  for (std::size_t k = 0; k < effects::all().size(); ++k) {
-    auto acting = effects::all()[k]->group_terms({world_, laws_, counters_.effect_calls[k]}, *this);
+LinkedBodies::LinkedBodies(const World& world, const Laws& laws, RunCounters& counters, OuterWrench outer_wrench, LinkedGroup group)
+    : world_(world), laws_(laws), counters_(counters), outer_wrench_(std::move(outer_wrench)), bodies_(std::move(group.bodies)) {
+  for (const auto& [k, entries] : group.entries) {
+    auto acting = effects::all()[k]->group_terms({world_, laws_, counters_.effect_calls[k]}, entries, *this);
     if (!acting) continue;
     row_count_ += acting->row_count();
     if (acting->control() != nullptr) controls_.push_back(terms_.size());

@@ -33,13 +33,20 @@ void record(LinkForces forces, Frame& frame);
 /// What a frame keeps of them.
 LinkForces recorded_forces(const World& world, const Frame& frame);
 
+/// Movable bodies that entries of effects tie together, and these entries.
+struct LinkedGroup {
+  std::vector<int> bodies;                            // ascending
+  std::map<std::size_t, std::vector<int>> entries;    // by place in effects::all(); ascending, one at least
+};
+/// The groups of a world, by their first bodies. Bodies that no entry ties or acts on are in none. Cost: linear in bodies and entries.
+std::vector<LinkedGroup> groups_of_linked_bodies(const World& world);
+
 class LinkedBodies final : effects::GroupPlaces {
  public:
   /// Gravity and point forces on a body (index in the world) in a state.
   using OuterWrench = std::function<Wrench(int body, const RigidBodyState& state)>;
 
-  /// @param bodies  movable ones, ascending: all that a link of the group touches
-  LinkedBodies(const World& world, const Laws& laws, RunCounters& counters, OuterWrench outer_wrench, std::vector<int> bodies);
+  LinkedBodies(const World& world, const Laws& laws, RunCounters& counters, OuterWrench outer_wrench, LinkedGroup group);
 
   const std::vector<int>& bodies() const { return bodies_; }
   /// Immovable bodies that a link of the group ends at; -1: the world.
@@ -124,8 +131,5 @@ void add_rows(LinkedBodies& group, const std::vector<RigidBodyState>& states, do
 
 /// Rows are to have the rates afterwards that the problem's bodies give them before.
 void keep_rates(ContactProblem& problem);
-
-/// The groups of a world: movable bodies that links tie together, each with what its links need. Bodies without links are in none.
-std::vector<std::vector<int>> groups_of_linked_bodies(const World& world);
 
 }  // namespace tumble::engines

@@ -50,9 +50,9 @@ MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters, s
   for (std::size_t k = 0; k < effects::all().size(); ++k)
     if (auto acting = effects::all()[k]->steady_forces({world_, laws_, counters_.effect_calls[k]})) steady_.push_back({static_cast<int>(k), std::move(acting)});
   group_of_.assign(world_.bodies.size(), -1);
-  for (std::vector<int>& bodies : groups_of_linked_bodies(world_)) {
-    for (const int body : bodies) group_of_[body] = static_cast<int>(linked_.size());
-    linked_.emplace_back(world_, laws_, counters_, [this](int body, const RigidBodyState& state) { return wrench_on(body, state); }, std::move(bodies));
+  for (LinkedGroup& group : groups_of_linked_bodies(world_)) {
+    for (const int body : group.bodies) group_of_[body] = static_cast<int>(linked_.size());
+    linked_.emplace_back(world_, laws_, counters_, [this](int body, const RigidBodyState& state) { return wrench_on(body, state); }, std::move(group));
     linked_.back().project(states_, 0.0);
   }
 }

@@ -158,13 +158,14 @@ scene::Scene CompoundPendulum::scene(const std::string& name) const {
   body.world_from_body = Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitZ()));   // body -y points from the pivot to the centre of mass
   const double I_com = I_pivot - m * d * d;
   constexpr double kPoint = 1e-12;   // of I_pivot: less is the rounding of the difference, and all the mass is in one point
-  if (I_com > kPoint * I_pivot) {
-    body.inertia_body_kg_m2 = I_com * Matrix3d::Identity();
+  const bool is_point = !(I_com > kPoint * I_pivot);
+  if (!is_point) body.inertia_body_kg_m2 = I_com * Matrix3d::Identity();
+  scene.bodies.push_back(body);
+  if (!is_point) {
     scene::EntryWriter{scene}("joints", {{"name", "hinge"}, {"kind", "hinge"}, {"body_a", "body"}, {"point_m", Vector3d(Vector3d::Zero())}, {"axis", Vector3d(Vector3d::UnitZ())}});
   } else {
     scene::EntryWriter{scene}("rods", {{"name", "rod"}, {"a", scene::AnchorSpec{}}, {"b", scene::AnchorSpec{"body"}}, {"length_m", d}});
   }
-  scene.bodies.push_back(body);
   return scene;
 }
 
