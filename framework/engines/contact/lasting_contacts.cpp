@@ -64,13 +64,8 @@ bool LastingContacts::plastic(Pair pair) const {
 // How much nearer the two can come in the step.
 double LastingContacts::reach(Pair pair) {
   const double h = moving_.target() - moving_.time();
-  const auto motion = [&](int body) {
-    const collision::MotionState start = moving_.motion_at(body, moving_.time()), end = moving_.motion_at(body, moving_.target());
-    const double radius = moving_.shape(body).is_half_space() ? 0.0 : moving_.shape(body).bounding_radius();
-    return std::max(start.velocity_world.norm(), end.velocity_world.norm()) + std::max(start.omega_world.norm(), end.omega_world.norm()) * radius;
-  };
   const double size = geometry_.size_of(pair);
-  const double way = (reaches_.empty() ? motion(pair.first) + motion(pair.second) : reaches_[pair.first] + reaches_[pair.second]) * h;
+  const double way = (reaches_.empty() ? moving_.fastest_in_step(pair.first) + moving_.fastest_in_step(pair.second) : reaches_[pair.first] + reaches_[pair.second]) * h;
   return std::min(kContact.reach * size, way) + kContact.open_band * geometry_.margin(pair);
 }
 

@@ -139,15 +139,10 @@ bool Sleepers::would_touch(Pair pair) {
   const World& world = moving_.world();
   if (world.contact->plastic_impacts != scene::PlasticImpacts::kInStep || std::min(world.bodies[pair.first].restitution, world.bodies[pair.second].restitution) > 0.0) return false;
   const double h = moving_.target() - moving_.time();
-  const auto way = [&](int body) {
-    const collision::MotionState start = moving_.motion_at(body, moving_.time()), end = moving_.motion_at(body, moving_.target());
-    const double radius = moving_.shape(body).is_half_space() ? 0.0 : moving_.shape(body).bounding_radius();
-    return h * (std::max(start.velocity_world.norm(), end.velocity_world.norm()) + std::max(start.omega_world.norm(), end.omega_world.norm()) * radius);
-  };
   const double room = kSleepRoom * std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius());
   const auto pose = [&](int body) { return moving_.motion_at(body, moving_.time()).pose; };
   ++counters_.collision.gap_evaluations;
-  const double near = way(pair.first) + way(pair.second) + room;
+  const double near = h * moving_.fastest_in_step(pair.first) + h * moving_.fastest_in_step(pair.second) + room;
   return collision::gap_distance(moving_.shape(pair.first), pose(pair.first), moving_.shape(pair.second), pose(pair.second), moving_.pair_cache(pair.first, pair.second), near) <= near;
 }
 

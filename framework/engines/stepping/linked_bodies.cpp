@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include <fmt/format.h>
 
+#include "framework/core/disjoint_sets.h"
 #include "framework/effects/registry.h"
 #include "framework/engines/base/guarded_laws.h"
 
@@ -37,20 +37,13 @@ void add_force(const Body& body, const Vector3d& force, const Vector3d& point, W
 
 std::vector<std::vector<int>> groups_of_linked_bodies(const World& world) {
   const int n = static_cast<int>(world.bodies.size());
-  std::vector<int> leader(n);
-  std::iota(leader.begin(), leader.end(), 0);
+  DisjointSets sets(n);
   std::vector<bool> linked(n, false);
-  const auto find = [&](int i) {
-    while (leader[i] != i) i = leader[i] = leader[leader[i]];
-    return i;
-  };
   const auto movable = [&](int body) { return body >= 0 && !world.bodies[body].immovable(); };
   const auto tie = [&](int a, int b) {
     for (const int body : {a, b})
       if (movable(body)) linked[body] = true;
-    if (!movable(a) || !movable(b)) return;
-    const int i = find(a), j = find(b);
-    leader[std::max(i, j)] = std::min(i, j);
+    if (movable(a) && movable(b)) sets.unite(a, b);
   };
   for (const effects::Effect* effect : effects::all()) {
     if (!effect->traits().ties) continue;
@@ -64,7 +57,7 @@ std::vector<std::vector<int>> groups_of_linked_bodies(const World& world) {
   }
   std::vector<std::vector<int>> by_leader(n), groups;
   for (int i = 0; i < n; ++i)
-    if (linked[i]) by_leader[find(i)].push_back(i);
+    if (linked[i]) by_leader[sets.find(i)].push_back(i);
   for (auto& group : by_leader)
     if (!group.empty()) groups.push_back(std::move(group));
   return groups;

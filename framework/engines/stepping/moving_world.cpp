@@ -393,6 +393,12 @@ collision::Motion MovingWorld::motion(int body) {
   return {[this, body](double t) { return motion_at(body, t); }, *paths_[body].bounds};
 }
 
+double MovingWorld::fastest_in_step(int body) {
+  const collision::MotionState start = motion_at(body, time_), end = motion_at(body, target_);
+  const double radius = shapes_[body]->is_half_space() ? 0.0 : shapes_[body]->bounding_radius();
+  return std::max(start.velocity_world.norm(), end.velocity_world.norm()) + std::max(start.omega_world.norm(), end.omega_world.norm()) * radius;
+}
+
 collision::SweptBox MovingWorld::swept_box(int body) {
   if (has_roomy_box(body)) return *paths_[body].box;
   const double radius = shapes_[body]->bounding_radius();

@@ -137,6 +137,8 @@ class MovingWorld {
   RigidBodyState path(int body, double t);
   collision::MotionState motion_at(int body, double t);
   collision::Motion motion(int body);
+  /// How fast any point of a body is in the step under way, from the speeds at its ends. [m/s]
+  double fastest_in_step(int body);
   collision::SweptBox swept_box(int body);
   /// Whether swept_box tells of a longer step: of a body whose path's end nobody has asked for. path_end(body) ends that.
   bool has_roomy_box(int body) const { return !paths_[body].end_known; }
