@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "framework/core/numbers.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/contact/contact_constants.h"
 #include "framework/engines/contact/lasting_contacts.h"
 
@@ -27,10 +28,10 @@ bool LastingContacts::gains_energy(const ContactIsland& island) {
     moves_after += kinetic_energy(end, body.inertia);
     gain -= moving_.steady_work(index, start, end);
     terms += mass * gravity.cwiseAbs().dot(start.com_world.cwiseAbs());
-    unseen += mass * (rest_speed_ * rest_speed_ + kContact.lifted * gravity.norm() * moving_.shape(index).bounding_radius());
+    unseen += mass * (rest_speed_ * rest_speed_ + kSixDigits * gravity.norm() * moving_.shape(index).bounding_radius());
   }
   gain += moves_after - moves_before;
-  return gain > kContact.gain * std::max(moves_before, moves_after) + unseen + kContact.energy_roundings * kEpsilon * terms;
+  return gain > kEnergyRises * std::max(moves_before, moves_after) + unseen + kDeviations * kEpsilon * terms;
 }
 
 }  // namespace tumble::engines

@@ -4,6 +4,7 @@
 
 #include "framework/collision/gap.h"
 #include "framework/core/numbers.h"
+#include "framework/engines/base/tolerances.h"
 
 namespace tumble::engines {
 
@@ -31,7 +32,7 @@ double ContactGeometry::size_of(Pair pair) const { return std::min(moving_.shape
 double ContactGeometry::margin(Pair pair) const {
   const double size = size_of(pair);
   const auto far = [&](int body) { return moving_.world().bodies[body].immovable() ? 0.0 : moving_.state(body).com_world.cwiseAbs().maxCoeff(); };
-  return kContact.margin * size + kContact.margin_roundings * kEpsilon * (size + std::max(far(pair.first), far(pair.second)));
+  return kContact.margin * size + kRoundOff * (size + std::max(far(pair.first), far(pair.second)));
 }
 
 collision::Pose ContactGeometry::pose(int body, const std::vector<RigidBodyState>& states) const {
@@ -45,7 +46,7 @@ ContactManifold ContactGeometry::points_at(Pair pair, const std::vector<RigidBod
   // no point is deeper than the two are in each other.
   if (std::any_of(points.begin(), points.end(), [&](const collision::NearPoint& p) { return p.gap < -kContact.deep * size_of(pair); })) {
     const collision::Gap deepest = gap_of(pair, states);
-    std::erase_if(points, [&](const collision::NearPoint& p) { return p.gap < std::min(0.0, kContact.deeper * deepest.distance); });
+    std::erase_if(points, [&](const collision::NearPoint& p) { return p.gap < std::min(0.0, (1 + kContact.depth_error) * deepest.distance); });
     if (points.empty() && deepest.distance <= reach) points.push_back({deepest.point_a_world, deepest.point_b_world, deepest.normal_b_to_a_world, deepest.distance});
   }
   return points;
@@ -95,8 +96,8 @@ double ContactGeometry::heap_margin(Pair pair) const {
 ContactManifold ContactGeometry::points_of_overlap(Pair pair, const std::vector<RigidBodyState>& states, double reach, double gap) const {
   ContactManifold points = points_at(pair, states, reach);
   if (gap >= 0.0) return points;
-  std::erase_if(points, [&](const collision::NearPoint& p) { return p.gap < kContact.deeper * gap; });
-  if (std::any_of(points.begin(), points.end(), [&](const collision::NearPoint& p) { return p.gap < kContact.as_deep * gap; })) return points;
+  std::erase_if(points, [&](const collision::NearPoint& p) { return p.gap < (1 + kContact.depth_error) * gap; });
+  if (std::any_of(points.begin(), points.end(), [&](const collision::NearPoint& p) { return p.gap < (1 - kContact.depth_error) * gap; })) return points;
   const collision::Gap deepest = gap_of(pair, states);
   points.push_back({deepest.point_a_world, deepest.point_b_world, deepest.normal_b_to_a_world, deepest.distance});
   return points;

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "framework/engines/base/tolerances.h"
+#include "framework/engines/base/step_limits.h"
 #include "framework/engines/contact/contact_constants.h"
 #include "framework/engines/contact/impact_bodies.h"
 #include "framework/engines/contact/lasting_contacts.h"
@@ -31,7 +33,7 @@ double LastingContacts::slip_speed(const ContactProblem& problem, std::size_t co
 
 bool LastingContacts::is_down(const StepContact& touch) const {
   const double thickness = geometry_.margin(touch.pair);
-  return touch.point.gap - thickness <= thickness + kContact.down * rest_speed_ * memory_.longest_step;
+  return touch.point.gap - thickness <= thickness + kContact.still * rest_speed_ * memory_.longest_step;
 }
 
 // At the step's start; the problem's own are those of its end, of driven bodies too.
@@ -61,7 +63,7 @@ bool LastingContacts::let_part(const ContactIsland& island, std::vector<StepCont
   bool any = false;
   for (std::size_t i = 0; i < touches.size(); ++i) {
     const double parting = -approach(problem, i, now);
-    if (touches[i].lands || !(parting > kContact.hop * rest_speed_)) continue;
+    if (touches[i].lands || !(parting > kSlow * rest_speed_)) continue;
     touches[i].target = problem.contacts[i].target = -parting;
     any = true;
   }
@@ -119,7 +121,7 @@ std::optional<double> LastingContacts::sort_out_landings(const ContactIsland& is
   for (const Landing& landing : landings)
     if (landing.within && landing.speed > rest_speed_) first = std::min(first, landing.time);
   const double end = first <= kContact.soon * memory_.longest_step ? first : kContact.before_landing * first;
-  if (first < h && end < (1 - kContact.at_end) * h && h > kContact.shortest_step * kContact.soon * memory_.longest_step) return moving_.time() + end;
+  if (first < h && end < (1 - kContact.shortest_step) * h && h > kContact.shortest_step * kContact.soon * memory_.longest_step) return moving_.time() + end;
   std::vector<StepContact> blows;
   for (const Landing& landing : landings) {
     StepContact& touch = touches[landing.touch];
@@ -146,7 +148,7 @@ bool LastingContacts::strike_what_is_down(const ContactIsland& island, const std
   std::vector<StepContact> down;
   for (const StepContact& touch : touches) {
     const double size = geometry_.size_of(touch.pair);
-    if (is_down(touch) || touch.point.gap < kContact.together * size) down.push_back({touch.pair, touch.point, 0.0, false});
+    if (is_down(touch) || touch.point.gap < kSixDigits * size) down.push_back({touch.pair, touch.point, 0.0, false});
   }
   return strike(island, std::move(down));
 }
@@ -167,13 +169,13 @@ bool LastingContacts::strike(const ContactIsland& island, std::vector<StepContac
   // What goes less than a shell in a step is left to the step's impulses.
   const bool any = [&] {
     for (std::size_t i = 0; i < down.size(); ++i)
-      if ((is_down(down[i]) || down[i].target < 0) && approach(problem, i, before) + down[i].target > std::max(kContact.impact * rest_speed_, geometry_.margin(down[i].pair) / memory_.longest_step)) return true;
+      if ((is_down(down[i]) || down[i].target < 0) && approach(problem, i, before) + down[i].target > std::max(kCreep * rest_speed_, geometry_.margin(down[i].pair) / memory_.longest_step)) return true;
     return false;
   }();
   if (!any) return false;
   if (memory_.landed_at != moving_.time()) memory_.landed_there = 0;
   memory_.landed_at = moving_.time();
-  if (++memory_.landed_there > kContact.most_impacts_at_once) return false;
+  if (++memory_.landed_there > kMostIdleSteps) return false;
   const ContactSolution solution = solve(island, problem, 1.0);
   note_unsolved(island, solution, memory_.longest_step);
   for (std::size_t k = 0; k < island.bodies.size(); ++k) {

@@ -1,14 +1,13 @@
 #include "framework/engines/contact/contact_modes.h"
 
+#include "framework/engines/base/tolerances.h"
+
 #include <algorithm>
 #include <limits>
 
 namespace tumble::engines {
 namespace {
 
-// Of the cone: impulses of sliding contacts lie on its edge to round-off, those of sticking ones below what the solver leaves open.
-constexpr double kOnTheCone = 1 - 1e-9, kInTheCone = 1 - 1e-6;
-constexpr double kCreeps = 1e-4;   // of the rest speed: 1e-7 m/s where that is 1 mm/s, the creep that a sticking contact is allowed
 constexpr double kQuiet = 0.05;   // s: changes that come sooner after the last one are chatter
 
 struct Votes {
@@ -41,9 +40,10 @@ void ContactModes::look() {
     if (!pair.first) pair.first = &point;
     const double push = point.force_on_a_world.dot(point.normal_b_to_a_world);
     const double share = (point.force_on_a_world - push * point.normal_b_to_a_world).norm() / (friction * push);
-    pair.all_on = pair.all_on && share >= kOnTheCone;
-    pair.all_in = pair.all_in && share < kInTheCone;
-    pair.slips = pair.slips || (pair.all_on && slip_of(point) > kCreeps * rest_speed_);
+    // Impulses of sliding contacts lie on the edge of the cone to round-off, those of sticking ones below what the solver leaves open.
+    pair.all_on = pair.all_on && share >= 1 - kNegligible;
+    pair.all_in = pair.all_in && share < 1 - kSixDigits;
+    pair.slips = pair.slips || (pair.all_on && slip_of(point) > kCreep * rest_speed_);
   }
   std::erase_if(modes_, [&](const auto& entry) { return !contacts_.lasts(entry.first) && time > entry.second.seen + kQuiet; });
   for (const auto& [pair, vote] : votes) {

@@ -20,20 +20,20 @@ namespace tumble::engines {
 
 bool LastingContacts::is_pile(const ContactIsland& island) const {
   if (!island.linked.empty()) return false;
-  if (!locates()) return island.bodies.size() > kContact.few_bodies;
+  if (!locates()) return island.bodies.size() > kContact.few;
   const bool heaped = std::any_of(island.bodies.begin(), island.bodies.end(), [&](int body) { return memory_.heaped.contains(body); });
   return heaped && speed(island) > kContact.moving * rest_speed_;   // what comes to rest is let down to the last digit
 }
 
 void LastingContacts::tell_of_heaps() {
   const std::string words = fmt::format("heaps of more than {} bodies that strike more than {} blows a step go in steps until they lie (heap_steps): right to first order in the step. "
-                                        "\"contact\": {{ \"plastic_impacts\": \"located\" }} finds every blow at its instant, and takes longer", kContact.few_bodies, kContact.most_located_impacts);
+                                        "\"contact\": {{ \"plastic_impacts\": \"located\" }} finds every blow at its instant, and takes longer", kContact.few, kContact.most_located_impacts);
   if (std::find(counters_.notices.begin(), counters_.notices.end(), words) == counters_.notices.end()) counters_.notices.push_back(words);
 }
 
 // A blow is about to cut the step for this island: too many of them, and it is asked for in steps from now on, until it rests or falls apart.
 bool LastingContacts::becomes_heap(const ContactIsland& island) {
-  if (rules_.plastic_impacts != scene::PlasticImpacts::kAutomatic || !island.linked.empty() || island.bodies.size() <= kContact.few_bodies) return false;
+  if (rules_.plastic_impacts != scene::PlasticImpacts::kAutomatic || !island.linked.empty() || island.bodies.size() <= kContact.few) return false;
   if (!(moving_.time() < memory_.impacts_counted_from + memory_.longest_step)) {
     memory_.impacts_counted_from = moving_.time();
     memory_.impacts_counted.clear();

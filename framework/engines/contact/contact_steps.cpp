@@ -4,6 +4,7 @@
 
 #include "framework/dynamics/solve_contacts.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/contact/contact_constants.h"
 #include "framework/engines/contact/lasting_contacts.h"
 
@@ -83,17 +84,17 @@ ContactSolution LastingContacts::solve(const ContactIsland& island, const Contac
   const auto smooth = [](const PushingContact& c) { return c.friction == 0.0; };
   const bool frictionless = std::all_of(problem.contacts.begin(), problem.contacts.end(), smooth);
   if (!frictionless) counters_.friction_points += static_cast<std::uint64_t>(std::count_if(problem.contacts.begin(), problem.contacts.end(), [&](const auto& c) { return !smooth(c); }));
-  if (!frictionless || !problem.rows.empty() || static_cast<int>(problem.contacts.size()) > kContact.most_of_laws) {
+  if (!frictionless || !problem.rows.empty() || problem.contacts.size() > kContact.many_contacts) {
     ContactOptions options;
-    if (static_cast<int>(problem.contacts.size()) > kContact.most_located) options.tolerance = kContact.solved;
+    if (problem.contacts.size() > kContact.few) options.tolerance = kContact.solved;
     if (speed(island) > kContact.moving * rest_speed_) options.enough = kContact.solved;   // what stands has to be found to the last digit
-    if (rules_.plastic_impacts == scene::PlasticImpacts::kInStep && problem.contacts.size() > kContact.contacts_of_heap) {
+    if (rules_.plastic_impacts == scene::PlasticImpacts::kInStep && problem.contacts.size() > kContact.many_contacts) {
       options.tolerance = kContact.solved_in_heap;
       options.largest_direct = 0;
       options.most_sweeps_alone = kContact.sweeps_in_step;
     }
     ContactSolution solution = laws_.friction_impulses ? laws_.friction_impulses(problem, options) : solve_contacts(problem, options);
-    if (!laws_.friction_impulses && !solution.converged && solution.residual > kContact.far_off) {   // a guess can lead astray: once more from nothing, with every means
+    if (!laws_.friction_impulses && !solution.converged && solution.residual > kContactSolved) {   // a guess can lead astray: once more from nothing, with every means
       ContactProblem afresh = problem;
       for (PushingContact& contact : afresh.contacts) contact.guess_world.setZero();
       ContactOptions every;
@@ -145,7 +146,7 @@ ContactSolution LastingContacts::solve(const ContactIsland& island, const Contac
 // Where a pair that slid and would stick at the end of the step stops sliding: when the friction that stops it is all there can be. What
 // stops the slip is A + F s, with F the steady forces along it, the friction at hand M s; two steps of different lengths tell A and F.
 std::optional<double> LastingContacts::stop_of_sliding(const ContactProblem& problem, const std::vector<StepContact>& touches, const ContactSolution& solution, double h) {
-  if (static_cast<int>(touches.size()) > kContact.most_located) return std::nullopt;
+  if (touches.size() > kContact.few) return std::nullopt;
   const Pair* stopping = nullptr;
   double least = 1.0, stopping_impulse = 0.0, at_hand = 0.0;
   for (std::size_t i = 0; i < touches.size();) {
@@ -176,7 +177,7 @@ std::optional<double> LastingContacts::stop_of_sliding(const ContactProblem& pro
     }
     // What friction stops within a billionth of the step has stopped.
     const double within_step = limit * (moving_.world().bodies[pair.first].inertia.inverse_mass + moving_.world().bodies[pair.second].inertia.inverse_mass);
-    if (!sticks || memory_.stuck.contains(pair) || !(limit > 0) || slip <= kContact.slides * (speed + within_step)) continue;
+    if (!sticks || memory_.stuck.contains(pair) || !(limit > 0) || slip <= kNegligible * (speed + within_step)) continue;
     if (along.norm() >= least * limit) continue;
     least = along.norm() / limit;
     stopping = &pair;
@@ -197,9 +198,9 @@ std::optional<double> LastingContacts::stop_of_sliding(const ContactProblem& pro
     memory_.sliding_search->found = true;
     return moving_.time() + stop;
   }
-  if (least >= 1 - 1e-12 || h <= kContact.shortest_step * memory_.longest_step) return std::nullopt;
+  if (least >= 1 - kSolverResidue || h <= kContact.shortest_step * memory_.longest_step) return std::nullopt;
   memory_.sliding_search = SlidingSearch{*stopping, moving_.time(), h, stopping_impulse, false};
-  return moving_.time() + h * std::max(least, 1e-3);
+  return moving_.time() + h * std::max(least, kContact.soon);
 }
 
 // Does anything come down in this step that did not touch before?
@@ -307,7 +308,7 @@ bool LastingContacts::give_paths(const ContactIsland& island, const std::vector<
                                  const ContactSolution& solution, double h, bool landing, const std::vector<RigidBodyState>* at) {
   std::vector<RigidBodyState> ends = ends_of(island, problem, solution, h, landing, at);
   std::vector<ActiveContact> held;   // where nothing turns, points stay as near as they are
-  if (&touches_at != &moving_.states() && !landing && touches.size() <= kContact.contacts_of_heap)
+  if (&touches_at != &moving_.states() && !landing && touches.size() <= kContact.many_contacts)
     for (std::size_t i = 0; i < touches.size(); ++i)
       if (touches[i].start_gap < kContact.came_down * geometry_.margin(touches[i].pair) && solution.impulses_world[i].squaredNorm() > 0.0) held.push_back({touches[i].pair, touches[i].point, &touches_at});
   // Pairs that are not in contact may meet within the step: that is for the finding of impacts.

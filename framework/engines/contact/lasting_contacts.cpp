@@ -8,6 +8,8 @@
 
 #include "framework/collision/gap.h"
 #include "framework/core/numbers.h"
+#include "framework/engines/base/tolerances.h"
+#include "framework/engines/base/step_limits.h"
 #include "framework/engines/contact/contact_constants.h"
 #include "framework/engines/stepping/body_groups.h"
 #include "framework/engines/base/guarded_laws.h"
@@ -32,7 +34,7 @@ void LastingContacts::begin(Pair pair, const collision::Gap& gap) {
 void LastingContacts::begin_where_touching(const std::vector<Pair>& pairs) {
   for (const Pair& pair : pairs) {
     const collision::Gap gap = geometry_.gap_of(pair, moving_.states());
-    const double within = std::max(geometry_.margin(pair), geometry_.is_dead(pair) ? kContact.assembled * geometry_.size_of(pair) : 0.0);
+    const double within = std::max(geometry_.margin(pair), geometry_.is_dead(pair) ? kSixDigits * geometry_.size_of(pair) : 0.0);
     if (gap.distance > within) continue;
     const ContactManifold points = geometry_.points_at(pair, moving_.states(), within);
     const Body a = moving_.body_at_impact(pair.first), b = moving_.body_at_impact(pair.second);
@@ -113,7 +115,7 @@ std::vector<LastingContacts::StepContact> LastingContacts::touches_of(const Cont
   for (const Pair& pair : island.pairs)
     for (const collision::NearPoint& point : points_.at(pair)) {
       const double thickness = geometry_.margin(pair), room = point.gap - thickness;
-      const bool lands = room > kContact.touching_band * thickness + kContact.unseen_approach * reach(pair);
+      const bool lands = room > kContact.touching_band * thickness + kNegligible * reach(pair);
       touches.push_back({pair, point, lands ? -room / (moving_.target() - moving_.time()) : 0.0, lands, Vector3d::Zero(), point.gap});
     }
   return touches;
@@ -216,7 +218,7 @@ void LastingContacts::require_progress() {
   constexpr const char* kRemedy = "masses or sizes that differ less, or a shorter \"step_s\", may help";
   if (memory_.sweeps > kContact.most_sweeps_a_step)
     throw StoppedRun(fmt::format("{}: what their contacts, rods and joints ask for together stays unsolved, also in the shortest parts of a step of {:.3g} s. They may contradict each other; {}", who(), memory_.longest_step, kRemedy));
-  if (memory_.cuts > kContact.most_cuts_a_body * static_cast<long>(moving_.size()))
+  if (memory_.cuts > kMostIdleSteps * static_cast<long>(moving_.size()))
     throw StoppedRun(fmt::format("{}: their contacts ask for more than {} steps within one of {:.3g} s; {}", who(), memory_.cuts - 1, memory_.longest_step, kRemedy));
 }
 
@@ -306,7 +308,7 @@ std::optional<double> LastingContacts::take_step(const ContactIsland& island, do
 }
 
 void LastingContacts::note_unsolved(const ContactIsland& island, const ContactSolution& solution, double h) {
-  const bool is_heap = island.pile || (rules_.plastic_impacts == scene::PlasticImpacts::kInStep && solution.impulses_world.size() > kContact.contacts_of_heap);
+  const bool is_heap = island.pile || (rules_.plastic_impacts == scene::PlasticImpacts::kInStep && solution.impulses_world.size() > kContact.many_contacts);
   const double allowed = is_heap ? kContact.unsolved_in_heap : kContactSolved;
   if (solution.converged || solution.residual <= allowed) return;
   unsolved_.note(RunWatch::Kind::kContactUnsolved, names_of(moving_.world(), island.bodies), {solution.residual, allowed, moving_.time(), h});
@@ -334,7 +336,7 @@ void LastingContacts::keep_warm(const ContactIsland& island, const std::vector<S
   remember(touches, problem, solution, h, next_impulses_);
   for (std::size_t i = 0; i < touches.size(); ++i) {
     const Vector3d force = solution.impulses_world[i] / h, point = problem.contacts[i].point_world;
-    const bool slides = solution.modes[i] == ContactMode::kSlide && !force.isZero(0.0) && slip_speed(problem, i, solution.velocities) > kContact.slips * rest_speed_;
+    const bool slides = solution.modes[i] == ContactMode::kSlide && !force.isZero(0.0) && slip_speed(problem, i, solution.velocities) > kCreep * rest_speed_;
     if (i == 0 || touches[i].pair != touches[i - 1].pair) next_stuck_.insert(touches[i].pair);
     if (slides) next_stuck_.erase(touches[i].pair);
     if (!force.isZero(0.0)) forces_.push_back({touches[i].pair.first, touches[i].pair.second, point, touches[i].point.normal_b_to_a_world, force});
@@ -417,7 +419,7 @@ bool LastingContacts::commit() {
       if (!keeps(pair)) continue;
       const bool lasted = lasts(pair);
       const bool trembles = lasted && !flies_off(pair, states);   // what comes back need not begin anew
-      const double near = std::max(island.pile ? 2 * geometry_.heap_margin(pair) : kContact.open_band * geometry_.margin(pair), trembles ? rest_speed_ * memory_.longest_step : 0.0);
+      const double near = std::max(island.pile ? 2 * geometry_.heap_margin(pair) : open_distance(pair), trembles ? rest_speed_ * memory_.longest_step : 0.0);
       const bool touches = (island.pile ? gaps[k] : geometry_.distance_of(pair, states, near)) <= near;
       if (touches == lasted) continue;
       const collision::Gap gap = geometry_.gap_of(pair, states);

@@ -64,6 +64,8 @@ class LastingContacts {
   /// The same of any of these pairs that overlap in these states, whatever is in contact in the step under way; velocities stay.
   void draw_apart(const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t);
   const std::vector<ContactPoint>& forces() const { return forces_; }
+  /// Farther apart than this the two are in contact no more. [m]
+  double open_distance(Pair pair) const { return kContact.open_band * geometry_.margin(pair); }
   /// Friction of a pair: the smaller of the two.
   double friction(Pair pair) const { return geometry_.friction(pair); }
 

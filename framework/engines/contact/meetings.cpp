@@ -8,16 +8,10 @@
 #include "framework/collision/contact_patch.h"
 #include "framework/core/error.h"
 #include "framework/core/numbers.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/stepping/start_overlaps.h"
 
 namespace tumble::engines {
-namespace {
-
-// Corners of two solids that touch belong to the touch within this part of the size: a face that leans by 1e-9 rad lies flat.
-constexpr double kSamePatch = 1e-9;
-
-}  // namespace
-
 Meetings::Meetings(MovingWorld& moving, const Laws& laws, RunCounters& counters) : moving_(moving), laws_(laws), counters_(counters) {
   for (int i = 0; i < moving_.size(); ++i)
     if (moving_.world().bodies[i].collides) colliding_.push_back(i);
@@ -37,7 +31,7 @@ void Meetings::refuse_overlap(const std::string& where, const scene::Scene& scen
     for (int j = i + 1; j < moving_.size(); ++j) {
       if (!moving_.may_collide(i, j)) continue;
       const collision::Pose pose_i = moving_.motion_at(i, 0.0).pose, pose_j = moving_.motion_at(j, 0.0).pose;
-      look_at_start(i, j, moving_.shape(i), pose_i, moving_.shape(j), pose_j, kTouching * collision::gap_scale(moving_.shape(i), pose_i, moving_.shape(j), pose_j), near);
+      look_at_start(i, j, moving_.shape(i), pose_i, moving_.shape(j), pose_j, kRoundOff * collision::gap_scale(moving_.shape(i), pose_i, moving_.shape(j), pose_j), near);
     }
   }
   refuse_overlaps(where, scene, near);
@@ -127,8 +121,8 @@ collision::Gap Meetings::gap(Pair pair) const {
 double Meetings::touching_distance(Pair pair) const {
   // Times are doubles too: within one spacing of the time a pair moves by its speed times that.
   const double speed = moving_.velocity_of(pair.first, moving_.time()).norm() + moving_.velocity_of(pair.second, moving_.time()).norm();
-  return kTouching * (collision::gap_scale(moving_.shape(pair.first), pose_of(pair.first), moving_.shape(pair.second), pose_of(pair.second))) +
-         4 * kEpsilon * moving_.time() * speed;
+  return kRoundOff * (collision::gap_scale(moving_.shape(pair.first), pose_of(pair.first), moving_.shape(pair.second), pose_of(pair.second))) +
+         kFewRoundings * kEpsilon * moving_.time() * speed;
 }
 
 // Sizes say what lies flat; how far from the world's origin the two are only adds what their places are rounded by.
@@ -139,7 +133,8 @@ std::vector<Vector3d> touching_points(const collision::CollisionShape& a, const 
   double size = 0.0;
   for (const collision::CollisionShape* shape : {&a, &b})
     if (!shape->is_half_space()) size += shape->bounding_radius();
-  const collision::FlatHull patch = collision::contact_patch(a, pose_a, b, pose_b, gap, kSamePatch * size + rounding);
+  // A face that leans by a billionth lies flat.
+  const collision::FlatHull patch = collision::contact_patch(a, pose_a, b, pose_b, gap, kNegligible * size + rounding);
   if (patch.corners.size() < 2) return {point_world};
   std::vector<Vector3d> points{patch.middle};
   points.insert(points.end(), patch.corners.begin(), patch.corners.end());

@@ -11,9 +11,6 @@
 
 namespace tumble::engines {
 
-/// Contacts closer than this many roundings of their coordinates touch at one instant.
-constexpr double kTouching = 64 * std::numeric_limits<double>::epsilon();
-
 /// The first impact of a step.
 struct Earliest {
   double time;         // [s]

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "framework/dynamics/solve_contacts.h"
+#include "framework/engines/base/tolerances.h"
 
 namespace tumble::engines {
 namespace {
@@ -59,7 +60,7 @@ double PositionCorrection::add_shifts(const ContactIsland& island, const std::ve
   for (const Pair& pair : pairs) {
     const double room = geometry_.margin(pair), size = geometry_.size_of(pair);
     const bool holds = std::any_of(held.begin(), held.end(), [&](const ActiveContact& h) { return h.pair == pair; });
-    const ContactManifold points = geometry_.points_at(pair, states, std::max({1e3 * room, reach, holds ? (geometry_.are_balls(pair) ? 1.0 : kContact.active_reach) * size : 0.0}));
+    const ContactManifold points = geometry_.points_at(pair, states, std::max({kContact.came_down * room, reach, holds ? (geometry_.are_balls(pair) ? 1.0 : kContact.active_reach) * size : 0.0}));
     std::vector<const collision::NearPoint*> at_shell;
     for (const ActiveContact& h : held)
       if (h.pair == pair) at_shell.push_back(geometry_.same_point(pair, h.point, *h.at, points, states, geometry_.same_within(pair)));
@@ -97,7 +98,7 @@ bool PositionCorrection::keep_apart(const ContactIsland& island, const std::vect
     std::map<int, int> places;
     for (const int body : island.bodies) place_body(moving_, body, t, places, states, nullptr, problem);
     limit_ratios(problem);
-    const double wrong = add_shifts(island, pairs, states, t, round < kContact.active_rounds ? held : std::vector<ActiveContact>{}, reach, places, problem);
+    const double wrong = add_shifts(island, pairs, states, t, round < kContact.most_corrections / 2 ? held : std::vector<ActiveContact>{}, reach, places, problem);
     if (kContact.correction_reach * wrong > reach) {   // what a shift this long may bring together has to be in it
       reach = 2 * kContact.correction_reach * wrong;
       if (round == 0) continue;
@@ -105,7 +106,7 @@ bool PositionCorrection::keep_apart(const ContactIsland& island, const std::vect
     add_island_rows(moving_, island, states, t, places, true, problem);
     double size = 0.0;
     for (const int body : island.bodies) size = std::max(size, states[body].com_world.cwiseAbs().maxCoeff());
-    const bool open = problem.row_targets.size() > 0 && problem.row_targets.cwiseAbs().maxCoeff() > 1e-13 * size;
+    const bool open = problem.row_targets.size() > 0 && problem.row_targets.cwiseAbs().maxCoeff() > kSolverRounding * size;
     if (wrong == 0.0 && !open) return true;
     ++counters_.nudges;
     // The solver measures its answers by the farthest point, which need not move at all. Active points, rods and joints are drawn together by what
@@ -117,8 +118,8 @@ bool PositionCorrection::keep_apart(const ContactIsland& island, const std::vect
       part = wrong / largest;
     }
     ContactOptions options;   // the next round takes the rest
-    options.tolerance = std::max(kContact.solver_rounding, kContact.correction_missed * part);
-    options.enough = std::max(kContact.solver_rounding, kContact.correction_missed_at_most * part);
+    options.tolerance = std::max(kSolverRounding, kContact.correction_missed * part);
+    options.enough = std::max(kSolverRounding, kContactSolved * part);
     const ContactSolution shift = solve_contacts(problem, options);
     memory_.sweeps += static_cast<std::uint64_t>(shift.sweeps);
     for (std::size_t k = 0; k < island.bodies.size(); ++k) apply_shift(island.bodies[k], shift.velocities[k], states);

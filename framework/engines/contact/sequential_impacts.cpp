@@ -10,6 +10,7 @@
 #include "framework/dynamics/point_impact.h"
 #include "framework/dynamics/solve_contacts.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/contact/impact_law.h"
 
 namespace tumble::engines {
@@ -17,9 +18,6 @@ namespace {
 
 constexpr int kRoundsAmongContacts = 60;   // bodies in lasting contact pass a blow on in ever smaller parts
 constexpr std::size_t kToldAPair = 64;   // impulses at one instant: more are told as one a pair
-// Of K of the free bodies: what rounding leaves where rods and joints hold both bodies completely along the normal.
-constexpr double kImmovable = 1e-12;
-constexpr double kRoundOffOfEnergy = 1e-11;   // of the work of the impulses: what the tolerance of the contact problem leaves
 
 Contact contact_of(const TouchingPair& pair, const Vector3d& point_world) { return {point_world, pair.gap.normal_b_to_a_world}; }
 
@@ -101,7 +99,7 @@ bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double thr
   if (is_held || friction > 0) {
     answer = &work.answer(pair, *point, friction > 0);
     const double free = answer->free_along(contact.normal_b_to_a_world), held = answer->held_normal();
-    if (!(held > kImmovable * free))
+    if (!(held > kSolverResidue * free))
       throw StoppedRun(fmt::format("they approach at {:.3g} m/s, and rods and joints hold both completely along the normal of the contact: no impulse can keep them apart. What drives them together (\"motion\") must leave them room",
                                    -approach));
     impulse *= free / held;
@@ -143,7 +141,7 @@ ContactSolution SequentialImpacts::solve_without_gain(const ContactProblem& prob
     return solve_contacts(asked);
   };
   ContactSolution whole = solve(problem);
-  const auto gains = [&](const ContactSolution& solution) { return work_of(problem, solution.impulses_world, before, solution.velocities) > kRoundOffOfEnergy * size_of_work(problem, solution); };
+  const auto gains = [&](const ContactSolution& solution) { return work_of(problem, solution.impulses_world, before, solution.velocities) > kSolverResidue * size_of_work(problem, solution); };
   if (!gains(whole)) return whole;
   ContactProblem less = problem;
   for (PushingContact& contact : less.contacts) contact.friction = 0.0;
@@ -247,7 +245,7 @@ bool SequentialImpacts::push_pair_apart(Work& work, const TouchingPair& pair) {
   if (rate >= kFastEnough * rules_.rest_speed) return false;
   const Vector3d& n = pair.gap.normal_b_to_a_world;
   const ImpactBodies::Answer& answer = work.answer(pair, *point, false);
-  if (!(answer.held_normal() > kImmovable * answer.free_along(n))) return false;   // links hold both where they are
+  if (!(answer.held_normal() > kSolverResidue * answer.free_along(n))) return false;   // links hold both where they are
   work.bodies.push({pair.a, pair.b, *point, n}, answer, (rules_.rest_speed - rate) / answer.held_normal() * n);
   ++counters_.micro_impacts;
   return true;

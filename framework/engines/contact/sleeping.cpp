@@ -4,16 +4,14 @@
 #include <cmath>
 
 #include "framework/collision/gap.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/stepping/body_groups.h"
 
 namespace tumble::engines {
 namespace {
 
 constexpr double kStillFor = 0.5;        // s: a swing that turns back within it is seen to swing
-constexpr double kSlow = 0.1;            // of the rest speed: faster than this, be it for a moment, is no rest
 constexpr double kMean = 0.01;           // of the rest speed, on the average: ten times what heaps are solved to, a step's fall times 1e-5
-constexpr double kMeanSliding = 1e-4;    // likewise, where something slides
-constexpr double kSleepRoom = 1e-8;           // of the smaller body: lasting contacts are kept nearer
 
 }  // namespace
 
@@ -37,7 +35,7 @@ void Sleepers::watch(int body) {
   const Place here{moving_.time(), state.com_world, state.world_from_body};
   const bool fast = speed > kSlow * rest_speed_;
   if (fast || way(still.roughly) > kMean * rest_speed_ * kStillFor) still.roughly = here;
-  if (fast || way(still.strictly) > kMeanSliding * rest_speed_ * kStillFor) still.strictly = here;
+  if (fast || way(still.strictly) > kCreep * rest_speed_ * kStillFor) still.strictly = here;
 }
 
 bool Sleepers::is_still(const Group& group, double since) const {
@@ -139,10 +137,9 @@ bool Sleepers::would_touch(Pair pair) {
   const World& world = moving_.world();
   if (world.contact->plastic_impacts != scene::PlasticImpacts::kInStep || std::min(world.bodies[pair.first].restitution, world.bodies[pair.second].restitution) > 0.0) return false;
   const double h = moving_.target() - moving_.time();
-  const double room = kSleepRoom * std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius());
   const auto pose = [&](int body) { return moving_.motion_at(body, moving_.time()).pose; };
   ++counters_.collision.gap_evaluations;
-  const double near = h * moving_.fastest_in_step(pair.first) + h * moving_.fastest_in_step(pair.second) + room;
+  const double near = h * moving_.fastest_in_step(pair.first) + h * moving_.fastest_in_step(pair.second) + contacts_.open_distance(pair);
   return collision::gap_distance(moving_.shape(pair.first), pose(pair.first), moving_.shape(pair.second), pose(pair.second), moving_.pair_cache(pair.first, pair.second), near) <= near;
 }
 

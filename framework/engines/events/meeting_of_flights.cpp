@@ -8,6 +8,7 @@
 
 #include "framework/core/numbers.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/contact/impact_bodies.h"
 #include "framework/engines/contact/impact_law.h"
 #include "framework/engines/contact/meetings.h"
@@ -15,8 +16,6 @@
 namespace tumble::engines {
 namespace {
 
-// A push through the middle of a ball does not turn it: this is what rounding leaves of the torque, against the push.
-constexpr double kNoTurn = 64 * kEpsilon;
 constexpr int kMostPairNudges = 20;
 
 // By how much a unit impulse at the point changes the velocity of the point along a direction. [1/kg]
@@ -102,7 +101,7 @@ bool MeetingOfFlights::settle(Work& work, int body, int support) const {
   const bool is_a = body == work.result.key.body_a;
   Body& mover = is_a ? work.a : work.b;
   const Vector3d up = is_a ? work.gap.normal_b_to_a_world : Vector3d(-work.gap.normal_b_to_a_world);
-  const double rounding = kTouching * collision::gap_scale(world_.shape(work.result.key.body_a), {work.a.com_world, work.a.world_from_body}, world_.shape(work.result.key.body_b), {work.b.com_world, work.b.world_from_body});
+  const double rounding = kRoundOff * collision::gap_scale(world_.shape(work.result.key.body_a), {work.a.com_world, work.a.world_from_body}, world_.shape(work.result.key.body_b), {work.b.com_world, work.b.world_from_body});
   if (!comes_to_rest({world_.gravity_world(), up, world_.radius(body), rounding, mover.inertia.inertia_body, !mover.omega_world.isZero(0.0), mover.velocity_world,
                       std::min(world_.restitution(body), world_.restitution(support)), rules_.rest_speed, work.fastest}))
     return false;
@@ -138,7 +137,8 @@ Flight MeetingOfFlights::flight_of(const Work& work, int body, const Flight& bef
   flight.velocity_world = now.velocity_world;
   flight.world_from_body = now.world_from_body;
   const double arm = world_.radius(body), change = (now.velocity_world - world_.velocity(body, before, key.time)).norm();
-  const bool turns = !(world_.is_ball(body) && before.omega_body.isZero(0.0) && now.omega_world.norm() * arm <= kNoTurn * change);
+  // A push through the middle of a ball does not turn it, but for what rounding leaves of the torque.
+  const bool turns = !(world_.is_ball(body) && before.omega_body.isZero(0.0) && now.omega_world.norm() * arm <= kRoundOff * change);
   flight.omega_body = turns ? Vector3d(now.world_from_body.conjugate() * now.omega_world) : Vector3d(Vector3d::Zero());
   if (!now.com_world.allFinite() || !now.velocity_world.allFinite() || !now.omega_world.allFinite())
     throw StoppedRun(fmt::format("body '{}': its state is not a number (impulses: {})", world_.world().bodies[body].name, laws_.impulse_source));
@@ -151,7 +151,7 @@ Meeting MeetingOfFlights::meet(const EventKey& key, const Flight& f, const Fligh
   const collision::Pose pose_a{work.a.com_world, work.a.world_from_body}, pose_b{work.b.com_world, work.b.world_from_body};
   const collision::CollisionShape &shape_a = world_.shape(a), &shape_b = world_.shape(b);
   work.gap = collision::compute_gap(shape_a, pose_a, shape_b, pose_b);
-  work.points_world = touching_points(shape_a, pose_a, shape_b, pose_b, work.gap, kTouching * collision::gap_scale(shape_a, pose_a, shape_b, pose_b));
+  work.points_world = touching_points(shape_a, pose_a, shape_b, pose_b, work.gap, kRoundOff * collision::gap_scale(shape_a, pose_a, shape_b, pose_b));
   collide(work);
   const bool rests = settle(work, a, b) || settle(work, b, a);
   const double last = std::max(f.partner == b ? f.begin : -kEpsilon, g.partner == a ? g.begin : -kEpsilon);

@@ -1,5 +1,7 @@
 #include "framework/engines/events/process_world.h"
 
+#include "framework/engines/base/tolerances.h"
+
 #include <algorithm>
 #include <limits>
 #include <utility>
@@ -8,7 +10,6 @@ namespace tumble::engines {
 namespace {
 
 constexpr double kTogether = 2.0;         // steps
-constexpr double kNear = 1e-6;            // of the sizes: pairs farther apart do not touch
 
 std::vector<const collision::CollisionShape*> shapes_of(const WorldPart& part, const ShapeOf& shape_of) {
   std::vector<const collision::CollisionShape*> shapes;
@@ -226,7 +227,7 @@ std::vector<BodyPair> ProcessWorld::near_pairs(std::optional<BodyPair> trigger) 
       }
       if (!moving_.world().contact || !moving_.may_collide(a, b)) continue;
       const double reach = moving_.shape(a).bounding_radius() + moving_.shape(b).bounding_radius();
-      if ((moving_.state(a).com_world - moving_.state(b).com_world).norm() > reach * (1 + kNear)) continue;
+      if ((moving_.state(a).com_world - moving_.state(b).com_world).norm() > reach * (1 + kSixDigits)) continue;
       pairs.emplace_back(a, b);
     }
   return pairs;

@@ -11,6 +11,7 @@
 #include "framework/effects/registry.h"
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/base/step_limits.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/contact/sleeping.h"
 #include "framework/engines/contact/world_step.h"
 #include "framework/engines/rd/recorder.h"
@@ -18,8 +19,6 @@
 
 namespace tumble::engines {
 namespace {
-
-constexpr double kNoStep = 1e-9;         // of the step: a shorter last one is taken with the one before
 
 class RetroactiveRun : private StepStages {
  public:
@@ -95,7 +94,7 @@ class RetroactiveRun : private StepStages {
 
 double RetroactiveRun::next_target() const {
   double target = static_cast<double>(grid_index_ + 1) * step_;
-  if (target > duration_ - kNoStep * step_) target = duration_;   // no step of a rounding's length at the end
+  if (target > duration_ - kNegligible * step_) target = duration_;   // no step of a rounding's length at the end
   target = std::min(target, next_look_);
   const auto next = switch_times_.upper_bound(moving_.time());
   if (next != switch_times_.end()) target = std::min(target, *next);

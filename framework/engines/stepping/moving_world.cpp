@@ -11,12 +11,10 @@
 #include "framework/core/error.h"
 #include "framework/dynamics/rotation_bounds.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/tolerances.h"
 
 namespace tumble::engines {
 namespace {
-
-// Of a body's radius: so far apart lasting contacts are kept at most, ten shells of lasting_contacts.cpp.
-constexpr double kNeighbourMargin = 1e-9;
 
 // What the laws' integration makes of a constant acceleration a: x(h) = x0 + v h + bend a h^2 / 2. Asked once, so that bounds hold
 // for whichever method a student wrote.
@@ -416,10 +414,9 @@ collision::SweptBox MovingWorld::swept_box(int body) {
     const scene::PrescribedMotion& m = world_.bodies[mover].motion;
     bulge = m.amplitude_m.cwiseAbs() * std::min(1.0, std::pow(m.angular_frequency_rad_s * h, 2) / 8);
   }
-  constexpr double kRounding = 1e-14;  // of coordinates, so that bodies that just touch stay candidates
-  const double shell = built::kContact && world_.contact && std::isfinite(radius) ? kNeighbourMargin * radius : 0.0;
+  const double shell = built::kContact && world_.contact && std::isfinite(radius) ? kNegligible * radius : 0.0;
   const Vector3d margin =
-      bulge + Vector3d::Constant(radius + shell) + kRounding * (start.cwiseAbs() + end.cwiseAbs() + Vector3d::Constant(std::isfinite(radius) ? radius : 0.0));
+      bulge + Vector3d::Constant(radius + shell) + kCoordinateRounding * (start.cwiseAbs() + end.cwiseAbs() + Vector3d::Constant(std::isfinite(radius) ? radius : 0.0));
   const collision::SweptBox box{start.cwiseMin(end) - margin, start.cwiseMax(end) + margin, can_move(body) || is_driven(body)};
   if (built::kContact && world_.contact && can_move(body) && !paths_[body].smooth) {   // contacts begin steps again
     paths_[body].box = box;

@@ -20,9 +20,6 @@ namespace tumble::engines {
 /// found by asking the method itself. Source: E. Hairer, G. Wanner, "Solving ODEs II", IV.2.
 double amplification(const Laws& laws, double angular_frequency, double damping, double step);
 
-/// What rounding leaves of an amplification of exactly 1.
-inline constexpr double kNotAtAll = 1e-9;
-
 /// Largest step up to `step` that does not lengthen the same swing; 0 where none does not, down to a thousandth of its faster rate. [s]
 double largest_stable_step(const Laws& laws, double angular_frequency, double damping, double step);
 
