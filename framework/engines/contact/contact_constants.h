@@ -16,7 +16,7 @@ struct ContactConstants {
   double margin = 1e-10;
   /// of the smaller body: takes up what sweeps leave in heaps. Larger: a heap rests visibly
   /// apart. Smaller: more corrections a step
-  double heap_margin = 1e-4;
+  double large_island_margin = 1e-4;
   /// margins: nearer than this two touch at the start of a step; farther, a point lands in it
   double touching_band = 8.0;
   /// margins: farther than this, and than the restitution threshold goes in a step, a contact
@@ -65,7 +65,7 @@ struct ContactConstants {
   double warm_start_within = 1e-2;
   /// the same in heaps, where points come and go, and the sum of a pair's impulses is worth
   /// more than their places
-  double warm_start_within_in_heap = 0.5;
+  double warm_start_within_in_large_island = 0.5;
   /// bodies, or contacts, of an island: so many are solved to the last digit, and their ends of sliding are located in time. Larger:
   /// slower. Smaller: heaps of a few bodies lose their order
   std::size_t few = 12;
@@ -76,22 +76,22 @@ struct ContactConstants {
   /// of one island in a step: more make it a heap
   int most_located_impacts = 8;
   /// of the heap's speed
-  double solved_in_heap = 1e-5;
+  double solved_in_large_island = 1e-5;
   /// of the heap's speed: what sweeps leave at the worst of hundreds of contacts (0.28 in the
   /// bowl of 200 models, whose energy and gaps are right) its margin and the next step take
   /// up; where as much is left as there was, no answer was found
-  double unsolved_in_heap = 1.0;
+  double unsolved_in_large_island = 1.0;
   /// in_step, of islands of many contacts
   int sweeps_in_step = 120;
   /// from the warm start; of position corrections too
-  int sweeps_in_heap = 40;
+  int sweeps_in_large_island = 40;
   /// of the margin, in a step: what errors have taken from it comes back without a correction
   double restored = 0.2;
 
   // ---- Landings: points that come down within a step
   /// of the way down: the step ends before the point lands, a second, short one takes it all
   /// the way
-  double before_landing = 0.99;
+  double before_activation = 0.99;
   /// of the restitution threshold: no better answer is asked of a heap, and what is nearer than this goes in the longest step is down
   double still = 1e-3;
   /// of the longest step: what lands this soon is predicted to its third power, below a
@@ -112,19 +112,19 @@ struct ContactConstants {
   /// of what is missing a round may leave
   double correction_missed = 1e-6;
   /// margins: a point farther away at the start has come down in the step
-  double came_down = 1e3;
+  double activated = 1e3;
   /// a correction is no motion: the lightest count as heavier ones beyond this
   double most_mass_ratio = 1e4;
   /// rounds
-  int most_corrections_in_heap = 24;
+  int most_corrections_in_large_island = 24;
   /// heap margins: nearer than this is taken back
   double too_near = 0.1;
   /// of the farthest: the next round takes the rest
-  double correction_left_in_heap = 1e-2;
+  double correction_left_in_large_island = 1e-2;
   /// corrections: points this far apart may come together by them
-  double correction_reach_in_heap = 1.5;
+  double correction_reach_in_large_island = 1.5;
   /// likewise, in what two bodies have moved by the last correction: levers make it long
-  double correction_moved_in_heap = 2.0;
+  double correction_moved_in_large_island = 2.0;
   /// heap margins: of larger gaps, and than the restitution threshold goes in a step, a bound
   /// will do
   double measured = 10.0;

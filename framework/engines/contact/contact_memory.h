@@ -35,11 +35,11 @@ struct ContactMemory {
   std::map<Pair, std::vector<KnownImpulse>> last_impulses, tried_impulses;
   std::set<Pair> stuck;                   // pairs with friction that did not slide in the last step
   // Heaps: bodies whose island has, or has had since it last came to rest, too many impacts a step to locate each.
-  std::set<int> heaped;
+  std::set<int> in_large_island;
   double impacts_counted_from = -kInfinity;   // impacts that cut a step were counted since [s], and how many of each island, by its first body
   std::map<int, int> impacts_counted;
-  double landed_at = -kInfinity;              // points landed last [s], and how often at that instant
-  int landed_there = 0;
+  double activated_at = -kInfinity;              // points landed last [s], and how often at that instant
+  int activations_there = 0;
   // Ends of sliding.
   double searched_from = -kInfinity;          // were looked for since [s], and how often
   int searches = 0;

@@ -32,7 +32,7 @@ double ContactModes::slip_of(const ContactPoint& point) {
 
 void ContactModes::look() {
   const double time = moving_.time();
-  std::map<LastingContacts::Pair, Votes> votes;
+  std::map<PersistentContacts::Pair, Votes> votes;
   for (const ContactPoint& point : contacts_.forces()) {
     const double friction = contacts_.friction({point.body_a, point.body_b});
     if (friction == 0.0) continue;
@@ -43,21 +43,21 @@ void ContactModes::look() {
     // Impulses of sliding contacts lie on the edge of the cone to round-off, those of sticking ones below what the solver leaves open.
     pair.all_on = pair.all_on && share >= 1 - kNegligible;
     pair.all_in = pair.all_in && share < 1 - kSixDigits;
-    pair.slips = pair.slips || (pair.all_on && slip_of(point) > kCreep * rest_speed_);
+    pair.slips = pair.slips || (pair.all_on && slip_of(point) > kCreep * restitution_threshold_);
   }
   std::erase_if(modes_, [&](const auto& entry) { return !contacts_.lasts(entry.first) && time > entry.second.seen + kQuiet; });
   for (const auto& [pair, vote] : votes) {
     Mode& mode = modes_.try_emplace(pair, Mode{false, false, -std::numeric_limits<double>::infinity(), time}).first->second;
     mode.seen = time;
     if (vote.all_on || vote.all_in) mode.slides = vote.all_on && vote.slips;
-    if (mode.slides == mode.told_sliding || time < mode.told + kQuiet) continue;
-    mode.told_sliding = mode.slides;
+    if (mode.slides == mode.reported_sliding || time < mode.told + kQuiet) continue;
+    mode.reported_sliding = mode.slides;
     mode.told = time;
     sink_.event({time, mode.slides ? EventKind::kSlide : EventKind::kStick, pair.first, pair.second, vote.first->point_world, vote.first->normal_b_to_a_world, 0.0, 0.0});
   }
 }
 
-bool ContactModes::slides(LastingContacts::Pair pair) const {
+bool ContactModes::slides(PersistentContacts::Pair pair) const {
   const auto found = modes_.find(pair);
   return found != modes_.end() && found->second.slides;
 }

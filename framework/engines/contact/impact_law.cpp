@@ -39,7 +39,7 @@ void ApproachThreshold::look(const Laws& laws, const TouchedRegion& region, cons
 // speeds along the surface that cancel in it (a ball sliding in a groove).
 double ApproachThreshold::value() const { return std::max(kSolverRounding * fastest_, kRoundOff * sliding_); }
 
-std::string told_left_approaching(const Laws& laws) {
+std::string left_approaching_message(const Laws& laws) {
   return fmt::format("collision (collision_impulse, apply_impulse of {}) left them approaching, however often it was applied: the impulse has no effect, the wrong sign or too "
                      "little size, or a lasting contact is needed there", laws.impulse_source);
 }
@@ -54,7 +54,7 @@ bool comes_to_rest(const BallOnSupport& ball) {
   if (!(gravity.dot(up) < 0) || (gravity - gravity.dot(up) * up).norm() > level * gravity.norm()) return false;
   const Matrix3d& inertia = ball.inertia_body;
   if (ball.turns && (inertia - inertia(0, 0) * Matrix3d::Identity()).norm() > kRoundOff * inertia.norm()) return false;
-  return velocity.norm() < ball.rest_speed && velocity.dot(up) <= ball.restitution * ball.rest_speed + kRoundOff * ball.fastest;
+  return velocity.norm() < ball.restitution_threshold && velocity.dot(up) <= ball.restitution * ball.restitution_threshold + kRoundOff * ball.fastest;
 }
 
 }  // namespace tumble::engines

@@ -15,8 +15,8 @@ constexpr double kMean = 0.01;           // of the rest speed, on the average: t
 
 }  // namespace
 
-Sleepers::Sleepers(MovingWorld& moving, const LastingContacts& contacts, const ContactModes* modes, double rest_speed, RunCounters& counters, TrajectorySink& sink)
-    : moving_(moving), contacts_(contacts), modes_(modes), rest_speed_(rest_speed), counters_(counters), sink_(sink), group_of_(moving.size(), -1) {
+Sleepers::Sleepers(MovingWorld& moving, const PersistentContacts& contacts, const ContactModes* modes, double restitution_threshold, RunCounters& counters, TrajectorySink& sink)
+    : moving_(moving), contacts_(contacts), modes_(modes), restitution_threshold_(restitution_threshold), counters_(counters), sink_(sink), group_of_(moving.size(), -1) {
   for (const RigidBodyState& state : moving.states()) {
     const Place place{moving.time(), state.com_world, state.world_from_body};
     still_.push_back({place, place});
@@ -33,9 +33,9 @@ void Sleepers::watch(int body) {
   const double speed = b.inertia.inverse_mass * state.momentum_world.norm() + omega_of(state, b.inertia).norm() * radius;
   const auto way = [&](const Place& place) { return (state.com_world - place.com_world).norm() + state.world_from_body.angularDistance(place.world_from_body) * radius; };
   const Place here{moving_.time(), state.com_world, state.world_from_body};
-  const bool fast = speed > kSlow * rest_speed_;
-  if (fast || way(still.roughly) > kMean * rest_speed_ * kStillFor) still.roughly = here;
-  if (fast || way(still.strictly) > kCreep * rest_speed_ * kStillFor) still.strictly = here;
+  const bool fast = speed > kSlow * restitution_threshold_;
+  if (fast || way(still.roughly) > kMean * restitution_threshold_ * kStillFor) still.roughly = here;
+  if (fast || way(still.strictly) > kCreep * restitution_threshold_ * kStillFor) still.strictly = here;
 }
 
 bool Sleepers::is_still(const Group& group, double since) const {
@@ -143,7 +143,7 @@ bool Sleepers::would_touch(Pair pair) {
   return collision::gap_distance(moving_.shape(pair.first), pose(pair.first), moving_.shape(pair.second), pose(pair.second), moving_.pair_cache(pair.first, pair.second), near) <= near;
 }
 
-bool Sleepers::wake_met(const std::vector<Pair>& candidates) {
+bool Sleepers::wake_approached(const std::vector<Pair>& candidates) {
   bool any = false;
   for (const Pair& pair : candidates)
     if ((moving_.asleep(pair.first) || moving_.asleep(pair.second)) && would_touch(pair)) any = wake(pair) || any;

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "framework/engines/contact/lasting_contacts.h"
-#include "framework/engines/contact/meetings.h"
+#include "framework/engines/contact/persistent_contacts.h"
+#include "framework/engines/contact/impact_detection.h"
 #include "framework/engines/contact/sequential_impacts.h"
 
 namespace tumble::engines {
@@ -20,7 +20,7 @@ namespace tumble::engines {
 /// What a scene says about steps and impacts, and an engine about where it looks for them.
 struct StepRules {
   double step;                          // [s]
-  double rest_speed;                    // restitution threshold [m/s]
+  double restitution_threshold;                    // restitution threshold [m/s]
   bool searches_without_contacts = true;   // false: where a scene asks for no contacts, impacts are found elsewhere
 };
 
@@ -34,9 +34,9 @@ class StepStages {
   /// @return false: the step ends where it began
   virtual bool begin_again(double target) = 0;
   /// Wakes bodies that something moving comes near to. @return whether any: the step is then begun again
-  virtual bool wake_met(const std::vector<Meetings::Pair>&) { return false; }
+  virtual bool wake_approached(const std::vector<ImpactDetection::Pair>&) { return false; }
   /// Wakes the bodies of a pair. @return whether one slept
-  virtual bool wake(Meetings::Pair) { return false; }
+  virtual bool wake(ImpactDetection::Pair) { return false; }
   /// All paths are known, up to `reached`, where the world goes next.
   virtual void before_commit(double) {}
   /// An impulse of an impact.
@@ -45,7 +45,7 @@ class StepStages {
 
 class WorldStep {
  public:
-  using Pair = Meetings::Pair;   // bodies, first < second
+  using Pair = ImpactDetection::Pair;   // bodies, first < second
 
   /// @param sink    gets the events of contacts, and of balls that come to rest
   /// @param shapes  by body, prepared before; empty: made from the world
@@ -83,13 +83,13 @@ class WorldStep {
 
   MovingWorld& moving() { return moving_; }
   const MovingWorld& moving() const { return moving_; }
-  Meetings& meetings() { return meetings_; }
-  const Meetings& meetings() const { return meetings_; }
+  ImpactDetection& impact_detection() { return impact_detection_; }
+  const ImpactDetection& impact_detection() const { return impact_detection_; }
   SequentialImpacts& impacts() { return impacts_; }
   bool has_contacts() const { return built::kContact && contacts_.has_value(); }
   /// @pre has_contacts()
-  LastingContacts& contacts() { return *contacts_; }
-  const LastingContacts& contacts() const { return *contacts_; }
+  PersistentContacts& contacts() { return *contacts_; }
+  const PersistentContacts& contacts() const { return *contacts_; }
 
  private:
   struct TouchingPairs {
@@ -99,11 +99,11 @@ class WorldStep {
 
   std::vector<Pair> pairs_in_step();
   bool keep_contacts(Taken& taken, StepStages& stages);
-  void take_back_overlaps(const Taken& taken);
+  void remove_overlaps(const Taken& taken);
   Taken give_up();
   TouchingPairs touching_pairs(const std::vector<Pair>& pairs, Pair trigger, bool is_in_step) const;
   void begin_slow_contacts(const TouchingPairs& touching, const std::vector<Event>& events);
-  void settle(const TouchingPairs& touching, const std::vector<Event>& events);
+  void bring_to_rest(const TouchingPairs& touching, const std::vector<Event>& events);
   void send_apart(const TouchingPairs& touching, const Resolution& resolution);
 
   const Laws& laws_;
@@ -111,9 +111,9 @@ class WorldStep {
   RunCounters& counters_;
   TrajectorySink& sink_;
   MovingWorld moving_;
-  Meetings meetings_;
+  ImpactDetection impact_detection_;
   SequentialImpacts impacts_;
-  std::optional<LastingContacts> contacts_;   // where the scene asks for them
+  std::optional<PersistentContacts> contacts_;   // where the scene asks for them
   bool searches_;                             // whether impacts are looked for here
 };
 

@@ -8,6 +8,7 @@
 #include "framework/core/cpu_time.h"
 #include "framework/core/not_implemented.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/cost/cost.h"
 
 namespace tumble::engines {
 namespace {

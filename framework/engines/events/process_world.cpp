@@ -33,7 +33,7 @@ collision::MotionState ProcessStep::motion_at(std::size_t member, double t, cons
 
 ProcessWorld::ProcessWorld(const World& whole, const EntriesByBody& entries, const ShapeOf& shape_of, const Laws& laws, ProcessRules rules, RunCounters& counters, const std::vector<int>& members, const std::vector<int>& still)
     : rules_(rules), counters_(counters), members_(members), part_(part_of(whole, entries, members, still)),
-      world_step_(part_.world, laws, {rules.step, rules.rest_speed, false}, counters, collector_, shapes_of(part_, shape_of)), moving_(world_step_.moving()) {}
+      world_step_(part_.world, laws, {rules.step, rules.restitution_threshold, false}, counters, collector_, shapes_of(part_, shape_of)), moving_(world_step_.moving()) {}
 
 int ProcessWorld::local(int body) const { return static_cast<int>(std::lower_bound(part_.bodies.begin(), part_.bodies.end(), body) - part_.bodies.begin()); }
 
@@ -84,7 +84,7 @@ ProcessState ProcessWorld::save() {
   state.members = members_;
   for (const int member : part_.members) state.states.push_back(moving_.state(member));
   save_controls(state);
-  for (const auto& [pair, time] : world_step_.impacts().last_meetings())
+  for (const auto& [pair, time] : world_step_.impacts().last_impacts())
     if (moving_.time() - time < rules_.step) state.met.emplace(whole(pair), time);
   if (!has_contacts()) return state;
   for (const BodyPair& pair : world_step_.contacts().lasting()) state.lasting.insert(whole(pair));
@@ -106,7 +106,7 @@ void ProcessWorld::note_near(ProcessState& state) const {
       if (std::min(moving_.world().bodies[a].restitution, moving_.world().bodies[b].restitution) > 0 || !moving_.may_collide(a, b)) continue;
       const double within = kTogether * rules_.step * (speed(a) + speed(b));
       if ((moving_.state(a).com_world - moving_.state(b).com_world).norm() > moving_.shape(a).bounding_radius() + moving_.shape(b).bounding_radius() + within) continue;
-      if (world_step_.meetings().gap({a, b}).distance <= within) state.near.emplace(members_[i], members_[j]);
+      if (world_step_.impact_detection().gap({a, b}).distance <= within) state.near.emplace(members_[i], members_[j]);
     }
 }
 
@@ -145,7 +145,7 @@ ProcessState ProcessWorld::shown(const ProcessState& state) {
   load(state);
   std::vector<RigidBodyState> all = moving_.states();
   moving_.close_links(all, state.time);
-  if (has_contacts()) world_step_.contacts().draw_apart(near_pairs(std::nullopt), all, state.time);
+  if (has_contacts()) world_step_.contacts().remove_overlaps(near_pairs(std::nullopt), all, state.time);
   ProcessState after = state;
   for (std::size_t k = 0; k < members_.size(); ++k) after.states[k] = all[static_cast<std::size_t>(part_.members[k])];
   return after;
@@ -168,7 +168,7 @@ void ProcessWorld::begin_step(double target) {
   moving_.begin_step(target);
   for (const int member : part_.members) {
     if (!moving_.smooth_path(member)) moving_.set_path(member, moving_.state(member), moving_.path_end(member));
-    moving_.refuse_whirl(member);
+    moving_.refuse_fast_turning(member);
   }
 }
 
@@ -236,7 +236,7 @@ std::vector<BodyPair> ProcessWorld::near_pairs(std::optional<BodyPair> trigger) 
 ProcessWorld::Change ProcessWorld::begin_contacts(const ProcessState& state) {
   load(state);
   const std::vector<BodyPair> pairs = near_pairs(std::nullopt);
-  world_step_.meetings().separate(pairs);
+  world_step_.impact_detection().separate(pairs);
   world_step_.contacts().begin_where_touching(pairs);
   ProcessState after = save();
   return {std::move(after), take_events()};
@@ -247,17 +247,17 @@ ProcessWorld::Change ProcessWorld::collide(BodyPair pair, const ProcessState& st
   load_forces(state);
   const BodyPair trigger = local(pair);
   const std::vector<BodyPair> pairs = near_pairs(trigger);
-  world_step_.meetings().separate(pairs);
+  world_step_.impact_detection().separate(pairs);
   // A blow that is dealt with in the step it falls into is dealt with in the one that begins here, by all that the two then touch, friction
   // among it: so a world of all bodies does it, and of a blow struck alone and without friction something else would come.
-  if (has_contacts() && world_step_.contacts().deals_in_step(trigger)) world_step_.contacts().begin(trigger, world_step_.meetings().gap(trigger));
+  if (has_contacts() && world_step_.contacts().deals_in_step(trigger)) world_step_.contacts().begin(trigger, world_step_.impact_detection().gap(trigger));
   else {
     Stages stages(*this);
     world_step_.respond(pairs, trigger, false, stages);
   }
   world_step_.require_numbers();
   if (collector_.events.empty()) {   // they met without coming nearer
-    const collision::Gap gap = world_step_.meetings().gap(trigger);
+    const collision::Gap gap = world_step_.impact_detection().gap(trigger);
     collector_.event({moving_.time(), EventKind::kCollision, trigger.first, trigger.second, 0.5 * (gap.point_a_world + gap.point_b_world), gap.normal_b_to_a_world, 0.0, 0.0, 0.0});
   }
   ProcessState after = save();

@@ -36,7 +36,7 @@ struct ProcessState {
 
 /// What the pages of a scene say about steps and impacts.
 struct ProcessRules {
-  double step, rest_speed;                      // [s], [m/s]
+  double step, restitution_threshold;                      // [s], [m/s]
 };
 
 /// Solids of the whole world, by body.

@@ -17,7 +17,7 @@
 #include "framework/effects/registry.h"
 #include "framework/engines/base/tolerances.h"
 #include "framework/engines/contact/contact_constants.h"
-#include "framework/engines/contact/lasting_contacts.h"
+#include "framework/engines/contact/persistent_contacts.h"
 #include "framework/engines/judging/measures.h"
 
 namespace tumble::engines {

@@ -58,7 +58,7 @@ void FrameRecorder::push(MovingWorld& moving, double t) {
   std::vector<RigidBodyState> states;
   for (int i = 0; i < moving.size(); ++i) states.push_back(t == moving.time() && moving.can_move(i) ? moving.state(i) : moving.path(i, t));
   if (t > moving.time() && !moving.linked_groups().empty()) moving.close_links(states, t);
-  if (built::kContact && contacts_ && t > moving.time()) contacts_->open_gaps(states, t);
+  if (built::kContact && contacts_ && t > moving.time()) contacts_->remove_overlaps_within_step(states, t);
   Frame frame;
   frame.time = t;
   for (int i = 0; i < moving.size(); ++i) {

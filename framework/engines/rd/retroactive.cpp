@@ -28,7 +28,7 @@ class RetroactiveRun : private StepStages {
         callbacks_(options.callbacks), recorder_(options.frame_rate_hz, duration_, sink), energy_watch_(scene.rest_speed_m_s, step_, true) {
     if (options.propagator == "auto") moving_.go_in_closed_form();
     if (!world_step_.has_contacts()) return;
-    LastingContacts& contacts = world_step_.contacts();
+    PersistentContacts& contacts = world_step_.contacts();
     recorder_.record_contacts_of(contacts);
     if (built::kFriction && std::any_of(moving_.world().bodies.begin(), moving_.world().bodies.end(), [](const WorldBody& body) { return body.friction > 0.0; })) modes_.emplace(moving_, contacts, scene.rest_speed_m_s, sink);
     if (!built::kSleep || !moving_.world().contact->sleep) return;
@@ -48,7 +48,7 @@ class RetroactiveRun : private StepStages {
     const StageTimer timer(counters_.record_seconds);
     write();
   }
-  void tell_of_light_bodies();
+  void report_light_bodies();
   void stop_for(const Runaway& runaway);
   void run_to_the_end();
   double next_target() const;
@@ -63,7 +63,7 @@ class RetroactiveRun : private StepStages {
     moving_.begin_step_again(target);
     return true;
   }
-  bool wake_met(const std::vector<std::pair<int, int>>& candidates) override { return has_sleepers() && sleepers_->wake_met(candidates); }
+  bool wake_approached(const std::vector<std::pair<int, int>>& candidates) override { return has_sleepers() && sleepers_->wake_approached(candidates); }
   bool wake(std::pair<int, int> pair) override { return has_sleepers() && sleepers_->wake(pair); }
   void before_commit(double reached) override;
   void impact(const Event& event) override {
@@ -156,28 +156,28 @@ void RetroactiveRun::advance_to(double target) {
     world_step_.respond(step.around(), *step.impact, true, *this);
     idle = moving_.time() > before ? 0 : idle + 1;
     if (idle > kMostIdleSteps || ++impacts > most_impacts(moving_.size())) {
-      stopped_by_ = told_endless_impacts(moving_.time(), world_step_.names(*step.impact));
+      stopped_by_ = endless_impacts_message(moving_.time(), world_step_.names(*step.impact));
       return;
     }
   }
 }
 
 // On rods between heavy ones, or between joints.
-void RetroactiveRun::tell_of_light_bodies() {
+void RetroactiveRun::report_light_bodies() {
   const RunCounters before = counters_;   // what is looked at must not show in what a run counts
   const LinkForces at_start = moving_.measure_links(moving_.states(), 0.0, {});
   counters_ = before;
-  if (const auto step = tell_of_unstable_links(moving_.world(), at_start, laws_, {step_, duration_}, counters_.notices)) counters_.watch.name_step(*step);
+  if (const auto step = report_unstable_links(moving_.world(), at_start, laws_, {step_, duration_}, counters_.notices)) counters_.watch.name_step(*step);
 }
 
 void RetroactiveRun::run() {
   const std::string where = scene_.file.empty() ? scene_.name : scene_.file.string();
-  world_step_.meetings().refuse_overlap(where, scene_);
+  world_step_.impact_detection().refuse_overlap(where, scene_);
   refuse_unstable_steps(moving_.world(), laws_, {step_, duration_}, where, counters_.notices);
   for (const effects::Effect* effect : effects::all())
     for (const effects::Switch& one : effect->switches(moving_.world())) switch_times_.insert(one.event.time);
   try {
-    if (moving_.world().stabilisation) tell_of_light_bodies();
+    if (moving_.world().stabilisation) report_light_bodies();
     run_to_the_end();
   } catch (const StoppedRun& stop) {
     stopped_by_ = fmt::format("at t = {:.6f} s, {}", moving_.time(), stop.what());
@@ -189,7 +189,7 @@ void RetroactiveRun::run() {
 void RetroactiveRun::stop_for(const Runaway& runaway) {
   const std::vector<ContactPoint> none, &contacts = world_step_.has_contacts() ? world_step_.contacts().forces() : none;
   const LinkForces links = moving_.measure_links(moving_.states(), moving_.time(), contacts);
-  stopped_by_ = told_runaway(moving_.time(), moving_.world(), runaway, {moving_.states(), links, contacts}, laws_);
+  stopped_by_ = runaway_message(moving_.time(), moving_.world(), runaway, {moving_.states(), links, contacts}, laws_);
 }
 
 void RetroactiveRun::run_to_the_end() {
@@ -198,7 +198,7 @@ void RetroactiveRun::run_to_the_end() {
   for (int i = 0; i < moving_.size(); ++i)
     for (int j = i + 1; j < moving_.size(); ++j)
       if (moving_.may_collide(i, j)) all.emplace_back(i, j);
-  world_step_.meetings().separate(all);
+  world_step_.impact_detection().separate(all);
   if (world_step_.has_contacts()) world_step_.contacts().begin_where_touching(all);
   run_callbacks();
   const auto watch_energy = [&] {

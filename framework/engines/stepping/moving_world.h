@@ -113,7 +113,7 @@ class MovingWorld {
   /// From here on to the step's target the body goes from `start` (at time(); its velocities may jump there) to `end`.
   void set_path(int body, const RigidBodyState& start, const RigidBodyState& end, SmoothPath::Momenta momenta = SmoothPath::Momenta::kOfPath);
   /// @throws StoppedRun where the body turns about itself ten times on its smooth path in the step under way, or where that path is not made of numbers
-  void refuse_whirl(int body) const;
+  void refuse_fast_turning(int body) const;
   /// Where the step leads without what set_path has added.
   const RigidBodyState& path_end(int body);
   /// The path that set_path has given, or that links have; nothing where the laws are asked at every instant.
@@ -201,7 +201,7 @@ class MovingWorld {
   mutable PairCaches caches_;
   std::vector<LinkedBodies> linked_;
   std::vector<int> group_of_;                    // by body: place in linked_, -1
-  std::vector<bool> told_of_shortening_;   // by body
+  std::vector<bool> reported_shortening_;   // by body
   double time_ = 0.0, target_ = 0.0;
   double path_bend_ = 1.0;   // how much of a constant acceleration the laws' integration puts into a path: 1 for order >= 2, 0 for Euler
   std::uint64_t integrations_in_step_ = 0;

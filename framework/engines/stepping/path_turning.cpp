@@ -143,8 +143,8 @@ bool MovingWorld::shorten_step(const std::vector<std::pair<int, int>>& pairs, co
   if (fastest < 0) return false;
   const std::string turns = turning_of(fastest, asked);
   if (asked > kMostTurning * duration) throw StoppedRun(turns + kTooFar);
-  if (!told_of_shortening_[fastest]) {
-    told_of_shortening_[fastest] = true;
+  if (!reported_shortening_[fastest]) {
+    reported_shortening_[fastest] = true;
     counters_.notices.push_back(fmt::format("step shortened: {}; where it may meet another body it gets steps of {:.2g} s, so that no collision is missed", turns, duration));
   }
   ++counters_.shortened_steps;

@@ -212,7 +212,7 @@ void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfAR
   // A law that fails here fails in the first step too, which says of whom.
 }
 
-std::optional<double> tell_of_unstable_links(const World& world, const LinkForces& at_start, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices) try {
+std::optional<double> report_unstable_links(const World& world, const LinkForces& at_start, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices) try {
   const Carriers carriers(world);
   LinkLoads loads = largest_link_loads(world, carriers.all);
   for (std::size_t k = 0; k < carriers.all.size(); ++k) {
@@ -264,7 +264,7 @@ double terms_of_energy(const World& world, const std::vector<RigidBodyState>& st
 }
 
 // Of the bodies' sizes: how far what lies is lifted where it is kept apart. Shells are 1e-10 of the smaller body, those of heaps 1e-4.
-constexpr double kLifted = 1e-5, kLiftedInHeaps = 1e-3;
+constexpr double kLifted = 1e-5, kLiftedInLargeIslands = 1e-3;
 
 }  // namespace
 
@@ -278,7 +278,7 @@ void EnergyWatch::begin(const World& world, const std::vector<RigidBodyState>& s
   for (const WorldBody& body : world.bodies) {
     if (body.immovable()) continue;
     const double size = std::sqrt(0.5 * body.inertia.inertia_body.trace() * body.inertia.inverse_mass);   // of gyration [m]
-    of_rest_speed_ += kCorners * body.inertia.mass * rest_speed_ * rest_speed_;
+    of_restitution_threshold_ += kCorners * body.inertia.mass * restitution_threshold_ * restitution_threshold_;
     of_sizes_ += body.inertia.mass * gravity * size;
   }
 }
@@ -292,7 +292,7 @@ void EnergyWatch::note_rise(double time, double energy, double kinetic, const Wo
 }
 
 void EnergyWatch::tell(const World& world, RunCounters& counters) const {
-  const double whole = available() + (unseen(counters.heap_steps > 0 ? kLiftedInHeaps : kLifted) + rounding_) / kEnergyRises;
+  const double whole = available() + (unseen(counters.heap_steps > 0 ? kLiftedInLargeIslands : kLifted) + rounding_) / kEnergyRises;
   for (const Rise& rise : rises_)
     counters.watch.note(RunWatch::Kind::kEnergyRises, fmt::format("'{}'", world.bodies[static_cast<std::size_t>(rise.body)].name), {rise.size / whole, kEnergyRises, rise.time, step_});
 }
@@ -328,7 +328,7 @@ std::optional<Runaway> EnergyWatch::look(double time, const World& world, const 
   }
   lowest_potential_ = std::min(lowest_potential_, sums.potential_energy);
   note_rise(time, energy, sums.kinetic_energy, world, states);
-  if (energy - first_energy_ <= kRunaway * available() + unseen(kLiftedInHeaps) + kSixDigits * std::abs(first_energy_)) return std::nullopt;
+  if (energy - first_energy_ <= kRunaway * available() + unseen(kLiftedInLargeIslands) + kSixDigits * std::abs(first_energy_)) return std::nullopt;
   if (available() == 0.0 && first_energy_ == 0.0 && !(sums.kinetic_energy > 0)) return std::nullopt;
   return Runaway{body_with_most_energy(world, states), energy, first_energy_, by_blows_};
 }
@@ -341,7 +341,7 @@ bool brings_energy(const World& world) {
 
 }  // namespace
 
-std::string told_runaway(double time, const World& world, const Runaway& runaway, const ActingForces& acting, const Laws& laws) {
+std::string runaway_message(double time, const World& world, const Runaway& runaway, const ActingForces& acting, const Laws& laws) {
   std::string effect;
   double hardest = 0.0;
   const auto pulls = [&](int a, int b, double force, const auto& words) {

@@ -22,11 +22,11 @@ struct Earliest {
 std::vector<Vector3d> touching_points(const collision::CollisionShape& a, const collision::Pose& pose_a, const collision::CollisionShape& b, const collision::Pose& pose_b, const collision::Gap& gap,
                                       double rounding);
 
-class Meetings {
+class ImpactDetection {
  public:
   using Pair = std::pair<int, int>;   // bodies, first < second
 
-  Meetings(MovingWorld& moving, const Laws& laws, RunCounters& counters);
+  ImpactDetection(MovingWorld& moving, const Laws& laws, RunCounters& counters);
 
   /// Whether there are bodies that may meet at all.
   bool any() const { return colliding_.size() > 1; }
