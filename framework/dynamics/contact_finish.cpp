@@ -27,8 +27,8 @@ struct Response {
 
 /// The answer of a contact that sticks, whatever it carries.
 Response sticking_response(const ContactBlock& c, const Vector3d& v, double fade) {
-  Response response{-v / (fade * c.give), Matrix3d::Zero()};
-  response.d.diagonal().setConstant(1 / (fade * c.give));
+  Response response{-v / (fade * c.inverse_effective_mass), Matrix3d::Zero()};
+  response.d.diagonal().setConstant(1 / (fade * c.inverse_effective_mass));
   return response;
 }
 
@@ -86,17 +86,17 @@ bool StepEquations::prepare(const System& system, double fade, BodyMatrix& matri
   matrix.set_identity();
   for (std::size_t i = 0; i < responses_.size(); ++i) {
     const ContactBlock& c = system.contacts[i];
-    if (!(c.give > 0)) continue;
+    if (!(c.inverse_effective_mass > 0)) continue;
     const Vector3d v = contact_velocity(c, now.y);
     if (held && !(*held)[i]) continue;
-    responses_[i] = held ? sticking_response(c, v, fade) : law_response(c, now.contacts[i], v, c.give, fade, kTie * system.speed / c.give);
+    responses_[i] = held ? sticking_response(c, v, fade) : law_response(c, now.contacts[i], v, c.inverse_effective_mass, fade, kTie * system.speed / c.inverse_effective_mass);
     if (responses_[i].d(0, 0) != 0) matrix.add(c, responses_[i].d);
   }
   for (std::size_t i = 0; i < row_pushes_.size(); ++i) {
     const RowBlock& row = system.rows[i];
-    if (!(row.give > 0)) continue;
-    row_pushes_[i] = -row_velocity(row, now.y) / (fade * row.give);
-    matrix.add(row, 1 / (fade * row.give));
+    if (!(row.inverse_effective_mass > 0)) continue;
+    row_pushes_[i] = -row_velocity(row, now.y) / (fade * row.inverse_effective_mass);
+    matrix.add(row, 1 / (fade * row.inverse_effective_mass));
   }
   return matrix.factorise();
 }
@@ -110,7 +110,7 @@ void StepEquations::add_solution(const BodyMatrix& matrix, Impulses& change) {
   matrix.solve(x_);
   for (std::size_t i = 0; i < rest_.size(); ++i) change.contacts[i] += rest_[i] - responses_[i].d * velocity_change(system.contacts[i], x_);
   for (std::size_t i = 0; i < row_rest_.size(); ++i)
-    if (system.rows[i].give > 0) change.rows[i] += row_rest_[i] - velocity_change(system.rows[i], x_) / (fade_ * system.rows[i].give);
+    if (system.rows[i].inverse_effective_mass > 0) change.rows[i] += row_rest_[i] - velocity_change(system.rows[i], x_) / (fade_ * system.rows[i].inverse_effective_mass);
 }
 
 /// rest := f - dp - D G G^T dp; returns its largest part as a velocity.
@@ -122,11 +122,11 @@ double StepEquations::renew_rest(const Impulses& change) {
   for (std::size_t i = 0; i < row_rest_.size(); ++i) push(system.rows[i], change.rows[i], x_);
   for (std::size_t i = 0; i < rest_.size(); ++i) {
     rest_[i] = responses_[i].f - change.contacts[i] - responses_[i].d * velocity_change(system.contacts[i], x_);
-    largest = std::max(largest, fade_ * system.contacts[i].give * rest_[i].norm());
+    largest = std::max(largest, fade_ * system.contacts[i].inverse_effective_mass * rest_[i].norm());
   }
   for (std::size_t i = 0; i < row_rest_.size(); ++i) {
-    if (!(system.rows[i].give > 0)) continue;
-    const double stiffness = 1 / (fade_ * system.rows[i].give);
+    if (!(system.rows[i].inverse_effective_mass > 0)) continue;
+    const double stiffness = 1 / (fade_ * system.rows[i].inverse_effective_mass);
     row_rest_[i] = row_pushes_[i] - change.rows[i] - stiffness * velocity_change(system.rows[i], x_);
     largest = std::max(largest, std::abs(row_rest_[i]) / stiffness);
   }
@@ -179,7 +179,7 @@ bool hold(const Goal& goal, const std::vector<bool>& held, BodyMatrix& matrix, P
     for (std::size_t k = 0; k < held.size(); ++k)
       if (held[k]) largest = std::max(largest, contact_velocity(goal.system.contacts[k], trial.impulses.y).norm());
     for (const RowBlock& row : goal.system.rows)
-      if (row.give > 0) largest = std::max(largest, std::abs(row_velocity(row, trial.impulses.y)));
+      if (row.inverse_effective_mass > 0) largest = std::max(largest, std::abs(row_velocity(row, trial.impulses.y)));
     if (goal.accepts(trial.impulses, largest)) return true;
     if (!(largest < 0.5 * before) || !equations.prepare(goal.system, kFade, matrix, trial.impulses, &held)) return false;
     before = largest;
@@ -197,10 +197,10 @@ bool hold(const Goal& goal, const std::vector<bool>& held, BodyMatrix& matrix, P
 bool stick(const Goal& goal, BodyMatrix& matrix, Progress& progress) {
   constexpr int kMostRounds = 8;
   const System& system = goal.system;
-  const auto is_smooth = [](const ContactBlock& c) { return !c.is_frictional() && c.give > 0; };
+  const auto is_smooth = [](const ContactBlock& c) { return !c.is_frictional() && c.inverse_effective_mass > 0; };
   if (std::any_of(system.contacts.begin(), system.contacts.end(), is_smooth)) return false;
   std::vector<bool> held(system.contacts.size());
-  for (std::size_t i = 0; i < held.size(); ++i) held[i] = system.contacts[i].give > 0 && system.contacts[i].base[0] <= goal.violation;
+  for (std::size_t i = 0; i < held.size(); ++i) held[i] = system.contacts[i].inverse_effective_mass > 0 && system.contacts[i].base[0] <= goal.violation;
   for (int round = 0; round < kMostRounds; ++round) {
     Progress trial;
     trial.impulses.contacts.assign(system.contacts.size(), Vector3d::Zero());
@@ -212,7 +212,7 @@ bool stick(const Goal& goal, BodyMatrix& matrix, Progress& progress) {
     bool changed = false;
     for (std::size_t i = 0; i < held.size(); ++i) {
       const double v = contact_velocity(system.contacts[i], trial.impulses.y)[0];
-      const bool next = held[i] ? trial.impulses.contacts[i][0] >= 0 : system.contacts[i].give > 0 && v < -goal.violation;
+      const bool next = held[i] ? trial.impulses.contacts[i][0] >= 0 : system.contacts[i].inverse_effective_mass > 0 && v < -goal.violation;
       changed = changed || next != held[i];
       held[i] = next;
     }

@@ -35,7 +35,7 @@ struct PushingContact {
   double friction = 0.0;                                      // mu >= 0
   double target = 0.0;                                        // least normal velocity afterwards [m/s]; < 0 where there is room left
   Vector3d slip_target_world = Vector3d::Zero();              // v_t in (C.2) counts from here: a conveyor, a point that moves on [m/s]
-  Vector3d guess_world = Vector3d::Zero();                    // impulse on A to begin from (the last step's) [N s]
+  Vector3d warm_start_world = Vector3d::Zero();                    // impulse on A to begin from (the last step's) [N s]
 };
 
 struct ContactProblem {

@@ -62,10 +62,10 @@ struct SoftProblem {
     const ContactBlock& c = system.contacts[i];
     Vector3d v = contact_velocity(c, y);
     v[0] += shifts[i];
-    return before.contacts[i] - v / (compliance * c.give);
+    return before.contacts[i] - v / (compliance * c.inverse_effective_mass);
   }
   double row_argument(std::size_t i, const std::vector<Vector6d>& y) const {
-    return before.rows[i] - row_velocity(system.rows[i], y) / (compliance * system.rows[i].give);
+    return before.rows[i] - row_velocity(system.rows[i], y) / (compliance * system.rows[i].inverse_effective_mass);
   }
 
   ConeProjection project(std::size_t i, const std::vector<Vector6d>& y) const {
@@ -79,16 +79,16 @@ struct SoftProblem {
     if (matrix) matrix->set_identity();
     for (std::size_t i = 0; i < system.contacts.size(); ++i) {
       const ContactBlock& c = system.contacts[i];
-      if (!(c.give > 0)) continue;
+      if (!(c.inverse_effective_mass > 0)) continue;
       const ConeProjection projection = project(i, y);
       if (projection.p[0] > 0) push(c, -projection.p, result);
-      if (matrix && projection.p[0] > 0) matrix->add(c, projection.slope / (compliance * c.give));
+      if (matrix && projection.p[0] > 0) matrix->add(c, projection.slope / (compliance * c.inverse_effective_mass));
     }
     for (std::size_t i = 0; i < system.rows.size(); ++i) {
       const RowBlock& row = system.rows[i];
-      if (!(row.give > 0)) continue;
+      if (!(row.inverse_effective_mass > 0)) continue;
       push(row, -row_argument(i, y), result);
-      if (matrix) matrix->add(row, 1 / (compliance * row.give));
+      if (matrix) matrix->add(row, 1 / (compliance * row.inverse_effective_mass));
     }
     return result;
   }
@@ -135,9 +135,9 @@ double line_search(const SoftProblem& problem, const std::vector<Vector6d>& y, c
 void take_over(const SoftProblem& problem, const std::vector<Vector6d>& y, const Goal& goal, Progress& progress) {
   Impulses next = progress.impulses;
   for (std::size_t i = 0; i < next.contacts.size(); ++i)
-    if (problem.system.contacts[i].give > 0) next.contacts[i] = problem.project(i, y).p;
+    if (problem.system.contacts[i].inverse_effective_mass > 0) next.contacts[i] = problem.project(i, y).p;
   for (std::size_t i = 0; i < next.rows.size(); ++i)
-    if (problem.system.rows[i].give > 0) next.rows[i] = problem.row_argument(i, y);
+    if (problem.system.rows[i].inverse_effective_mass > 0) next.rows[i] = problem.row_argument(i, y);
   sum_impulses(problem.system, next);
   progress.impulses = std::move(next);
   goal.measure(progress);

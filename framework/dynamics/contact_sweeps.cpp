@@ -13,25 +13,25 @@ double normal_velocity(const ContactBlock& c, const std::vector<Vector6d>& y) {
 }
 
 double relax_contact(const ContactBlock& block, LocalContact& local, Vector3d& impulse, std::vector<Vector6d>& y) {
-  if (!(block.give > 0)) return 0;
+  if (!(block.inverse_effective_mass > 0)) return 0;
   if (!block.is_frictional()) {
     const double before = impulse[0];
     impulse[0] = std::max(0.0, before - normal_velocity(block, y) / local.w_nn);
     const double change = impulse[0] - before;
     if (change != 0) push(block, Vector3d(change, 0, 0), y);
-    return block.give * std::abs(change);
+    return block.inverse_effective_mass * std::abs(change);
   }
   if (impulse[0] == 0 && normal_velocity(block, y) >= 0) return 0;  // open, and stays so
   const Vector3d velocity = contact_velocity(block, y), before = impulse;
   impulse = solve_local(local, velocity - local.w * before, block.friction);
   const Vector3d change = impulse - before;
   push(block, change, y);
-  return block.give * change.norm();
+  return block.inverse_effective_mass * change.norm();
 }
 
 double relax_row(const RowBlock& row, double& impulse, std::vector<Vector6d>& y) {
-  if (!(row.give > 0)) return 0;
-  const double velocity = row_velocity(row, y), change = -velocity / row.give;
+  if (!(row.inverse_effective_mass > 0)) return 0;
+  const double velocity = row_velocity(row, y), change = -velocity / row.inverse_effective_mass;
   impulse += change;
   push(row, change, y);
   return std::abs(velocity);
@@ -44,13 +44,13 @@ std::vector<LocalContact> prepare_locals(const System& system) {
   for (std::size_t i = 0; i < locals.size(); ++i) {
     const ContactBlock& block = system.contacts[i];
     if (!block.is_frictional()) {
-      locals[i].w_nn = block.give;
+      locals[i].w_nn = block.inverse_effective_mass;
       continue;
     }
     Matrix3d w = Matrix3d::Zero();
     if (block.body_a != kFixed) w.noalias() += block.g_a * block.g_a.transpose();
     if (block.body_b != kFixed) w.noalias() += block.g_b * block.g_b.transpose();
-    if (block.give > 0) locals[i] = prepare_local(w);
+    if (block.inverse_effective_mass > 0) locals[i] = prepare_local(w);
   }
   return locals;
 }

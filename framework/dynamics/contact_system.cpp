@@ -75,7 +75,7 @@ ContactBlock build_contact(const ContactProblem& problem, const PushingContact& 
   block.base[0] -= contact.target;
   block.base.tail<2>() -= (block.contact_from_world * contact.slip_target_world).tail<2>();
   if (!block.is_frictional()) block.base.tail<2>().setZero();
-  block.give = diagonal_mean(block);
+  block.inverse_effective_mass = diagonal_mean(block);
   system.speed = std::max({system.speed, v_a.norm(), v_b.norm(), std::abs(contact.target)});
   return block;
 }
@@ -96,12 +96,12 @@ RowBlock build_row(const ContactProblem& problem, const Constraint& constraint, 
   if (can_be_pushed(system, constraint.body_a)) {
     block.body_a = constraint.body_a;
     block.g_a = weighted(system, block.body_a, constraint.row.jacobian_a);
-    block.give += block.g_a.squaredNorm();
+    block.inverse_effective_mass += block.g_a.squaredNorm();
   }
   if (can_be_pushed(system, constraint.body_b)) {
     block.body_b = constraint.body_b;
     block.g_b = weighted(system, block.body_b, constraint.row.jacobian_b);
-    block.give += block.g_b.squaredNorm();
+    block.inverse_effective_mass += block.g_b.squaredNorm();
   }
   block.base = rate_a + rate_b - target;
   system.speed = std::max({system.speed, std::abs(rate_a), std::abs(rate_b), std::abs(target)});
@@ -132,8 +132,8 @@ Impulses first_guess(const System& system, const ContactProblem& problem) {
   impulses.contacts.reserve(system.contacts.size());
   for (std::size_t i = 0; i < system.contacts.size(); ++i) {
     const ContactBlock& block = system.contacts[i];
-    const Vector3d guess = block.contact_from_world * problem.contacts[i].guess_world;
-    impulses.contacts.push_back(coulomb_projection(guess, block.friction));
+    const Vector3d warm_start = block.contact_from_world * problem.contacts[i].warm_start_world;
+    impulses.contacts.push_back(coulomb_projection(warm_start, block.friction));
   }
   sum_impulses(system, impulses);
   return impulses;
@@ -153,13 +153,13 @@ Violation measure_violation(const System& system, const Impulses& impulses) {
   };
   for (std::size_t i = 0; i < system.contacts.size(); ++i) {
     const ContactBlock& block = system.contacts[i];
-    if (!(block.give > 0)) continue;  // between two bodies that nothing pushes there is no impulse to find
+    if (!(block.inverse_effective_mass > 0)) continue;  // between two bodies that nothing pushes there is no impulse to find
     const Vector3d& p = impulses.contacts[i];
     const Vector3d v = contact_velocity(block, impulses.y);
-    take(block.give * block.give * (p - coulomb_projection(p - v / block.give, block.friction)).squaredNorm());
+    take(block.inverse_effective_mass * block.inverse_effective_mass * (p - coulomb_projection(p - v / block.inverse_effective_mass, block.friction)).squaredNorm());
   }
   for (std::size_t i = 0; i < system.rows.size(); ++i)
-    if (system.rows[i].give > 0) take(std::pow(row_velocity(system.rows[i], impulses.y), 2));
+    if (system.rows[i].inverse_effective_mass > 0) take(std::pow(row_velocity(system.rows[i], impulses.y), 2));
   violation.largest = std::sqrt(violation.largest);
   return violation;
 }
@@ -168,8 +168,8 @@ double rounding_floor(const System& system, const Impulses& impulses) {
   constexpr double kRoundings = 16;  // a contact's impulse goes through about so many operations on its way to a velocity
   double largest = 0;
   for (std::size_t i = 0; i < system.contacts.size(); ++i)
-    largest = std::max(largest, system.contacts[i].give * impulses.contacts[i].cwiseAbs().maxCoeff());
-  for (std::size_t i = 0; i < system.rows.size(); ++i) largest = std::max(largest, system.rows[i].give * std::abs(impulses.rows[i]));
+    largest = std::max(largest, system.contacts[i].inverse_effective_mass * impulses.contacts[i].cwiseAbs().maxCoeff());
+  for (std::size_t i = 0; i < system.rows.size(); ++i) largest = std::max(largest, system.rows[i].inverse_effective_mass * std::abs(impulses.rows[i]));
   return kRoundings * std::numeric_limits<double>::epsilon() * largest;
 }
 

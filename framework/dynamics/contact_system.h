@@ -20,7 +20,7 @@ inline constexpr int kFixed = -1;                             // in place of the
 struct ContactBlock {
   int body_a = kFixed, body_b = kFixed;
   double friction = 0;
-  double give = 0;                                            // mean of W_ii's diagonal: velocity per impulse [1/kg]; 0: nothing moves
+  double inverse_effective_mass = 0;                                            // mean of W_ii's diagonal: velocity per impulse [1/kg]; 0: nothing moves
   Jacobian g_a, g_b;                                          // G_i; rows n, t1, t2; without friction only the first is set
   Vector3d base = Vector3d::Zero();                           // v_i without impulses [m/s]
   Matrix3d contact_from_world;                                // rows n, t1, t2
@@ -29,7 +29,7 @@ struct ContactBlock {
 
 struct RowBlock {
   int body_a = kFixed, body_b = kFixed;
-  double give = 0;                                            // W_ii [1/kg, or what the row's units make of it]
+  double inverse_effective_mass = 0;                                            // W_ii [1/kg, or what the row's units make of it]
   Vector6d g_a, g_b;
   double base = 0;
 };

@@ -40,7 +40,7 @@ bool is_constrained(const World& world) {
   return std::any_of(effects::all().begin(), effects::all().end(), [&](const effects::Effect* effect) { return effect->traits().constrains && effect->count_in(world) > 0; });
 }
 
-void keep_apart(const scene::Scene& scene, const effects::BodyIndex& index, World& world) {
+void correct_positions(const scene::Scene& scene, const effects::BodyIndex& index, World& world) {
   std::vector<std::pair<std::string, std::string>> pairs = scene.apart;
   for (const effects::Effect* effect : effects::all())
     for (auto& pair : effect->pairs_apart(scene)) pairs.push_back(std::move(pair));
@@ -69,7 +69,7 @@ World build_world(const scene::Scene& scene) {
   for (const effects::Effect* effect : effects::all()) effect->build(scene, index, world);
   world.contact = scene.contact;
   if (is_constrained(world)) world.stabilisation = scene.stabilisation.value_or(scene::StabilisationSpec{});
-  keep_apart(scene, index, world);
+  correct_positions(scene, index, world);
   return world;
 }
 

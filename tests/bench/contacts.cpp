@@ -12,7 +12,7 @@ namespace tumble::testing {
 namespace {
 
 ContactProblem with_guess(ContactProblem problem, const ContactSolution& solution, double share) {
-  for (std::size_t i = 0; i < problem.contacts.size(); ++i) problem.contacts[i].guess_world = share * solution.impulses_world[i];
+  for (std::size_t i = 0; i < problem.contacts.size(); ++i) problem.contacts[i].warm_start_world = share * solution.impulses_world[i];
   return problem;
 }
 

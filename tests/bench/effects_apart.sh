@@ -8,7 +8,7 @@ set -euo pipefail
 root=$(cd "$(dirname "$0")/../.." && pwd)
 cd "$root"
 list=framework/effects/CMakeLists.txt
-programs=${PROGRAMS:-test_house test_scene test_dynamics test_water test_engines test_links test_lasting_contacts test_processes test_start test_impacts test_run_watch test_judge test_render test_player test_cost test_timewarp}
+programs=${PROGRAMS:-test_house test_scene test_dynamics test_water test_engines test_links test_persistent_contacts test_processes test_start test_impacts test_run_watch test_judge test_render test_player test_cost test_timewarp}
 effects=("$@")
 [ ${#effects[@]} -gt 0 ] || mapfile -t effects < <(sed -n 's/^add_subdirectory(\(.*\))$/\1/p' "$list")
 for effect in "${effects[@]}"; do [ -d "framework/effects/$effect" ] || { echo "effects_apart.sh: no effect '$effect'" >&2; exit 2; }; done

@@ -12,7 +12,7 @@
 
 #include "framework/collision/contact_patch.h"
 #include "framework/collision/first_impact.h"
-#include "framework/collision/near_points.h"
+#include "framework/collision/manifold_points.h"
 #include "framework/collision/sweep.h"
 #include "framework/geometry/solid.h"
 #include "tests/collision/hulls.h"
@@ -99,17 +99,17 @@ class Bench {
     std::size_t found = 0;
     const double gap = ask(places, [&](const Pose& p, const Pose& q) { collision::compute_gap(a, p, b, q); });
     const double reach = 1e-2 * size;
-    const double near = ask(places, [&](const Pose& p, const Pose& q) { collision::near_points(a, p, b, q, reach); });
-    for (const auto& [p, q] : poses) found += collision::near_points(a, p, b, q, reach).size();
+    const double near = ask(places, [&](const Pose& p, const Pose& q) { collision::manifold_points(a, p, b, q, reach); });
+    for (const auto& [p, q] : poses) found += collision::manifold_points(a, p, b, q, reach).size();
     // Asked again with what was kept of the pair, as lasting contacts are.
     std::vector<collision::PairCache> caches(kPlaces);
     const double kept = microseconds(kPlaces, [&] {
-      for (std::size_t k = 0; k < kPlaces; ++k) collision::near_points(a, poses[k].first, b, poses[k].second, reach, &caches[k]);
+      for (std::size_t k = 0; k < kPlaces; ++k) collision::manifold_points(a, poses[k].first, b, poses[k].second, reach, &caches[k]);
     });
     const double kept_gap = microseconds(kPlaces, [&] {
       for (std::size_t k = 0; k < kPlaces; ++k) collision::compute_gap(a, poses[k].first, b, poses[k].second, &caches[k]);
     });
-    const double tight = ask(places, [&](const Pose& p, const Pose& q) { collision::near_points(a, p, b, q, 1e-7 * size); });
+    const double tight = ask(places, [&](const Pose& p, const Pose& q) { collision::manifold_points(a, p, b, q, 1e-7 * size); });
     // Falls towards the other and turns, by 1e-2 of its size in the step; the other stays.
     int hits = 0;
     const auto impact = [&](const Pose& p, const Pose& q) {

@@ -8,7 +8,7 @@
 
 #include "framework/collision/contact_patch.h"
 #include "framework/collision/first_impact.h"
-#include "framework/collision/near_points.h"
+#include "framework/collision/manifold_points.h"
 #include "framework/collision/time_bound.h"
 
 namespace tumble::testing {
@@ -68,10 +68,10 @@ TEST(EllipsoidOverAPlane, HasOneContactPointEvenWhenItLiesFlat) {
   const collision::Gap gap = collision::compute_gap(egg, lying, plane, Pose{});
   EXPECT_NEAR(gap.distance, 0.0, kRounding);
   EXPECT_EQ(collision::contact_patch(egg, lying, plane, Pose{}, gap, 1e-3).corners.size(), 1u);
-  const auto points = collision::near_points(egg, lying, plane, Pose{}, 1e-3);
+  const auto points = collision::manifold_points(egg, lying, plane, Pose{}, 1e-3);
   ASSERT_EQ(points.size(), 1u);
   EXPECT_LE((points[0].point_a_world - Vector3d(0.02, -0.03, 0.0)).norm(), kRounding);
-  EXPECT_TRUE(collision::near_points(egg, {{0, 0, 0.2}, Quaterniond::Identity()}, plane, Pose{}, 1e-3).empty());
+  EXPECT_TRUE(collision::manifold_points(egg, {{0, 0, 0.2}, Quaterniond::Identity()}, plane, Pose{}, 1e-3).empty());
 }
 
 Motion flight(const Vector3d& x, const Vector3d& v, double g, const Vector3d& omega, const Quaterniond& q) {

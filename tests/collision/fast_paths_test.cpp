@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/collision/first_impact.h"
-#include "framework/collision/near_points.h"
+#include "framework/collision/manifold_points.h"
 #include "framework/collision/sweep.h"
 #include "framework/geometry/solid.h"
 #include "tests/collision/exhaustive.h"
@@ -20,7 +20,7 @@ using collision::CollisionShape;
 using collision::Gap;
 using collision::Motion;
 using collision::MotionState;
-using collision::NearPoint;
+using collision::ManifoldPoint;
 using collision::PairCache;
 using collision::Pose;
 
@@ -139,16 +139,16 @@ TEST(ConvexGaps, FarFromTheOriginEqualThoseNearIt) {
   }
 }
 
-TEST(NearPoints, OfBoxesFaceToFaceAreTheirCornersAtEveryGap) {
+TEST(ManifoldPoints, OfBoxesFaceToFaceAreTheirCornersAtEveryGap) {
   const CollisionShape a{Box{{0.5, 0.4, 0.3}}}, b{Box{{0.6, 0.6, 0.2}}};
   Chance chance(23);
   for (int k = 0; k < 400; ++k) {
     const double gap = kGaps[chance.below(11)];
     const Pose pose_a{{0.05 * chance.in(-1, 1), 0.05 * chance.in(-1, 1), 0.5 + gap}, Quaterniond(Eigen::AngleAxisd(chance.in(-0.1, 0.1), Vector3d::UnitZ()))};
     const double exact = pose_a.com_world.z() - 0.3 - 0.2;
-    const std::vector<NearPoint> points = collision::near_points(a, pose_a, b, {}, 1e-5);
+    const std::vector<ManifoldPoint> points = collision::manifold_points(a, pose_a, b, {}, 1e-5);
     ASSERT_EQ(points.size(), 4u) << "gap " << gap;   // the upper box's corners, which are inside the lower one's face
-    for (const NearPoint& p : points) {
+    for (const ManifoldPoint& p : points) {
       EXPECT_NEAR(p.gap, exact, 1e-15);
       EXPECT_NEAR(p.normal_b_to_a_world.z(), 1.0, 1e-15);
       EXPECT_NEAR((pose_a.world_from_body.conjugate() * (p.point_a_world - pose_a.com_world)).cwiseAbs().x(), 0.5, 1e-14);
@@ -156,7 +156,7 @@ TEST(NearPoints, OfBoxesFaceToFaceAreTheirCornersAtEveryGap) {
   }
 }
 
-TEST(NearPoints, OfABoxAgainstAWallAndAFloorOfOneMeshHaveBothNormals) {
+TEST(ManifoldPoints, OfABoxAgainstAWallAndAFloorOfOneMeshHaveBothNormals) {
 // An L of three cubes: a box in its inner corner touches two faces at once.
   const Shape l_shape = model("l_shape");
   const CollisionShape l(l_shape), box{Box{{0.2, 0.2, 0.2}}};
@@ -178,9 +178,9 @@ TEST(NearPoints, OfABoxAgainstAWallAndAFloorOfOneMeshHaveBothNormals) {
       pose.com_world[u] += side_u * (0.2 + 1e-7);
       pose.com_world[v] += side_v * (0.2 + 1e-7);
       if (collision::overlapping(box, pose, l, {}, 0.0)) continue;   // the three solid quarters
-      const auto points = collision::near_points(box, pose, l, {}, 1e-5);
+      const auto points = collision::manifold_points(box, pose, l, {}, 1e-5);
       int push_u = 0, push_v = 0;
-      for (const NearPoint& p : points) {
+      for (const ManifoldPoint& p : points) {
         if (std::abs(p.normal_b_to_a_world[u] - side_u) < 1e-9) ++push_u;
         if (std::abs(p.normal_b_to_a_world[v] - side_v) < 1e-9) ++push_v;
         EXPECT_NEAR(p.gap, 1e-7, 1e-13);
@@ -190,7 +190,7 @@ TEST(NearPoints, OfABoxAgainstAWallAndAFloorOfOneMeshHaveBothNormals) {
     }
 }
 
-TEST(NearPoints, OfABallAgainstTwoEdgesThatMeetInACornerAreOneOnEach) {
+TEST(ManifoldPoints, OfABallAgainstTwoEdgesThatMeetInACornerAreOneOnEach) {
 // Under the bar of a T, beside its stem: the ball touches an edge of each, and both edges end in
 // the inner corner, where the other part protrudes.
   const Shape t_shape = model("t_handle");
@@ -202,12 +202,12 @@ TEST(NearPoints, OfABallAgainstTwoEdgesThatMeetInACornerAreOneOnEach) {
   const Vector3d corner = *std::min_element(vertices.begin(), vertices.end(), [&](const Vector3d& v, const Vector3d& w) { return (v - about).norm() < (w - about).norm(); });
   constexpr double kGap = 1e-6;
   const double aside = (0.1 + kGap) / std::sqrt(2.0);
-  const auto points = collision::near_points(ball, {corner + Vector3d(aside, -aside, aside)}, t, {}, 1e-5);
+  const auto points = collision::manifold_points(ball, {corner + Vector3d(aside, -aside, aside)}, t, {}, 1e-5);
   ASSERT_EQ(points.size(), 2u);
   const Vector3d from_stem = Vector3d(1, 0, 1).normalized(), from_bar = Vector3d(0, -1, 1).normalized();
   for (const Vector3d& n : {from_stem, from_bar})
-    EXPECT_TRUE(std::any_of(points.begin(), points.end(), [&](const NearPoint& p) { return (p.normal_b_to_a_world - n).norm() < 1e-9; })) << n.transpose();
-  for (const NearPoint& p : points) EXPECT_NEAR(p.gap, kGap, 1e-15);   // a few roundings of coordinates below 1
+    EXPECT_TRUE(std::any_of(points.begin(), points.end(), [&](const ManifoldPoint& p) { return (p.normal_b_to_a_world - n).norm() < 1e-9; })) << n.transpose();
+  for (const ManifoldPoint& p : points) EXPECT_NEAR(p.gap, kGap, 1e-15);   // a few roundings of coordinates below 1
 }
 
 void expect_same_bits(const Gap& a, const Gap& b) {
@@ -252,7 +252,7 @@ TEST(PairCache, ChangesNoBitOfAnyAnswer) {
         EXPECT_EQ(gap.distance, collision::gap_distance(*first, pose_a, b, pose_b, &cache));
         expect_exact_within_limits(*first, pose_a, b, pose_b, gap.distance, chance.in(-1, 1) * size, cache);
         const double reach = size * std::pow(10.0, chance.in(-9, -1));
-        const auto points = collision::near_points(*first, pose_a, b, pose_b, reach), kept = collision::near_points(*first, pose_a, b, pose_b, reach, &cache);
+        const auto points = collision::manifold_points(*first, pose_a, b, pose_b, reach), kept = collision::manifold_points(*first, pose_a, b, pose_b, reach, &cache);
         ASSERT_EQ(points.size(), kept.size());
         for (std::size_t i = 0; i < points.size(); ++i) {
           EXPECT_EQ(points[i].point_a_world, kept[i].point_a_world);

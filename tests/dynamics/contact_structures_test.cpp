@@ -15,7 +15,7 @@ double fastest(const ContactSolution& solution) {
 }
 
 ContactProblem warm(ContactProblem problem, const ContactSolution& solution) {
-  for (std::size_t i = 0; i < problem.contacts.size(); ++i) problem.contacts[i].guess_world = solution.impulses_world[i];
+  for (std::size_t i = 0; i < problem.contacts.size(); ++i) problem.contacts[i].warm_start_world = solution.impulses_world[i];
   return problem;
 }
 

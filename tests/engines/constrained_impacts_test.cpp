@@ -11,7 +11,7 @@
 #include "framework/effects/build_world.h"
 #include "framework/effects/joint/joint.h"
 #include "framework/effects/rod/rod.h"
-#include "framework/engines/contact/meetings.h"
+#include "framework/engines/contact/impact_detection.h"
 #include "framework/engines/contact/sequential_impacts.h"
 #include "framework/engines/judging/judge.h"
 #include "tests/engines/event_scenes.h"
@@ -168,7 +168,7 @@ struct OneImpact {
   Laws guarded_laws = laws();
   engines::RunCounters counters;
   engines::MovingWorld moving;
-  engines::Meetings meetings;
+  engines::ImpactDetection meetings;
   engines::SequentialImpacts impacts;
 
   explicit OneImpact(const scene::Scene& asked)

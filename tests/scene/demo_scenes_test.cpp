@@ -123,7 +123,7 @@ TEST(DemoScenes, AForceThatCountsTwiceIsJudgedWrongWhereAllStandsStill) {
 
 TEST(DemoScenes, AnEndOfBouncingThatForgetsTheRestitutionIsJudgedWrong) {
   Laws laws = right_laws();
-  laws.ends_in_contact = [](double approach_speed, double, double rest_speed) { return approach_speed <= rest_speed; };
+  laws.ends_in_contact = [](double approach_speed, double, double restitution_threshold) { return approach_speed <= restitution_threshold; };
   EXPECT_TRUE(fails(demo_scene("bounce_to_rolling"), laws));
 }
 

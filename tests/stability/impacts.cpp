@@ -13,8 +13,8 @@ namespace {
 
 // ---- Row 15 ----------------------------------------------------------------------------------------------------------
 
-scene::Scene dropped(double e, double rest_speed) {
-  scene::Scene scene = truths::empty_scene("zeno", 1.0, rest_speed);
+scene::Scene dropped(double e, double restitution_threshold) {
+  scene::Scene scene = truths::empty_scene("zeno", 1.0, restitution_threshold);
   effects::set_gravity(scene, kDown);
   scene.bodies = {truths::ball("ball", 1.0, 0.1, Vector3d(0, 0, 1.1), Vector3d::Zero(), e), truths::wall("floor", Vector3d::Zero(), Vector3d::UnitZ(), 1.0)};
   return scene;

@@ -13,9 +13,9 @@ namespace tumble::battery {
 namespace {
 
 /// Lengths times s, times times sqrt(s): gravity stays, and everything else goes alike.
-scene::Scene bouncing_and_sliding(double s, bool scaled_rest_speed) {
+scene::Scene bouncing_and_sliding(double s, bool scaled_restitution_threshold) {
   const double speed = std::sqrt(s);
-  scene::Scene scene = truths::empty_scene("scaled", 1.0, scaled_rest_speed ? 1e-3 * speed : 1e-3);
+  scene::Scene scene = truths::empty_scene("scaled", 1.0, scaled_restitution_threshold ? 1e-3 * speed : 1e-3);
   effects::set_gravity(scene, kDown);
   scene.bodies = {truths::ball("ball", 1.0, 0.2 * s, s * Vector3d(0, 0, 1.5), speed * Vector3d(1.0, 0.2, 0), 0.7), truths::ball("other", 2.0, 0.3 * s, s * Vector3d(1.5, 0.1, 0.9), speed * Vector3d(-0.5, 0, 1), 0.7),
                   truths::wall("floor", Vector3d::Zero(), Vector3d::UnitZ(), 0.7), truths::wall("left", s * Vector3d(-1, 0, 0), Vector3d::UnitX(), 0.9), truths::wall("right", s * Vector3d(3, 0, 0), -Vector3d::UnitX(), 0.9)};

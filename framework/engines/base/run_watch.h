@@ -23,9 +23,6 @@ namespace tumble::engines {
 inline constexpr double kLinkClosed = 1e-6;
 /// With Baumgarte's term or no stabilisation links drift by design: up to here they are the mechanism that the scene asks for.
 inline constexpr double kLinkDrifts = 1e-2;
-/// A projection onto rods and joints has ended where it leaves at most this part of the group's size: Newton's method doubles the digits, so that
-/// one which does not get here in eight rounds does not converge.
-inline constexpr double kProjected = 1e-9;
 /// An answer to a contact problem stands up to this violation of Signorini's and Coulomb's conditions, as a part of the speed that the problem has
 /// to take away: what is wrong with the energy goes with its square, and with its first power over the contact's other impulses.
 inline constexpr double kContactSolved = 1e-3;

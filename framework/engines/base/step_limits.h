@@ -22,7 +22,7 @@ inline constexpr long most_impacts(int bodies) { return 500L * bodies; }
 inline constexpr std::uint32_t most_generations(int bodies) { return 1000 + 10 * static_cast<std::uint32_t>(bodies); }
 
 /// @param bodies  names, as "bodies 'a' and 'b'"
-inline std::string told_endless_impacts(double time, const std::string& bodies) {
+inline std::string endless_impacts_message(double time, const std::string& bodies) {
   return fmt::format("at t = {:.6f} s, {}: time stands still, they meet again and again; a lasting contact is needed there, or a larger \"rest_speed_m_s\"", time, bodies);
 }
 

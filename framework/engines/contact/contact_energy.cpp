@@ -1,4 +1,4 @@
-// Whether contacts have brought energy in. Part of LastingContacts.
+// Whether contacts have brought energy in. Part of PersistentContacts.
 //
 // What touches and does not rebound only ever takes energy away: friction does, and blows without rebound. An island that carries more than the
 // forces of the step can hold in balance (a heavy slab on a small ball, a box on the crest of another) topples faster than its step
@@ -6,13 +6,14 @@
 #include <algorithm>
 
 #include "framework/core/numbers.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/contact/contact_constants.h"
-#include "framework/engines/contact/lasting_contacts.h"
+#include "framework/engines/contact/persistent_contacts.h"
 
 namespace tumble::engines {
 
 // Between the ends of the paths that its bodies have been given. Not asked of what springs, motors or driven supports may give energy to.
-bool LastingContacts::gains_energy(const ContactIsland& island) {
+bool PersistentContacts::gains_energy(const ContactIsland& island) {
   if (!island.linked.empty()) return false;
   for (const Pair& pair : island.pairs)
     if (moving_.is_driven(pair.first) || moving_.is_driven(pair.second)) return false;
@@ -27,10 +28,10 @@ bool LastingContacts::gains_energy(const ContactIsland& island) {
     moves_after += kinetic_energy(end, body.inertia);
     gain -= moving_.steady_work(index, start, end);
     terms += mass * gravity.cwiseAbs().dot(start.com_world.cwiseAbs());
-    unseen += mass * (rest_speed_ * rest_speed_ + kContact.lifted * gravity.norm() * moving_.shape(index).bounding_radius());
+    unseen += mass * (restitution_threshold_ * restitution_threshold_ + kSixDigits * gravity.norm() * moving_.shape(index).bounding_radius());
   }
   gain += moves_after - moves_before;
-  return gain > kContact.gain * std::max(moves_before, moves_after) + unseen + kContact.energy_roundings * kEpsilon * terms;
+  return gain > kEnergyRises * std::max(moves_before, moves_after) + unseen + kDeviations * kEpsilon * terms;
 }
 
 }  // namespace tumble::engines

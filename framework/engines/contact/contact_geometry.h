@@ -7,14 +7,14 @@
 #include <utility>
 #include <vector>
 
-#include "framework/collision/near_points.h"
+#include "framework/collision/manifold_points.h"
 #include "framework/engines/contact/contact_constants.h"
 #include "framework/engines/stepping/moving_world.h"
 
 namespace tumble::engines {
 
 /// The contact manifold of a pair: points at which its surfaces are near each other.
-using ContactManifold = std::vector<collision::NearPoint>;
+using ContactManifold = std::vector<collision::ManifoldPoint>;
 
 /// An orientation after a turn, given as axis times angle in the world frame. [rad]
 Quaterniond turned(const Quaterniond& world_from_body, const Vector3d& turn_world);
@@ -28,14 +28,14 @@ class ContactGeometry {
   /// Of the two, the smaller. [-]
   double friction(Pair pair) const;
   /// Whether the two do not bounce (perfectly inelastic).
-  bool is_dead(Pair pair) const;
+  bool is_inelastic(Pair pair) const;
   bool are_balls(Pair pair) const;
   /// Radius about the smaller one. [m]
   double size_of(Pair pair) const;
   /// How far apart contacts are kept. [m]
   double margin(Pair pair) const;
   /// The same in heaps, whose problems are solved by a few sweeps. [m]
-  double heap_margin(Pair pair) const;
+  double large_island_margin(Pair pair) const;
 
   // In these places (states by body index):
   collision::Pose pose(int body, const std::vector<RigidBodyState>& states) const;
@@ -50,11 +50,11 @@ class ContactGeometry {
   double least_gap_of(Pair pair, const std::vector<RigidBodyState>& states) const;
 
   /// Where the force of a contact point acts. World frame. [m]
-  Vector3d point_of(Pair pair, const collision::NearPoint& point) const;
+  Vector3d point_of(Pair pair, const collision::ManifoldPoint& point) const;
   /// How far the points of one contact may lie from each other at two instants of a step. [m]
   double same_within(Pair pair) const;
   /// The point of `points` that is `p` at another time: fixed in one of the two bodies. Null where none lies as near as `near` [m].
-  static const collision::NearPoint* same_point(Pair pair, const collision::NearPoint& p, const std::vector<RigidBodyState>& p_at, const ContactManifold& points,
+  static const collision::ManifoldPoint* same_point(Pair pair, const collision::ManifoldPoint& p, const std::vector<RigidBodyState>& p_at, const ContactManifold& points,
                                                 const std::vector<RigidBodyState>& at, double near);
 
  private:

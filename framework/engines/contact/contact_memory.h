@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "framework/core/math.h"
+#include "framework/core/numbers.h"
 
 namespace tumble::engines {
 
@@ -27,7 +28,6 @@ struct SlidingSearch {
 
 struct ContactMemory {
   using Pair = std::pair<int, int>;       // bodies, first < second
-  static constexpr double kNever = -1e300;   // s
 
   std::set<Pair> persistent;              // pairs in contact
   double longest_step = 0.0;              // so far [s]
@@ -35,17 +35,17 @@ struct ContactMemory {
   std::map<Pair, std::vector<KnownImpulse>> last_impulses, tried_impulses;
   std::set<Pair> stuck;                   // pairs with friction that did not slide in the last step
   // Heaps: bodies whose island has, or has had since it last came to rest, too many impacts a step to locate each.
-  std::set<int> heaped;
-  double impacts_counted_from = kNever;   // impacts that cut a step were counted since [s], and how many of each island, by its first body
+  std::set<int> in_large_island;
+  double impacts_counted_from = -kInfinity;   // impacts that cut a step were counted since [s], and how many of each island, by its first body
   std::map<int, int> impacts_counted;
-  double landed_at = kNever;              // points landed last [s], and how often at that instant
-  int landed_there = 0;
+  double activated_at = -kInfinity;              // points landed last [s], and how often at that instant
+  int activations_there = 0;
   // Ends of sliding.
-  double searched_from = kNever;          // were looked for since [s], and how often
+  double searched_from = -kInfinity;          // were looked for since [s], and how often
   int searches = 0;
   std::optional<SlidingSearch> sliding_search;
   // Progress: how often the step was cut since, and sweeps of the solver, for impulses and for corrections.
-  double cut_since = kNever;              // [s]
+  double cut_since = -kInfinity;              // [s]
   long cuts = 0;
   std::uint64_t sweeps = 0;
   int asked_last = -1;                    // body of the island that last asked for an earlier target

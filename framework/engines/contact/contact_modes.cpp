@@ -1,14 +1,13 @@
 #include "framework/engines/contact/contact_modes.h"
 
+#include "framework/engines/base/tolerances.h"
+
 #include <algorithm>
 #include <limits>
 
 namespace tumble::engines {
 namespace {
 
-// Of the cone: impulses of sliding contacts lie on its edge to round-off, those of sticking ones below what the solver leaves open.
-constexpr double kOnTheCone = 1 - 1e-9, kInTheCone = 1 - 1e-6;
-constexpr double kCreeps = 1e-4;   // of the rest speed: 1e-7 m/s where that is 1 mm/s, the creep that a sticking contact is allowed
 constexpr double kQuiet = 0.05;   // s: changes that come sooner after the last one are chatter
 
 struct Votes {
@@ -33,7 +32,7 @@ double ContactModes::slip_of(const ContactPoint& point) {
 
 void ContactModes::look() {
   const double time = moving_.time();
-  std::map<LastingContacts::Pair, Votes> votes;
+  std::map<PersistentContacts::Pair, Votes> votes;
   for (const ContactPoint& point : contacts_.forces()) {
     const double friction = contacts_.friction({point.body_a, point.body_b});
     if (friction == 0.0) continue;
@@ -41,23 +40,24 @@ void ContactModes::look() {
     if (!pair.first) pair.first = &point;
     const double push = point.force_on_a_world.dot(point.normal_b_to_a_world);
     const double share = (point.force_on_a_world - push * point.normal_b_to_a_world).norm() / (friction * push);
-    pair.all_on = pair.all_on && share >= kOnTheCone;
-    pair.all_in = pair.all_in && share < kInTheCone;
-    pair.slips = pair.slips || (pair.all_on && slip_of(point) > kCreeps * rest_speed_);
+    // Impulses of sliding contacts lie on the edge of the cone to round-off, those of sticking ones below what the solver leaves open.
+    pair.all_on = pair.all_on && share >= 1 - kNegligible;
+    pair.all_in = pair.all_in && share < 1 - kSixDigits;
+    pair.slips = pair.slips || (pair.all_on && slip_of(point) > kCreep * restitution_threshold_);
   }
   std::erase_if(modes_, [&](const auto& entry) { return !contacts_.lasts(entry.first) && time > entry.second.seen + kQuiet; });
   for (const auto& [pair, vote] : votes) {
     Mode& mode = modes_.try_emplace(pair, Mode{false, false, -std::numeric_limits<double>::infinity(), time}).first->second;
     mode.seen = time;
     if (vote.all_on || vote.all_in) mode.slides = vote.all_on && vote.slips;
-    if (mode.slides == mode.told_sliding || time < mode.told + kQuiet) continue;
-    mode.told_sliding = mode.slides;
+    if (mode.slides == mode.reported_sliding || time < mode.told + kQuiet) continue;
+    mode.reported_sliding = mode.slides;
     mode.told = time;
     sink_.event({time, mode.slides ? EventKind::kSlide : EventKind::kStick, pair.first, pair.second, vote.first->point_world, vote.first->normal_b_to_a_world, 0.0, 0.0});
   }
 }
 
-bool ContactModes::slides(LastingContacts::Pair pair) const {
+bool ContactModes::slides(PersistentContacts::Pair pair) const {
   const auto found = modes_.find(pair);
   return found != modes_.end() && found->second.slides;
 }

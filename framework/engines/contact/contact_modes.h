@@ -9,33 +9,33 @@
 
 #include <map>
 
-#include "framework/engines/contact/lasting_contacts.h"
+#include "framework/engines/contact/persistent_contacts.h"
 
 namespace tumble::engines {
 
 class ContactModes {
  public:
-  ContactModes(MovingWorld& moving, const LastingContacts& contacts, double rest_speed, TrajectorySink& sink)
-      : moving_(moving), contacts_(contacts), rest_speed_(rest_speed), sink_(sink) {}
+  ContactModes(MovingWorld& moving, const PersistentContacts& contacts, double restitution_threshold, TrajectorySink& sink)
+      : moving_(moving), contacts_(contacts), restitution_threshold_(restitution_threshold), sink_(sink) {}
 
   /// The contacts of the step under way have their forces: tells of pairs that stick or slide from its beginning on.
   void look();
   /// Whether the pair slides in this step.
-  bool slides(LastingContacts::Pair pair) const;
+  bool slides(PersistentContacts::Pair pair) const;
 
  private:
   struct Mode {
-    bool slides, told_sliding;
+    bool slides, reported_sliding;
     double told, seen;           // [s]
   };
 
   double slip_of(const ContactPoint& point);
 
   MovingWorld& moving_;
-  const LastingContacts& contacts_;
-  double rest_speed_;            // [m/s]
+  const PersistentContacts& contacts_;
+  double restitution_threshold_;            // [m/s]
   TrajectorySink& sink_;
-  std::map<LastingContacts::Pair, Mode> modes_;
+  std::map<PersistentContacts::Pair, Mode> modes_;
 };
 
 }  // namespace tumble::engines

@@ -1,11 +1,12 @@
-// One step of an island in contact: its impulses, and the paths that they lead to. Part of LastingContacts.
+// One step of an island in contact: its impulses, and the paths that they lead to. Part of PersistentContacts.
 #include <algorithm>
 #include <cmath>
 
 #include "framework/dynamics/solve_contacts.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/contact/contact_constants.h"
-#include "framework/engines/contact/lasting_contacts.h"
+#include "framework/engines/contact/persistent_contacts.h"
 
 namespace tumble::engines {
 namespace {
@@ -19,7 +20,7 @@ Vector3d velocity_at(const PushedBody& body, const Vector3d& velocity, const Vec
 // Over a step of length h, which changes the velocities that the bodies would end with; with h = 0 those that they have now.
 // With `ends`, the places that contact will leave them in: there a free body's momenta would be other velocities, and impulses change
 // momenta. Without that, a body that spins about its slender axis gains or loses energy in proportion to the step.
-ContactProblem LastingContacts::problem_of(const ContactIsland& island, const std::vector<StepContact>& touches, const std::vector<RigidBodyState>& states, double h, const std::vector<RigidBodyState>* ends) {
+ContactProblem PersistentContacts::problem_of(const ContactIsland& island, const std::vector<StepContact>& contacts, const std::vector<RigidBodyState>& states, double h, const std::vector<RigidBodyState>* ends) {
   ContactProblem problem;
   std::map<int, int> places;
   const bool at_once = h == 0.0;
@@ -29,34 +30,34 @@ ContactProblem LastingContacts::problem_of(const ContactIsland& island, const st
     if (ends) free.world_from_body = (*ends)[body].world_from_body;
     place_body(moving_, body, t, places, states, &free, problem);
   }
-  for (const StepContact& touch : touches) {
+  for (const StepContact& step_contact : contacts) {
     PushingContact contact;
-    contact.body_a = place_body(moving_, touch.pair.first, t, places, states, &states[touch.pair.first], problem);
-    contact.body_b = place_body(moving_, touch.pair.second, t, places, states, &states[touch.pair.second], problem);
-    contact.point_world = geometry_.point_of(touch.pair, touch.point);
-    contact.normal_b_to_a_world = touch.point.normal_b_to_a_world;
-    contact.friction = geometry_.friction(touch.pair);
-    contact.target = touch.target;
-    contact.slip_target_world = touch.slip_target_world;
+    contact.body_a = place_body(moving_, step_contact.pair.first, t, places, states, &states[step_contact.pair.first], problem);
+    contact.body_b = place_body(moving_, step_contact.pair.second, t, places, states, &states[step_contact.pair.second], problem);
+    contact.point_world = geometry_.point_of(step_contact.pair, step_contact.point);
+    contact.normal_b_to_a_world = step_contact.point.normal_b_to_a_world;
+    contact.friction = geometry_.friction(step_contact.pair);
+    contact.target = step_contact.target;
+    contact.slip_target_world = step_contact.slip_target_world;
     problem.contacts.push_back(contact);
   }
-  if (!at_once) give_guesses(touches, states, h, island.pile ? kContact.warm_start_within_in_heap : kContact.warm_start_within, problem);
+  if (!at_once) warm_start(contacts, states, h, island.large ? kContact.warm_start_within_in_large_island : kContact.warm_start_within, problem);
   add_island_rows(moving_, island, moving_.states(), moving_.time(), places, false, problem);
   return problem;
 }
 
 // What an earlier attempt at this step has found for the pair, or else the last step.
-const std::vector<KnownImpulse>* LastingContacts::known_impulses(Pair pair) const {
+const std::vector<KnownImpulse>* PersistentContacts::known_impulses(Pair pair) const {
   for (const auto* store : {&memory_.tried_impulses, &memory_.last_impulses})
     if (const auto known = store->find(pair); known != store->end()) return &known->second;
   return nullptr;
 }
 
 // Impulses that are known already, each to the point that is nearest to where it acted.
-void LastingContacts::give_guesses(const std::vector<StepContact>& touches, const std::vector<RigidBodyState>& states, double h, double farthest, ContactProblem& problem) const {
-  for (std::size_t from = 0, to = 0; from < touches.size(); from = to) {
-    const Pair& pair = touches[from].pair;
-    while (to < touches.size() && touches[to].pair == pair) ++to;
+void PersistentContacts::warm_start(const std::vector<StepContact>& contacts, const std::vector<RigidBodyState>& states, double h, double farthest, ContactProblem& problem) const {
+  for (std::size_t from = 0, to = 0; from < contacts.size(); from = to) {
+    const Pair& pair = contacts[from].pair;
+    while (to < contacts.size() && contacts[to].pair == pair) ++to;
     const std::vector<KnownImpulse>* const warm = known_impulses(pair);
     if (!warm) continue;
     const RigidBodyState& a = states[pair.first];
@@ -72,30 +73,30 @@ void LastingContacts::give_guesses(const std::vector<StepContact>& touches, cons
         nearest = &problem.contacts[i];
       }
       // A longer step needs more where the force lasts, no more where it was a blow.
-      if (nearest) nearest->guess_world += std::min(1.0, h / known.duration) * known.impulse_world;
+      if (nearest) nearest->warm_start_world += std::min(1.0, h / known.duration) * known.impulse_world;
     }
   }
 }
 
-ContactSolution LastingContacts::solve(const ContactIsland& island, const ContactProblem& problem, double h) {
+ContactSolution PersistentContacts::solve(const ContactIsland& island, const ContactProblem& problem, double h) {
   ++counters_.contact_solves;
   counters_.contact_points += problem.contacts.size();
   const auto smooth = [](const PushingContact& c) { return c.friction == 0.0; };
   const bool frictionless = std::all_of(problem.contacts.begin(), problem.contacts.end(), smooth);
   if (!frictionless) counters_.friction_points += static_cast<std::uint64_t>(std::count_if(problem.contacts.begin(), problem.contacts.end(), [&](const auto& c) { return !smooth(c); }));
-  if (!frictionless || !problem.rows.empty() || static_cast<int>(problem.contacts.size()) > kContact.most_of_laws) {
+  if (!frictionless || !problem.rows.empty() || problem.contacts.size() > kContact.many_contacts) {
     ContactOptions options;
-    if (static_cast<int>(problem.contacts.size()) > kContact.most_located) options.tolerance = kContact.solved;
-    if (speed(island) > kContact.moving * rest_speed_) options.enough = kContact.solved;   // what stands has to be found to the last digit
-    if (rules_.plastic_impacts == scene::PlasticImpacts::kInStep && problem.contacts.size() > kContact.contacts_of_heap) {
-      options.tolerance = kContact.solved_in_heap;
+    if (problem.contacts.size() > kContact.few) options.tolerance = kContact.solved;
+    if (speed(island) > kContact.moving * restitution_threshold_) options.enough = kContact.solved;   // what stands has to be found to the last digit
+    if (rules_.plastic_impacts == scene::PlasticImpacts::kInStep && problem.contacts.size() > kContact.many_contacts) {
+      options.tolerance = kContact.solved_in_large_island;
       options.largest_direct = 0;
       options.most_sweeps_alone = kContact.sweeps_in_step;
     }
     ContactSolution solution = laws_.friction_impulses ? laws_.friction_impulses(problem, options) : solve_contacts(problem, options);
-    if (!laws_.friction_impulses && !solution.converged && solution.residual > kContact.far_off) {   // a guess can lead astray: once more from nothing, with every means
+    if (!laws_.friction_impulses && !solution.converged && solution.residual > kContactSolved) {   // a guess can lead astray: once more from nothing, with every means
       ContactProblem afresh = problem;
-      for (PushingContact& contact : afresh.contacts) contact.guess_world.setZero();
+      for (PushingContact& contact : afresh.contacts) contact.warm_start_world.setZero();
       ContactOptions every;
       every.tolerance = options.tolerance;
       ContactSolution again = solve_contacts(afresh, every);
@@ -144,22 +145,22 @@ ContactSolution LastingContacts::solve(const ContactIsland& island, const Contac
 
 // Where a pair that slid and would stick at the end of the step stops sliding: when the friction that stops it is all there can be. What
 // stops the slip is A + F s, with F the steady forces along it, the friction at hand M s; two steps of different lengths tell A and F.
-std::optional<double> LastingContacts::stop_of_sliding(const ContactProblem& problem, const std::vector<StepContact>& touches, const ContactSolution& solution, double h) {
-  if (static_cast<int>(touches.size()) > kContact.most_located) return std::nullopt;
+std::optional<double> PersistentContacts::stop_of_sliding(const ContactProblem& problem, const std::vector<StepContact>& contacts, const ContactSolution& solution, double h) {
+  if (contacts.size() > kContact.few) return std::nullopt;
   const Pair* stopping = nullptr;
-  double least = 1.0, stopping_impulse = 0.0, at_hand = 0.0;
-  for (std::size_t i = 0; i < touches.size();) {
-    const Pair& pair = touches[i].pair;
+  double least = 1.0, stopping_impulse = 0.0, available = 0.0;
+  for (std::size_t i = 0; i < contacts.size();) {
+    const Pair& pair = contacts[i].pair;
     Vector3d along = Vector3d::Zero();
     Vector3d slips = Vector3d::Zero();   // of the point that slides fastest
     double limit = 0.0, slip = 0.0, speed = 0.0;
     bool sticks = true;
-    for (; i < touches.size() && touches[i].pair == pair; ++i) {
+    for (; i < contacts.size() && contacts[i].pair == pair; ++i) {
       const PushingContact& c = problem.contacts[i];
       const Vector3d& n = c.normal_b_to_a_world;
       const auto velocity = [&](int body) -> Vector3d {
         const Body b = moving_.body_at_impact(body);
-        const Vector3d arm = geometry_.point_of(pair, touches[i].point) - b.com_world;
+        const Vector3d arm = geometry_.point_of(pair, contacts[i].point) - b.com_world;
         if (!moving_.world().bodies[body].immovable()) speed = std::max(speed, b.velocity_world.norm() + b.omega_world.norm() * arm.norm());
         return b.velocity_world + b.omega_world.cross(arm);
       };
@@ -176,12 +177,12 @@ std::optional<double> LastingContacts::stop_of_sliding(const ContactProblem& pro
     }
     // What friction stops within a billionth of the step has stopped.
     const double within_step = limit * (moving_.world().bodies[pair.first].inertia.inverse_mass + moving_.world().bodies[pair.second].inertia.inverse_mass);
-    if (!sticks || memory_.stuck.contains(pair) || !(limit > 0) || slip <= kContact.slides * (speed + within_step)) continue;
+    if (!sticks || memory_.stuck.contains(pair) || !(limit > 0) || slip <= kNegligible * (speed + within_step)) continue;
     if (along.norm() >= least * limit) continue;
     least = along.norm() / limit;
     stopping = &pair;
     stopping_impulse = -along.dot(slips) / slip;   // signed: on a slope gravity may do more than stop it, and friction holds it then
-    at_hand = limit;
+    available = limit;
   }
   if (!stopping) return std::nullopt;
   if (!(moving_.time() < memory_.searched_from + memory_.longest_step)) {
@@ -191,34 +192,34 @@ std::optional<double> LastingContacts::stop_of_sliding(const ContactProblem& pro
   if (++memory_.searches > kContact.most_searches) return std::nullopt;
   if (memory_.sliding_search && memory_.sliding_search->pair == *stopping && memory_.sliding_search->start == moving_.time()) {
     if (memory_.sliding_search->found) return std::nullopt;
-    const double F = (memory_.sliding_search->impulse - stopping_impulse) / (memory_.sliding_search->duration - h), A = stopping_impulse - F * h, M = at_hand / h;
+    const double F = (memory_.sliding_search->impulse - stopping_impulse) / (memory_.sliding_search->duration - h), A = stopping_impulse - F * h, M = available / h;
     const double stop = A / (M - F);
     if (!(stop > kContact.shortest_step * memory_.longest_step) || !(stop < memory_.sliding_search->duration)) return std::nullopt;
     memory_.sliding_search->found = true;
     return moving_.time() + stop;
   }
-  if (least >= 1 - 1e-12 || h <= kContact.shortest_step * memory_.longest_step) return std::nullopt;
+  if (least >= 1 - kSolverResidue || h <= kContact.shortest_step * memory_.longest_step) return std::nullopt;
   memory_.sliding_search = SlidingSearch{*stopping, moving_.time(), h, stopping_impulse, false};
-  return moving_.time() + h * std::max(least, 1e-3);
+  return moving_.time() + h * std::max(least, kContact.soon);
 }
 
 // Does anything come down in this step that did not touch before?
-bool LastingContacts::lands(const std::vector<StepContact>& touches, const ContactSolution& solution) {
-  for (std::size_t i = 0; i < touches.size(); ++i)
-    if (touches[i].lands && solution.impulses_world[i].squaredNorm() > 0.0) return true;
+bool PersistentContacts::activates(const std::vector<StepContact>& contacts, const ContactSolution& solution) {
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    if (contacts[i].activates && solution.impulses_world[i].squaredNorm() > 0.0) return true;
   return false;
 }
 
 // Where the island's bodies come out with these impulses.
 // @param at  where the problem took the inertia of the bodies, null: at the end of their free paths
-std::vector<RigidBodyState> LastingContacts::ends_of(const ContactIsland& island, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing, const std::vector<RigidBodyState>* at) const {
+std::vector<RigidBodyState> PersistentContacts::ends_of(const ContactIsland& island, const ContactProblem& problem, const ContactSolution& solution, double h, bool activation, const std::vector<RigidBodyState>* at) const {
   std::vector<RigidBodyState> ends = moving_.states();
   for (std::size_t k = 0; k < island.bodies.size(); ++k) {   // the problem's first bodies are the island's
     const int body = island.bodies[k];
     const Inertia& inertia = moving_.world().bodies[body].inertia;
     const Velocity& after = solution.velocities[k];
     RigidBodyState& end = ends[body];
-    if (landing) {
+    if (activation) {
       end.com_world += h * after.linear_world;
       end.world_from_body = turned(end.world_from_body, h * after.angular_world);
       end.angular_momentum_world = angular_momentum_of(after.angular_world, end.world_from_body, inertia);
@@ -235,7 +236,7 @@ std::vector<RigidBodyState> LastingContacts::ends_of(const ContactIsland& island
 }
 
 // The angle that the fastest of the island's bodies turns in the step; a ball looks the same however it turns.
-double LastingContacts::largest_turn(const ContactIsland& island, const std::vector<RigidBodyState>& ends, double h) const {
+double PersistentContacts::largest_turn(const ContactIsland& island, const std::vector<RigidBodyState>& ends, double h) const {
   double turn = 0.0;
   for (const int body : island.bodies)
     if (!moving_.shape(body).is_ball()) turn = std::max(turn, omega_of(ends[body], moving_.world().bodies[body].inertia).norm() * h);
@@ -243,7 +244,7 @@ double LastingContacts::largest_turn(const ContactIsland& island, const std::vec
 }
 
 // The angle that the normal between two balls turns most in the step: the one that slides or rolls on the other follows its curve.
-double LastingContacts::turn_of_normals(const ContactIsland& island, const std::vector<RigidBodyState>& ends) const {
+double PersistentContacts::turn_of_normals(const ContactIsland& island, const std::vector<RigidBodyState>& ends) const {
   double turn = 0.0;
   for (const Pair& pair : island.pairs) {
     if (!geometry_.are_balls(pair) || points_.at(pair).empty()) continue;
@@ -257,14 +258,14 @@ double LastingContacts::turn_of_normals(const ContactIsland& island, const std::
 // Contacts of an island that turns: at the middle of the step, where their forces act evenly, with targets that make the velocities at the
 // step's end fit the surfaces there: J_middle v' = target - (J_end - J_middle) v'. Without that a body that tips over its edge gains or
 // loses energy in proportion to the step.
-std::vector<LastingContacts::StepContact> LastingContacts::touches_midway(const ContactIsland& island, const std::vector<StepContact>& touches, const std::vector<RigidBodyState>& ends,
+std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_midway(const ContactIsland& island, const std::vector<StepContact>& contacts, const std::vector<RigidBodyState>& ends,
                                                                     std::vector<RigidBodyState>& middle) const {
   const std::vector<RigidBodyState>& starts = moving_.states();
   for (const int body : island.bodies) {
     middle[body].com_world = 0.5 * (starts[body].com_world + ends[body].com_world);
     middle[body].world_from_body = starts[body].world_from_body.slerp(0.5, ends[body].world_from_body);
   }
-  const auto slip = [&](Pair pair, const std::vector<RigidBodyState>& at, const collision::NearPoint& p) -> Vector3d {
+  const auto slip = [&](Pair pair, const std::vector<RigidBodyState>& at, const collision::ManifoldPoint& p) -> Vector3d {
     const Vector3d point = geometry_.point_of(pair, p);
     const auto velocity = [&](int body) -> Vector3d {
       const WorldBody& b = moving_.world().bodies[body];
@@ -277,25 +278,25 @@ std::vector<LastingContacts::StepContact> LastingContacts::touches_midway(const 
   std::size_t from = 0;
   for (const Pair& pair : island.pairs) {
     std::size_t to = from;
-    while (to < touches.size() && touches[to].pair == pair) ++to;
+    while (to < contacts.size() && contacts[to].pair == pair) ++to;
     double farthest = 0.0;   // no point of the contact can be farther off by the step's end
-    for (std::size_t i = from; i < to; ++i) farthest = std::max({farthest, touches[i].start_gap, touches[i].point.gap});
+    for (std::size_t i = from; i < to; ++i) farthest = std::max({farthest, contacts[i].start_gap, contacts[i].point.gap});
     for (const int body : {pair.first, pair.second})
       farthest += (ends[body].com_world - starts[body].com_world).norm() +
                   (moving_.shape(body).is_half_space() ? 0.0 : moving_.shape(body).bounding_radius() * starts[body].world_from_body.angularDistance(ends[body].world_from_body));
     const double near = geometry_.same_within(pair), reach = geometry_.are_balls(pair) ? geometry_.size_of(pair) : std::min(near, farthest + geometry_.margin(pair));
     const ContactManifold at_middle = geometry_.points_at(pair, middle, reach), at_end = geometry_.points_at(pair, ends, reach);
     for (std::size_t i = from; i < to; ++i) {
-      StepContact touch = touches[i];
-      const collision::NearPoint* mid = geometry_.same_point(pair, touch.point, starts, at_middle, middle, near);
-      const collision::NearPoint* end = mid ? geometry_.same_point(pair, *mid, middle, at_end, ends, near) : nullptr;
+      StepContact step_contact = contacts[i];
+      const collision::ManifoldPoint* mid = geometry_.same_point(pair, step_contact.point, starts, at_middle, middle, near);
+      const collision::ManifoldPoint* end = mid ? geometry_.same_point(pair, *mid, middle, at_end, ends, near) : nullptr;
       if (mid && end) {
-        touch.point = *mid;
+        step_contact.point = *mid;
         const Vector3d at_end_point = slip(pair, ends, *end), at_mid_point = slip(pair, middle, *mid);
-        touch.target -= end->normal_b_to_a_world.dot(at_end_point) - mid->normal_b_to_a_world.dot(at_mid_point);
-        touch.slip_target_world = at_mid_point - at_end_point;
+        step_contact.target -= end->normal_b_to_a_world.dot(at_end_point) - mid->normal_b_to_a_world.dot(at_mid_point);
+        step_contact.slip_target_world = at_mid_point - at_end_point;
       }
-      result.push_back(touch);
+      result.push_back(step_contact);
     }
     from = to;
   }
@@ -303,27 +304,27 @@ std::vector<LastingContacts::StepContact> LastingContacts::touches_midway(const 
 }
 
 // @return whether no overlap was left
-bool LastingContacts::give_paths(const ContactIsland& island, const std::vector<StepContact>& touches, const std::vector<RigidBodyState>& touches_at, const ContactProblem& problem,
-                                 const ContactSolution& solution, double h, bool landing, const std::vector<RigidBodyState>* at) {
-  std::vector<RigidBodyState> ends = ends_of(island, problem, solution, h, landing, at);
-  std::vector<ActiveContact> held;   // where nothing turns, points stay as near as they are
-  if (&touches_at != &moving_.states() && !landing && touches.size() <= kContact.contacts_of_heap)
-    for (std::size_t i = 0; i < touches.size(); ++i)
-      if (touches[i].start_gap < kContact.came_down * geometry_.margin(touches[i].pair) && solution.impulses_world[i].squaredNorm() > 0.0) held.push_back({touches[i].pair, touches[i].point, &touches_at});
+bool PersistentContacts::set_paths(const ContactIsland& island, const std::vector<StepContact>& contacts, const std::vector<RigidBodyState>& contacts_at, const ContactProblem& problem,
+                                 const ContactSolution& solution, double h, bool activation, const std::vector<RigidBodyState>* at) {
+  std::vector<RigidBodyState> ends = ends_of(island, problem, solution, h, activation, at);
+  std::vector<ActiveContact> active;   // where nothing turns, points stay as near as they are
+  if (&contacts_at != &moving_.states() && !activation && contacts.size() <= kContact.many_contacts)
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+      if (contacts[i].start_gap < kContact.activated * geometry_.margin(contacts[i].pair) && solution.impulses_world[i].squaredNorm() > 0.0) active.push_back({contacts[i].pair, contacts[i].point, &contacts_at});
   // Pairs that are not in contact may meet within the step: that is for the finding of impacts.
-  const bool apart = correction_.keep_apart(island, island.pairs, ends, moving_.target(), held);
+  const bool apart = correction_.correct_positions(island, island.pairs, ends, moving_.target(), active);
   // The path goes where a shift has taken its end, however short the step: velocities along it are no momenta. What rods and joints hold is put
   // right where a step ends within it (MovingWorld::commit).
   for (const int body : island.bodies) {
-    if (landing) set_straight_path(body, ends[body]);
+    if (activation) set_straight_path(body, ends[body]);
     else moving_.set_path(body, moving_.state(body), ends[body], SmoothPath::Momenta::kEven);
-    moving_.refuse_whirl(body);
+    moving_.refuse_fast_turning(body);
   }
   return apart;
 }
 
 // From place to place, as x' = x + h v' says: a bent path would dip below the surface on its way.
-void LastingContacts::set_straight_path(int body, const RigidBodyState& end) {
+void PersistentContacts::set_straight_path(int body, const RigidBodyState& end) {
   const Inertia& inertia = moving_.world().bodies[body].inertia;
   RigidBodyState start = moving_.state(body);
   start.momentum_world = end.momentum_world;

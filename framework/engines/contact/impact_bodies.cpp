@@ -6,15 +6,10 @@
 #include <fmt/format.h>
 
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/tolerances.h"
 
 namespace tumble::engines {
 namespace {
-
-// Of K of the free bodies: what holds bodies never lets them yield more than freely, nor backwards. Laws good to 1e-8 leave less.
-constexpr double kNoProjection = 1e-6;
-
-// m/s: bodies that lie still move by what roundings of forces and corrections leave, some 1e-15 m/s, and their impacts obey no law.
-constexpr double kQuietImpact = 1e-9;
 
 std::size_t place_in(const LinkedBodies& group, int body) {
   return static_cast<std::size_t>(std::lower_bound(group.bodies().begin(), group.bodies().end(), body) - group.bodies().begin());
@@ -59,7 +54,7 @@ void EnergyOfImpact::add(const Inertia& inertia, const Quaterniond& q, const Vel
 }
 
 double EnergyOfImpact::excess(double by_law) const {
-  const double size = before + std::abs(by_law) + 0.5 * mass * kQuietImpact * kQuietImpact;
+  const double size = before + std::abs(by_law) + 0.5 * mass * kNegligibleSpeed * kNegligibleSpeed;
   return size > 0 ? std::max(std::abs(change - by_law), change) / size : change;
 }
 
@@ -183,8 +178,9 @@ ImpactBodies::Answer ImpactBodies::answer(const TouchedPoint& touched, bool with
     answer.reactions.push_back(std::move(reaction));
   }
   answer.held = (0.5 * (answer.held + answer.held.transpose())).eval();
+  // What holds bodies never lets them yield more than freely, nor backwards.
   const double free = answer.free_along(n);
-  if (!(answer.held_normal() >= -kNoProjection * free && answer.held_normal() <= (1 + kNoProjection) * free))
+  if (!(answer.held_normal() >= -kSixDigits * free && answer.held_normal() <= (1 + kSixDigits) * free))
     throw StoppedRun(fmt::format("rods and joints (constraint_correction of {}): with the links' reactions an impulse of 1 N s changes the normal velocity by {:.6g} m/s, on the free bodies by {:.6g}; "
                                  "links can only take from it, so what the correction changes is not the smallest change that leaves every row's rate as it is", laws_.constraint_source, answer.held_normal(), free));
   return answer;

@@ -30,7 +30,7 @@ struct EnergyOfImpact {
   double mass = 0.0;                   // of all that is moved [kg]
 
   void add(const Inertia& inertia, const Quaterniond& world_from_body, const Velocity& from, const Velocity& to, const Vector3d& seen_from_world);
-  /// How far the change is from what the law says, or above 0, over the energy before; over that of kQuiet where there is less.
+  /// How far the change is from what the law says, or above 0, over the energy before; over that of kNegligibleSpeed where there is less.
   double excess(double by_law) const;
 };
 

@@ -44,7 +44,7 @@ class ApproachThreshold {
 /// More rounds of impulses than any right law needs: restitution 0.99 in a row of 50 balls takes some hundred.
 inline constexpr int kMostImpactRounds = 10000;
 /// "collision (collision_impulse, ...) left them approaching ...": why a run stops whose law is still approached after all these rounds.
-std::string told_left_approaching(const Laws& laws);
+std::string left_approaching_message(const Laws& laws);
 
 /// A pair without a lasting contact that gravity or turning presses together would meet infinitely often in no time: it is sent apart at the rest
 /// speed (a micro-collision, Mirtich 1996). Pushes at several points approach that speed together, each round by a part of what is missing.
@@ -66,7 +66,7 @@ struct BallOnSupport {
   bool turns = false;
   Vector3d relative_velocity_world;        // of the ball against the support, after its impacts [m/s]
   double restitution = 0.0;
-  double rest_speed = 0.0, fastest = 0.0;  // [m/s]: fastest: of the impacts at this instant
+  double restitution_threshold = 0.0, fastest = 0.0;  // [m/s]: fastest: of the impacts at this instant
 };
 
 /// Whether it stays there: gravity presses it straight against the support (without friction a slope holds nothing), it turns evenly if it turns, and

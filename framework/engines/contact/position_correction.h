@@ -17,7 +17,7 @@ namespace tumble::engines {
 /// A contact point that pushes to the step's end: it is drawn to its margin, too.
 struct ActiveContact {
   std::pair<int, int> pair;
-  collision::NearPoint point;
+  collision::ManifoldPoint point;
   const std::vector<RigidBodyState>* at;   // where the bodies are when it is there
 };
 
@@ -26,13 +26,13 @@ class PositionCorrection {
   using Pair = ContactGeometry::Pair;
 
   /// @param memory  counts the sweeps of the step
-  PositionCorrection(MovingWorld& moving, const ContactGeometry& geometry, ContactMemory& memory, double rest_speed, RunCounters& counters)
-      : moving_(moving), geometry_(geometry), memory_(memory), rest_speed_(rest_speed), counters_(counters) {}
+  PositionCorrection(MovingWorld& moving, const ContactGeometry& geometry, ContactMemory& memory, double restitution_threshold, RunCounters& counters)
+      : moving_(moving), geometry_(geometry), memory_(memory), restitution_threshold_(restitution_threshold), counters_(counters) {}
 
   /// Takes back the overlaps of these pairs, in places of the time `t`. @return whether none is left
-  bool keep_apart(const ContactIsland& island, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, const std::vector<ActiveContact>& held = {});
+  bool correct_positions(const ContactIsland& island, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, const std::vector<ActiveContact>& active = {});
   /// The same for a heap, by a few sweeps a round. @param gaps  bounds from below, by pair; as good as needed afterwards [m]
-  bool keep_pile_apart(const ContactIsland& island, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, std::vector<double>& gaps);
+  bool correct_large_island(const ContactIsland& island, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, std::vector<double>& gaps);
 
  private:
   struct KnownManifold {           // a pair's points as they were when it was last asked for them
@@ -41,19 +41,19 @@ class PositionCorrection {
     double moved = 0.0;            // by any point of the two since, at most [m]
   };
 
-  void place_for_shift(const ContactIsland& island, Pair pair, const collision::NearPoint& point, const std::vector<RigidBodyState>& states, double t, double room, std::map<int, int>& places,
+  void place_for_correction(const ContactIsland& island, Pair pair, const collision::ManifoldPoint& point, const std::vector<RigidBodyState>& states, double t, double margin, std::map<int, int>& places,
                        ContactProblem& problem, PushingContact& contact);
-  bool apply_shift(int body, const Velocity& shift, std::vector<RigidBodyState>& states) const;
-  double add_shifts(const ContactIsland& island, const std::vector<Pair>& pairs, const std::vector<RigidBodyState>& states, double t, const std::vector<ActiveContact>& held, double reach,
+  bool apply_correction(int body, const Velocity& correction, std::vector<RigidBodyState>& states) const;
+  double add_corrections(const ContactIsland& island, const std::vector<Pair>& pairs, const std::vector<RigidBodyState>& states, double t, const std::vector<ActiveContact>& active, double reach,
                     std::map<int, int>& places, ContactProblem& problem);
-  double way_of(int body, const Velocity& shift) const;
-  ContactProblem shifts_of(const ContactIsland& island, const std::vector<Pair>& pairs, const std::vector<RigidBodyState>& states, double t, const std::vector<double>& gaps, double wrong,
-                           const std::vector<double>& way, std::vector<KnownManifold>& faced);
+  double way_of(int body, const Velocity& correction) const;
+  ContactProblem corrections_of(const ContactIsland& island, const std::vector<Pair>& pairs, const std::vector<RigidBodyState>& states, double t, const std::vector<double>& gaps, double wrong,
+                           const std::vector<double>& way, std::vector<KnownManifold>& manifolds);
 
   MovingWorld& moving_;
   const ContactGeometry& geometry_;
   ContactMemory& memory_;
-  double rest_speed_;              // [m/s]
+  double restitution_threshold_;              // [m/s]
   RunCounters& counters_;
 };
 

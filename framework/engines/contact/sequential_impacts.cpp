@@ -10,16 +10,14 @@
 #include "framework/dynamics/point_impact.h"
 #include "framework/dynamics/solve_contacts.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/contact/impact_law.h"
 
 namespace tumble::engines {
 namespace {
 
 constexpr int kRoundsAmongContacts = 60;   // bodies in lasting contact pass a blow on in ever smaller parts
-constexpr std::size_t kToldAPair = 64;   // impulses at one instant: more are told as one a pair
-// Of K of the free bodies: what rounding leaves where rods and joints hold both bodies completely along the normal.
-constexpr double kImmovable = 1e-12;
-constexpr double kRoundOffOfEnergy = 1e-11;   // of the work of the impulses: what the tolerance of the contact problem leaves
+constexpr std::size_t kMostEventsPerPair = 64;   // impulses at one instant: more are told as one a pair
 
 Contact contact_of(const TouchingPair& pair, const Vector3d& point_world) { return {point_world, pair.gap.normal_b_to_a_world}; }
 
@@ -69,11 +67,11 @@ struct SequentialImpacts::Work {
 
 bool SequentialImpacts::stays(const World& world, const TouchingPair& pair, double approach_speed) const {
   const double restitution = restitution_of(world, pair);
-  return contact_rest_speed_ && laws_.ends_in_contact(approach_speed, restitution, *contact_rest_speed_);
+  return contact_threshold_ && laws_.ends_in_contact(approach_speed, restitution, *contact_threshold_);
 }
 
 double SequentialImpacts::friction_at_impact(const World& world, const TouchingPair& pair) const {
-  return built::kFriction && contact_rest_speed_ ? friction_of(world, pair) : 0.0;
+  return built::kFriction && contact_threshold_ ? friction_of(world, pair) : 0.0;
 }
 
 bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double threshold) {
@@ -101,7 +99,7 @@ bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double thr
   if (is_held || friction > 0) {
     answer = &work.answer(pair, *point, friction > 0);
     const double free = answer->free_along(contact.normal_b_to_a_world), held = answer->held_normal();
-    if (!(held > kImmovable * free))
+    if (!(held > kSolverResidue * free))
       throw StoppedRun(fmt::format("they approach at {:.3g} m/s, and rods and joints hold both completely along the normal of the contact: no impulse can keep them apart. What drives them together (\"motion\") must leave them room",
                                    -approach));
     impulse *= free / held;
@@ -143,7 +141,7 @@ ContactSolution SequentialImpacts::solve_without_gain(const ContactProblem& prob
     return solve_contacts(asked);
   };
   ContactSolution whole = solve(problem);
-  const auto gains = [&](const ContactSolution& solution) { return work_of(problem, solution.impulses_world, before, solution.velocities) > kRoundOffOfEnergy * size_of_work(problem, solution); };
+  const auto gains = [&](const ContactSolution& solution) { return work_of(problem, solution.impulses_world, before, solution.velocities) > kSolverResidue * size_of_work(problem, solution); };
   if (!gains(whole)) return whole;
   ContactProblem less = problem;
   for (PushingContact& contact : less.contacts) contact.friction = 0.0;
@@ -243,12 +241,12 @@ void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingP
 }
 
 bool SequentialImpacts::push_pair_apart(Work& work, const TouchingPair& pair) {
-  const auto [rate, point] = fastest_approach(laws_, region_of(pair), work.body(pair.a), work.body(pair.b), rules_.rest_speed);
-  if (rate >= kFastEnough * rules_.rest_speed) return false;
+  const auto [rate, point] = fastest_approach(laws_, region_of(pair), work.body(pair.a), work.body(pair.b), rules_.restitution_threshold);
+  if (rate >= kFastEnough * rules_.restitution_threshold) return false;
   const Vector3d& n = pair.gap.normal_b_to_a_world;
   const ImpactBodies::Answer& answer = work.answer(pair, *point, false);
-  if (!(answer.held_normal() > kImmovable * answer.free_along(n))) return false;   // links hold both where they are
-  work.bodies.push({pair.a, pair.b, *point, n}, answer, (rules_.rest_speed - rate) / answer.held_normal() * n);
+  if (!(answer.held_normal() > kSolverResidue * answer.free_along(n))) return false;   // links hold both where they are
+  work.bodies.push({pair.a, pair.b, *point, n}, answer, (rules_.restitution_threshold - rate) / answer.held_normal() * n);
   ++counters_.micro_impacts;
   return true;
 }
@@ -277,22 +275,22 @@ Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<Tou
   bool again = law_ == scene::ImpactLaw::kSequential;
   int rounds = 0;
   if (!again) collide_together(work, pairs, threshold, true);
-  while (again && ++rounds < (contact_rest_speed_ ? kRoundsAmongContacts : kMostImpactRounds)) {
+  while (again && ++rounds < (contact_threshold_ ? kRoundsAmongContacts : kMostImpactRounds)) {
     again = false;
     for (const TouchingPair& pair : pairs) again = collide(work, pair, threshold) || again;
   }
-  if (again && contact_rest_speed_) {   // what is left of a blow that many bodies in contact hand to and fro is taken from all at once
+  if (again && contact_threshold_) {   // what is left of a blow that many bodies in contact hand to and fro is taken from all at once
     collide_together(work, pairs, threshold, false);
     again = false;
     work.result.events = one_a_pair(work.result.events);
-  } else if (work.result.events.size() > kToldAPair * pairs.size()) {
+  } else if (work.result.events.size() > kMostEventsPerPair * pairs.size()) {
     work.result.events = one_a_pair(work.result.events);
   }
   work.result.settled = !again;
 
   for (std::size_t k = 0; k < pairs.size(); ++k) {
     const TouchingPair& pair = pairs[k];
-    const auto [last, first_time] = last_meeting_.try_emplace({pair.a, pair.b}, -std::numeric_limits<double>::infinity());
+    const auto [last, first_time] = last_impacts_.try_emplace({pair.a, pair.b}, -std::numeric_limits<double>::infinity());
     double approach = 0.0;
     bool hit = false;
     for (const Event& event : work.result.events) {
@@ -302,7 +300,7 @@ Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<Tou
     }
     if (!hit && k != trigger) continue;
     const bool in_vain = work.result.events.empty();
-    const bool soon_again = moving.time() - last->second < rules_.micro_interval && approach < rules_.rest_speed;
+    const bool soon_again = moving.time() - last->second < rules_.micro_interval && approach < rules_.restitution_threshold;
     if (in_vain || soon_again) work.result.micro_impacts.push_back(pair);
     last->second = moving.time();
   }

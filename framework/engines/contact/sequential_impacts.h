@@ -39,7 +39,7 @@ struct Resolution {
 };
 
 struct ImpactRules {
-  double rest_speed;            // [m/s]
+  double restitution_threshold;            // [m/s]
   double micro_interval;        // a pair that meets again within this, slower than the rest speed, has a micro-impact [s]
 };
 
@@ -53,13 +53,13 @@ class SequentialImpacts {
   /// (-3/5, 2/5, 2/5, 2/5, 2/5) of its speed, not as Newton's cradle does. Where restitution at several points would create energy (unequal
   /// restitutions, friction), as much of it is taken as creates none: on the line from there to the answer without friction, or, where that
   /// creates energy too, to the one without rebound.
-  void use_contact_rules(double rest_speed, scene::ImpactLaw law) {
-    contact_rest_speed_ = rest_speed;
+  void use_contact_rules(double restitution_threshold, scene::ImpactLaw law) {
+    contact_threshold_ = restitution_threshold;
     law_ = law;
   }
   /// When pairs met last: what a run that goes on from another time has to know. [s]
-  const std::map<std::pair<int, int>, double>& last_meetings() const { return last_meeting_; }
-  void remember(std::map<std::pair<int, int>, double> last_meetings) { last_meeting_ = std::move(last_meetings); }
+  const std::map<std::pair<int, int>, double>& last_impacts() const { return last_impacts_; }
+  void remember(std::map<std::pair<int, int>, double> last_impacts) { last_impacts_ = std::move(last_impacts); }
   /// Whether an impact of the pair at this speed begins a lasting contact.
   bool stays(const World& world, const TouchingPair& pair, double approach_speed) const;
 
@@ -85,8 +85,8 @@ class SequentialImpacts {
   const Laws& laws_;
   ImpactRules rules_;
   RunCounters& counters_;
-  std::map<std::pair<int, int>, double> last_meeting_;
-  std::optional<double> contact_rest_speed_;   // [m/s]
+  std::map<std::pair<int, int>, double> last_impacts_;
+  std::optional<double> contact_threshold_;   // [m/s]
   scene::ImpactLaw law_ = scene::ImpactLaw::kSequential;
 };
 

@@ -4,21 +4,19 @@
 #include <cmath>
 
 #include "framework/collision/gap.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/stepping/body_groups.h"
 
 namespace tumble::engines {
 namespace {
 
 constexpr double kStillFor = 0.5;        // s: a swing that turns back within it is seen to swing
-constexpr double kSlow = 0.1;            // of the rest speed: faster than this, be it for a moment, is no rest
 constexpr double kMean = 0.01;           // of the rest speed, on the average: ten times what heaps are solved to, a step's fall times 1e-5
-constexpr double kMeanSliding = 1e-4;    // likewise, where something slides
-constexpr double kSleepRoom = 1e-8;           // of the smaller body: lasting contacts are kept nearer
 
 }  // namespace
 
-Sleepers::Sleepers(MovingWorld& moving, const LastingContacts& contacts, const ContactModes* modes, double rest_speed, RunCounters& counters, TrajectorySink& sink)
-    : moving_(moving), contacts_(contacts), modes_(modes), rest_speed_(rest_speed), counters_(counters), sink_(sink), group_of_(moving.size(), -1) {
+Sleepers::Sleepers(MovingWorld& moving, const PersistentContacts& contacts, const ContactModes* modes, double restitution_threshold, RunCounters& counters, TrajectorySink& sink)
+    : moving_(moving), contacts_(contacts), modes_(modes), restitution_threshold_(restitution_threshold), counters_(counters), sink_(sink), group_of_(moving.size(), -1) {
   for (const RigidBodyState& state : moving.states()) {
     const Place place{moving.time(), state.com_world, state.world_from_body};
     still_.push_back({place, place});
@@ -35,9 +33,9 @@ void Sleepers::watch(int body) {
   const double speed = b.inertia.inverse_mass * state.momentum_world.norm() + omega_of(state, b.inertia).norm() * radius;
   const auto way = [&](const Place& place) { return (state.com_world - place.com_world).norm() + state.world_from_body.angularDistance(place.world_from_body) * radius; };
   const Place here{moving_.time(), state.com_world, state.world_from_body};
-  const bool fast = speed > kSlow * rest_speed_;
-  if (fast || way(still.roughly) > kMean * rest_speed_ * kStillFor) still.roughly = here;
-  if (fast || way(still.strictly) > kMeanSliding * rest_speed_ * kStillFor) still.strictly = here;
+  const bool fast = speed > kSlow * restitution_threshold_;
+  if (fast || way(still.roughly) > kMean * restitution_threshold_ * kStillFor) still.roughly = here;
+  if (fast || way(still.strictly) > kCreep * restitution_threshold_ * kStillFor) still.strictly = here;
 }
 
 bool Sleepers::is_still(const Group& group, double since) const {
@@ -139,19 +137,13 @@ bool Sleepers::would_touch(Pair pair) {
   const World& world = moving_.world();
   if (world.contact->plastic_impacts != scene::PlasticImpacts::kInStep || std::min(world.bodies[pair.first].restitution, world.bodies[pair.second].restitution) > 0.0) return false;
   const double h = moving_.target() - moving_.time();
-  const auto way = [&](int body) {
-    const collision::MotionState start = moving_.motion_at(body, moving_.time()), end = moving_.motion_at(body, moving_.target());
-    const double radius = moving_.shape(body).is_half_space() ? 0.0 : moving_.shape(body).bounding_radius();
-    return h * (std::max(start.velocity_world.norm(), end.velocity_world.norm()) + std::max(start.omega_world.norm(), end.omega_world.norm()) * radius);
-  };
-  const double room = kSleepRoom * std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius());
   const auto pose = [&](int body) { return moving_.motion_at(body, moving_.time()).pose; };
   ++counters_.collision.gap_evaluations;
-  const double near = way(pair.first) + way(pair.second) + room;
+  const double near = h * moving_.fastest_in_step(pair.first) + h * moving_.fastest_in_step(pair.second) + contacts_.open_distance(pair);
   return collision::gap_distance(moving_.shape(pair.first), pose(pair.first), moving_.shape(pair.second), pose(pair.second), moving_.pair_cache(pair.first, pair.second), near) <= near;
 }
 
-bool Sleepers::wake_met(const std::vector<Pair>& candidates) {
+bool Sleepers::wake_approached(const std::vector<Pair>& candidates) {
   bool any = false;
   for (const Pair& pair : candidates)
     if ((moving_.asleep(pair.first) || moving_.asleep(pair.second)) && would_touch(pair)) any = wake(pair) || any;

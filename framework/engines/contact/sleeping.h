@@ -25,16 +25,16 @@ namespace tumble::engines {
 
 class Sleepers {
  public:
-  using Pair = LastingContacts::Pair;
+  using Pair = PersistentContacts::Pair;
 
   /// @param modes  null where no contact has friction
-  Sleepers(MovingWorld& moving, const LastingContacts& contacts, const ContactModes* modes, double rest_speed, RunCounters& counters, TrajectorySink& sink);
+  Sleepers(MovingWorld& moving, const PersistentContacts& contacts, const ContactModes* modes, double restitution_threshold, RunCounters& counters, TrajectorySink& sink);
 
   /// After a step: puts the groups to sleep that have been still long enough. @param touching  pairs in contact in this step
   void look(const std::vector<Pair>& touching);
 
   /// Before a step's contacts: wakes groups that something moving will be in contact with. @return whether there were any: the step is to be begun again
-  bool wake_met(const std::vector<Pair>& candidates);
+  bool wake_approached(const std::vector<Pair>& candidates);
   /// Wakes the groups of both bodies, if they sleep. @return whether one did
   bool wake(Pair pair);
   /// Wakes a body's group, if it sleeps. @param waker  what met it; -1 for a force or a control law
@@ -71,9 +71,9 @@ class Sleepers {
   bool would_touch(Pair pair);
 
   MovingWorld& moving_;
-  const LastingContacts& contacts_;
+  const PersistentContacts& contacts_;
   const ContactModes* modes_;
-  double rest_speed_;              // [m/s]
+  double restitution_threshold_;              // [m/s]
   RunCounters& counters_;
   TrajectorySink& sink_;
   std::vector<Stillness> still_;   // by body

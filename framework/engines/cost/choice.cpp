@@ -17,7 +17,6 @@ constexpr int kMostTrims = 3;            // trials between a rung that fails and
 constexpr double kWorthTrimming = 0.9;   // of the price: what saves less is not looked for
 constexpr double kHopelessPrice = 3.0;        // prices: above this of the best one a way that does not yet fulfil the wish is given up
 constexpr int kMostWorseTrials = 2;            // trials in a row that are no better
-constexpr double kFollowed = 0.1;           // of the scale: coarser runs do not show where they lead
 constexpr double kAlikeErrors = 1.05;          // errors that differ by less are one: the cheaper run is better
 
 bool is_right(const CostRung& rung) { return rung.stopped_by.empty() && std::isfinite(rung.error_m); }
@@ -104,7 +103,7 @@ void Search::refine(const CostWay& way) {
     const bool is_new = !before || now.rung.evaluations > before->rung.evaluations;   // a tolerance that changes nothing tells nothing
     const bool falls = now.rung.error_m * kAlikeErrors < least;
     worse = falls ? 0 : worse + (is_right(now.rung) && is_new ? 1 : 0);
-    if (worse >= kMostWorseTrials && least < kFollowed * truth_.scale_m) return;    // round-off has taken over, or it is another motion
+    if (worse >= kMostWorseTrials && least < kAnswer * truth_.scale_m) return;    // round-off has taken over, or it is another motion
     if (is_right(now.rung)) least = std::min(least, now.rung.error_m);
     before = now;
   }

@@ -19,22 +19,18 @@
 namespace tumble::engines {
 namespace {
 
-constexpr double kShort = 0.1;            // s: after so long runs are not repeated
 constexpr double kNoise = 0.02;           // of what comes before the first step: by so much its time differs from run to run
 constexpr double kCoarsest = 16.0;        // of the scene's own step: where a ladder begins
 constexpr double kLinkedSteps = 32.0;     // of the scene's own: after so long rods and joints are brought back, whatever method goes on between
-constexpr double kSamePrice = 1.2;        // a rung that costs no more than so many times the one before shows that steps are not what costs:
+// A rung that costs less than kLeastGrowth times the one before shows that steps are not what costs:
 constexpr double kWorthSkipping = 0.5;    // s: where it costs as much as this
 constexpr long kSkip = 8;                 // the next one has so many times its steps
 constexpr long kMostSteps = 1L << 24;      // a sample
 constexpr int kMostRungs = 14;
 constexpr double kNearFloor = 3.0;        // of the truth's floor: finer runs show nothing
-constexpr double kNoAnswer = 0.1;         // of the scale: a run with a larger error is on the way to others
 constexpr double kGood = 1e-3;            // of the scale: below it, errors that do not fall are round-off
 constexpr int kMostWorse = 2;             // rungs in a row that are no better than the best
 constexpr int kMostWorseInSteps = 4;      // the same where contacts push once a step: when something lands within a step is as good as drawn by lot
-constexpr double kGrowth = 2.2;           // price of a rung over the one before, as expected
-constexpr double kLeastGrowth = 1.2;      // the same where most of it does not come from steps
 
 std::string too_long(double most_s) { return fmt::format("it would take more than {:.0f} s", most_s); }
 
@@ -200,7 +196,7 @@ CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth
       rung.evaluations = count_of(run.run().counters, way.counted);
       if (truth.by_numbers) judge(judged_part(scene, truth), run.run(), rung);
       else compare(run.run().frames, truth, rung);
-      if (!rung.stopped_by.empty() || rung.error_m > kNoAnswer * truth.scale_m) break;   // what such a run costs need not be known well
+      if (!rung.stopped_by.empty() || rung.error_m > kAnswer * truth.scale_m) break;   // what such a run costs need not be known well
     }
   } catch (const UserError& error) {
     rung.stopped_by = error.what();
@@ -252,7 +248,7 @@ std::size_t most_rungs(const scene::Scene& scene, const CostWay& way, const std:
 /// Twice as many as in the last rung; more where these would cost next to nothing.
 long finer_steps(const std::vector<CostRung>& rungs, double interval) {
   const auto last = std::lround(interval / rungs.back().step_s);
-  const bool skips = rungs.size() > 1 && rungs.back().stopped_by.empty() && rungs.back().spent_s > kWorthSkipping && rungs.back().spent_s < kSamePrice * rungs[rungs.size() - 2].spent_s;
+  const bool skips = rungs.size() > 1 && rungs.back().stopped_by.empty() && rungs.back().spent_s > kWorthSkipping && rungs.back().spent_s < kLeastGrowth * rungs[rungs.size() - 2].spent_s;
   return std::min((skips ? kSkip : 2L) * last, kMostSteps);
 }
 

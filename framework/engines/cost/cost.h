@@ -22,6 +22,13 @@
 
 namespace tumble::engines {
 
+/// Of the scale: a run with a larger error is on the way to others, and shows neither where a method leads nor by which power.
+inline constexpr double kAnswer = 0.1;
+/// s: runs that together have taken so long are not repeated.
+inline constexpr double kShort = 0.1;
+/// Price of a run with half the step over the one before, as expected; and the least, where steps are not what costs.
+inline constexpr double kGrowth = 2.2, kLeastGrowth = 1.2;
+
 /// One curve: all that is chosen about a run, but how finely.
 struct CostWay {
   std::string name;                                      // "RK4"

@@ -9,7 +9,6 @@
 namespace tumble::engines {
 namespace {
 
-constexpr double kAnswer = 0.1;          // of the scale: coarser runs do not follow the power law yet
 constexpr double kAsPromised = 0.25;     // off the order by less: terms of the next order at steps this coarse
 constexpr double kSettled = 0.5;         // slopes that lie farther apart show no order
 constexpr double kNoOrder = 0.3;         // a slope below this is no convergence

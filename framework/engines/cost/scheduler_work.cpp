@@ -8,11 +8,11 @@
 #include "framework/core/cpu_time.h"
 #include "framework/core/not_implemented.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/cost/cost.h"
 
 namespace tumble::engines {
 namespace {
 
-constexpr double kShortWork = 0.1;        // s: after so long runs are not repeated
 constexpr double kLeast = 1e-6;       // s: of any run
 constexpr double kFrames = 12.0;      // of a run: a frame brings every process to its time, so few of them leave the scheduler alone
 constexpr double kCoarsestWork = 8.0;     // of the scene's own step
@@ -95,7 +95,7 @@ SchedulerRun run_scheduler(const scene::Scene& scene, const Laws& laws, const Sc
   double reference_s = std::numeric_limits<double>::infinity();
   Laws watched = laws;
   stop_when_too_long(trial.most_s, watched);
-  for (int k = 0; k < trial.runs && (k == 0 || cpu_seconds() - begun < kShortWork); ++k) {
+  for (int k = 0; k < trial.runs && (k == 0 || cpu_seconds() - begun < kShort); ++k) {
     Clocked clocked;
     try {
       run_scene(scene, watched, options_of(trial, scene), clocked);

@@ -29,7 +29,6 @@ constexpr double kStepsASample = 8.0;     // of the scene's own steps
 constexpr double kFramesASecond = 60.0;    // that numbers are judged by
 constexpr double kFinerSteps = 4.0;       // steps in one of the scene's own, of the coarser of two fine runs
 constexpr double kOwnSteps = 0.5;         // the same where steps are free: the finer run has the scene's own
-constexpr double kNextPrice = 2.2;        // of a run with half the step, over the one before
 constexpr double kHelps = 0.7;            // of the floor: less gain from half the step is none
 constexpr double kOlder = 3.0;            // what a run with four times the step differs by, over one with twice: of first order, C h (4 - 1) over C h (2 - 1)
 constexpr double kShareLeft = 0.4;        // of the time: kept for looking at less of the scene
@@ -245,7 +244,7 @@ void refine(const scene::Scene& scene, const Laws& laws, const Window& window, d
   bool confirmed = !by_chance;
   for (long steps = 4 * steps_a_sample(scene, window);; steps *= 2) {
     const bool is_good = confirmed && found && is_whole(truth, window) && truth.floor_m <= good_floor * truth.scale_m;
-    if (is_good || !pair.run.stopped_by.empty() || cpu_seconds() + kNextPrice * price > until) return;
+    if (is_good || !pair.run.stopped_by.empty() || cpu_seconds() + kGrowth * price > until) return;
     pair.older = std::move(pair.other.frames);
     pair.other = std::move(pair.run);
     pair.run = run_finely(scene, with_method(laws, "fehlberg78"), window, steps, {});

@@ -7,6 +7,7 @@
 #include "framework/collision/sweep.h"
 #include "framework/collision/time_bound.h"
 #include "framework/core/numbers.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/events/flight_run.h"
 #include "framework/engines/base/guarded_laws.h"
 
@@ -16,9 +17,6 @@ namespace {
 // A pair whose gap would be bridged by a bound this part of the step or less is searched for its impact: creeping on would
 // move all bodies once a bound, and a bound gains a fixed part of what is left.
 constexpr double kWorthCreeping = 0.1;
-constexpr double kSearched = 1e-9;  // of a pair's size: so near, the sign of the gap is rounding's, and is judged in one place, by the search
-constexpr double kShy = 1e-9;       // of a bound, taken off: rounding may have made it later than the impact
-constexpr double kBoxSlack = 1e-9;     // of coordinates, on boxes: pairs that just touch are looked at
 
 constexpr std::uint32_t kAnyFlight = std::numeric_limits<std::uint32_t>::max();   // a callback finds its bodies on whatever flight they are
 
@@ -106,9 +104,9 @@ class AdvancementRun {
       const double left = world.smooth_until(flights_[a], time_, world.smooth_until(flights_[b], time_, end_)) - time_;
       if (!(left > 0)) return;
       const auto bound = collision::bound_time_apart(world.shape(a), motion(a), world.bounds(a, flights_[a], time_), world.shape(b), motion(b), world.bounds(b, flights_[b], time_), left);
-      if (time_ + left >= end_ && bound.duration >= left && bound.gap >= kSearched * std::min(world.radius(a), world.radius(b))) return;
-      is_exact = bound.duration < kWorthCreeping * run_.step() || bound.gap < kSearched * std::min(world.radius(a), world.radius(b));
-      due = is_exact ? run_.impacts().first_impact(a, flights_[a], b, flights_[b], time_, end_, run_.cost) : time_ + (1 - kShy) * bound.duration;
+      if (time_ + left >= end_ && bound.duration >= left && bound.gap >= kNegligible * std::min(world.radius(a), world.radius(b))) return;
+      is_exact = bound.duration < kWorthCreeping * run_.step() || bound.gap < kNegligible * std::min(world.radius(a), world.radius(b));
+      due = is_exact ? run_.impacts().first_impact(a, flights_[a], b, flights_[b], time_, end_, run_.cost) : time_ + (1 - kNegligible) * bound.duration;
     }
     if (!(due < end_)) return;
     EventKey key = key_of_impact(a, flights_[a], b, flights_[b], due);
@@ -160,7 +158,7 @@ class AdvancementRun {
     if (flight.passage >= 0) {
       collision::SweptBox box{Vector3d::Constant(kInfinity), Vector3d::Constant(-kInfinity), true};
       world.take_in_way(body, flight, time_, end_, box.low, box.high);
-      const Vector3d margin = Vector3d::Constant(world.radius(body) * (1 + kBoxSlack)) + 1e-14 * (box.low.cwiseAbs() + box.high.cwiseAbs());
+      const Vector3d margin = Vector3d::Constant(world.radius(body) * (1 + kNegligible)) + kCoordinateRounding * (box.low.cwiseAbs() + box.high.cwiseAbs());
       return {box.low - margin, box.high + margin, true};
     }
     const Vector3d from = world.position(body, flight, time_), to = world.position(body, flight, end_);
@@ -170,7 +168,7 @@ class AdvancementRun {
       bulge = m.amplitude_m.norm() * m.angular_frequency_rad_s * m.angular_frequency_rad_s;
     }
     const double s = end_ - time_;
-    const Vector3d margin = Vector3d::Constant(world.radius(body) * (1 + kBoxSlack) + bulge * s * s / 8) + kBoxSlack * (from - to).cwiseAbs() + 1e-14 * from.cwiseAbs();
+    const Vector3d margin = Vector3d::Constant(world.radius(body) * (1 + kNegligible) + bulge * s * s / 8) + kNegligible * (from - to).cwiseAbs() + kCoordinateRounding * from.cwiseAbs();
     return {from.cwiseMin(to) - margin, from.cwiseMax(to) + margin, moves};
   }
   bool touches(int a, int b) const { return (boxes_[a].low.array() <= boxes_[b].high.array()).all() && (boxes_[b].low.array() <= boxes_[a].high.array()).all(); }

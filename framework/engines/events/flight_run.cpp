@@ -22,7 +22,7 @@ FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptio
   for (std::size_t k = 0; k < callbacks_.size(); ++k) callback_keys_.push_back({callbacks_[k].time, static_cast<std::uint32_t>(k), EventClass::kCallback, callbacks_[k].bodies.front(), -1});
   if (!world_.processes()) return;
   refuse_unstable_steps(world_.world(), laws_, {step_, duration_}, scene.file.empty() ? scene.name : scene.file.string(), counters.notices);
-  if (const auto step = tell_of_unstable_links(world_.world(), LinkForces(world_.world()), laws_, {step_, duration_}, counters.notices)) counters.watch.name_step(*step);
+  if (const auto step = report_unstable_links(world_.world(), LinkForces(world_.world()), laws_, {step_, duration_}, counters.notices)) counters.watch.name_step(*step);
   links_ = std::make_unique<LinkMeasures>(world_, laws_);
   switches_ = force_switches(world_.world(), duration_);
   for (const Event& event : world_.start_events()) sink_.event(event);
@@ -155,7 +155,7 @@ void FlightRun::require_progress(const EventKey& key, const Event& event) {
   impacts_in_step_ = step == step_of_impacts_ ? impacts_in_step_ + 1 : 0;
   step_of_impacts_ = step;
   if (impacts_in_step_ > most_impacts(world_.size()))
-    throw StoppedRun(told_endless_impacts(key.time, fmt::format("bodies {} and {}", name(event.body_a), name(event.body_b))));
+    throw StoppedRun(endless_impacts_message(key.time, fmt::format("bodies {} and {}", name(event.body_a), name(event.body_b))));
 }
 
 void FlightRun::commit_frame(const FlightOf& flight_of) {
@@ -168,7 +168,7 @@ void FlightRun::commit_frame(const FlightOf& flight_of) {
   ++next_;
   if (!callbacks_.empty()) return;   // they bring energy in
   if (const auto runaway = energy_watch_.look(frame.time, world_.world(), states_))
-    throw StoppedRun(told_runaway(frame.time, world_.world(), *runaway, {states_, recorded_forces(world_.world(), frame), frame.contacts}, laws_));
+    throw StoppedRun(runaway_message(frame.time, world_.world(), *runaway, {states_, recorded_forces(world_.world(), frame), frame.contacts}, laws_));
 }
 
 void FlightRun::tell_membership(double t, const FlightOf& flight_of) const {

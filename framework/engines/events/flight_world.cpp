@@ -12,13 +12,12 @@
 #include "framework/collision/sweep.h"
 #include "framework/core/error.h"
 #include "framework/effects/build_world.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/stepping/start_overlaps.h"
 
 namespace tumble::engines {
 namespace {
 
-constexpr double kTouchRounding = 1e-14;   // of coordinates, so that bodies that just touch are looked at
-constexpr double kTouchingAtStart = 1e-9;   // of the smaller body: ten shells of lasting_contacts.cpp
 constexpr int kMostNudges = 20;       // a few roundings are taken back in as many rounds
 
 // Shapes that many bodies share are prepared once: equal balls, boxes, and models of the same file at the same scale.
@@ -83,7 +82,7 @@ void FlightWorld::start_processes() {
   for (const auto& [a, b] : near_at_start_) {
     if (!world_.contact) break;
     const auto pose = [&](int k) { return collision::Pose{first_[k].com_world, first_[k].world_from_body}; };
-    if (collision::gap_distance(shape(a), pose(a), shape(b), pose(b)) <= kTouchingAtStart * std::min(radius(a), radius(b))) touching.emplace_back(a, b);
+    if (collision::gap_distance(shape(a), pose(a), shape(b), pose(b)) <= kNegligible * std::min(radius(a), radius(b))) touching.emplace_back(a, b);
   }
   Processes::Start start = processes_->start(states, touching);
   for (BegunFlight& begun : start.flights) first_[begun.body] = begun.flight;
@@ -101,7 +100,7 @@ bool FlightWorld::may_collide(int a, int b) const {
 void FlightWorld::refuse_overlap(const scene::Scene& scene) {
   std::vector<collision::SweptBox> boxes;
   for (int i = 0; i < size(); ++i) {
-    const Vector3d margin = Vector3d::Constant(radius(i) * (1 + kTouchRounding)) + kTouchRounding * first_[i].com_world.cwiseAbs();
+    const Vector3d margin = Vector3d::Constant(radius(i) * (1 + kCoordinateRounding)) + kCoordinateRounding * first_[i].com_world.cwiseAbs();
     boxes.push_back({first_[i].com_world - margin, first_[i].com_world + margin, can_move(i)});
   }
   auto pairs = collision::overlapping_pairs(boxes);
@@ -109,7 +108,7 @@ void FlightWorld::refuse_overlap(const scene::Scene& scene) {
   near_at_start_ = pairs;
   const auto pose = [&](int k) { return collision::Pose{first_[k].com_world, first_[k].world_from_body}; };
   std::vector<StartPair> near;
-  for (const auto& [a, b] : pairs) look_at_start(a, b, shape(a), pose(a), shape(b), pose(b), kTouching * collision::gap_scale(shape(a), pose(a), shape(b), pose(b)), near);
+  for (const auto& [a, b] : pairs) look_at_start(a, b, shape(a), pose(a), shape(b), pose(b), kRoundOff * collision::gap_scale(shape(a), pose(a), shape(b), pose(b)), near);
   refuse_overlaps(scene.file.empty() ? scene.name : scene.file.string(), scene, near);
   for (int round = 0; round < kMostNudges && !scene.contact; ++round) {   // processes draw their members apart themselves
     bool clean = true;

@@ -9,13 +9,10 @@
 #include "framework/collision/time_bound.h"
 #include "framework/core/numbers.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/tolerances.h"
 
 namespace tumble::engines {
 namespace {
-
-constexpr double kSlack = 1e-9;   // of lengths: pairs this much out of reach are still searched, whatever rounding does
-
-constexpr double kMostTurning = 1e5;   // rad in one search, which looks at each of them: beyond, a run would take hours and look like a hang
 
 // A root in closed form is off by roundings: it is taken back until the gap is not negative, first by one spacing of the time, then
 // by twice as much each round.
@@ -111,11 +108,11 @@ bool ImpactsOfFlights::may_meet(int a, const Flight& f, int b, const Flight& g, 
     const Flight &flight = a_is_plane ? g : f, &plane = a_is_plane ? f : g;
     const Vector3d normal = plane.world_from_body * Vector3d::UnitZ();
     const auto height = [&](double t) { return normal.dot(world_.position(body, flight, t) - plane.com_world); };
-    return std::min(height(low), height(high)) - bulge <= world_.radius(body) * (1 + kSlack);
+    return std::min(height(low), height(high)) - bulge <= world_.radius(body) * (1 + kNegligible);
   }
   const Vector3d from = world_.position(a, f, low) - world_.position(b, g, low), way = world_.position(a, f, high) - world_.position(b, g, high) - from;
   const double length = way.squaredNorm(), part = length > 0 ? std::clamp(-from.dot(way) / length, 0.0, 1.0) : 0.0;
-  return (from + part * way).norm() <= (world_.radius(a) + world_.radius(b)) * (1 + kSlack) + bulge;
+  return (from + part * way).norm() <= (world_.radius(a) + world_.radius(b)) * (1 + kNegligible) + bulge;
 }
 
 bool ImpactsOfFlights::may_meet_on_passage(int a, const Flight& f, int b, const Flight& g, double low, double high) const {
@@ -133,11 +130,11 @@ bool ImpactsOfFlights::may_meet_on_passage(int a, const Flight& f, int b, const 
     const Corners box = a_is_plane ? way(b, g) : way(a, f);
     const Flight& plane = a_is_plane ? f : g;
     const Vector3d normal = plane.world_from_body * Vector3d::UnitZ(), middle = 0.5 * (box.low + box.high), half = 0.5 * (box.high - box.low);
-    return normal.dot(middle - plane.com_world) - normal.cwiseAbs().dot(half) <= world_.radius(body) * (1 + kSlack);
+    return normal.dot(middle - plane.com_world) - normal.cwiseAbs().dot(half) <= world_.radius(body) * (1 + kNegligible);
   }
   const Corners of_a = way(a, f), of_b = way(b, g);
   const Vector3d apart = (of_a.low - of_b.high).cwiseMax(of_b.low - of_a.high).cwiseMax(Vector3d::Zero());
-  return apart.norm() <= (world_.radius(a) + world_.radius(b)) * (1 + kSlack);
+  return apart.norm() <= (world_.radius(a) + world_.radius(b)) * (1 + kNegligible);
 }
 
 void ImpactsOfFlights::require_searchable(int body, const Flight& flight, double duration) const {

@@ -8,15 +8,14 @@
 
 #include "framework/core/numbers.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/contact/impact_bodies.h"
 #include "framework/engines/contact/impact_law.h"
-#include "framework/engines/contact/meetings.h"
+#include "framework/engines/contact/impact_detection.h"
 
 namespace tumble::engines {
 namespace {
 
-// A push through the middle of a ball does not turn it: this is what rounding leaves of the torque, against the push.
-constexpr double kNoTurn = 64 * kEpsilon;
 constexpr int kMostPairNudges = 20;
 
 // By how much a unit impulse at the point changes the velocity of the point along a direction. [1/kg]
@@ -65,7 +64,7 @@ void MeetingOfFlights::collide(Work& work) const {
   for (int round = 0;; ++round) {
     const auto [approach, point] = fastest_approach(laws_, work.region(), work.a, work.b, threshold.value());
     if (!(approach < -threshold.value())) return;
-    if (round == kMostImpactRounds) throw StoppedRun(told_left_approaching(laws_));
+    if (round == kMostImpactRounds) throw StoppedRun(left_approaching_message(laws_));
     const Contact contact = work.contact_at(*point);
     const double impulse = laws_.collision_impulse(contact, work.a, work.b, restitution);
     const Velocity before_a{work.a.velocity_world, work.a.omega_world}, before_b{work.b.velocity_world, work.b.omega_world};
@@ -85,8 +84,8 @@ void MeetingOfFlights::hop(Work& work) const {
   const auto send = [&](const Vector3d& point) {
     const Contact contact = work.contact_at(point);
     const double rate = normal_velocity(contact, work.a, work.b);
-    if (rate >= kFastEnough * rules_.rest_speed) return false;
-    push(work, contact, (rules_.rest_speed - rate) / (compliance(contact, work.a) + compliance(contact, work.b)));
+    if (rate >= kFastEnough * rules_.restitution_threshold) return false;
+    push(work, contact, (rules_.restitution_threshold - rate) / (compliance(contact, work.a) + compliance(contact, work.b)));
     return true;
   };
   bool again = true;
@@ -102,9 +101,9 @@ bool MeetingOfFlights::settle(Work& work, int body, int support) const {
   const bool is_a = body == work.result.key.body_a;
   Body& mover = is_a ? work.a : work.b;
   const Vector3d up = is_a ? work.gap.normal_b_to_a_world : Vector3d(-work.gap.normal_b_to_a_world);
-  const double rounding = kTouching * collision::gap_scale(world_.shape(work.result.key.body_a), {work.a.com_world, work.a.world_from_body}, world_.shape(work.result.key.body_b), {work.b.com_world, work.b.world_from_body});
+  const double rounding = kRoundOff * collision::gap_scale(world_.shape(work.result.key.body_a), {work.a.com_world, work.a.world_from_body}, world_.shape(work.result.key.body_b), {work.b.com_world, work.b.world_from_body});
   if (!comes_to_rest({world_.gravity_world(), up, world_.radius(body), rounding, mover.inertia.inertia_body, !mover.omega_world.isZero(0.0), mover.velocity_world,
-                      std::min(world_.restitution(body), world_.restitution(support)), rules_.rest_speed, work.fastest}))
+                      std::min(world_.restitution(body), world_.restitution(support)), rules_.restitution_threshold, work.fastest}))
     return false;
   mover.velocity_world.setZero();
   mover.com_world -= work.gap.distance * up;
@@ -115,7 +114,7 @@ bool MeetingOfFlights::settle(Work& work, int body, int support) const {
 }
 
 // What rounding leaves of an overlap is taken back by moving one body along the normal.
-void MeetingOfFlights::draw_apart(Work& work) const {
+void MeetingOfFlights::remove_overlaps(Work& work) const {
   const int a = work.result.key.body_a, b = work.result.key.body_b;
   for (int round = 0; round < kMostPairNudges; ++round) {
     const collision::Gap gap = collision::compute_gap(world_.shape(a), {work.a.com_world, work.a.world_from_body}, world_.shape(b), {work.b.com_world, work.b.world_from_body});
@@ -138,7 +137,8 @@ Flight MeetingOfFlights::flight_of(const Work& work, int body, const Flight& bef
   flight.velocity_world = now.velocity_world;
   flight.world_from_body = now.world_from_body;
   const double arm = world_.radius(body), change = (now.velocity_world - world_.velocity(body, before, key.time)).norm();
-  const bool turns = !(world_.is_ball(body) && before.omega_body.isZero(0.0) && now.omega_world.norm() * arm <= kNoTurn * change);
+  // A push through the middle of a ball does not turn it, but for what rounding leaves of the torque.
+  const bool turns = !(world_.is_ball(body) && before.omega_body.isZero(0.0) && now.omega_world.norm() * arm <= kRoundOff * change);
   flight.omega_body = turns ? Vector3d(now.world_from_body.conjugate() * now.omega_world) : Vector3d(Vector3d::Zero());
   if (!now.com_world.allFinite() || !now.velocity_world.allFinite() || !now.omega_world.allFinite())
     throw StoppedRun(fmt::format("body '{}': its state is not a number (impulses: {})", world_.world().bodies[body].name, laws_.impulse_source));
@@ -151,14 +151,14 @@ Meeting MeetingOfFlights::meet(const EventKey& key, const Flight& f, const Fligh
   const collision::Pose pose_a{work.a.com_world, work.a.world_from_body}, pose_b{work.b.com_world, work.b.world_from_body};
   const collision::CollisionShape &shape_a = world_.shape(a), &shape_b = world_.shape(b);
   work.gap = collision::compute_gap(shape_a, pose_a, shape_b, pose_b);
-  work.points_world = touching_points(shape_a, pose_a, shape_b, pose_b, work.gap, kTouching * collision::gap_scale(shape_a, pose_a, shape_b, pose_b));
+  work.points_world = touching_points(shape_a, pose_a, shape_b, pose_b, work.gap, kRoundOff * collision::gap_scale(shape_a, pose_a, shape_b, pose_b));
   collide(work);
   const bool rests = settle(work, a, b) || settle(work, b, a);
   const double last = std::max(f.partner == b ? f.begin : -kEpsilon, g.partner == a ? g.begin : -kEpsilon);
-  const bool soon_again = last >= 0 && key.time - last < rules_.micro_interval && work.fastest < rules_.rest_speed;
+  const bool soon_again = last >= 0 && key.time - last < rules_.micro_interval && work.fastest < rules_.restitution_threshold;
   if (!rests && (soon_again || !work.any_event)) hop(work);
   if (!work.any_event) work.result.first = {key.time, EventKind::kCollision, a, b, work.points_world.front(), work.gap.normal_b_to_a_world, 0.0, 0.0, 0.0};
-  draw_apart(work);
+  remove_overlaps(work);
   work.result.a = flight_of(work, a, f, work.a);
   work.result.b = flight_of(work, b, g, work.b);
   return work.result;

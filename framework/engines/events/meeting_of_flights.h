@@ -24,7 +24,7 @@ struct Meeting {
 };
 
 struct MeetingRules {
-  double rest_speed;           // [m/s]
+  double restitution_threshold;           // [m/s]
   double micro_interval;       // a pair that meets again within this, slower than the rest speed, is sent apart at the rest speed [s]
 };
 
@@ -43,7 +43,7 @@ class MeetingOfFlights {
   void push(Work& work, const Contact& contact, double impulse) const;
   void hop(Work& work) const;
   bool settle(Work& work, int body, int support) const;
-  void draw_apart(Work& work) const;
+  void remove_overlaps(Work& work) const;
   Flight flight_of(const Work& work, int body, const Flight& before, const Body& now) const;
 
   const FlightWorld& world_;

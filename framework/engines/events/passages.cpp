@@ -7,14 +7,9 @@
 
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/base/step_limits.h"
+#include "framework/engines/base/tolerances.h"
 
 namespace tumble::engines {
-namespace {
-
-constexpr double kNoPartOfStep = 1e-9;         // of the step: a shorter rest of it is taken with the next one
-
-}  // namespace
-
 Passages::Passages(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules)
     : whole_(whole), entries_(whole), shape_of_(std::move(shape_of)), laws_(laws), rules_(rules) {
   if (!whole_.contact) return;
@@ -95,7 +90,7 @@ std::string Passages::names(const std::vector<int>& members) const {
 
 void Passages::take_step(Passage& passage) {
   // Steps end on a grid that all processes share, as frames do: bodies in contact fit each other's surfaces where steps end.
-  const double now = passage.front->time, due = (std::floor((now + kNoPartOfStep * rules_.step) / rules_.step) + 1) * rules_.step;
+  const double now = passage.front->time, due = (std::floor((now + kNegligible * rules_.step) / rules_.step) + 1) * rules_.step;
   ProcessWorld::Outcome outcome = naming(fmt::format("at t = {:.6f} s, {}", now, names(passage.start->members)), [&] { return passage.machine->world->step(*passage.front, due); });
   passage.idle = outcome.step.end > now ? 0 : passage.idle + 1;
   if (passage.idle > kMostIdleSteps) throw StoppedRun(fmt::format("at t = {:.6f} s, {}: time stands still, its bodies meet again and again", now, names(passage.start->members)));

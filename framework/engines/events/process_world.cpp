@@ -1,22 +1,15 @@
 #include "framework/engines/events/process_world.h"
 
+#include "framework/engines/base/tolerances.h"
+
 #include <algorithm>
 #include <limits>
 #include <utility>
-
-#include <fmt/format.h>
-
-#include "framework/engines/base/guarded_laws.h"
-#include "framework/engines/base/step_limits.h"
-#include "framework/engines/contact/contact_paths.h"
-#include "framework/engines/contact/impact_law.h"
-#include "framework/engines/contact/impact_response.h"
 
 namespace tumble::engines {
 namespace {
 
 constexpr double kTogether = 2.0;         // steps
-constexpr double kNear = 1e-6;            // of the sizes: pairs farther apart do not touch
 
 std::vector<const collision::CollisionShape*> shapes_of(const WorldPart& part, const ShapeOf& shape_of) {
   std::vector<const collision::CollisionShape*> shapes;
@@ -39,12 +32,8 @@ collision::MotionState ProcessStep::motion_at(std::size_t member, double t, cons
 }
 
 ProcessWorld::ProcessWorld(const World& whole, const EntriesByBody& entries, const ShapeOf& shape_of, const Laws& laws, ProcessRules rules, RunCounters& counters, const std::vector<int>& members, const std::vector<int>& still)
-    : laws_(laws), rules_(rules), counters_(counters), members_(members), part_(part_of(whole, entries, members, still)), moving_(part_.world, laws, counters, shapes_of(part_, shape_of)),
-      meetings_(moving_, laws, counters), impacts_(laws, {rules.rest_speed, kMicroInterval * rules.step}, counters) {
-  if (!built::kContact || !moving_.world().contact) return;
-  impacts_.use_contact_rules(rules.rest_speed, moving_.world().contact->impact_law);
-  contacts_.emplace(moving_, laws, *moving_.world().contact, rules.rest_speed, counters, collector_);
-}
+    : rules_(rules), counters_(counters), members_(members), part_(part_of(whole, entries, members, still)),
+      world_step_(part_.world, laws, {rules.step, rules.restitution_threshold, false}, counters, collector_, shapes_of(part_, shape_of)), moving_(world_step_.moving()) {}
 
 int ProcessWorld::local(int body) const { return static_cast<int>(std::lower_bound(part_.bodies.begin(), part_.bodies.end(), body) - part_.bodies.begin()); }
 
@@ -60,13 +49,13 @@ void ProcessWorld::load(const ProcessState& from, std::optional<ContactMemory> m
   }
   std::map<BodyPair, double> met;
   for (const auto& [pair, time] : from.met) met.emplace(local(pair), time);
-  impacts_.remember(std::move(met));
+  world_step_.impacts().remember(std::move(met));
   collector_.events.clear();
   if (!has_contacts()) return;
-  if (memory) return contacts_->recall(std::move(*memory));
-  contacts_->recall({});
+  if (memory) return world_step_.contacts().recall(std::move(*memory));
+  world_step_.contacts().recall({});
   const std::uint64_t begun = counters_.contacts_begun;
-  for (const BodyPair& pair : from.lasting) contacts_->begin(local(pair), {});   // it has begun before: what is said of it is not new
+  for (const BodyPair& pair : from.lasting) world_step_.contacts().begin(local(pair), {});   // it has begun before: what is said of it is not new
   counters_.contacts_begun = begun;
   collector_.events.clear();
 }
@@ -95,12 +84,12 @@ ProcessState ProcessWorld::save() {
   state.members = members_;
   for (const int member : part_.members) state.states.push_back(moving_.state(member));
   save_controls(state);
-  for (const auto& [pair, time] : impacts_.last_meetings())
+  for (const auto& [pair, time] : world_step_.impacts().last_impacts())
     if (moving_.time() - time < rules_.step) state.met.emplace(whole(pair), time);
   if (!has_contacts()) return state;
-  for (const BodyPair& pair : contacts_->lasting()) state.lasting.insert(whole(pair));
+  for (const BodyPair& pair : world_step_.contacts().lasting()) state.lasting.insert(whole(pair));
   if (moving_.world().contact->plastic_impacts == scene::PlasticImpacts::kInStep) note_near(state);
-  state.contacts = contacts_->take_memory();
+  state.contacts = world_step_.contacts().take_memory();
   return state;
 }
 
@@ -117,7 +106,7 @@ void ProcessWorld::note_near(ProcessState& state) const {
       if (std::min(moving_.world().bodies[a].restitution, moving_.world().bodies[b].restitution) > 0 || !moving_.may_collide(a, b)) continue;
       const double within = kTogether * rules_.step * (speed(a) + speed(b));
       if ((moving_.state(a).com_world - moving_.state(b).com_world).norm() > moving_.shape(a).bounding_radius() + moving_.shape(b).bounding_radius() + within) continue;
-      if (meetings_.gap({a, b}).distance <= within) state.near.emplace(members_[i], members_[j]);
+      if (world_step_.impact_detection().gap({a, b}).distance <= within) state.near.emplace(members_[i], members_[j]);
     }
 }
 
@@ -156,7 +145,7 @@ ProcessState ProcessWorld::shown(const ProcessState& state) {
   load(state);
   std::vector<RigidBodyState> all = moving_.states();
   moving_.close_links(all, state.time);
-  if (has_contacts()) contacts_->draw_apart(near_pairs(std::nullopt), all, state.time);
+  if (has_contacts()) world_step_.contacts().remove_overlaps(near_pairs(std::nullopt), all, state.time);
   ProcessState after = state;
   for (std::size_t k = 0; k < members_.size(); ++k) after.states[k] = all[static_cast<std::size_t>(part_.members[k])];
   return after;
@@ -179,62 +168,51 @@ void ProcessWorld::begin_step(double target) {
   moving_.begin_step(target);
   for (const int member : part_.members) {
     if (!moving_.smooth_path(member)) moving_.set_path(member, moving_.state(member), moving_.path_end(member));
-    moving_.refuse_whirl(member);
+    moving_.refuse_fast_turning(member);
   }
 }
+
+// Beside what a world of all bodies does in a step: the paths are kept, and an impact at the very start is a step's end.
+struct ProcessWorld::Stages final : StepStages {
+  explicit Stages(ProcessWorld& of, ProcessStep* taken = nullptr) : world(of), step(taken) {}
+  void begin(double target) override { world.begin_step(target); }
+  bool begin_again(double target) override {
+    if (!world.collector_.events.empty()) return false;
+    world.begin_step(target);
+    return true;
+  }
+  void before_commit(double reached) override {
+    step->end = reached;
+    step->forces = world.forces();
+    if (reached > step->from.time)
+      for (const int member : world.part_.members) step->paths.push_back(*world.moving_.smooth_path(member));
+  }
+  void impact(const Event& event) override { world.collector_.event(event); }
+
+  ProcessWorld& world;
+  ProcessStep* step;   // the one under way
+};
 
 ProcessWorld::Outcome ProcessWorld::step(ProcessState& start, double due) {
   load(start, std::exchange(start.contacts, std::nullopt));
   const double next_look = moving_.look(), next_switch = load_forces(start);
-  ProcessState from = start.without_memory();
-  save_controls(from);
-  ++counters_.steps;
-  // As a world of all bodies does it (rd/retroactive.cpp), without sleep and pictures: free paths, contacts, the first impact, commit, response.
-  begin_step(std::min({due, next_look, next_switch}));
-  PairsOfStep pairs;
-  if (has_contacts()) {
-    pairs.searched = meetings_.candidates();
-    const bool goes_on = keep_contacts(*contacts_, meetings_, pairs, [&](double earlier) {
-      if (!collector_.events.empty()) return false;   // an impact at the very start
-      begin_step(earlier);
-      return true;
-    });
-    if (!goes_on) {
-      ProcessState after = save();
-      const double now = from.time;
-      return {{std::move(from), now, {}, {}}, std::move(after), take_events()};
-    }
-  }
-  const std::optional<Earliest> earliest = pairs.searched.empty() ? std::nullopt : meetings_.earliest(pairs.searched);
-  const double reached = earliest ? earliest->time : moving_.target();
-  ProcessStep step{std::move(from), reached, {}, forces()};
-  if (reached > step.from.time)
-    for (const int member : part_.members) step.paths.push_back(*moving_.smooth_path(member));
-  moving_.commit(reached);
-  require_numbers();
-  if (has_contacts()) {
-    take_back_overlaps(&*contacts_, meetings_, pairs);
-    if (earliest) resolve(pairs.near.empty() ? pairs.searched : pairs.near, pairs.searched[earliest->pair], true);
-  }
-  if (!earliest) moving_.watch_links(reached - step.from.time);
+  ProcessStep step{start.without_memory(), start.time, {}, {}};
+  save_controls(step.from);
+  Stages stages(*this, &step);
+  const WorldStep::Taken taken = world_step_.take(std::min({due, next_look, next_switch}), stages);
+  if (taken.impact) world_step_.respond(taken.around(), *taken.impact, true, stages);
   ProcessState after = save();
   return {std::move(step), std::move(after), take_events()};
 }
 
 std::vector<ContactPoint> ProcessWorld::forces() const {
   if (!has_contacts()) return {};
-  std::vector<ContactPoint> forces = contacts_->forces();
+  std::vector<ContactPoint> forces = world_step_.contacts().forces();
   for (ContactPoint& point : forces) {
     point.body_a = whole(point.body_a);
     point.body_b = whole(point.body_b);
   }
   return forces;
-}
-
-void ProcessWorld::require_numbers() const {
-  for (const int member : part_.members)
-    if (!pack(moving_.state(member)).allFinite())
-      throw StoppedRun(fmt::format("body {}: its state is not a number (integrator: {}; impulses: {})", name(member), laws_.integrator_source, laws_.impulse_source));
 }
 
 // ---- Impacts ---------------------------------------------------------------------------------------------------------------
@@ -249,7 +227,7 @@ std::vector<BodyPair> ProcessWorld::near_pairs(std::optional<BodyPair> trigger) 
       }
       if (!moving_.world().contact || !moving_.may_collide(a, b)) continue;
       const double reach = moving_.shape(a).bounding_radius() + moving_.shape(b).bounding_radius();
-      if ((moving_.state(a).com_world - moving_.state(b).com_world).norm() > reach * (1 + kNear)) continue;
+      if ((moving_.state(a).com_world - moving_.state(b).com_world).norm() > reach * (1 + kSixDigits)) continue;
       pairs.emplace_back(a, b);
     }
   return pairs;
@@ -258,8 +236,8 @@ std::vector<BodyPair> ProcessWorld::near_pairs(std::optional<BodyPair> trigger) 
 ProcessWorld::Change ProcessWorld::begin_contacts(const ProcessState& state) {
   load(state);
   const std::vector<BodyPair> pairs = near_pairs(std::nullopt);
-  meetings_.separate(pairs);
-  contacts_->begin_where_touching(pairs);
+  world_step_.impact_detection().separate(pairs);
+  world_step_.contacts().begin_where_touching(pairs);
   ProcessState after = save();
   return {std::move(after), take_events()};
 }
@@ -269,30 +247,21 @@ ProcessWorld::Change ProcessWorld::collide(BodyPair pair, const ProcessState& st
   load_forces(state);
   const BodyPair trigger = local(pair);
   const std::vector<BodyPair> pairs = near_pairs(trigger);
-  meetings_.separate(pairs);
+  world_step_.impact_detection().separate(pairs);
   // A blow that is dealt with in the step it falls into is dealt with in the one that begins here, by all that the two then touch, friction
   // among it: so a world of all bodies does it, and of a blow struck alone and without friction something else would come.
-  if (has_contacts() && contacts_->deals_in_step(trigger)) contacts_->begin(trigger, meetings_.gap(trigger));
-  else resolve(pairs, trigger, false);
-  require_numbers();
+  if (has_contacts() && world_step_.contacts().deals_in_step(trigger)) world_step_.contacts().begin(trigger, world_step_.impact_detection().gap(trigger));
+  else {
+    Stages stages(*this);
+    world_step_.respond(pairs, trigger, false, stages);
+  }
+  world_step_.require_numbers();
   if (collector_.events.empty()) {   // they met without coming nearer
-    const collision::Gap gap = meetings_.gap(trigger);
+    const collision::Gap gap = world_step_.impact_detection().gap(trigger);
     collector_.event({moving_.time(), EventKind::kCollision, trigger.first, trigger.second, 0.5 * (gap.point_a_world + gap.point_b_world), gap.normal_b_to_a_world, 0.0, 0.0, 0.0});
   }
   ProcessState after = save();
   return {std::move(after), take_events()};
-}
-
-// As a world of all bodies does it (rd/retroactive.cpp): everything that touches, and within the same impulses what rods and joints hold.
-// What lies on something touches it: within a step that says which pairs were kept apart, at an instant all lasting contacts.
-void ProcessWorld::resolve(const std::vector<BodyPair>& pairs, BodyPair trigger, bool is_in_step) {
-  const StageTimer timer(counters_.impact_seconds);
-  const TouchingPairs touching = touching_pairs(meetings_, pairs, trigger, [&](const BodyPair& pair) { return has_contacts() && contacts_->lasts(pair) && (!is_in_step || contacts_->keeps(pair)); });
-  const Resolution resolution = impacts_.resolve(moving_, touching.all, touching.trigger);
-  for (const Event& event : resolution.events) collector_.event(event);
-  if (!resolution.settled) throw StoppedRun(told_left_approaching(laws_));
-  if (!has_contacts()) return impacts_.push_apart(moving_, touching.all, resolution.micro_impacts);
-  begin_slow_contacts(touching, resolution.events, impacts_, moving_.world(), *contacts_);
 }
 
 }  // namespace tumble::engines

@@ -1,5 +1,5 @@
 /// The small world of one process: bodies that links, forces or lasting contacts keep from flying freely, moved by the world's own stages
-/// (moving_world, linked_bodies, lasting_contacts, sequential_impacts), and by nothing else.
+/// (contact/world_step.h), and by nothing else.
 ///
 /// It keeps no time of its own: every question brings the state to start from, and the answer depends on that alone. So processes go on,
 /// are rolled back and begin again in any order.
@@ -12,9 +12,7 @@
 #include <vector>
 
 #include "framework/engines/events/world_part.h"
-#include "framework/engines/contact/lasting_contacts.h"
-#include "framework/engines/contact/meetings.h"
-#include "framework/engines/contact/sequential_impacts.h"
+#include "framework/engines/contact/world_step.h"
 
 namespace tumble::engines {
 
@@ -36,9 +34,9 @@ struct ProcessState {
   ProcessState without_memory() const;
 };
 
-/// What the pages of a scene say about impacts and steps.
+/// What the pages of a scene say about steps and impacts.
 struct ProcessRules {
-  double step, rest_speed;                      // [s], [m/s]
+  double step, restitution_threshold;                      // [s], [m/s]
 };
 
 /// Solids of the whole world, by body.
@@ -110,28 +108,24 @@ class ProcessWorld {
   double load_forces(const ProcessState& from);
   std::map<int, effects::Memory> renamed(const std::map<int, effects::Memory>& memory, bool to_whole) const;
   void begin_step(double target);
-  void require_numbers() const;
-  bool has_contacts() const { return contacts_.has_value(); }
+  bool has_contacts() const { return world_step_.has_contacts(); }
   std::vector<ContactPoint> forces() const;
-  void resolve(const std::vector<BodyPair>& pairs, BodyPair trigger, bool is_in_step);
   std::vector<BodyPair> near_pairs(std::optional<BodyPair> trigger) const;
   std::vector<Event> take_events();
   int whole(int body) const { return body < 0 ? body : part_.bodies[static_cast<std::size_t>(body)]; }
   int local(int body) const;
   BodyPair whole(BodyPair pair) const { return {whole(pair.first), whole(pair.second)}; }
   BodyPair local(BodyPair pair) const { return {local(pair.first), local(pair.second)}; }
-  std::string name(int body) const { return "'" + moving_.world().bodies[static_cast<std::size_t>(body)].name + "'"; }
 
-  const Laws& laws_;
+  struct Stages;   // what a process adds to a step
+
   ProcessRules rules_;
   RunCounters& counters_;
   std::vector<int> members_;
   WorldPart part_;
-  MovingWorld moving_;
-  Meetings meetings_;
-  SequentialImpacts impacts_;
   Collector collector_;
-  std::optional<LastingContacts> contacts_;
+  WorldStep world_step_;
+  MovingWorld& moving_;   // of world_step_
 };
 
 }  // namespace tumble::engines

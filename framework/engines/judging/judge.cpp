@@ -15,8 +15,9 @@
 #include "framework/dynamics/world.h"
 #include "framework/effects/build_world.h"
 #include "framework/effects/registry.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/contact/contact_constants.h"
-#include "framework/engines/contact/lasting_contacts.h"
+#include "framework/engines/contact/persistent_contacts.h"
 #include "framework/engines/judging/measures.h"
 
 namespace tumble::engines {
@@ -47,7 +48,6 @@ class EnergyRounding {
   double operator()(const Frame& frame) const {
     double terms = frame.kinetic_energy;   // all positive
     for (const effects::Effect* effect : effects::all()) effect->add_energy_terms(world_, states_of(frame), terms);
-    constexpr double kDeviations = 8.0;
     return kDeviations * std::numeric_limits<double>::epsilon() * (1.0 + std::sqrt(frame.time / step_s_)) * terms + lift(frame);
   }
 
@@ -139,13 +139,12 @@ Finding angular_momentum(const CheckSpec& check, const Scene&, const Trajectory&
 
 /// By how much the gap of two bodies that touch may come out below 0: a few roundings of their sizes and of their places (gap.h). [m]
 double rounding_of_gaps(const Scene& scene, const Trajectory& run) {
-  constexpr double kRoundings = 4.0;
   double scale = 0.0;
   for (const WorldBody& body : build_world(scene).bodies)
     if (const double radius = bounding_radius(body.shape); std::isfinite(radius)) scale = std::max(scale, radius);
   for (const Frame& frame : run.frames)
     for (const BodyPose& pose : frame.poses) scale = std::max(scale, pose.com_world.cwiseAbs().maxCoeff());
-  return kRoundings * std::numeric_limits<double>::epsilon() * scale;
+  return kFewRoundings * std::numeric_limits<double>::epsilon() * scale;
 }
 
 Finding gap(const CheckSpec& check, const Scene& scene, const Trajectory& run) {
@@ -344,15 +343,13 @@ void refuse_other_units(const Scene& scene) {
 
 namespace {
 
-/// Right laws leave roundings of velocities; those of links in long chains some 1e-12.
-constexpr double kImpactEnergy = 1e-9;   // of the kinetic energy before
-
+/// Of the kinetic energy before, right laws change what they should to roundings of velocities, links in long chains to some 1e-12.
 /// Every impact of every run is looked at; nothing is said where all are right.
 std::optional<CheckResult> judge_impacts(const Trajectory& run) {
   const Event* worst = nullptr;
   long wrong = 0;
   for (const Event& event : run.events) {
-    if (event.kind != EventKind::kCollision || !(event.energy_excess > kImpactEnergy)) continue;
+    if (event.kind != EventKind::kCollision || !(event.energy_excess > kNegligible)) continue;
     ++wrong;
     if (worst == nullptr || event.energy_excess > worst->energy_excess) worst = &event;
   }
@@ -362,7 +359,7 @@ std::optional<CheckResult> judge_impacts(const Trajectory& run) {
   result.kind = "impact_energy";
   result.subject = name(worst->body_a) + ", " + name(worst->body_b);
   result.value = worst->energy_excess;
-  result.threshold = kImpactEnergy;
+  result.threshold = kNegligible;
   result.passed = false;
   result.why = "an impact takes from the kinetic energy what restitution and friction say, and never adds to it; looked at in every run";
   result.detail = fmt::format("{}: the kinetic energy changes by {:.6g} J; {} impact{} wrong", at_time(worst->time), worst->energy_change, wrong, wrong == 1 ? " is" : "s are");

@@ -9,19 +9,19 @@ namespace tumble::engines {
 
 const std::vector<StackSamples::Part>& time_parts() {
   static const std::vector<StackSamples::Part> parts = {
-      {"contacts", {"tumble::solve_contacts", "tumble::contacts::", "tumble::engines::LastingContacts::", "tumble::engines::ContactModes::"}},
+      {"contacts", {"tumble::solve_contacts", "tumble::contacts::", "tumble::engines::PersistentContacts::", "tumble::engines::ContactModes::"}},
       {"links and forces", {"tumble::engines::LinkedBodies::", "tumble::a3::"}},
       {"motion", {"tumble::engines::MovingWorld::", "tumble::FreeRotation::", "tumble::SpinSeries::", "tumble::engines::SmoothPath::", "tumble::a2::"}},
       {"impacts", {"tumble::engines::SequentialImpacts::", "tumble::engines::MeetingOfFlights::", "tumble::a1::"}},
-      {"search for impacts", {"tumble::collision::", "tumble::engines::find_impact", "tumble::engines::ImpactsOfFlights::", "tumble::engines::Meetings::"}},
-      {"who may meet", {"tumble::collision::overlapping_pairs", "tumble::engines::ActivePairs::", "tumble::engines::Meetings::candidates"}},
+      {"search for impacts", {"tumble::collision::", "tumble::engines::find_impact", "tumble::engines::ImpactsOfFlights::", "tumble::engines::ImpactDetection::"}},
+      {"who may meet", {"tumble::collision::overlapping_pairs", "tumble::engines::ActivePairs::", "tumble::engines::ImpactDetection::candidates"}},
   };
   return parts;
 }
 
 const std::vector<std::string>& set_up_functions() {
-  static const std::vector<std::string> functions = {"tumble::build_world", "tumble::engines::FlightWorld::FlightWorld", "tumble::engines::FlightRun::FlightRun", "tumble::engines::Meetings::Meetings",
-                                                     "tumble::engines::Meetings::refuse_overlap"};
+  static const std::vector<std::string> functions = {"tumble::build_world", "tumble::engines::FlightWorld::FlightWorld", "tumble::engines::FlightRun::FlightRun", "tumble::engines::ImpactDetection::ImpactDetection",
+                                                     "tumble::engines::ImpactDetection::refuse_overlap"};
   return functions;
 }
 

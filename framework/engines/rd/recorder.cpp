@@ -4,14 +4,11 @@
 #include <limits>
 
 #include "framework/effects/invariants.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/contact/sleeping.h"
 
 namespace tumble::engines {
 namespace {
-
-// Of the time between frames: a step's end this near before a frame is that frame. Where they differ by a rounding the frame would come from
-// the next step's path, whose velocity may be that of its end already.
-constexpr double kSameTime = 1e-9;
 
 // No pair whose gap is at least `smallest` changes it, and that of most is told by the balls around the two.
 double smaller_gap(const MovingWorld& moving, const std::vector<RigidBodyState>& states, int i, int j, double smallest) {
@@ -61,7 +58,7 @@ void FrameRecorder::push(MovingWorld& moving, double t) {
   std::vector<RigidBodyState> states;
   for (int i = 0; i < moving.size(); ++i) states.push_back(t == moving.time() && moving.can_move(i) ? moving.state(i) : moving.path(i, t));
   if (t > moving.time() && !moving.linked_groups().empty()) moving.close_links(states, t);
-  if (built::kContact && contacts_ && t > moving.time()) contacts_->open_gaps(states, t);
+  if (built::kContact && contacts_ && t > moving.time()) contacts_->remove_overlaps_within_step(states, t);
   Frame frame;
   frame.time = t;
   for (int i = 0; i < moving.size(); ++i) {
@@ -88,7 +85,7 @@ void FrameRecorder::record_before(MovingWorld& moving, double t) {
 }
 
 void FrameRecorder::record_committed(MovingWorld& moving) {
-  if (frame_time(next_) <= duration_ && frame_time(next_) <= moving.time() + kSameTime / rate_) {
+  if (frame_time(next_) <= duration_ && frame_time(next_) <= moving.time() + kNegligible / rate_) {
     push(moving, moving.time());
     ++next_;
   }

@@ -5,7 +5,7 @@
 
 namespace tumble::engines {
 
-class LastingContacts;
+class PersistentContacts;
 class Sleepers;
 
 /// Smallest gap over all pairs that may collide; infinite where there is none. [m] Pairs of bodies that stand still from frame to frame
@@ -27,7 +27,7 @@ class FrameRecorder {
   FrameRecorder(double rate_hz, double duration, TrajectorySink& sink) : rate_(rate_hz), duration_(duration), sink_(sink) {}
 
   /// Frames hold the forces of these contacts, and what they hold apart is apart in frames within a step, too.
-  void record_contacts_of(LastingContacts& contacts) { contacts_ = &contacts; }
+  void record_contacts_of(PersistentContacts& contacts) { contacts_ = &contacts; }
   void record_contacts_of(const Sleepers& sleepers) { sleepers_ = &sleepers; }
 
   /// Pushes the frames that lie before `t`, from the paths of the step under way.
@@ -41,7 +41,7 @@ class FrameRecorder {
 
   double rate_, duration_;
   TrajectorySink& sink_;
-  LastingContacts* contacts_ = nullptr;
+  PersistentContacts* contacts_ = nullptr;
   const Sleepers* sleepers_ = nullptr;
   SmallestGap smallest_gap_;
   long next_ = 0;

@@ -9,13 +9,11 @@
 #include "framework/core/disjoint_sets.h"
 #include "framework/effects/registry.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/tolerances.h"
 
 namespace tumble::engines {
 namespace {
 
-// Places count as on their constraints within this part of the group's size: some roundings of coordinates that are summed up along
-// a chain.
-constexpr double kOnConstraint = 1e-14;
 constexpr int kMostProjections = 8;   // Newton's method doubles the digits; a step leaves few missing
 
 Matrix3d inverse_inertia_world(const Body& body) {
@@ -329,7 +327,7 @@ void LinkedBodies::project_local(std::vector<RigidBodyState>& local, double t, b
   std::vector<Body> bodies = place_bodies(local, t);
   std::vector<Constraint> all = rows(bodies);
   for (int round = 0; places && round < kMostProjections; ++round) {
-    if (open_part(bodies, all) <= kOnConstraint) break;
+    if (open_part(bodies, all) <= kCoordinateRounding) break;
     const VectorXd change = correct(bodies, all, true);
     for (std::size_t i = 0; i < local.size(); ++i) {
       const Eigen::Index at = 6 * static_cast<Eigen::Index>(i);
@@ -343,7 +341,7 @@ void LinkedBodies::project_local(std::vector<RigidBodyState>& local, double t, b
     bodies = place_bodies(local, t);
     all = rows(bodies);
   }
-  if (const double left = places ? open_part(bodies, all) : 0.0; !(left <= kProjected)) counters_.watch.note(RunWatch::Kind::kProjectionOpen, whose(), {left, kProjected, t, step_});
+  if (const double left = places ? open_part(bodies, all) : 0.0; !(left <= kNegligible)) counters_.watch.note(RunWatch::Kind::kProjectionOpen, whose(), {left, kNegligible, t, step_});
   const VectorXd change = correct(bodies, all, false);
   for (std::size_t i = 0; i < local.size(); ++i) {
     const Eigen::Index at = 6 * static_cast<Eigen::Index>(i);

@@ -11,12 +11,10 @@
 #include "framework/core/error.h"
 #include "framework/dynamics/rotation_bounds.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/tolerances.h"
 
 namespace tumble::engines {
 namespace {
-
-// Of a body's radius: so far apart lasting contacts are kept at most, ten shells of lasting_contacts.cpp.
-constexpr double kNeighbourMargin = 1e-9;
 
 // What the laws' integration makes of a constant acceleration a: x(h) = x0 + v h + bend a h^2 / 2. Asked once, so that bounds hold
 // for whichever method a student wrote.
@@ -40,7 +38,7 @@ MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters) :
 
 MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters, std::vector<const collision::CollisionShape*> shapes)
     : world_(std::move(world)), laws_(laws), counters_(counters), shapes_(std::move(shapes)), rests_(world_.bodies.size()), asleep_(world_.bodies.size(), 0),
-      paths_(world_.bodies.size()), told_of_shortening_(world_.bodies.size(), false), principal_(world_.bodies.size()) {
+      paths_(world_.bodies.size()), reported_shortening_(world_.bodies.size(), false), principal_(world_.bodies.size()) {
   for (const WorldBody& body : world_.bodies) states_.push_back(body.state);
   if (shapes_.empty()) {
     for (const WorldBody& body : world_.bodies) own_shapes_.emplace_back(body.shape);
@@ -126,13 +124,13 @@ void MovingWorld::watch_links(double h) {
 
 // A method that sees forces a few times a step follows no body that turns about itself several times in it, and a search for impacts along such a path
 // would hardly end.
-void MovingWorld::refuse_whirl(int body) const {
-  constexpr double kWhirl = 20 * std::numbers::pi;   // rad in a step: ten turns
+void MovingWorld::refuse_fast_turning(int body) const {
+  constexpr double kMostTurnOnPath = 20 * std::numbers::pi;   // rad in a step: ten turns
   const Path& path = paths_[body];
   const double step = target_ - time_, speed = path.smooth->bounds().angular_speed;
   const std::string who = fmt::format("body '{}'", world_.bodies[body].name);
   if (!pack(path.end).allFinite() || std::isnan(speed)) throw StoppedRun(fmt::format("{}: its state is not a number (integrator: {})", who, laws_.integrator_source));
-  if (shapes_[body]->is_ball() || !(speed * step > kWhirl)) return;   // a ball looks the same however it turns
+  if (shapes_[body]->is_ball() || !(speed * step > kMostTurnOnPath)) return;   // a ball looks the same however it turns
   throw StoppedRun(fmt::format("{} turns at {:.3g} rad/s, {:.3g} rad in a step of {:.3g} s, which no step follows. Likely something drives it beyond measure: a motor that overshoots because it holds its torque too "
                                "long (\"period_s\"), a force, a spring; else it turns too far in a step: make the step (\"step_s\") shorter", who, speed, speed * step, step));
 }
@@ -288,7 +286,7 @@ void MovingWorld::begin_linked_paths() {
     const std::vector<RigidBodyState> ends = group.advance(states_, time_, target_ - time_);
     for (std::size_t i = 0; i < ends.size(); ++i) {
       set_path(group.bodies()[i], states_[group.bodies()[i]], ends[i]);
-      refuse_whirl(group.bodies()[i]);
+      refuse_fast_turning(group.bodies()[i]);
     }
     integrations_in_step_ += ends.size();
   }
@@ -393,6 +391,12 @@ collision::Motion MovingWorld::motion(int body) {
   return {[this, body](double t) { return motion_at(body, t); }, *paths_[body].bounds};
 }
 
+double MovingWorld::fastest_in_step(int body) {
+  const collision::MotionState start = motion_at(body, time_), end = motion_at(body, target_);
+  const double radius = shapes_[body]->is_half_space() ? 0.0 : shapes_[body]->bounding_radius();
+  return std::max(start.velocity_world.norm(), end.velocity_world.norm()) + std::max(start.omega_world.norm(), end.omega_world.norm()) * radius;
+}
+
 collision::SweptBox MovingWorld::swept_box(int body) {
   if (has_roomy_box(body)) return *paths_[body].box;
   const double radius = shapes_[body]->bounding_radius();
@@ -410,10 +414,9 @@ collision::SweptBox MovingWorld::swept_box(int body) {
     const scene::PrescribedMotion& m = world_.bodies[mover].motion;
     bulge = m.amplitude_m.cwiseAbs() * std::min(1.0, std::pow(m.angular_frequency_rad_s * h, 2) / 8);
   }
-  constexpr double kRounding = 1e-14;  // of coordinates, so that bodies that just touch stay candidates
-  const double shell = built::kContact && world_.contact && std::isfinite(radius) ? kNeighbourMargin * radius : 0.0;
+  const double margin = built::kContact && world_.contact && std::isfinite(radius) ? kNegligible * radius : 0.0;
   const Vector3d margin =
-      bulge + Vector3d::Constant(radius + shell) + kRounding * (start.cwiseAbs() + end.cwiseAbs() + Vector3d::Constant(std::isfinite(radius) ? radius : 0.0));
+      bulge + Vector3d::Constant(radius + margin) + kCoordinateRounding * (start.cwiseAbs() + end.cwiseAbs() + Vector3d::Constant(std::isfinite(radius) ? radius : 0.0));
   const collision::SweptBox box{start.cwiseMin(end) - margin, start.cwiseMax(end) + margin, can_move(body) || is_driven(body)};
   if (built::kContact && world_.contact && can_move(body) && !paths_[body].smooth) {   // contacts begin steps again
     paths_[body].box = box;

@@ -113,7 +113,7 @@ class MovingWorld {
   /// From here on to the step's target the body goes from `start` (at time(); its velocities may jump there) to `end`.
   void set_path(int body, const RigidBodyState& start, const RigidBodyState& end, SmoothPath::Momenta momenta = SmoothPath::Momenta::kOfPath);
   /// @throws StoppedRun where the body turns about itself ten times on its smooth path in the step under way, or where that path is not made of numbers
-  void refuse_whirl(int body) const;
+  void refuse_fast_turning(int body) const;
   /// Where the step leads without what set_path has added.
   const RigidBodyState& path_end(int body);
   /// The path that set_path has given, or that links have; nothing where the laws are asked at every instant.
@@ -137,6 +137,8 @@ class MovingWorld {
   RigidBodyState path(int body, double t);
   collision::MotionState motion_at(int body, double t);
   collision::Motion motion(int body);
+  /// How fast any point of a body is in the step under way, from the speeds at its ends. [m/s]
+  double fastest_in_step(int body);
   collision::SweptBox swept_box(int body);
   /// Whether swept_box tells of a longer step: of a body whose path's end nobody has asked for. path_end(body) ends that.
   bool has_roomy_box(int body) const { return !paths_[body].end_known; }
@@ -199,7 +201,7 @@ class MovingWorld {
   mutable PairCaches caches_;
   std::vector<LinkedBodies> linked_;
   std::vector<int> group_of_;                    // by body: place in linked_, -1
-  std::vector<bool> told_of_shortening_;   // by body
+  std::vector<bool> reported_shortening_;   // by body
   double time_ = 0.0, target_ = 0.0;
   double path_bend_ = 1.0;   // how much of a constant acceleration the laws' integration puts into a path: 1 for order >= 2, 0 for Euler
   std::uint64_t integrations_in_step_ = 0;

@@ -9,6 +9,7 @@
 
 #include "framework/dynamics/rotation_bounds.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/stepping/moving_world.h"
 
 namespace tumble::engines {
@@ -17,7 +18,7 @@ namespace {
 // A step in which a body turns by less, at most, is looked at as it is [rad]. Up to here the error of a method of order 1 to 5 grows
 // steadily within the step: its next term is at most (1/2)^2 of its first, half the angle being what quaternion and Taylor series go
 // by. From 1.5 rad on the error comes and goes within the step, and three looks at it miss up to 30 times its size.
-constexpr double kMostTurning = 1.0;
+constexpr double kMostTurnInStep = 1.0;
 constexpr double kUnder = 0.01;        // a cut step stays so much below, for what the path's error adds to the bound
 
 // The turning error of a step, too, has to be small for that [rad]: where moments differ a thousand times, a method can break down long
@@ -31,7 +32,6 @@ constexpr double kLook = 1e-3;
 constexpr double kUnseenTurn = 2.0;
 
 constexpr int kMostHalvings = 12;      // a method whose error does not shrink with the step is not helped by shorter ones
-constexpr double kMostParts = 1e5;     // of a step: beyond, a run would take hours and look like a hang
 
 // The rotation from a to b as axis times angle. [rad]
 Vector3d turn_between(const Quaterniond& a, const Quaterniond& b) {
@@ -86,7 +86,7 @@ bool MovingWorld::bound_turning(int body, double duration, collision::MotionBoun
   bounds.angular_speed = rotation.angular_speed;
   bounds.angular_acceleration = rotation.angular_acceleration;
   bounds.angular_velocity_error = disturbance.angular_velocity_error;
-  return bounds.angular_speed * duration <= kMostTurning && bounds.angular_velocity_error * duration <= kMostDrift;
+  return bounds.angular_speed * duration <= kMostTurnInStep && bounds.angular_velocity_error * duration <= kMostDrift;
 }
 
 // The longest part of `duration`, within a factor of about two, in which bounds on the body's turning hold.
@@ -95,8 +95,8 @@ double MovingWorld::resolved_duration(int body, double duration, bool measures_p
   if (measures_path && bound_turning(body, duration, bounds)) return duration;
   const Disturbance disturbance{.duration = duration, .torque = torque_bound(body)};
   const double speed = bound_rotation(states_[body], world_.bodies[body].inertia, principal_of(body), disturbance).angular_speed;
-  if (!measures_path && speed * duration <= kMostTurning) return duration;
-  const double turning_little = std::min(duration, (1.0 - kUnder) * kMostTurning / speed);
+  if (!measures_path && speed * duration <= kMostTurnInStep) return duration;
+  const double turning_little = std::min(duration, (1.0 - kUnder) * kMostTurnInStep / speed);
   double resolved = turning_little;
   for (int halvings = 0; !bound_turning(body, resolved, bounds); ++halvings, resolved *= 0.5)
     if (halvings == kMostHalvings) return turning_little;
@@ -133,7 +133,7 @@ bool MovingWorld::shorten_step(const std::vector<std::pair<int, int>>& pairs, co
   for (int body = 0; body < size(); ++body) {
     if (needs[body] == Need::kNothing || !can_move(body) || shapes_[body]->is_ball()) continue;   // however a ball turns, it looks the same
     if (paths_[body].smooth) {   // its bounds are exact at any length, but a search goes by them a radian at a time
-      if (omega_of(states_[body], world_.bodies[body].inertia).norm() * asked > kMostParts * kMostTurning) throw StoppedRun(turning_of(body, asked) + kTooFar);
+      if (omega_of(states_[body], world_.bodies[body].inertia).norm() * asked > kMostTurning * kMostTurnInStep) throw StoppedRun(turning_of(body, asked) + kTooFar);
       continue;
     }
     const double resolved = resolved_duration(body, duration, needs[body] == Need::kPath);
@@ -142,9 +142,9 @@ bool MovingWorld::shorten_step(const std::vector<std::pair<int, int>>& pairs, co
   }
   if (fastest < 0) return false;
   const std::string turns = turning_of(fastest, asked);
-  if (asked > kMostParts * duration) throw StoppedRun(turns + kTooFar);
-  if (!told_of_shortening_[fastest]) {
-    told_of_shortening_[fastest] = true;
+  if (asked > kMostTurning * duration) throw StoppedRun(turns + kTooFar);
+  if (!reported_shortening_[fastest]) {
+    reported_shortening_[fastest] = true;
     counters_.notices.push_back(fmt::format("step shortened: {}; where it may meet another body it gets steps of {:.2g} s, so that no collision is missed", turns, duration));
   }
   ++counters_.shortened_steps;

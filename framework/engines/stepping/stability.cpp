@@ -14,28 +14,27 @@
 #include "framework/dynamics/anchors.h"
 #include "framework/effects/invariants.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/tolerances.h"
 
 namespace tumble::engines {
 namespace {
 
 constexpr double kRuin = 1e3;            // factor over a run by which a method may lengthen a swing: more is refused
-constexpr double kSeen = 1.1;            // more is told
 constexpr double kJerk = 0.1;            // of the longest step at which a swing does not grow: links that come taut set it going, and it has to be followed, not only outlived
 constexpr double kRunaway = 10.0;        // times all the energy there was to begin with: more has run away
-constexpr double kRoundingOfRest = 1e-6; // of the energy a world at rest has by its height: what steps may leave of it
 
 // Up to `step`, of what goes at this rate [1/s]. @param amplified  by a step of a given length
 double largest_stable_step(const std::function<double(double)>& amplified, double rate, double step) {
   double stable = 0.0, unstable = step;
   // Down to a thousandth of a radian a step: a method that still lengthens the swing there always does.
   for (double h = step; h * rate > 1e-3 && stable == 0.0; h *= 0.5) {
-    if (amplified(h) <= 1.0 + kNotAtAll) stable = h;
+    if (amplified(h) <= 1.0 + kNegligible) stable = h;
     else unstable = h;
   }
   if (stable == 0.0) return 0.0;
   for (int i = 0; i < 40; ++i) {
     const double middle = 0.5 * (stable + unstable);
-    (amplified(middle) <= 1.0 + kNotAtAll ? stable : unstable) = middle;
+    (amplified(middle) <= 1.0 + kNegligible ? stable : unstable) = middle;
   }
   return stable;
 }
@@ -106,7 +105,7 @@ std::vector<StepLimit> judge_decays(const World& world, const Laws& laws, double
     const double turning = is_held_beside_its_centre(carriers.all, drain.body) ? 0.0 : drain.angular / least_moment;
     for (const auto& [rate, way] : {std::pair{drain.linear * body.inertia.inverse_mass, "velocity"}, std::pair{turning, "turning"}}) {
       const auto amplified = [&laws, rate = rate](double h) { return amplification_of_decay(laws, rate, h); };
-      if (amplified(step) > 1.0 + kNotAtAll)
+      if (amplified(step) > 1.0 + kNegligible)
         limits.push_back({fmt::format("what {} takes from its {} ({:.4g} 1/s)", drain.of, way, rate), amplified(step), largest_stable_step(amplified, rate, step), drain.remedy});
     }
   }
@@ -115,7 +114,7 @@ std::vector<StepLimit> judge_decays(const World& world, const Laws& laws, double
   const double stiffness = -laws.baumgarte_acceleration(1.0, 0.0, T), damping = -laws.baumgarte_acceleration(0.0, 1.0, T);
   if (!(stiffness > 0) || !(damping >= 0)) return limits;   // a wrong law is no matter of the step
   const double frequency = std::sqrt(stiffness), amplified = amplification(laws, frequency, damping, step);
-  if (amplified > 1.0 + kNotAtAll)
+  if (amplified > 1.0 + kNegligible)
     limits.push_back({fmt::format("the errors of rods and joints that Baumgarte's term takes back (time constant {:.4g} s)", T), amplified, largest_stable_step(laws, frequency, damping, step),
                       "a longer \"time_constant_s\", or projection"});
   return limits;
@@ -140,7 +139,7 @@ std::optional<StepLimit> judge_rods(const World& world, const std::vector<effect
     if (rod.b.body >= 0) held[rod.b.body] += stiffness * lightness(rod.b) * both;
   }
   const double bound = *std::max_element(held.begin(), held.end());
-  if (!(bound > 0) || amplification(laws, std::sqrt(bound), 0.0, step) <= 1.0 + kNotAtAll) return std::nullopt;
+  if (!(bound > 0) || amplification(laws, std::sqrt(bound), 0.0, step) <= 1.0 + kNegligible) return std::nullopt;
   // Of many bodies, those that are held hardest, the others kept still: what they do alone is no faster than what all can do.
   std::vector<std::size_t> chosen(world.bodies.size());
   std::iota(chosen.begin(), chosen.end(), std::size_t{0});
@@ -172,7 +171,7 @@ std::optional<StepLimit> judge_rods(const World& world, const std::vector<effect
   const double squared = eigen.values[3 * n - 1];
   if (!(squared > 0)) return std::nullopt;
   const double frequency = std::sqrt(squared), amplified = amplification(laws, frequency, 0.0, step);
-  if (amplified <= 1.0 + kNotAtAll) return std::nullopt;
+  if (amplified <= 1.0 + kNegligible) return std::nullopt;
   Eigen::Index most = 0;
   eigen.vectors.col(3 * n - 1).cwiseAbs().maxCoeff(&most);
   const auto body = std::find(place.begin(), place.end(), most - most % 3) - place.begin();
@@ -213,7 +212,7 @@ void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfAR
   // A law that fails here fails in the first step too, which says of whom.
 }
 
-std::optional<double> tell_of_unstable_links(const World& world, const LinkForces& at_start, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices) try {
+std::optional<double> report_unstable_links(const World& world, const LinkForces& at_start, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices) try {
   const Carriers carriers(world);
   LinkLoads loads = largest_link_loads(world, carriers.all);
   for (std::size_t k = 0; k < carriers.all.size(); ++k) {
@@ -265,7 +264,7 @@ double terms_of_energy(const World& world, const std::vector<RigidBodyState>& st
 }
 
 // Of the bodies' sizes: how far what lies is lifted where it is kept apart. Shells are 1e-10 of the smaller body, those of heaps 1e-4.
-constexpr double kLifted = 1e-5, kLiftedInHeaps = 1e-3;
+constexpr double kLifted = 1e-5, kLiftedInLargeIslands = 1e-3;
 
 }  // namespace
 
@@ -279,23 +278,21 @@ void EnergyWatch::begin(const World& world, const std::vector<RigidBodyState>& s
   for (const WorldBody& body : world.bodies) {
     if (body.immovable()) continue;
     const double size = std::sqrt(0.5 * body.inertia.inertia_body.trace() * body.inertia.inverse_mass);   // of gyration [m]
-    of_rest_speed_ += kCorners * body.inertia.mass * rest_speed_ * rest_speed_;
+    of_restitution_threshold_ += kCorners * body.inertia.mass * restitution_threshold_ * restitution_threshold_;
     of_sizes_ += body.inertia.mass * gravity * size;
   }
 }
 
 void EnergyWatch::note_rise(double time, double energy, double kinetic, const World& world, const std::vector<RigidBodyState>& states) {
-  constexpr double kFarther = 1.1;   // times the last: what is kept of a rise that goes on
-  constexpr double kDeviations = 8.0;   // roundings of steps are independent of each other: their sum goes with the root of their number
   const double rise = energy - least_energy_;
   least_energy_ = std::min(least_energy_, energy);
-  if (!(rise > unseen(kLifted)) || (!rises_.empty() && !(rise > kFarther * rises_.back().size))) return;
+  if (!(rise > unseen(kLifted)) || (!rises_.empty() && !(rise > kSeen * rises_.back().size))) return;
   rounding_ = std::max(rounding_, kDeviations * kEpsilon * (1.0 + std::sqrt(time / step_)) * terms_of_energy(world, states, kinetic));
   rises_.push_back({time, rise, body_with_most_energy(world, states)});
 }
 
 void EnergyWatch::tell(const World& world, RunCounters& counters) const {
-  const double whole = available() + (unseen(counters.heap_steps > 0 ? kLiftedInHeaps : kLifted) + rounding_) / kEnergyRises;
+  const double whole = available() + (unseen(counters.heap_steps > 0 ? kLiftedInLargeIslands : kLifted) + rounding_) / kEnergyRises;
   for (const Rise& rise : rises_)
     counters.watch.note(RunWatch::Kind::kEnergyRises, fmt::format("'{}'", world.bodies[static_cast<std::size_t>(rise.body)].name), {rise.size / whole, kEnergyRises, rise.time, step_});
 }
@@ -331,7 +328,7 @@ std::optional<Runaway> EnergyWatch::look(double time, const World& world, const 
   }
   lowest_potential_ = std::min(lowest_potential_, sums.potential_energy);
   note_rise(time, energy, sums.kinetic_energy, world, states);
-  if (energy - first_energy_ <= kRunaway * available() + unseen(kLiftedInHeaps) + kRoundingOfRest * std::abs(first_energy_)) return std::nullopt;
+  if (energy - first_energy_ <= kRunaway * available() + unseen(kLiftedInLargeIslands) + kSixDigits * std::abs(first_energy_)) return std::nullopt;
   if (available() == 0.0 && first_energy_ == 0.0 && !(sums.kinetic_energy > 0)) return std::nullopt;
   return Runaway{body_with_most_energy(world, states), energy, first_energy_, by_blows_};
 }
@@ -344,7 +341,7 @@ bool brings_energy(const World& world) {
 
 }  // namespace
 
-std::string told_runaway(double time, const World& world, const Runaway& runaway, const ActingForces& acting, const Laws& laws) {
+std::string runaway_message(double time, const World& world, const Runaway& runaway, const ActingForces& acting, const Laws& laws) {
   std::string effect;
   double hardest = 0.0;
   const auto pulls = [&](int a, int b, double force, const auto& words) {

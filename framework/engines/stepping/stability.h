@@ -20,9 +20,6 @@ namespace tumble::engines {
 /// found by asking the method itself. Source: E. Hairer, G. Wanner, "Solving ODEs II", IV.2.
 double amplification(const Laws& laws, double angular_frequency, double damping, double step);
 
-/// What rounding leaves of an amplification of exactly 1.
-inline constexpr double kNotAtAll = 1e-9;
-
 /// Largest step up to `step` that does not lengthen the same swing; 0 where none does not, down to a thousandth of its faster rate. [s]
 double largest_stable_step(const Laws& laws, double angular_frequency, double damping, double step);
 
@@ -103,7 +100,7 @@ void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfAR
 /// refused: what hangs straight does not swing.
 /// @param at_start  what rods and joints pull with where the run starts
 /// @return that step, where one is told [s]
-std::optional<double> tell_of_unstable_links(const World& world, const LinkForces& at_start, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices);
+std::optional<double> report_unstable_links(const World& world, const LinkForces& at_start, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices);
 
 /// Energy that nothing can have brought in.
 struct Runaway {
@@ -117,7 +114,7 @@ class EnergyWatch {
  public:
   /// @param rest_speed  below which impacts may do as they like: so little energy is not asked for [m/s];  @param step  of the run [s]
   /// @param sees_switches  whether it looks at each instant at which a force begins or ends: else worlds with effects that bring energy in go unwatched
-  EnergyWatch(double rest_speed, double step, bool sees_switches) : rest_speed_(rest_speed), step_(step), sees_switches_(sees_switches) {}
+  EnergyWatch(double restitution_threshold, double step, bool sees_switches) : restitution_threshold_(restitution_threshold), step_(step), sees_switches_(sees_switches) {}
 
   /// An impact has taken place: what it did to the energy, as measured; else the work j (u + u') / 2 of its impulse.
   void note(const Event& event) {
@@ -138,16 +135,16 @@ class EnergyWatch {
   double work_since(double time, const std::vector<RigidBodyState>& states);
   void note_rise(double time, double energy, double kinetic, const World& world, const std::vector<RigidBodyState>& states);
   /// What the model itself is free to make: what moves slower than the rest speed, and lies, is lifted by this part of its size. [J]
-  double unseen(double lifted) const { return of_rest_speed_ + lifted * of_sizes_; }
+  double unseen(double lifted) const { return of_restitution_threshold_ + lifted * of_sizes_; }
   double available() const { return scale_ + given_ + (first_potential_ - lowest_potential_); }
 
-  double rest_speed_, step_;
+  double restitution_threshold_, step_;
   bool sees_switches_, is_first_step_ = true;
   std::vector<std::unique_ptr<effects::WorkMeter>> meters_;     // of the effects that bring energy into the world, from the first look on
   bool has_meters_ = false;
   double work_ = 0.0, given_ = 0.0;                    // what effects have brought in, at most, and without its sign [J]
   double first_energy_ = kUnset, scale_ = 0.0, first_potential_ = 0.0, lowest_potential_ = 0.0, by_blows_ = 0.0;   // [J]
-  double least_energy_ = 0.0, of_rest_speed_ = 0.0, of_sizes_ = 0.0;   // the least so far; of all bodies m v^2 of the rest speed, and m g size [J]
+  double least_energy_ = 0.0, of_restitution_threshold_ = 0.0, of_sizes_ = 0.0;   // the least so far; of all bodies m v^2 of the rest speed, and m g size [J]
   double rounding_ = 0.0;          // what it leaves of an energy, where one has risen [J]
   std::vector<Rise> rises_;        // each larger than the one before
 };
@@ -161,6 +158,6 @@ struct ActingForces {
 
 /// What a run says that ends because of it: the body, the time, and the effect that most likely put the energy in: impacts where they have brought in
 /// half of it, else the spring, rod, joint or contact that pulls hardest at the body, else the integration.
-std::string told_runaway(double time, const World& world, const Runaway& runaway, const ActingForces& acting, const Laws& laws);
+std::string runaway_message(double time, const World& world, const Runaway& runaway, const ActingForces& acting, const Laws& laws);
 
 }  // namespace tumble::engines

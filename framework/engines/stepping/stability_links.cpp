@@ -11,6 +11,7 @@
 
 #include "framework/core/decompositions.h"
 #include "framework/dynamics/anchors.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/stepping/linked_bodies.h"
 #include "framework/engines/stepping/stability.h"
 
@@ -170,7 +171,7 @@ std::optional<StepLimit> judge_joints(const World& world, const std::vector<effe
   }
   if (!(squared > 0)) return std::nullopt;
   const double frequency = std::sqrt(squared), amplified = amplification(laws, frequency, 0.0, step);
-  if (amplified <= 1.0 + kNotAtAll) return std::nullopt;
+  if (amplified <= 1.0 + kNegligible) return std::nullopt;
   return StepLimit{fmt::format("the swing of body '{}' between its joints ({:.4g} rad/s where they carry most)", world.bodies[fastest].name, frequency), amplified,
                    largest_stable_step(laws, frequency, 0.0, step), "longer or fewer links"};
 }

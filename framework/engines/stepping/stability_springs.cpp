@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/decompositions.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/stepping/stability.h"
 
 namespace tumble::engines {
@@ -161,7 +162,7 @@ std::optional<StepLimit> judge_dampers(const World& world, const Laws& laws, dou
   const double frequency = std::sqrt(decay.other), damping = decay.most;
   if (!(damping > 2.0 * frequency)) return std::nullopt;
   const double amplified = amplification(laws, frequency, damping, step);
-  if (!(amplified > 1.0 + kNotAtAll)) return std::nullopt;
+  if (!(amplified > 1.0 + kNegligible)) return std::nullopt;
   return StepLimit{fmt::format("what the damper of {} takes from velocities ({:.4g} 1/s where the run starts)", springs.at(decay.row).of, damping), amplified,
                    largest_stable_step(laws, frequency, damping, step), "less damping"};
 }

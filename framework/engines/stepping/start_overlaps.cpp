@@ -1,5 +1,7 @@
 #include "framework/engines/stepping/start_overlaps.h"
 
+#include "framework/engines/base/tolerances.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -10,11 +12,8 @@
 namespace tumble::engines {
 namespace {
 
-constexpr double kSingle = 0x1.0p-23;    // spacing of float32 numbers, relative
 constexpr double kUnseen = 1e-4;         // of the smaller body: a shift that nobody sees
-constexpr double kNearInRoundings = 4.0;            // of what rounding explains: pairs as near as that are kept apart when others are moved
 constexpr int kMostSweeps = 1000;        // over the pairs: stacks take one, grids some tens
-constexpr double kShiftRoom = 0x1.0p-50;      // of a place: what a shift is rounded by, left as room
 
 double extent(const collision::CollisionShape& shape) { return shape.is_half_space() ? 0.0 : shape.bounding_radius(); }
 
@@ -58,7 +57,7 @@ std::vector<int> steps_from_support(const scene::Scene& scene, const std::vector
 double explained_overlap(const collision::CollisionShape& a, const collision::Pose& pose_a, const collision::CollisionShape& b, const collision::Pose& pose_b) {
   const double scale = pose_a.com_world.cwiseAbs().maxCoeff() + extent(a) + pose_b.com_world.cwiseAbs().maxCoeff() + extent(b);
   const double smaller = a.is_half_space() ? extent(b) : b.is_half_space() ? extent(a) : std::min(extent(a), extent(b));
-  return std::min(kSingle * scale, kUnseen * smaller);
+  return std::min(static_cast<double>(std::numeric_limits<float>::epsilon()) * scale, kUnseen * smaller);
 }
 
 OverlapAtStart::OverlapAtStart(const std::string& where, const scene::Scene& scene, std::vector<StartPair> near)
@@ -71,10 +70,10 @@ bool OverlapAtStart::is_explained() const {
 void look_at_start(int a, int b, const collision::CollisionShape& shape_a, const collision::Pose& pose_a, const collision::CollisionShape& shape_b, const collision::Pose& pose_b, double touching,
                    std::vector<StartPair>& near) {
   const double explained = explained_overlap(shape_a, pose_a, shape_b, pose_b);
-  if (collision::least_gap(shape_a, pose_a, shape_b, pose_b) > kNearInRoundings * explained) return;
+  if (collision::least_gap(shape_a, pose_a, shape_b, pose_b) > kFewRoundings * explained) return;
   const bool overlaps = collision::overlapping(shape_a, pose_a, shape_b, pose_b, touching);
   const collision::Gap gap = collision::compute_gap(shape_a, pose_a, shape_b, pose_b);
-  if (overlaps || gap.distance <= kNearInRoundings * explained) near.push_back({a, b, gap.distance, explained, overlaps, gap.normal_b_to_a_world});
+  if (overlaps || gap.distance <= kFewRoundings * explained) near.push_back({a, b, gap.distance, explained, overlaps, gap.normal_b_to_a_world});
 }
 
 void refuse_overlaps(const std::string& where, const scene::Scene& scene, const std::vector<StartPair>& near) {
@@ -95,7 +94,7 @@ std::optional<MovedApart> moved_apart(const scene::Scene& scene, const std::vect
     for (const StartPair& pair : pairs) {
       const auto a = static_cast<std::size_t>(pair.body_a), b = static_cast<std::size_t>(pair.body_b);
       const bool moves_a = !scene.bodies[a].immovable && (steps[a] > steps[b] || scene.bodies[b].immovable);
-      const double room = kShiftRoom * (scene.bodies[a].position_m.cwiseAbs().maxCoeff() + scene.bodies[b].position_m.cwiseAbs().maxCoeff());
+      const double room = kFewRoundings * kEpsilon * (scene.bodies[a].position_m.cwiseAbs().maxCoeff() + scene.bodies[b].position_m.cwiseAbs().maxCoeff());
       const double missing = -pair.gap - pair.normal_b_to_a_world.dot(shift[a] - shift[b]);
       if (!(missing > 0)) continue;
       is_settled = false;

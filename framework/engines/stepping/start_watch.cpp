@@ -6,14 +6,12 @@
 
 #include <fmt/format.h>
 
+#include "framework/engines/base/tolerances.h"
 #include "framework/scene/words.h"
 
 namespace tumble::engines {
 namespace {
 
-// Of the fastest start: what decimals of six digits leave of velocities that were meant to fit is not worth a word.
-constexpr double kTyped = 1e-6;
-constexpr double kMoved = 1e-9;               // of the longest arm: load_scene lets a rod's length be off by as much as this
 constexpr std::size_t kMostNamed = 3;
 
 std::string show(const Vector3d& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x(), v.y(), v.z()); }
@@ -75,11 +73,11 @@ void StartWatch::compare(const Frame& start) {
     if (body.immovable || links == held_by.end()) continue;
     const BodyPose& pose = start.poses[i];
     const double moved = (pose.com_world - body.position_m).norm();
-    if (moved > kMoved * (arm + body.position_m.cwiseAbs().maxCoeff()))
+    if (moved > kNegligible * (arm + body.position_m.cwiseAbs().maxCoeff()))
       notices_.push_back(fmt::format("the start place of '{}' does not fit what holds it ({}): moved by {:.3g} m, to {} m. Give it that place as \"position_m\"", body.name, links->second, moved, show(pose.com_world)));
     if (pushed_.contains(static_cast<int>(i))) continue;
     const double faster = (pose.velocity_world - body.velocity_m_s).norm(), turns = (pose.omega_world - body.omega_world_rad_s).norm();
-    if (!(faster + turns * arm > kTyped * fastest)) continue;
+    if (!(faster + turns * arm > kSixDigits * fastest)) continue;
     changes.push_back({faster + turns * arm, fmt::format("the start velocities of '{}' do not fit what holds it ({}): changed by {:.3g} m/s and {:.3g} rad/s, to \"velocity_m_s\" {} and \"angular_velocity_rad_s\" {}. Give it these, or "
                                                          "others that leave rods and joints as long as they are", body.name, links->second, faster, turns, show(pose.velocity_world), show(pose.omega_world))});
   }

@@ -1,14 +1,13 @@
 #include "framework/engines/timewarp/flight_boxes.h"
 
+#include "framework/engines/base/tolerances.h"
+
 namespace tumble::engines {
 namespace {
 
-constexpr double kBoxSlack = 1e-9;      // of lengths: rounding hides nothing
-constexpr double kBoxRounding = 1e-14;  // of coordinates
-
 // Around a body whose centre of mass stays between `low` and `high`, up to `bulge` beyond.
 Box with_margin(double radius, const Vector3d& bulge, const Vector3d& way, const Vector3d& first, const Vector3d& last, const Vector3d& low, const Vector3d& high) {
-  const Vector3d margin = bulge + Vector3d::Constant(radius * (1 + kBoxSlack)) + kBoxSlack * way + kBoxRounding * (first.cwiseAbs() + last.cwiseAbs());
+  const Vector3d margin = bulge + Vector3d::Constant(radius * (1 + kNegligible)) + kNegligible * way + kCoordinateRounding * (first.cwiseAbs() + last.cwiseAbs());
   return {low - margin, high + margin};
 }
 
@@ -31,7 +30,7 @@ Box box_of_immovable(const FlightWorld& world, int body, double duration) {
   if (world.is_half_space(body)) return box;
   const scene::PrescribedMotion& m = world.world().bodies[static_cast<std::size_t>(body)].motion;
   const Vector3d start = world.first_flight(body).com_world, end = start + m.velocity_m_s * duration;
-  const Vector3d reach = m.amplitude_m.cwiseAbs() + Vector3d::Constant(kBoxSlack * world.radius(body));
+  const Vector3d reach = m.amplitude_m.cwiseAbs() + Vector3d::Constant(kNegligible * world.radius(body));
   return {start.cwiseMin(end) + box.low - reach, start.cwiseMax(end) + box.high + reach};
 }
 

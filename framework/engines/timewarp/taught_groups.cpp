@@ -7,7 +7,6 @@
 namespace tumble::engines {
 namespace {
 
-constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr std::int32_t kSomeWall = -1;
 
 
@@ -20,13 +19,13 @@ GroupFinding look_at_group(const FlightRun& run, int body, const Flight& flight,
   finding.end = run.own_end(body, flight, to);
   if (finding.end && finding.end->time < safe_time) finding.end.reset();   // somebody did not want to know
   if (!finding.end) {
-    for (const auto& [a, b] : ties) finding.contacts.push_back({a, b, kNever});
+    for (const auto& [a, b] : ties) finding.contacts.push_back({a, b, kInfinity});
     return finding;
   }
   // What holds from then on, and what held only until then.
   const PassageEnd& end = *processes.passages().end_by(flight.passage, to);
   const std::vector<BodyPair> stays = processes.ties_of(end.after);
-  for (const auto& [a, b] : stays) finding.contacts.push_back({a, b, kNever});
+  for (const auto& [a, b] : stays) finding.contacts.push_back({a, b, kInfinity});
   for (const BodyPair& tie : ties)
     if (!std::binary_search(stays.begin(), stays.end(), tie)) finding.contacts.push_back({tie.first, tie.second, end.time});
   finding.contacts.push_back({body, kSomeWall, end.time});
@@ -40,7 +39,7 @@ std::vector<GroupContact> contacts_of(const FlightWorld& world, const std::vecto
     const int passage = flight.flight.passage;
     if (passage < 0 || std::find(seen.begin(), seen.end(), passage) != seen.end()) continue;
     seen.push_back(passage);
-    for (const auto& [a, b] : world.processes()->ties_of(world.processes()->passages().start(passage))) contacts.push_back({a, b, kNever});
+    for (const auto& [a, b] : world.processes()->ties_of(world.processes()->passages().start(passage))) contacts.push_back({a, b, kInfinity});
   }
   return contacts;
 }

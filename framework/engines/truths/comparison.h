@@ -14,6 +14,10 @@ inline constexpr double kNoFrames = 1e-3;   // Hz, of a run of which only events
 /// A closed form passes within this many times the error that double precision forces: a few dozen roundings.
 inline constexpr double kClosedFormFactor = 100.0;
 
+/// The classical Runge-Kutta method's, where its error goes as h^4; how far a right one may be off it; and, half of that, how near to
+/// each other two successive orders are that have settled.
+inline constexpr double kOrder = 4.0, kOrderTolerance = 0.1, kSettled = 0.05;
+
 enum class Verdict {
   kRight,
   kWrong,

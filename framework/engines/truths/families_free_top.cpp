@@ -60,7 +60,6 @@ void compare_exact(const Case& truth, const Top& top, Comparison& comparison) {
 constexpr double kMostSteps = 4e6;         // of all runs of one time together: about a second
 constexpr double kLargestAngle = 0.05;     // rad: w h beyond which RK4 is not in its asymptotic range
 constexpr double kAsymptoticError = 1e-3;  // rad: predicted error of the coarsest run, small enough for its order to show
-constexpr double kSettled = 0.05;          // two successive orders this close: half of what the order may be off
 constexpr double kAboveRoundOff = 100.0;   // a change this many roundings large is known to 1 %, its log2 to 0.02
 
 /// Orientation after `steps` equal steps of the laws, renormalised after each as engines do.
@@ -121,7 +120,6 @@ Refinement refine(const Laws& laws, const Top& top, double t, long steps) {
 }
 
 void compare_integrated_at(const Case& truth, const Laws& laws, const Top& top, const std::string& name, double t, Comparison& comparison) {
-  constexpr double kOrder = 4.0, kOrderTolerance = 0.1;  // the classical Runge-Kutta method's, in its asymptotic range
   const long steps = first_steps(top, t);
   if (32.0 * static_cast<double>(steps) > kMostSteps) {
     comparison.not_compared("rk4.q_" + name, "steps small enough to show the order would be millions, more than is spent here");

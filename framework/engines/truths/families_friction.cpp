@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "framework/dynamics/contact_problem.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/truths/families.h"
 #include "framework/engines/truths/memory_scene.h"
 #include "framework/scene/write_entries.h"
@@ -15,10 +16,8 @@
 namespace tumble::truths {
 namespace {
 
-constexpr double kNeverBounces = 1e-9;   // m/s: nothing here bounces
 constexpr long kSteps = 50;           // of a run at least; none of them is where a motion changes
 constexpr double kLongestStep = 0.1;  // s: contact forces come from what gravity does in a step, g h, and are rounded at its size
-constexpr double kStands = 1e-9;      // of the speed at the start: slower than this a body stands, or rolls
 
 struct Incline {
   double angle, mu, g, m;
@@ -33,7 +32,7 @@ struct Incline {
 
 /// @param height  of the body's centre above the plane [m]
 scene::Scene Incline::scene(const std::string& name, double duration, scene::BodySpec body, double height) const {
-  scene::Scene scene = empty_scene(name, duration, kNeverBounces);
+  scene::Scene scene = empty_scene(name, duration, engines::kNegligibleSpeed);
   scene::EntryWriter{scene}("gravity_m_s2", Vector3d(0, 0, -g));
   scene.contact = scene::ContactSpec{};
   body.position_m = height * out();
@@ -99,13 +98,13 @@ double speed_down(const Incline& incline, const Frame& frame) { return incline.d
 bool holds(Incline incline, double mu, const Laws& laws) {
   incline.mu = mu;
   const Trajectory run = run_by_steps(block_on(incline, "let go", 1.0, 0.0), laws);
-  return run.frames.back().poses[0].velocity_world.norm() <= kStands;
+  return run.frames.back().poses[0].velocity_world.norm() <= engines::kNegligible;
 }
 
 /// The last frame in which a speed is still there. @pre it is in the first
 template <class Speed>
 const Frame& last_sliding(const Trajectory& run, const Speed& speed) {
-  const double least = kStands * std::abs(speed(run.frames.front()));
+  const double least = engines::kNegligible * std::abs(speed(run.frames.front()));
   std::size_t last = 0;
   while (last + 1 < run.frames.size() && std::abs(speed(run.frames[last + 1])) > least) ++last;
   return run.frames[last];
@@ -120,8 +119,7 @@ void compare_friction_incline(const Case& truth, const Laws& laws, Comparison& c
   comparison.closed_form(truth, "critical_mu", critical);
   if (critical > 0.0) {
     comparison.attempt("critical_mu in runs", [&] {
-      constexpr double kJust = 1e-6;
-      comparison.agree("critical_mu in runs", holds(incline, critical * (1.0 + kJust), laws) && !holds(incline, critical * (1.0 - kJust), laws),
+      comparison.agree("critical_mu in runs", holds(incline, critical * (1.0 + engines::kSixDigits), laws) && !holds(incline, critical * (1.0 - engines::kSixDigits), laws),
                        "a block let go stays at a friction 1e-6 above it and slides at one 1e-6 below");
     });
   }
@@ -148,7 +146,7 @@ void compare_friction_incline(const Case& truth, const Laws& laws, Comparison& c
     check_solved(truth, "stop_distance", way, std::abs(way) * g / braking, comparison);
     check_solved(truth, "friction_force_rest", push_in(end).friction.norm(), weight, comparison);
     check_solved(truth, "energy_dissipated", energy_lost(incline, first, end), weight * std::abs(way) * g / braking, comparison);
-    comparison.agree("stands", end.poses[0].velocity_world.norm() <= kStands * std::abs(v0) && push_in(end).normal > 0.0, "stands still at the end, pressed onto the incline");
+    comparison.agree("stands", end.poses[0].velocity_world.norm() <= engines::kNegligible * std::abs(v0) && push_in(end).normal > 0.0, "stands still at the end, pressed onto the incline");
   });
 }
 
@@ -176,7 +174,7 @@ void compare_roll_incline(const Case& truth, const Laws& laws, Comparison& compa
     const Frame &first = run.frames.front(), &middle = run.frames[run.frames.size() / 2], &end = run.frames.back();
     const auto speed = [&](const Frame& frame) { return speed_down(incline, frame); };
     const auto spin = [](const Frame& frame) { return frame.poses[0].omega_world.y(); };
-    const bool rolls = std::abs(speed(end) - R * spin(end)) <= kStands * std::abs(speed(end));
+    const bool rolls = std::abs(speed(end) - R * spin(end)) <= engines::kNegligible * std::abs(speed(end));
     comparison.agree("rolls_without_slip", rolls == truth.output("rolls_without_slip").truth(), rolls ? "it rolls" : "it slides");
     const double time = end.time - middle.time;
     const double g = incline.g;
@@ -199,7 +197,7 @@ void compare_slip_to_roll(const Case& truth, const Laws& laws, Comparison& compa
     const Trajectory run = run_by_steps(level.scene(truth.id, duration, round_body(level.m, R, beta, Vector3d(v0, 0, 0), Vector3d(0, w0, 0)), R), laws);
     const auto slip = [R](const Frame& frame) { return frame.poses[0].velocity_world.x() - R * frame.poses[0].omega_world.y(); };
     const Frame &first = run.frames.front(), &sliding = last_sliding(run, slip), &end = run.frames.back();
-    const bool rolls = std::abs(slip(end)) <= kStands * std::max(slip0, std::abs(v0));
+    const bool rolls = std::abs(slip(end)) <= engines::kNegligible * std::max(slip0, std::abs(v0));
     if (!rolls || truth.output("roll_time").is_null()) {
       comparison.agree("roll_time", !rolls && truth.output("roll_time").is_null(), rolls ? "it rolls" : "it never rolls");
       return;

@@ -3,13 +3,13 @@
 #include <cmath>
 
 #include "framework/core/error.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/truths/families.h"
 #include "framework/engines/truths/memory_scene.h"
 
 namespace tumble::truths {
 namespace {
 
-constexpr double kNeverRest = 1e-9;  // m/s: nothing rests where there is no gravity
 
 // ---- newtons_cradle --------------------------------------------------------------------------------------------------
 
@@ -17,7 +17,7 @@ constexpr double kNeverRest = 1e-9;  // m/s: nothing rests where there is no gra
 scene::Scene cradle(const Case& truth) {
   constexpr double kRadius = 0.5;  // m: places at whole metres are exact
   const int n = truth.input("N").integer(), moving = truth.input("k_moving").integer();
-  scene::Scene scene = empty_scene(truth.id, 0.1, kNeverRest);
+  scene::Scene scene = empty_scene(truth.id, 0.1, engines::kNegligibleSpeed);
   for (int i = 0; i < n; ++i) {
     const Vector3d velocity(i < moving ? truth.input("v").number() : 0.0, 0.0, 0.0);
     scene.bodies.push_back(ball("ball" + std::to_string(i), truth.input("mass").number(), kRadius, Vector3d(i, 0, 0), velocity, truth.input("e").number()));
@@ -38,7 +38,7 @@ Spheres spheres_in_box(const Case& truth, double duration) {
   const Value& x = truth.input("x0");
   const Value& v = truth.input("v0");
   const Vector3d box = truth.input("box").vector3();
-  Spheres spheres{empty_scene(truth.id, duration, kNeverRest), static_cast<int>(masses.size())};
+  Spheres spheres{empty_scene(truth.id, duration, engines::kNegligibleSpeed), static_cast<int>(masses.size())};
   for (int i = 0; i < spheres.count; ++i) {
     const auto at = static_cast<std::size_t>(i);
     spheres.scene.bodies.push_back(ball("ball" + std::to_string(i), masses[i], truth.input("radii").at(at).number(), x.at(at).vector3(), v.at(at).vector3(), 1.0));
@@ -142,7 +142,7 @@ void compare_hard_spheres(const Case& truth, const Laws& laws, Comparison& compa
 
 void compare_tunnel_run(const Case& truth, const Laws& laws, Comparison& comparison) {
   const double thickness = truth.input("wall_thickness").number(), e = truth.input("e").number();
-  scene::Scene scene = empty_scene(truth.id, truth.input("T").number(), kNeverRest);
+  scene::Scene scene = empty_scene(truth.id, truth.input("T").number(), engines::kNegligibleSpeed);
   scene.step_s = truth.input("dt").number();
   scene.bodies.push_back(ball("bullet", 0.01, truth.input("R").number(), Vector3d(truth.input("x_centre_0").number(), 0, 0),
                               Vector3d(truth.input("v").number(), 0, 0), e));

@@ -5,15 +5,15 @@
 #include <variant>
 
 #include "framework/effects/build_world.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/scene/words.h"
 
 namespace tumble::truths {
 namespace {
 
-constexpr double kSame = 1e-14;   // relative: a scene's file has 16 digits at most, and sines round
 
-bool same(double a, double b) { return std::abs(a - b) <= kSame * std::max(1.0, std::abs(b)); }
-bool same(const Vector3d& a, const Vector3d& b) { return (a - b).norm() <= kSame * std::max(1.0, b.norm()); }
+bool same(double a, double b) { return std::abs(a - b) <= engines::kCoordinateRounding * std::max(1.0, std::abs(b)); }
+bool same(const Vector3d& a, const Vector3d& b) { return (a - b).norm() <= engines::kCoordinateRounding * std::max(1.0, b.norm()); }
 
 bool falls_along_z(const scene::Scene& scene, double g) {
   const std::optional<Vector3d> gravity = build_world(scene).gravity_world;
@@ -34,7 +34,7 @@ bool hangs_in_a_row(const scene::Scene& scene, const VectorXd& lengths) {
   for (std::size_t i = 0; i < rods.size(); ++i) {
     const scene::Link& rod = rods[i];
     const bool upper = rod.a.body == (i == 0 ? "" : scene.bodies[i - 1].name), lower = rod.b.body == scene.bodies[i].name;
-    if (!upper || !lower || !rod.a.point_m.isZero(kSame) || !rod.b.point_m.isZero(kSame) || !same(rod.length_m, lengths[static_cast<Eigen::Index>(i)])) return false;
+    if (!upper || !lower || !rod.a.point_m.isZero(engines::kCoordinateRounding) || !rod.b.point_m.isZero(engines::kCoordinateRounding) || !same(rod.length_m, lengths[static_cast<Eigen::Index>(i)])) return false;
   }
   return true;
 }
@@ -70,7 +70,7 @@ std::vector<KnownPlace> places_of_ball(const scene::Scene& scene, const Case& tr
   const std::size_t which = scene.bodies[0].immovable ? 1 : 0;
   const scene::BodySpec &ball = scene.bodies[which], &floor = scene.bodies[1 - which];
   const auto* sphere = std::get_if<scene::SphereSpec>(&ball.shape);
-  const bool is_floor = floor.immovable && std::holds_alternative<scene::PlaneSpec>(floor.shape) && floor.position_m.isZero(0.0) && floor.world_from_body.isApprox(Quaterniond::Identity(), kSame);
+  const bool is_floor = floor.immovable && std::holds_alternative<scene::PlaneSpec>(floor.shape) && floor.position_m.isZero(0.0) && floor.world_from_body.isApprox(Quaterniond::Identity(), engines::kCoordinateRounding);
   if (sphere == nullptr || !is_floor || ball.immovable || !ball.velocity_m_s.isZero(0.0) || !same(std::min(ball.restitution, floor.restitution), truth.input("e").number())) return {};
   if (!same(ball.position_m, Vector3d(0.0, 0.0, truth.input("h").number() + sphere->radius_m))) return {};
   std::vector<KnownPlace> places;

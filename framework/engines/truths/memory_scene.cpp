@@ -10,11 +10,11 @@
 
 namespace tumble::truths {
 
-scene::Scene empty_scene(const std::string& name, double duration, double rest_speed) {
+scene::Scene empty_scene(const std::string& name, double duration, double restitution_threshold) {
   scene::Scene scene;
   scene.name = name;
   scene.duration_s = duration;
-  scene.rest_speed_m_s = rest_speed;
+  scene.rest_speed_m_s = restitution_threshold;
   return scene;
 }
 

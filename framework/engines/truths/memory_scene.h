@@ -8,7 +8,7 @@ namespace tumble::truths {
 
 /// A scene without bodies: no gravity, the engine's usual step.
 /// @param rest_speed  impacts that separate more slowly end in rest [m/s]
-scene::Scene empty_scene(const std::string& name, double duration, double rest_speed);
+scene::Scene empty_scene(const std::string& name, double duration, double restitution_threshold);
 
 scene::BodySpec ball(const std::string& name, double mass, double radius, const Vector3d& position, const Vector3d& velocity, double restitution);
 /// Immovable half-space below a plane. @param normal  unit, world, out of the solid

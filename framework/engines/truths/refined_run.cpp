@@ -9,14 +9,12 @@
 namespace tumble::truths {
 namespace {
 
-constexpr double kOrder = 4.0, kOrderTolerance = 0.1;   // of the classical Runge-Kutta method, where its error goes as h^4
 constexpr double kFirstAngle = 0.2;                     // rad: what the fastest motion turns in the first run's step, at most
 constexpr double kFirstError = 1e-2;                    // rad: nor does an oscillation lag behind more than this in the first run, by (w h)^4 / 120 w t
 constexpr long kFewestSteps = 16;
 constexpr double kMostSteps = 8e4;                      // of all runs of one instant together, beyond the first three: seconds
 constexpr double kNextTerm = 2.0;                       // what terms after C h^4 may add to a prediction
 constexpr double kUnsettled = 0.5;                      // off the order of a first glance by less: nothing is said
-constexpr double kSettled = 0.05;                       // two successive orders this close: half of what the order may be off
 // Changes in floors. Thousands of steps, each with tens of roundings, may add up to a thousand floors or a few.
 constexpr double kFine = 1e6;                           // small enough: about 1e-10 of what is compared
 constexpr double kAboveRoundOff = 1e5;                  // known to a few per cent, its log2 to less than what the order may be off

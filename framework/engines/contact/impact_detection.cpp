@@ -1,4 +1,4 @@
-#include "framework/engines/contact/meetings.h"
+#include "framework/engines/contact/impact_detection.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,22 +8,16 @@
 #include "framework/collision/contact_patch.h"
 #include "framework/core/error.h"
 #include "framework/core/numbers.h"
+#include "framework/engines/base/tolerances.h"
 #include "framework/engines/stepping/start_overlaps.h"
 
 namespace tumble::engines {
-namespace {
-
-// Corners of two solids that touch belong to the touch within this part of the size: a face that leans by 1e-9 rad lies flat.
-constexpr double kSamePatch = 1e-9;
-
-}  // namespace
-
-Meetings::Meetings(MovingWorld& moving, const Laws& laws, RunCounters& counters) : moving_(moving), laws_(laws), counters_(counters) {
+ImpactDetection::ImpactDetection(MovingWorld& moving, const Laws& laws, RunCounters& counters) : moving_(moving), laws_(laws), counters_(counters) {
   for (int i = 0; i < moving_.size(); ++i)
     if (moving_.world().bodies[i].collides) colliding_.push_back(i);
 }
 
-std::optional<Earliest> Meetings::earliest(const std::vector<Pair>& pairs) {
+std::optional<Earliest> ImpactDetection::earliest(const std::vector<Pair>& pairs) {
   const StageTimer timer(counters_.collision_seconds);
   apart_at_target_ = false;
   counters_.pair_checks += pairs.size();
@@ -31,20 +25,20 @@ std::optional<Earliest> Meetings::earliest(const std::vector<Pair>& pairs) {
   return found ? found : find_missed(pairs, moving_.target());
 }
 
-void Meetings::refuse_overlap(const std::string& where, const scene::Scene& scene) const {
+void ImpactDetection::refuse_overlap(const std::string& where, const scene::Scene& scene) const {
   std::vector<StartPair> near;
   for (int i = 0; i < moving_.size(); ++i) {
     for (int j = i + 1; j < moving_.size(); ++j) {
       if (!moving_.may_collide(i, j)) continue;
       const collision::Pose pose_i = moving_.motion_at(i, 0.0).pose, pose_j = moving_.motion_at(j, 0.0).pose;
-      look_at_start(i, j, moving_.shape(i), pose_i, moving_.shape(j), pose_j, kTouching * collision::gap_scale(moving_.shape(i), pose_i, moving_.shape(j), pose_j), near);
+      look_at_start(i, j, moving_.shape(i), pose_i, moving_.shape(j), pose_j, kRoundOff * collision::gap_scale(moving_.shape(i), pose_i, moving_.shape(j), pose_j), near);
     }
   }
   refuse_overlaps(where, scene, near);
 }
 
 // Planes without end are in every box: whether the ball around a body reaches one is asked directly.
-bool Meetings::may_meet(int a, int b) {
+bool ImpactDetection::may_meet(int a, int b) {
   if (moving_.shape(a).is_half_space()) std::swap(a, b);
   if (!moving_.shape(b).is_half_space()) return true;
   const collision::SweptBox box = moving_.swept_box(a);
@@ -57,7 +51,7 @@ bool Meetings::may_meet(int a, int b) {
   return lowest <= std::max(n.dot(start.com_world), n.dot(end.com_world)) + shake;
 }
 
-std::vector<Meetings::Pair> Meetings::candidates() {
+std::vector<ImpactDetection::Pair> ImpactDetection::candidates() {
   if (colliding_.size() < 2 || std::none_of(colliding_.begin(), colliding_.end(), [&](int body) { return moving_.can_move(body) || moving_.is_driven(body); })) return {};
   const StageTimer timer(counters_.collision_seconds);
   std::vector<Pair> pairs = pairs_of_boxes();
@@ -66,7 +60,7 @@ std::vector<Meetings::Pair> Meetings::candidates() {
   return pairs;
 }
 
-std::vector<Meetings::Pair> Meetings::pairs_of_boxes() {
+std::vector<ImpactDetection::Pair> ImpactDetection::pairs_of_boxes() {
   std::vector<collision::SweptBox> boxes;
   boxes.reserve(colliding_.size());
   for (const int body : colliding_) boxes.push_back(moving_.swept_box(body));
@@ -81,7 +75,7 @@ std::vector<Meetings::Pair> Meetings::pairs_of_boxes() {
 
 // In a step that has begun again a body that flies alone still has the box of the longer one: whoever met nobody there meets nobody here.
 // @return whether one of these has met somebody, so that it matters where its path ends now
-bool Meetings::ask_for_ends(const std::vector<Pair>& pairs) {
+bool ImpactDetection::ask_for_ends(const std::vector<Pair>& pairs) {
   bool any = false;
   for (const auto& [a, b] : pairs)
     for (const int body : {a, b})
@@ -92,7 +86,7 @@ bool Meetings::ask_for_ends(const std::vector<Pair>& pairs) {
   return any;
 }
 
-std::optional<Earliest> Meetings::find_earliest(const std::vector<Pair>& pairs) {
+std::optional<Earliest> ImpactDetection::find_earliest(const std::vector<Pair>& pairs) {
   collision::ImpactOptions options{laws_.find_impact_time};
   std::optional<Earliest> earliest;
   double until = moving_.target();
@@ -110,7 +104,7 @@ std::optional<Earliest> Meetings::find_earliest(const std::vector<Pair>& pairs) 
 }
 
 // Of those that are farther apart than what counts as touching a bound from below.
-double Meetings::gap_on_path(Pair pair, double t) {
+double ImpactDetection::gap_on_path(Pair pair, double t) {
   const auto [a, b] = pair;
   const collision::Pose pose_a = moving_.motion_at(a, t).pose, pose_b = moving_.motion_at(b, t).pose;
   const double least = collision::least_gap(moving_.shape(a), pose_a, moving_.shape(b), pose_b);
@@ -120,15 +114,15 @@ double Meetings::gap_on_path(Pair pair, double t) {
   return collision::gap_distance(moving_.shape(a), pose_a, moving_.shape(b), pose_b, moving_.pair_cache(a, b), touching);
 }
 
-collision::Gap Meetings::gap(Pair pair) const {
+collision::Gap ImpactDetection::gap(Pair pair) const {
   return collision::compute_gap(moving_.shape(pair.first), pose_of(pair.first), moving_.shape(pair.second), pose_of(pair.second), moving_.pair_cache(pair.first, pair.second));
 }
 
-double Meetings::touching_distance(Pair pair) const {
+double ImpactDetection::touching_distance(Pair pair) const {
   // Times are doubles too: within one spacing of the time a pair moves by its speed times that.
   const double speed = moving_.velocity_of(pair.first, moving_.time()).norm() + moving_.velocity_of(pair.second, moving_.time()).norm();
-  return kTouching * (collision::gap_scale(moving_.shape(pair.first), pose_of(pair.first), moving_.shape(pair.second), pose_of(pair.second))) +
-         4 * kEpsilon * moving_.time() * speed;
+  return kRoundOff * (collision::gap_scale(moving_.shape(pair.first), pose_of(pair.first), moving_.shape(pair.second), pose_of(pair.second))) +
+         kFewRoundings * kEpsilon * moving_.time() * speed;
 }
 
 // Sizes say what lies flat; how far from the world's origin the two are only adds what their places are rounded by.
@@ -139,20 +133,21 @@ std::vector<Vector3d> touching_points(const collision::CollisionShape& a, const 
   double size = 0.0;
   for (const collision::CollisionShape* shape : {&a, &b})
     if (!shape->is_half_space()) size += shape->bounding_radius();
-  const collision::FlatHull patch = collision::contact_patch(a, pose_a, b, pose_b, gap, kSamePatch * size + rounding);
+  // A face that leans by a billionth lies flat.
+  const collision::FlatHull patch = collision::contact_patch(a, pose_a, b, pose_b, gap, kNegligible * size + rounding);
   if (patch.corners.size() < 2) return {point_world};
   std::vector<Vector3d> points{patch.middle};
   points.insert(points.end(), patch.corners.begin(), patch.corners.end());
   return points;
 }
 
-std::vector<Vector3d> Meetings::touching_points(Pair pair, const collision::Gap& gap) const {
+std::vector<Vector3d> ImpactDetection::touching_points(Pair pair, const collision::Gap& gap) const {
   return engines::touching_points(moving_.shape(pair.first), pose_of(pair.first), moving_.shape(pair.second), pose_of(pair.second), gap, touching_distance(pair));
 }
 
 // The last guard: bounds hold for every method of integration that moves bodies smoothly, but what a student wrote may not. An
 // overlap at the end that is deeper than round-off is traced back to where it began.
-std::optional<Earliest> Meetings::find_missed(const std::vector<Pair>& pairs, double target) {
+std::optional<Earliest> ImpactDetection::find_missed(const std::vector<Pair>& pairs, double target) {
   std::optional<Earliest> earliest;
   apart_at_target_ = true;
   for (std::size_t k = 0; k < pairs.size(); ++k) {
@@ -168,7 +163,7 @@ std::optional<Earliest> Meetings::find_missed(const std::vector<Pair>& pairs, do
 }
 
 // What rounding leaves of an overlap is taken back by moving the lighter body along the normal; a few roundings at most.
-void Meetings::separate(const std::vector<Pair>& pairs) {
+void ImpactDetection::separate(const std::vector<Pair>& pairs) {
   for (int round = 0; round < 20; ++round) {
     bool clean = true;
     for (const auto& pair : pairs) {

@@ -1,4 +1,4 @@
-#include "framework/collision/near_points.h"
+#include "framework/collision/manifold_points.h"
 
 #include <algorithm>
 #include <cmath>
@@ -48,17 +48,17 @@ double height_of(const PlacedPolytope& piece, const Vector3d& n, double side, co
   return side * height + n.dot(piece.translation);
 }
 
-std::vector<NearPoint> nearest_point(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double reach, PairCache* cache) {
+std::vector<ManifoldPoint> nearest_point(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double reach, PairCache* cache) {
   const Gap gap = compute_gap(a, pose_a, b, pose_b, cache);
   if (gap.distance > reach) return {};
   return {{gap.point_a_world, gap.point_b_world, gap.normal_b_to_a_world, gap.distance}};
 }
 
-std::vector<NearPoint> above_half_space(const CollisionShape& a, const Pose& pose_a, const Pose& plane, double reach) {
+std::vector<ManifoldPoint> above_half_space(const CollisionShape& a, const Pose& pose_a, const Pose& plane, double reach) {
   const Matrix3d R = pose_a.world_from_body.toRotationMatrix();
   const Vector3d n = plane.world_from_body.toRotationMatrix().col(2);
   const double height = n.dot(pose_a.com_world - plane.com_world) - a.radius();
-  std::vector<NearPoint> points;
+  std::vector<ManifoldPoint> points;
   double lowest = kInfinity;
   for (const Vector3d& v : a.vertices()) lowest = std::min(lowest, n.dot(R * v));
   if (lowest + height > reach) return {};
@@ -73,22 +73,22 @@ std::vector<NearPoint> above_half_space(const CollisionShape& a, const Pose& pos
   if (points.size() <= kFew) return points;
   Corners places;
   InlineVector<double, 16> heights;
-  for (const NearPoint& point : points) {
+  for (const ManifoldPoint& point : points) {
     places.push_back(point.point_a_world);
     heights.push_back(point.gap);
   }
   auto lower = lower_corners(places, heights, n, kSameHeight * a.bounding_radius());
   std::sort(lower.begin(), lower.end());   // in the order of the vertices
-  std::vector<NearPoint> corners;
+  std::vector<ManifoldPoint> corners;
   for (const int i : lower) corners.push_back(points[static_cast<std::size_t>(i)]);
   return corners;
 }
 
-NearPoint flipped(const NearPoint& p) { return {p.point_b_world, p.point_a_world, -p.normal_b_to_a_world, p.gap}; }
+ManifoldPoint flipped(const ManifoldPoint& p) { return {p.point_b_world, p.point_a_world, -p.normal_b_to_a_world, p.gap}; }
 
 struct Region {
   Vector3d normal;
-  InlineVector<NearPoint, 8> points;
+  InlineVector<ManifoldPoint, 8> points;
 };
 
 // The first normal of a flat piece is that of its face; its back and its sides are not part of a
@@ -152,11 +152,11 @@ void add_points(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d
 }
 
 // Only points that a plate could rest on can carry; the others lie between them.
-void append_corners(const Region& region, double size, std::vector<NearPoint>& points) {
+void append_corners(const Region& region, double size, std::vector<ManifoldPoint>& points) {
   if (region.points.size() == 1) return points.push_back(region.points[0]);
   Corners all;
   InlineVector<double, 16> gaps;
-  for (const NearPoint& p : region.points) {
+  for (const ManifoldPoint& p : region.points) {
     all.push_back(p.point_a_world);
     gaps.push_back(p.gap);
   }
@@ -165,7 +165,7 @@ void append_corners(const Region& region, double size, std::vector<NearPoint>& p
 
 // The ends of the common segment of two edges, each with its own gap, and the other points within
 // reach. At the ends the gap is that of the edges, because the adjacent faces slope away.
-std::vector<NearPoint> along_edges(const PlacedPolytope& a, const PlacedPolytope& b, const EdgeOnEdge& shared, double reach, double size, const Vector3d& com_b_world) {
+std::vector<ManifoldPoint> along_edges(const PlacedPolytope& a, const PlacedPolytope& b, const EdgeOnEdge& shared, double reach, double size, const Vector3d& com_b_world) {
   const Vector3d& n = shared.normal_b_to_a;
   const double near = kInTouch * size;
   Region region{n, {}};
@@ -176,14 +176,14 @@ std::vector<NearPoint> along_edges(const PlacedPolytope& a, const PlacedPolytope
   const Vector3d along = (shared.on_a[1] - shared.on_a[0]).normalized(), start = com_b_world + shared.on_a[0];
   Region others{n, {}};
   if (reach > near) add_points(a, b, n, reach, com_b_world, others);
-  for (const NearPoint& p : others.points)
+  for (const ManifoldPoint& p : others.points)
     if ((p.point_a_world - start).cross(along).norm() > 2 * near) region.points.push_back(p);
-  std::vector<NearPoint> points;
+  std::vector<ManifoldPoint> points;
   if (region.points.size() > 0) append_corners(region, size, points);
   return points;
 }
 
-std::vector<NearPoint> between_convex(const Query& query, const Vector3d& com_b_world, double reach, PairCache* cache) {
+std::vector<ManifoldPoint> between_convex(const Query& query, const Vector3d& com_b_world, double reach, PairCache* cache) {
   const PlacedPolytope placed_a = query.piece_of_a(0), placed_b = query.piece_of_b(0);
   const PolytopeGap found = convex_gap(query, reach, cache, Points::kWanted);
   if (found.beyond || found.distance > reach) return {};
@@ -192,7 +192,7 @@ std::vector<NearPoint> between_convex(const Query& query, const Vector3d& com_b_
   Region region{found.normal_b_to_a, {}};
   add_points(placed_a, placed_b, region.normal, reach, com_b_world, region);
   region.points.push_back({com_b_world + found.point_a, com_b_world + found.point_b, region.normal, found.distance});   // the crossing of two edges
-  std::vector<NearPoint> points;
+  std::vector<ManifoldPoint> points;
   append_corners(region, query.size, points);
   return points;
 }
@@ -225,20 +225,20 @@ std::vector<NearPair> contact_pairs(const Query& query, double reach, double rad
 }
 
 // A ball in a corner of a surface touches each wall.
-std::vector<NearPoint> of_a_ball(const Query& query, const Vector3d& com_b_world, double reach, PairCache* cache) {
+std::vector<ManifoldPoint> of_a_ball(const Query& query, const Vector3d& com_b_world, double reach, PairCache* cache) {
   const double radius_a = query.a.radius(), radius_b = query.b.radius();
-  std::vector<NearPoint> points;
+  std::vector<ManifoldPoint> points;
   for (const NearPair& pair : contact_pairs(query, reach, radius_a + radius_b, Points::kWanted, cache)) {
     const Vector3d& n = pair.gap.normal_b_to_a;
-    const NearPoint point{com_b_world + pair.gap.point_a - radius_a * n, com_b_world + pair.gap.point_b + radius_b * n, n, pair.gap.distance - radius_a - radius_b};
-    const auto same = std::find_if(points.begin(), points.end(), [&](const NearPoint& p) { return (p.normal_b_to_a_world - n).norm() <= kSameNormal; });
+    const ManifoldPoint point{com_b_world + pair.gap.point_a - radius_a * n, com_b_world + pair.gap.point_b + radius_b * n, n, pair.gap.distance - radius_a - radius_b};
+    const auto same = std::find_if(points.begin(), points.end(), [&](const ManifoldPoint& p) { return (p.normal_b_to_a_world - n).norm() <= kSameNormal; });
     if (same == points.end()) points.push_back(point);
     else if (point.gap < same->gap) *same = point;
   }
   return points;
 }
 
-std::vector<NearPoint> between_surfaces(const Query& query, const Vector3d& com_b_world, double reach, PairCache* cache) {
+std::vector<ManifoldPoint> between_surfaces(const Query& query, const Vector3d& com_b_world, double reach, PairCache* cache) {
   std::vector<Region> regions;
   for (const NearPair& pair : contact_pairs(query, reach, 0.0, Points::kUnwanted, cache)) {
     const PlacedPolytope placed_a = query.piece_of_a(pair.i), placed_b = query.piece_of_b(pair.j);
@@ -247,19 +247,19 @@ std::vector<NearPoint> between_surfaces(const Query& query, const Vector3d& com_
     if (region == regions.end()) region = regions.insert(regions.end(), {n, {}});
     add_points(placed_a, placed_b, n, reach, com_b_world, *region);
   }
-  std::vector<NearPoint> points;
+  std::vector<ManifoldPoint> points;
   for (const Region& region : regions) append_corners(region, query.size, points);
   return points;
 }
 
 }  // namespace
 
-std::vector<NearPoint> near_points(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double reach, PairCache* cache) {
+std::vector<ManifoldPoint> manifold_points(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double reach, PairCache* cache) {
   if (a.ellipsoid() || b.ellipsoid()) return nearest_point(a, pose_a, b, pose_b, reach, cache);
-  if (b.is_half_space()) return a.is_half_space() ? std::vector<NearPoint>{} : above_half_space(a, pose_a, pose_b, reach);
+  if (b.is_half_space()) return a.is_half_space() ? std::vector<ManifoldPoint>{} : above_half_space(a, pose_a, pose_b, reach);
   if (a.is_half_space()) {
-    std::vector<NearPoint> points = above_half_space(b, pose_b, pose_a, reach);
-    for (NearPoint& p : points) p = flipped(p);
+    std::vector<ManifoldPoint> points = above_half_space(b, pose_b, pose_a, reach);
+    for (ManifoldPoint& p : points) p = flipped(p);
     return points;
   }
   const Query query(a, pose_a, b, pose_b);

@@ -1,4 +1,4 @@
-// Steps of heaps: many bodies without restitution in one island, asked for in steps, not in instants. Part of LastingContacts.
+// Steps of heaps: many bodies without restitution in one island, asked for in steps, not in instants. Part of PersistentContacts.
 //
 // What one blow changes changes dozens of others in the same instant, so that nothing is gained by locating any of them. A heap goes
 //   x' = x + h v',   q' = q turned by h omega'
@@ -14,38 +14,38 @@
 #include "framework/dynamics/solve_contacts.h"
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/contact/contact_constants.h"
-#include "framework/engines/contact/lasting_contacts.h"
+#include "framework/engines/contact/persistent_contacts.h"
 
 namespace tumble::engines {
 
-bool LastingContacts::is_pile(const ContactIsland& island) const {
+bool PersistentContacts::is_large(const ContactIsland& island) const {
   if (!island.linked.empty()) return false;
-  if (!locates()) return island.bodies.size() > kContact.few_bodies;
-  const bool heaped = std::any_of(island.bodies.begin(), island.bodies.end(), [&](int body) { return memory_.heaped.contains(body); });
-  return heaped && speed(island) > kContact.moving * rest_speed_;   // what comes to rest is let down to the last digit
+  if (!locates()) return island.bodies.size() > kContact.few;
+  const bool in_large_island = std::any_of(island.bodies.begin(), island.bodies.end(), [&](int body) { return memory_.in_large_island.contains(body); });
+  return in_large_island && speed(island) > kContact.moving * restitution_threshold_;   // what comes to rest is let down to the last digit
 }
 
-void LastingContacts::tell_of_heaps() {
+void PersistentContacts::report_large_islands() {
   const std::string words = fmt::format("heaps of more than {} bodies that strike more than {} blows a step go in steps until they lie (heap_steps): right to first order in the step. "
-                                        "\"contact\": {{ \"plastic_impacts\": \"located\" }} finds every blow at its instant, and takes longer", kContact.few_bodies, kContact.most_located_impacts);
+                                        "\"contact\": {{ \"plastic_impacts\": \"located\" }} finds every blow at its instant, and takes longer", kContact.few, kContact.most_located_impacts);
   if (std::find(counters_.notices.begin(), counters_.notices.end(), words) == counters_.notices.end()) counters_.notices.push_back(words);
 }
 
 // A blow is about to cut the step for this island: too many of them, and it is asked for in steps from now on, until it rests or falls apart.
-bool LastingContacts::becomes_heap(const ContactIsland& island) {
-  if (rules_.plastic_impacts != scene::PlasticImpacts::kAutomatic || !island.linked.empty() || island.bodies.size() <= kContact.few_bodies) return false;
+bool PersistentContacts::becomes_large(const ContactIsland& island) {
+  if (rules_.plastic_impacts != scene::PlasticImpacts::kAutomatic || !island.linked.empty() || island.bodies.size() <= kContact.few) return false;
   if (!(moving_.time() < memory_.impacts_counted_from + memory_.longest_step)) {
     memory_.impacts_counted_from = moving_.time();
     memory_.impacts_counted.clear();
   }
   if (++memory_.impacts_counted[island.bodies.front()] <= kContact.most_located_impacts) return false;
-  memory_.heaped.insert(island.bodies.begin(), island.bodies.end());
-  tell_of_heaps();
+  memory_.in_large_island.insert(island.bodies.begin(), island.bodies.end());
+  report_large_islands();
   return true;
 }
 
 // Where the island's bodies are at the middle of the step if nothing stops them.
-std::vector<RigidBodyState> LastingContacts::middle_of(const ContactIsland& island, double h) const {
+std::vector<RigidBodyState> PersistentContacts::middle_of(const ContactIsland& island, double h) const {
   std::vector<RigidBodyState> middle = moving_.states();
   for (int i = 0; i < moving_.size(); ++i)
     if (moving_.world().bodies[i].immovable()) middle[i].com_world = prescribed_position(moving_.world().bodies[i], moving_.time() + 0.5 * h);
@@ -57,40 +57,40 @@ std::vector<RigidBodyState> LastingContacts::middle_of(const ContactIsland& isla
   return middle;
 }
 
-std::vector<LastingContacts::StepContact> LastingContacts::touches_of_pile(const ContactIsland& island, const std::vector<RigidBodyState>& middle, double h) {
-  std::vector<StepContact> touches;
+std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_of_large_island(const ContactIsland& island, const std::vector<RigidBodyState>& middle, double h) {
+  std::vector<StepContact> contacts;
   for (const Pair& pair : island.pairs) {
-    const double room = geometry_.heap_margin(pair), within = reach(pair);
+    const double margin = geometry_.large_island_margin(pair), within = reach(pair);
     ContactManifold points = geometry_.points_at(pair, middle, within);
-    const bool passed = std::any_of(points.begin(), points.end(), [](const collision::NearPoint& p) { return p.gap < 0; });
+    const bool passed = std::any_of(points.begin(), points.end(), [](const collision::ManifoldPoint& p) { return p.gap < 0; });
     if (passed) points = geometry_.points_at(pair, moving_.states(), within);
     const Body a = moving_.body_at_impact(pair.first), b = moving_.body_at_impact(pair.second);
-    for (const collision::NearPoint& p : points) {
-      double target = (room - p.gap) / h;
+    for (const collision::ManifoldPoint& p : points) {
+      double target = (margin - p.gap) / h;
       if (!passed) {
         const Vector3d point = geometry_.point_of(pair, p);
         const Vector3d v = a.velocity_world + a.omega_world.cross(point - a.com_world) - b.velocity_world - b.omega_world.cross(point - b.com_world);
         target += 0.5 * p.normal_b_to_a_world.dot(v);
       }
-      if (target > 0) target = kContact.restored * std::max(0.0, room - p.gap) / memory_.longest_step;   // not / h: in a step cut short that would be a blow
-      touches.push_back({pair, p, target, false});
+      if (target > 0) target = kContact.restored * std::max(0.0, margin - p.gap) / memory_.longest_step;   // not / h: in a step cut short that would be a blow
+      contacts.push_back({pair, p, target, false});
     }
   }
-  return touches;
+  return contacts;
 }
 
 // @return an earlier target to begin the step again with
-std::optional<double> LastingContacts::take_pile_step(const ContactIsland& island, double h) {
+std::optional<double> PersistentContacts::take_large_island_step(const ContactIsland& island, double h) {
   const std::vector<RigidBodyState> middle = middle_of(island, h);
-  const std::vector<StepContact> touches = touches_of_pile(island, middle, h);
-  const ContactProblem problem = problem_of(island, touches, middle, h);
+  const std::vector<StepContact> contacts = contacts_of_large_island(island, middle, h);
+  const ContactProblem problem = problem_of(island, contacts, middle, h);
   ContactOptions options;
-  options.tolerance = kContact.solved_in_heap;
-  options.least_speed = kContact.still * rest_speed_;
-  options.most_sweeps_alone = kContact.sweeps_in_heap;
+  options.tolerance = kContact.solved_in_large_island;
+  options.least_speed = kContact.still * restitution_threshold_;
+  options.most_sweeps_alone = kContact.sweeps_in_large_island;
   if (locates()) {           // nobody has asked for steps: their problems are at least solved
-    options.enough = kContact.solved_in_heap;
-    options.most_sweeps = kContact.sweeps_in_heap;
+    options.enough = kContact.solved_in_large_island;
+    options.most_sweeps = kContact.sweeps_in_large_island;
   } else {
     options.largest_direct = 0;
   }
@@ -105,13 +105,13 @@ std::optional<double> LastingContacts::take_pile_step(const ContactIsland& islan
   std::vector<RigidBodyState> ends = ends_of(island, problem, solution, h, true);
   // Pairs with bodies of other groups may meet within the step: that is for the finding of impacts.
   std::vector<double> gaps(island.pairs.size(), 0.0);
-  const bool apart = correction_.keep_pile_apart(island, island.pairs, ends, moving_.target(), gaps);
+  const bool apart = correction_.correct_large_island(island, island.pairs, ends, moving_.target(), gaps);
   if (!apart && h > kContact.shortest_step * memory_.longest_step) return moving_.time() + 0.5 * h;
   for (const int body : island.bodies) {
     set_straight_path(body, ends[body]);
-    moving_.refuse_whirl(body);
+    moving_.refuse_fast_turning(body);
   }
-  keep_warm(island, touches, problem, solution, h);
+  keep_warm_start(island, contacts, problem, solution, h);
   return std::nullopt;
 }
 

@@ -11,9 +11,6 @@
 
 namespace tumble::engines {
 
-/// Contacts closer than this many roundings of their coordinates touch at one instant.
-constexpr double kTouching = 64 * std::numeric_limits<double>::epsilon();
-
 /// The first impact of a step.
 struct Earliest {
   double time;         // [s]
@@ -25,11 +22,11 @@ struct Earliest {
 std::vector<Vector3d> touching_points(const collision::CollisionShape& a, const collision::Pose& pose_a, const collision::CollisionShape& b, const collision::Pose& pose_b, const collision::Gap& gap,
                                       double rounding);
 
-class Meetings {
+class ImpactDetection {
  public:
   using Pair = std::pair<int, int>;   // bodies, first < second
 
-  Meetings(MovingWorld& moving, const Laws& laws, RunCounters& counters);
+  ImpactDetection(MovingWorld& moving, const Laws& laws, RunCounters& counters);
 
   /// Whether there are bodies that may meet at all.
   bool any() const { return colliding_.size() > 1; }

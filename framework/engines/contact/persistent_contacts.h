@@ -12,7 +12,7 @@
 ///
 /// Parts: contact_memory.h (what is remembered from step to step), contact_geometry.h (where bodies touch), contact_island.h (which bodies are
 /// solved together), position_correction.h; here the step, with its strategies: one island's step and its solver (contact_steps.cpp), points that come down
-/// within it (contact_landings.cpp), heaps (contact_piles.cpp), energy (contact_energy.cpp). Tolerances: contact_constants.h.
+/// within it (contact_activation.cpp), heaps (large_islands.cpp), energy (contact_energy.cpp). Tolerances: contact_constants.h.
 /// Sources: J. J. Moreau, CISM 302, 1988; D. Stewart, J. Trinkle 1996; D. Baraff, SIGGRAPH 1994.
 #pragma once
 
@@ -27,15 +27,15 @@
 
 namespace tumble::engines {
 
-class LastingContacts {
+class PersistentContacts {
  public:
   using Pair = ContactGeometry::Pair;   // bodies, first < second
 
-  LastingContacts(MovingWorld& moving, const Laws& laws, const scene::ContactSpec& rules, double rest_speed, RunCounters& counters, TrajectorySink& sink)
-      : moving_(moving), laws_(laws), rules_(rules), rest_speed_(rest_speed), counters_(counters), sink_(sink), geometry_(moving),
-        correction_(moving, geometry_, memory_, rest_speed, counters) {}
-  LastingContacts(const LastingContacts&) = delete;
-  LastingContacts& operator=(const LastingContacts&) = delete;
+  PersistentContacts(MovingWorld& moving, const Laws& laws, const scene::ContactSpec& rules, double restitution_threshold, RunCounters& counters, TrajectorySink& sink)
+      : moving_(moving), laws_(laws), rules_(rules), restitution_threshold_(restitution_threshold), counters_(counters), sink_(sink), geometry_(moving),
+        correction_(moving, geometry_, memory_, restitution_threshold, counters) {}
+  PersistentContacts(const PersistentContacts&) = delete;
+  PersistentContacts& operator=(const PersistentContacts&) = delete;
 
   /// A collision has become a persistent contact.
   void begin(Pair pair, const collision::Gap& gap);
@@ -60,10 +60,12 @@ class LastingContacts {
   bool commit();
   /// Takes back overlaps among bodies in contact at a time within the step under way: contacts keep bodies apart at its ends, and on the
   /// path between them a body that turns dips in by what is of second order in the step. Changes nothing but these states.
-  void open_gaps(std::vector<RigidBodyState>& states, double t);
+  void remove_overlaps_within_step(std::vector<RigidBodyState>& states, double t);
   /// The same of any of these pairs that overlap in these states, whatever is in contact in the step under way; velocities stay.
-  void draw_apart(const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t);
+  void remove_overlaps(const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t);
   const std::vector<ContactPoint>& forces() const { return forces_; }
+  /// Farther apart than this the two are in contact no more. [m]
+  double open_distance(Pair pair) const { return kContact.open_band * geometry_.margin(pair); }
   /// Friction of a pair: the smaller of the two.
   double friction(Pair pair) const { return geometry_.friction(pair); }
 
@@ -76,21 +78,21 @@ class LastingContacts {
   /// A contact point of the step.
   struct StepContact {
     Pair pair;
-    collision::NearPoint point;
+    collision::ManifoldPoint point;
     double target;               // least normal velocity afterwards [m/s]
-    bool lands;                  // apart at the start of the step
+    bool activates;                  // apart at the start of the step
     Vector3d slip_target_world = Vector3d::Zero();   // [m/s], see PushingContact
     double start_gap = 0.0;      // at the start of the step, wherever `point` is looked at [m]
   };
-  struct Landing {
-    std::size_t touch;           // which
+  struct Activation {
+    std::size_t step_contact;           // which
     double time, speed;          // since the step's start [s], with which it comes down [m/s]
     double approach;             // at the step's start [m/s]
     bool within;                 // the step
   };
   using StepContacts = std::vector<StepContact>;
 
-  // ---- Which contacts there are in the step (lasting_contacts.cpp)
+  // ---- Which contacts there are in the step (persistent_contacts.cpp)
   bool plastic(Pair pair) const;
   bool locates() const { return rules_.plastic_impacts != scene::PlasticImpacts::kInStep; }
   double reach(Pair pair);
@@ -98,62 +100,62 @@ class LastingContacts {
   std::vector<ContactIsland> islands(const std::vector<Pair>& touching);
   void note_near_pairs(const std::vector<Pair>& candidates);
   void require_progress();
-  StepContacts touches_of(const ContactIsland& island);
+  StepContacts contacts_of(const ContactIsland& island);
   bool is_curved(const ContactIsland& island) const;
   double speed(const ContactIsland& island) const;
   bool flies_off(Pair pair, const std::vector<RigidBodyState>& states) const;
-  void draw_apart();
+  void remove_overlaps();
 
-  // ---- One island's step (lasting_contacts.cpp, contact_steps.cpp)
+  // ---- One island's step (persistent_contacts.cpp, contact_steps.cpp)
   std::optional<double> take_steps(double h);
   std::optional<double> take_step(const ContactIsland& island, double h);
-  ContactProblem problem_of(const ContactIsland& island, const StepContacts& touches, const std::vector<RigidBodyState>& states, double h, const std::vector<RigidBodyState>* ends = nullptr);
-  void give_guesses(const StepContacts& touches, const std::vector<RigidBodyState>& states, double h, double farthest, ContactProblem& problem) const;
+  ContactProblem problem_of(const ContactIsland& island, const StepContacts& contacts, const std::vector<RigidBodyState>& states, double h, const std::vector<RigidBodyState>* ends = nullptr);
+  void warm_start(const StepContacts& contacts, const std::vector<RigidBodyState>& states, double h, double farthest, ContactProblem& problem) const;
   const std::vector<KnownImpulse>* known_impulses(Pair pair) const;
   ContactSolution solve(const ContactIsland& island, const ContactProblem& problem, double h);
-  void remember(const StepContacts& touches, const ContactProblem& problem, const ContactSolution& solution, double h, std::map<Pair, std::vector<KnownImpulse>>& store) const;
-  void keep_warm(const ContactIsland& island, const StepContacts& touches, const ContactProblem& problem, const ContactSolution& solution, double h);
+  void remember(const StepContacts& contacts, const ContactProblem& problem, const ContactSolution& solution, double h, std::map<Pair, std::vector<KnownImpulse>>& store) const;
+  void keep_warm_start(const ContactIsland& island, const StepContacts& contacts, const ContactProblem& problem, const ContactSolution& solution, double h);
   void note_unsolved(const ContactIsland& island, const ContactSolution& solution, double h);
   void require_numbers(const ContactIsland& island, const ContactSolution& solution) const;
-  std::optional<double> stop_of_sliding(const ContactProblem& problem, const StepContacts& touches, const ContactSolution& solution, double h);
-  std::vector<RigidBodyState> ends_of(const ContactIsland& island, const ContactProblem& problem, const ContactSolution& solution, double h, bool landing,
+  std::optional<double> stop_of_sliding(const ContactProblem& problem, const StepContacts& contacts, const ContactSolution& solution, double h);
+  std::vector<RigidBodyState> ends_of(const ContactIsland& island, const ContactProblem& problem, const ContactSolution& solution, double h, bool activation,
                                       const std::vector<RigidBodyState>* at = nullptr) const;
   double largest_turn(const ContactIsland& island, const std::vector<RigidBodyState>& ends, double h) const;
   double turn_of_normals(const ContactIsland& island, const std::vector<RigidBodyState>& ends) const;
-  StepContacts touches_midway(const ContactIsland& island, const StepContacts& touches, const std::vector<RigidBodyState>& ends, std::vector<RigidBodyState>& middle) const;
-  bool give_paths(const ContactIsland& island, const StepContacts& touches, const std::vector<RigidBodyState>& touches_at, const ContactProblem& problem, const ContactSolution& solution,
-                  double h, bool landing, const std::vector<RigidBodyState>* at);
+  StepContacts contacts_midway(const ContactIsland& island, const StepContacts& contacts, const std::vector<RigidBodyState>& ends, std::vector<RigidBodyState>& middle) const;
+  bool set_paths(const ContactIsland& island, const StepContacts& contacts, const std::vector<RigidBodyState>& contacts_at, const ContactProblem& problem, const ContactSolution& solution,
+                  double h, bool activation, const std::vector<RigidBodyState>* at);
   void set_straight_path(int body, const RigidBodyState& end);
   bool gains_energy(const ContactIsland& island);
 
-  // ---- Points that come down within the step (contact_landings.cpp)
+  // ---- Points that come down within the step (contact_activation.cpp)
   static Vector3d relative_velocity(const ContactProblem& problem, std::size_t contact, const std::vector<Velocity>& velocities);
   static double approach(const ContactProblem& problem, std::size_t contact, const std::vector<Velocity>& velocities);
   static double slip_speed(const ContactProblem& problem, std::size_t contact, const std::vector<Velocity>& velocities);
-  bool is_down(const StepContact& touch) const;
-  std::vector<Velocity> velocities_now(const ContactIsland& island, const StepContacts& touches, const ContactProblem& problem) const;
-  bool let_part(const ContactIsland& island, StepContacts& touches, ContactProblem& problem) const;
-  static void keep_together(StepContacts& touches, ContactProblem& problem);
-  static bool lands(const StepContacts& touches, const ContactSolution& solution);
-  bool comes_down(const ContactIsland& island, const StepContacts& touches, const ContactProblem& problem, const ContactSolution& solution, double h) const;
-  std::vector<Landing> predict_landings(const ContactIsland& island, const StepContacts& touches, double h);
-  std::optional<double> sort_out_landings(const ContactIsland& island, StepContacts& touches, double h);
-  bool strike_what_is_down(const ContactIsland& island, const StepContacts& touches);
-  bool strike(const ContactIsland& island, StepContacts down);
-  static std::vector<int> touched_bodies(const ContactIsland& island, const StepContacts& touches);
+  bool is_active(const StepContact& step_contact) const;
+  std::vector<Velocity> velocities_now(const ContactIsland& island, const StepContacts& contacts, const ContactProblem& problem) const;
+  bool allow_separation(const ContactIsland& island, StepContacts& contacts, ContactProblem& problem) const;
+  static void keep_together(StepContacts& contacts, ContactProblem& problem);
+  static bool activates(const StepContacts& contacts, const ContactSolution& solution);
+  bool is_activated(const ContactIsland& island, const StepContacts& contacts, const ContactProblem& problem, const ContactSolution& solution, double h) const;
+  std::vector<Activation> predict_activations(const ContactIsland& island, const StepContacts& contacts, double h);
+  std::optional<double> handle_activations(const ContactIsland& island, StepContacts& contacts, double h);
+  bool apply_impacts_of_active(const ContactIsland& island, const StepContacts& contacts);
+  bool apply_impact(const ContactIsland& island, StepContacts down);
+  static std::vector<int> touched_bodies(const ContactIsland& island, const StepContacts& contacts);
 
-  // ---- Heaps (contact_piles.cpp)
-  bool is_pile(const ContactIsland& island) const;
-  bool becomes_heap(const ContactIsland& island);
-  void tell_of_heaps();
+  // ---- Heaps (large_islands.cpp)
+  bool is_large(const ContactIsland& island) const;
+  bool becomes_large(const ContactIsland& island);
+  void report_large_islands();
   std::vector<RigidBodyState> middle_of(const ContactIsland& island, double h) const;
-  StepContacts touches_of_pile(const ContactIsland& island, const std::vector<RigidBodyState>& middle, double h);
-  std::optional<double> take_pile_step(const ContactIsland& island, double h);
+  StepContacts contacts_of_large_island(const ContactIsland& island, const std::vector<RigidBodyState>& middle, double h);
+  std::optional<double> take_large_island_step(const ContactIsland& island, double h);
 
   MovingWorld& moving_;
   const Laws& laws_;
   scene::ContactSpec rules_;
-  double rest_speed_;                            // [m/s]
+  double restitution_threshold_;                            // [m/s]
   RunCounters& counters_;
   TrajectorySink& sink_;
   ContactMemory memory_;

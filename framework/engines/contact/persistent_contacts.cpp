@@ -1,4 +1,4 @@
-#include "framework/engines/contact/lasting_contacts.h"
+#include "framework/engines/contact/persistent_contacts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,13 +8,15 @@
 
 #include "framework/collision/gap.h"
 #include "framework/core/numbers.h"
+#include "framework/engines/base/tolerances.h"
+#include "framework/engines/base/step_limits.h"
 #include "framework/engines/contact/contact_constants.h"
 #include "framework/engines/stepping/body_groups.h"
 #include "framework/engines/base/guarded_laws.h"
 
 namespace tumble::engines {
 
-void LastingContacts::recall(ContactMemory memory) {
+void PersistentContacts::recall(ContactMemory memory) {
   memory_ = std::move(memory);
   islands_.clear();
   points_.clear();
@@ -23,59 +25,54 @@ void LastingContacts::recall(ContactMemory memory) {
   unsolved_ = {};
 }
 
-void LastingContacts::begin(Pair pair, const collision::Gap& gap) {
+void PersistentContacts::begin(Pair pair, const collision::Gap& gap) {
   if (!memory_.persistent.insert(pair).second) return;
   ++counters_.contacts_begun;
   sink_.event({moving_.time(), EventKind::kContact, pair.first, pair.second, gap.point_b_world, gap.normal_b_to_a_world, 0.0, 0.0});
 }
 
-void LastingContacts::begin_where_touching(const std::vector<Pair>& pairs) {
+void PersistentContacts::begin_where_touching(const std::vector<Pair>& pairs) {
   for (const Pair& pair : pairs) {
     const collision::Gap gap = geometry_.gap_of(pair, moving_.states());
-    const double within = std::max(geometry_.margin(pair), geometry_.is_dead(pair) ? kContact.assembled * geometry_.size_of(pair) : 0.0);
+    const double within = std::max(geometry_.margin(pair), geometry_.is_inelastic(pair) ? kSixDigits * geometry_.size_of(pair) : 0.0);
     if (gap.distance > within) continue;
     const ContactManifold points = geometry_.points_at(pair, moving_.states(), within);
     const Body a = moving_.body_at_impact(pair.first), b = moving_.body_at_impact(pair.second);
-    const bool slow = std::all_of(points.begin(), points.end(), [&](const collision::NearPoint& p) {
+    const bool slow = std::all_of(points.begin(), points.end(), [&](const collision::ManifoldPoint& p) {
       const Vector3d relative = a.velocity_world + a.omega_world.cross(geometry_.point_of(pair, p) - a.com_world) - b.velocity_world - b.omega_world.cross(geometry_.point_of(pair, p) - b.com_world);
-      return std::abs(relative.dot(p.normal_b_to_a_world)) < rest_speed_;
+      return std::abs(relative.dot(p.normal_b_to_a_world)) < restitution_threshold_;
     });
     if (slow) begin(pair, gap);
   }
-  draw_apart();
+  remove_overlaps();
 }
 
 // A scene's places are rounded: of bodies wedged between others no single shift takes that back.
-void LastingContacts::draw_apart() {
+void PersistentContacts::remove_overlaps() {
   std::vector<RigidBodyState> states = moving_.states();
   const auto closed = [&](const Pair& pair) { return geometry_.distance_of(pair, states, 0.0) < 0; };
   for (const ContactIsland& island : islands({memory_.persistent.begin(), memory_.persistent.end()})) {
     if (std::none_of(island.pairs.begin(), island.pairs.end(), closed)) continue;
-    correction_.keep_apart(island, island.pairs, states, moving_.time());
+    correction_.correct_positions(island, island.pairs, states, moving_.time());
     for (const int body : island.bodies) moving_.set_state(body, states[body]);
   }
 }
 
-bool LastingContacts::plastic(Pair pair) const {
-  if (locates() && memory_.heaped.empty()) return false;
-  return geometry_.is_dead(pair) && (!locates() || memory_.heaped.contains(pair.first) || memory_.heaped.contains(pair.second));
+bool PersistentContacts::plastic(Pair pair) const {
+  if (locates() && memory_.in_large_island.empty()) return false;
+  return geometry_.is_inelastic(pair) && (!locates() || memory_.in_large_island.contains(pair.first) || memory_.in_large_island.contains(pair.second));
 }
 
 // How much nearer the two can come in the step.
-double LastingContacts::reach(Pair pair) {
+double PersistentContacts::reach(Pair pair) {
   const double h = moving_.target() - moving_.time();
-  const auto motion = [&](int body) {
-    const collision::MotionState start = moving_.motion_at(body, moving_.time()), end = moving_.motion_at(body, moving_.target());
-    const double radius = moving_.shape(body).is_half_space() ? 0.0 : moving_.shape(body).bounding_radius();
-    return std::max(start.velocity_world.norm(), end.velocity_world.norm()) + std::max(start.omega_world.norm(), end.omega_world.norm()) * radius;
-  };
   const double size = geometry_.size_of(pair);
-  const double way = (reaches_.empty() ? motion(pair.first) + motion(pair.second) : reaches_[pair.first] + reaches_[pair.second]) * h;
+  const double way = (reaches_.empty() ? moving_.fastest_in_step(pair.first) + moving_.fastest_in_step(pair.second) : reaches_[pair.first] + reaches_[pair.second]) * h;
   return std::min(kContact.reach * size, way) + kContact.open_band * geometry_.margin(pair);
 }
 
 // Where blows are dealt with in the step, a body may be as fast by its end as any that can meet it. [m/s], by body
-std::vector<double> LastingContacts::speeds_about(const std::vector<Pair>& candidates) {
+std::vector<double> PersistentContacts::speeds_about(const std::vector<Pair>& candidates) {
   std::vector<double> speeds(moving_.size(), 0.0);
   std::vector<char> meets(moving_.size(), 0);
   for (const auto& [a, b] : candidates) meets[a] = meets[b] = 1;
@@ -95,7 +92,7 @@ std::vector<double> LastingContacts::speeds_about(const std::vector<Pair>& candi
   return about;
 }
 
-std::vector<ContactIsland> LastingContacts::islands(const std::vector<Pair>& touching) {
+std::vector<ContactIsland> PersistentContacts::islands(const std::vector<Pair>& touching) {
   const int n = moving_.size();
   const std::vector<int> leader = group_leaders(moving_, touching);
   std::map<int, ContactIsland> by_leader;
@@ -113,18 +110,18 @@ std::vector<ContactIsland> LastingContacts::islands(const std::vector<Pair>& tou
   return result;
 }
 
-std::vector<LastingContacts::StepContact> LastingContacts::touches_of(const ContactIsland& island) {
-  std::vector<StepContact> touches;
+std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_of(const ContactIsland& island) {
+  std::vector<StepContact> contacts;
   for (const Pair& pair : island.pairs)
-    for (const collision::NearPoint& point : points_.at(pair)) {
-      const double thickness = geometry_.margin(pair), room = point.gap - thickness;
-      const bool lands = room > kContact.touching_band * thickness + kContact.unseen_approach * reach(pair);
-      touches.push_back({pair, point, lands ? -room / (moving_.target() - moving_.time()) : 0.0, lands, Vector3d::Zero(), point.gap});
+    for (const collision::ManifoldPoint& point : points_.at(pair)) {
+      const double margin = geometry_.margin(pair), distance = point.gap - margin;
+      const bool activates = distance > kContact.touching_band * margin + kNegligible * reach(pair);
+      contacts.push_back({pair, point, activates ? -distance / (moving_.target() - moving_.time()) : 0.0, activates, Vector3d::Zero(), point.gap});
     }
-  return touches;
+  return contacts;
 }
 
-std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidates) {
+std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candidates) {
   const StageTimer timer(counters_.contact_seconds);
   const double h = moving_.target() - moving_.time();
   memory_.longest_step = std::max(memory_.longest_step, h);
@@ -134,7 +131,7 @@ std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidat
   unsolved_ = {};
   // Which pairs touch in this step: those in persistent contact, and those without restitution where impacts are solved in steps.
   std::vector<Pair> touching;
-  const bool in_step = !locates() || !memory_.heaped.empty();
+  const bool in_step = !locates() || !memory_.in_large_island.empty();
   reaches_ = in_step ? speeds_about(candidates) : std::vector<double>{};
   for (const Pair& pair : candidates) {
     if (!memory_.persistent.contains(pair) && !plastic(pair)) continue;
@@ -151,13 +148,13 @@ std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidat
   if (touching.empty()) return std::nullopt;
   // What touches or is linked is solved together, island by island; large islands without restitution are heaps.
   islands_ = islands(touching);
-  for (ContactIsland& island : islands_) island.pile = is_pile(island);
-  memory_.heaped.clear();
+  for (ContactIsland& island : islands_) island.large = is_large(island);
+  memory_.in_large_island.clear();
   for (const ContactIsland& island : islands_)
-    if (island.pile && locates()) memory_.heaped.insert(island.bodies.begin(), island.bodies.end());
+    if (island.large && locates()) memory_.in_large_island.insert(island.bodies.begin(), island.bodies.end());
   if (in_step)
     for (ContactIsland& island : islands_) {
-      for (const Pair& pair : island.pairs) points_.emplace(pair, island.pile ? ContactManifold{} : geometry_.points_at(pair, moving_.states(), reach(pair)));
+      for (const Pair& pair : island.pairs) points_.emplace(pair, island.large ? ContactManifold{} : geometry_.points_at(pair, moving_.states(), reach(pair)));
     }
   note_near_pairs(candidates);
   // Every island gets its paths; where one asks for a shorter step, the step begins again for all.
@@ -177,8 +174,8 @@ std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidat
 // Every island's step. @return the earliest target that one of them asks for: the step begins again for all, and once for many groups is
 // cheaper than once for each. Of ends of sliding, the one that is looked for is that of the earliest. The island that asked last is asked first,
 // and as long as it asks the others' steps would be in vain: one that lies at rest is not solved again for each blow of a pile elsewhere.
-std::optional<double> LastingContacts::take_steps(double h) {
-  const auto step = [&](const ContactIsland& island) { return island.pile ? take_pile_step(island, h) : take_step(island, h); };
+std::optional<double> PersistentContacts::take_steps(double h) {
+  const auto step = [&](const ContactIsland& island) { return island.large ? take_large_island_step(island, h) : take_step(island, h); };
   const auto first = std::find_if(islands_.begin(), islands_.end(), [&](const ContactIsland& island) { return std::binary_search(island.bodies.begin(), island.bodies.end(), memory_.asked_last); });
   if (first != islands_.end())
     if (const auto earlier = step(*first)) return earlier;
@@ -206,7 +203,7 @@ std::optional<double> LastingContacts::take_steps(double h) {
 }
 
 // A step has been cut once more: contacts that ask for ever shorter ones, or whose problems all stay unsolved, would take hours.
-void LastingContacts::require_progress() {
+void PersistentContacts::require_progress() {
   const double t = moving_.time();
   if (!(memory_.cut_since <= t && t < memory_.cut_since + memory_.longest_step)) {
     memory_.cut_since = t;
@@ -214,18 +211,18 @@ void LastingContacts::require_progress() {
     memory_.sweeps = 0;
   }
   ++memory_.cuts;
-  const auto who = [&] {
+  const auto names = [&] {
     const auto asked = std::find_if(islands_.begin(), islands_.end(), [&](const ContactIsland& island) { return std::binary_search(island.bodies.begin(), island.bodies.end(), memory_.asked_last); });
     return asked == islands_.end() ? std::string("bodies") : names_of(moving_.world(), asked->bodies);
   };
   constexpr const char* kRemedy = "masses or sizes that differ less, or a shorter \"step_s\", may help";
   if (memory_.sweeps > kContact.most_sweeps_a_step)
-    throw StoppedRun(fmt::format("{}: what their contacts, rods and joints ask for together stays unsolved, also in the shortest parts of a step of {:.3g} s. They may contradict each other; {}", who(), memory_.longest_step, kRemedy));
-  if (memory_.cuts > kContact.most_cuts_a_body * static_cast<long>(moving_.size()))
-    throw StoppedRun(fmt::format("{}: their contacts ask for more than {} steps within one of {:.3g} s; {}", who(), memory_.cuts - 1, memory_.longest_step, kRemedy));
+    throw StoppedRun(fmt::format("{}: what their contacts, rods and joints ask for together stays unsolved, also in the shortest parts of a step of {:.3g} s. They may contradict each other; {}", names(), memory_.longest_step, kRemedy));
+  if (memory_.cuts > kMostIdleSteps * static_cast<long>(moving_.size()))
+    throw StoppedRun(fmt::format("{}: their contacts ask for more than {} steps within one of {:.3g} s; {}", names(), memory_.cuts - 1, memory_.longest_step, kRemedy));
 }
 
-void LastingContacts::note_near_pairs(const std::vector<Pair>& candidates) {
+void PersistentContacts::note_near_pairs(const std::vector<Pair>& candidates) {
   std::vector<ContactIsland*> group_of(moving_.size(), nullptr);
   for (ContactIsland& island : islands_)
     for (const int body : island.bodies) group_of[body] = &island;
@@ -236,13 +233,13 @@ void LastingContacts::note_near_pairs(const std::vector<Pair>& candidates) {
   }
 }
 
-bool LastingContacts::is_curved(const ContactIsland& island) const {
+bool PersistentContacts::is_curved(const ContactIsland& island) const {
   return std::any_of(island.bodies.begin(), island.bodies.end(), [&](int body) { return moving_.shape(body).ellipsoid() != nullptr; }) ||
          std::any_of(island.pairs.begin(), island.pairs.end(), [&](const Pair& pair) { return geometry_.are_balls(pair); });
 }
 
 // Of the fastest point of the island's bodies. [m/s]
-double LastingContacts::speed(const ContactIsland& island) const {
+double PersistentContacts::speed(const ContactIsland& island) const {
   double fastest = 0.0;
   for (const int index : island.bodies) {
     const Body body = moving_.body_at_impact(index);
@@ -252,101 +249,101 @@ double LastingContacts::speed(const ContactIsland& island) const {
 }
 
 // One island's step. @return an earlier target (or the same after an impact) to begin the step again with
-std::optional<double> LastingContacts::take_step(const ContactIsland& island, double h) {
-  std::vector<StepContact> touches = touches_of(island);
-  const bool located = locates(), moves = located && speed(island) > kContact.moving * rest_speed_;
+std::optional<double> PersistentContacts::take_step(const ContactIsland& island, double h) {
+  std::vector<StepContact> contacts = contacts_of(island);
+  const bool located = locates(), moves = located && speed(island) > kContact.moving * restitution_threshold_;
   // Points that touch and approach: their velocities jump, without rebound, and the step begins again.
-  if (moves && strike_what_is_down(island, touches)) return moving_.target();
+  if (moves && apply_impacts_of_active(island, contacts)) return moving_.target();
   // The impulses that keep what touches from approaching; points that part slowly come down again by the step's end.
-  ContactProblem problem = problem_of(island, touches, moving_.states(), h);
-  const bool parts = let_part(island, touches, problem);
+  ContactProblem problem = problem_of(island, contacts, moving_.states(), h);
+  const bool separates = allow_separation(island, contacts, problem);
   ContactSolution solution = solve(island, problem, h);
-  remember(touches, problem, solution, h, memory_.tried_impulses);
-  bool landing = lands(touches, solution);
+  remember(contacts, problem, solution, h, memory_.tried_impulses);
+  bool activation = activates(contacts, solution);
   // Points that come down within the step: it ends where the first does, or they are let down by its end. Too many of them make the island a heap.
-  if (moves && comes_down(island, touches, problem, solution, h)) {
-    if (becomes_heap(island)) return moving_.target();
-    if (const auto again = sort_out_landings(island, touches, h)) return again;
-    problem = problem_of(island, touches, moving_.states(), h);
+  if (moves && is_activated(island, contacts, problem, solution, h)) {
+    if (becomes_large(island)) return moving_.target();
+    if (const auto again = handle_activations(island, contacts, h)) return again;
+    problem = problem_of(island, contacts, moving_.states(), h);
     solution = solve(island, problem, h);
-    landing = false;
-  } else if (landing && parts) {   // on straight paths what hops has not left
-    keep_together(touches, problem);
+    activation = false;
+  } else if (activation && separates) {   // on straight paths what hops has not left
+    keep_together(contacts, problem);
     solution = solve(island, problem, h);
-    landing = lands(touches, solution);
+    activation = activates(contacts, solution);
   }
   // An island that turns too far gets a shorter step; one that turns at all meets its contacts at the step's middle.
-  std::vector<RigidBodyState> ends = ends_of(island, problem, solution, h, landing);
+  std::vector<RigidBodyState> ends = ends_of(island, problem, solution, h, activation);
   const double turn = std::max(largest_turn(island, ends, h), turn_of_normals(island, ends));
   if (located && turn > 2 * kContact.most_turn && h > kContact.shortest_step * memory_.longest_step) return moving_.time() + h * kContact.most_turn / turn;
   std::vector<RigidBodyState> middle;
-  std::vector<StepContact> used = touches;
+  std::vector<StepContact> used = contacts;
   const int rounds = turn <= kContact.even_turn ? 0 : is_curved(island) ? kContact.curved_rounds : 1;
-  for (int round = 0; round < rounds && !landing; ++round) {
-    if (round > 0) ends = ends_of(island, problem, solution, h, landing, &ends);
+  for (int round = 0; round < rounds && !activation; ++round) {
+    if (round > 0) ends = ends_of(island, problem, solution, h, activation, &ends);
     middle = moving_.states();
-    used = touches_midway(island, touches, ends, middle);
+    used = contacts_midway(island, contacts, ends, middle);
     problem = problem_of(island, used, middle, h, &ends);
-    for (std::size_t i = 0; i < used.size(); ++i) problem.contacts[i].guess_world = solution.impulses_world[i];   // the same points, a little farther on
+    for (std::size_t i = 0; i < used.size(); ++i) problem.contacts[i].warm_start_world = solution.impulses_world[i];   // the same points, a little farther on
     solution = solve(island, problem, h);
-    landing = lands(used, solution);
-    if (!landing || !parts) continue;
+    activation = activates(used, solution);
+    if (!activation || !separates) continue;
     // A point lands after all: paths are straight then, and what was to hop stays.
     for (std::size_t i = 0; i < used.size(); ++i)
-      if (!touches[i].lands) problem.contacts[i].target = used[i].target -= touches[i].target;
+      if (!contacts[i].activates) problem.contacts[i].target = used[i].target -= contacts[i].target;
     solution = solve(island, problem, h);
-    landing = lands(used, solution);
+    activation = activates(used, solution);
   }
   require_numbers(island, solution);
   // A pair that stops sliding ends the step there.
-  if (const auto stop = located ? stop_of_sliding(problem, touches, solution, h) : std::nullopt) return stop;
+  if (const auto stop = located ? stop_of_sliding(problem, contacts, solution, h) : std::nullopt) return stop;
   // The bodies' paths, with overlaps taken back; where some stay, a shorter step may do. Contacts bring no energy in.
-  if (!give_paths(island, used, middle.empty() ? moving_.states() : middle, problem, solution, h, landing, middle.empty() ? nullptr : &ends)) {
-    if (!located && island.linked.empty()) return take_pile_step(island, h);
+  if (!set_paths(island, used, middle.empty() ? moving_.states() : middle, problem, solution, h, activation, middle.empty() ? nullptr : &ends)) {
+    if (!located && island.linked.empty()) return take_large_island_step(island, h);
     if (h > kContact.shortest_step * memory_.longest_step) return moving_.time() + 0.5 * h;
   }
   if (located && h > kContact.shortest_step_for_energy * memory_.longest_step && gains_energy(island)) return moving_.time() + 0.5 * h;
-  keep_warm(island, touches, problem, solution, h);
+  keep_warm_start(island, contacts, problem, solution, h);
   return std::nullopt;
 }
 
-void LastingContacts::note_unsolved(const ContactIsland& island, const ContactSolution& solution, double h) {
-  const bool is_heap = island.pile || (rules_.plastic_impacts == scene::PlasticImpacts::kInStep && solution.impulses_world.size() > kContact.contacts_of_heap);
-  const double allowed = is_heap ? kContact.unsolved_in_heap : kContactSolved;
+void PersistentContacts::note_unsolved(const ContactIsland& island, const ContactSolution& solution, double h) {
+  const bool is_heap = island.large || (rules_.plastic_impacts == scene::PlasticImpacts::kInStep && solution.impulses_world.size() > kContact.many_contacts);
+  const double allowed = is_heap ? kContact.unsolved_in_large_island : kContactSolved;
   if (solution.converged || solution.residual <= allowed) return;
   unsolved_.note(RunWatch::Kind::kContactUnsolved, names_of(moving_.world(), island.bodies), {solution.residual, allowed, moving_.time(), h});
 }
 
-void LastingContacts::require_numbers(const ContactIsland& island, const ContactSolution& solution) const {
+void PersistentContacts::require_numbers(const ContactIsland& island, const ContactSolution& solution) const {
   for (std::size_t k = 0; k < island.bodies.size(); ++k)
     if (!solution.velocities[k].linear_world.allFinite() || !solution.velocities[k].angular_world.allFinite())
       throw StoppedRun("lasting contact: the impulses on body '" + moving_.world().bodies[island.bodies[k]].name + "' are not numbers");
 }
 
 // Puts a solution's impulses where the next problem of these pairs finds its guesses.
-void LastingContacts::remember(const std::vector<StepContact>& touches, const ContactProblem& problem, const ContactSolution& solution, double h, std::map<Pair, std::vector<KnownImpulse>>& store) const {
-  for (std::size_t i = 0; i < touches.size(); ++i) {
-    std::vector<KnownImpulse>& known = store[touches[i].pair];
-    if (i == 0 || touches[i].pair != touches[i - 1].pair) known.clear();
-    const RigidBodyState& a = moving_.state(touches[i].pair.first);
+void PersistentContacts::remember(const std::vector<StepContact>& contacts, const ContactProblem& problem, const ContactSolution& solution, double h, std::map<Pair, std::vector<KnownImpulse>>& store) const {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    std::vector<KnownImpulse>& known = store[contacts[i].pair];
+    if (i == 0 || contacts[i].pair != contacts[i - 1].pair) known.clear();
+    const RigidBodyState& a = moving_.state(contacts[i].pair.first);
     known.push_back({a.world_from_body.conjugate() * (problem.contacts[i].point_world - a.com_world), solution.impulses_world[i], h});
   }
 }
 
 // What the next step remembers of this one's impulses.
-void LastingContacts::keep_warm(const ContactIsland& island, const std::vector<StepContact>& touches, const ContactProblem& problem, const ContactSolution& solution, double h) {
+void PersistentContacts::keep_warm_start(const ContactIsland& island, const std::vector<StepContact>& contacts, const ContactProblem& problem, const ContactSolution& solution, double h) {
   note_unsolved(island, solution, h);
-  remember(touches, problem, solution, h, next_impulses_);
-  for (std::size_t i = 0; i < touches.size(); ++i) {
+  remember(contacts, problem, solution, h, next_impulses_);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
     const Vector3d force = solution.impulses_world[i] / h, point = problem.contacts[i].point_world;
-    const bool slides = solution.modes[i] == ContactMode::kSlide && !force.isZero(0.0) && slip_speed(problem, i, solution.velocities) > kContact.slips * rest_speed_;
-    if (i == 0 || touches[i].pair != touches[i - 1].pair) next_stuck_.insert(touches[i].pair);
-    if (slides) next_stuck_.erase(touches[i].pair);
-    if (!force.isZero(0.0)) forces_.push_back({touches[i].pair.first, touches[i].pair.second, point, touches[i].point.normal_b_to_a_world, force});
+    const bool slides = solution.modes[i] == ContactMode::kSlide && !force.isZero(0.0) && slip_speed(problem, i, solution.velocities) > kCreep * restitution_threshold_;
+    if (i == 0 || contacts[i].pair != contacts[i - 1].pair) next_stuck_.insert(contacts[i].pair);
+    if (slides) next_stuck_.erase(contacts[i].pair);
+    if (!force.isZero(0.0)) forces_.push_back({contacts[i].pair.first, contacts[i].pair.second, point, contacts[i].point.normal_b_to_a_world, force});
   }
 }
 
-void LastingContacts::open_gaps(std::vector<RigidBodyState>& states, double t) {
+void PersistentContacts::remove_overlaps_within_step(std::vector<RigidBodyState>& states, double t) {
   const RunCounters before = counters_;   // what is looked at must not show in what a run counts
   const double left = (moving_.target() - t) / (moving_.target() - moving_.time());
   for (const ContactIsland& island : islands_) {
@@ -367,27 +364,27 @@ void LastingContacts::open_gaps(std::vector<RigidBodyState>& states, double t) {
       if (std::none_of(island.near.begin(), island.near.end(), closed)) continue;
       any = true;
       std::vector<double> gaps(island.near.size(), 0.0);
-      if (island.pile || !correction_.keep_apart(island, island.near, states, t)) correction_.keep_pile_apart(island, island.near, states, t, gaps);
+      if (island.large || !correction_.correct_positions(island, island.near, states, t)) correction_.correct_large_island(island, island.near, states, t, gaps);
     }
   }
   counters_ = before;
 }
 
-void LastingContacts::draw_apart(const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t) {
+void PersistentContacts::remove_overlaps(const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t) {
   const RunCounters before = counters_;   // as above
   const auto closed = [&](const Pair& pair) { return geometry_.least_gap_of(pair, states) < 0 && geometry_.distance_of(pair, states) < 0; };
   for (int round = 0; round < kContact.frame_rounds && std::any_of(pairs.begin(), pairs.end(), closed); ++round)
     for (const ContactIsland& island : islands(pairs)) {
       if (std::none_of(island.pairs.begin(), island.pairs.end(), closed)) continue;
       std::vector<double> gaps(island.pairs.size(), 0.0);
-      if (!correction_.keep_apart(island, island.pairs, states, t)) correction_.keep_pile_apart(island, island.pairs, states, t, gaps);
+      if (!correction_.correct_positions(island, island.pairs, states, t)) correction_.correct_large_island(island, island.pairs, states, t, gaps);
     }
   counters_ = before;
 }
 
 // A ball has been carried by another to where nothing presses them together: no force in the step, and along the normal
 //   a_n = n . (g_a - g_b) + v_t^2 / R > 0,   R the distance of their centres, v_t their velocity along the surface.
-bool LastingContacts::flies_off(Pair pair, const std::vector<RigidBodyState>& states) const {
+bool PersistentContacts::flies_off(Pair pair, const std::vector<RigidBodyState>& states) const {
   if (!geometry_.are_balls(pair)) return false;
   const auto pushes = [&](const ContactPoint& point) { return point.body_a == pair.first && point.body_b == pair.second; };
   if (std::any_of(forces_.begin(), forces_.end(), pushes)) return false;
@@ -402,7 +399,7 @@ bool LastingContacts::flies_off(Pair pair, const std::vector<RigidBodyState>& st
   return normal_speed > 0 && n.dot(gravity) + (velocity - normal_speed * n).squaredNorm() / between.norm() > 0;
 }
 
-bool LastingContacts::commit() {
+bool PersistentContacts::commit() {
   const StageTimer timer(counters_.contact_seconds);
   if (islands_.empty()) return true;
   counters_.watch.add(std::exchange(unsolved_, {}));
@@ -410,10 +407,10 @@ bool LastingContacts::commit() {
   std::vector<RigidBodyState> states = moving_.states();
   for (const ContactIsland& island : islands_) {
     std::vector<double> gaps(island.near.size(), 0.0);
-    if (island.pile) {
-      apart = correction_.keep_pile_apart(island, island.near, states, moving_.time(), gaps) && apart;
+    if (island.large) {
+      apart = correction_.correct_large_island(island, island.near, states, moving_.time(), gaps) && apart;
     } else {
-      correction_.keep_apart(island, island.near, states, moving_.time());
+      correction_.correct_positions(island, island.near, states, moving_.time());
       apart = false;
     }
     for (const int body : island.bodies) moving_.set_state(body, states[body]);
@@ -421,12 +418,12 @@ bool LastingContacts::commit() {
       const Pair& pair = island.near[k];
       if (!keeps(pair)) continue;
       const bool lasted = lasts(pair);
-      const bool trembles = lasted && !flies_off(pair, states);   // what comes back need not begin anew
-      const double near = std::max(island.pile ? 2 * geometry_.heap_margin(pair) : kContact.open_band * geometry_.margin(pair), trembles ? rest_speed_ * memory_.longest_step : 0.0);
-      const bool touches = (island.pile ? gaps[k] : geometry_.distance_of(pair, states, near)) <= near;
-      if (touches == lasted) continue;
+      const bool stays_near = lasted && !flies_off(pair, states);   // what comes back need not begin anew
+      const double near = std::max(island.large ? 2 * geometry_.large_island_margin(pair) : open_distance(pair), stays_near ? restitution_threshold_ * memory_.longest_step : 0.0);
+      const bool is_near = (island.large ? gaps[k] : geometry_.distance_of(pair, states, near)) <= near;
+      if (is_near == lasted) continue;
       const collision::Gap gap = geometry_.gap_of(pair, states);
-      if (touches) {
+      if (is_near) {
         begin(pair, gap);
       } else {
         memory_.persistent.erase(pair);

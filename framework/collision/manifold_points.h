@@ -8,7 +8,7 @@
 
 namespace tumble::collision {
 
-struct NearPoint {
+struct ManifoldPoint {
   Vector3d point_a_world;         // on A's surface [m]
   Vector3d point_b_world;         // on B's surface, opposite along the normal [m]
   Vector3d normal_b_to_a_world;   // unit
@@ -24,7 +24,7 @@ struct NearPoint {
 /// faces lie on each other the normal is that of a face, exact however small the gap.
 /// @param cache  of this pair, may be null: see pair_cache.h
 /// @return empty where the solids are farther apart than `reach`
-std::vector<NearPoint> near_points(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double reach,
+std::vector<ManifoldPoint> manifold_points(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double reach,
                                    PairCache* cache = nullptr);
 
 }  // namespace tumble::collision
