@@ -57,7 +57,7 @@ scene::Scene slope(double angle, double friction) {
   return with_contact({block, ramp}, 4.0);
 }
 
-TEST(LastingContacts, ABlockSlidesStopsAndStays) {
+TEST(PersistentContacts, ABlockSlidesStopsAndStays) {
   const double angle = 20 * std::numbers::pi / 180, friction = 0.5, deceleration = kG * (friction * std::cos(angle) - std::sin(angle));
   const scene::Scene scene = slope(angle, friction);
   const Trajectory result = run_it(scene);
@@ -69,14 +69,14 @@ TEST(LastingContacts, ABlockSlidesStopsAndStays) {
   EXPECT_NEAR(push, kG, 1e-10);   // what holds it is its weight; tolerance of the solver 1e-12, times ten forces
 }
 
-TEST(LastingContacts, ABlockTooSteepKeepsSliding) {
+TEST(PersistentContacts, ABlockTooSteepKeepsSliding) {
   const double angle = 30 * std::numbers::pi / 180, friction = 0.2, acceleration = kG * (std::sin(angle) - friction * std::cos(angle));
   const scene::Scene scene = slope(angle, friction);
   const Trajectory result = run_it(scene);
   EXPECT_NEAR((result.frames.back().poses[0].com_world - scene.bodies[0].position_m).norm(), 3.0 * 4 + 0.5 * acceleration * 16, 1e-10);
 }
 
-TEST(LastingContacts, ASlidingBallRollsWithFiveSeventhsOfItsSpeed) {
+TEST(PersistentContacts, ASlidingBallRollsWithFiveSeventhsOfItsSpeed) {
   const Trajectory result = run_it(with_contact({rough(ball("ball", 0.2, 1.0, {0, 0, 0.2}, {7, 0, 0}), 0.3), floor_of(0.3)}, 2.0));
   EXPECT_NEAR(result.frames.back().poses[0].velocity_world.x(), 5.0, 1e-12);
   EXPECT_NEAR(result.frames.back().poses[0].omega_world.y(), 25.0, 1e-11);
@@ -84,7 +84,7 @@ TEST(LastingContacts, ASlidingBallRollsWithFiveSeventhsOfItsSpeed) {
   EXPECT_NEAR(result.frames.back().poses[0].com_world.x(), 6.0 * rolls_at + 5.0 * (2.0 - rolls_at), 1e-11);
 }
 
-TEST(LastingContacts, AStackOfTenStaysAndItsFloorCarriesIt) {
+TEST(PersistentContacts, AStackOfTenStaysAndItsFloorCarriesIt) {
   std::vector<scene::BodySpec> bodies;
   for (int i = 0; i < 10; ++i) bodies.push_back(rough(box("box " + std::to_string(i), {0.5, 0.5, 0.5}, 1.0, {0, 0, 0.5 + i}, Vector3d::Zero()), 0.5));
   bodies.push_back(floor_of(0.5));
@@ -100,7 +100,7 @@ TEST(LastingContacts, AStackOfTenStaysAndItsFloorCarriesIt) {
 
 // A board that tips over its edge keeps its energy until its face comes down: friction that sticks does no work.
 // What is read of 1000000.1 is 2e-11 less: boxes that were written to touch do not begin in each other.
-TEST(LastingContacts, ATowerWrittenAThousandKilometresAwayStandsAsItWasWritten) {
+TEST(PersistentContacts, ATowerWrittenAThousandKilometresAwayStandsAsItWasWritten) {
   struct Place {
     double ground, middles[3];
   };
@@ -115,7 +115,7 @@ TEST(LastingContacts, ATowerWrittenAThousandKilometresAwayStandsAsItWasWritten) 
   }
 }
 
-TEST(LastingContacts, ABoardTippingOverItsEdgeKeepsItsEnergy) {
+TEST(PersistentContacts, ABoardTippingOverItsEdgeKeepsItsEnergy) {
   const auto lost = [](double step) {
     auto board = rough(box("board", {0.02, 0.1, 0.2}, 0.5, Vector3d::Zero(), Vector3d::Zero()), 5.0);
     board.world_from_body = Quaterniond(Eigen::AngleAxisd(0.3, Vector3d::UnitY()));
@@ -133,7 +133,7 @@ TEST(LastingContacts, ABoardTippingOverItsEdgeKeepsItsEnergy) {
   EXPECT_LT(lost(1.0 / 240), 3e-3);
 }
 
-TEST(LastingContacts, ADroppedBoxComesToRestWithoutGainingEnergy) {
+TEST(PersistentContacts, ADroppedBoxComesToRestWithoutGainingEnergy) {
   auto falling = rough(box("box", {0.2, 0.2, 0.1}, 1.0, {0, 0, 0.5}, {0.5, 0, 0}), 0.4, 0.3);
   falling.omega_world_rad_s = {1, 2, 3};
   const Trajectory result = run_it(with_contact({falling, floor_of(0.4)}, 4.0));
@@ -268,7 +268,7 @@ TEST(Jamming, WhatIsSymmetricStaysSo) {
 }
 
 // Corners that a .3ds file keeps in single precision leave gaps between what is built of them. It stands from the start: nothing falls.
-TEST(LastingContacts, WhatIsBuiltInSinglePrecisionStandsFromTheStart) {
+TEST(PersistentContacts, WhatIsBuiltInSinglePrecisionStandsFromTheStart) {
   const Trajectory result = run_it(with_contact({rough(box("lower", {0.1, 0.1, 0.1}, 1.0, {0, 0, 0.1 + 2e-8}, Vector3d::Zero()), 0.5),
                                                  rough(box("upper", {0.1, 0.1, 0.1}, 1.0, {0, 0, 0.3 + 5e-8}, Vector3d::Zero()), 0.5), floor_of(0.5)}, 0.5));
   for (const Event& event : result.events) EXPECT_NE(event.kind, EventKind::kCollision) << event.time;
@@ -278,7 +278,7 @@ TEST(LastingContacts, WhatIsBuiltInSinglePrecisionStandsFromTheStart) {
 
 // An edge of a block parts from the floor at 1 mm/s: it hops for 0.2 ms and is down again. A step of 1/60 s that ends at rest where half of that
 // speed has taken it would lift the edge by 8e-6 m, and have a hundred times the energy that the block moves with.
-TEST(LastingContacts, AnEdgeThatPartsSlowlyComesDownAgain) {
+TEST(PersistentContacts, AnEdgeThatPartsSlowlyComesDownAgain) {
   const double half = 0.01, mass = 1.0, rate = 0.045;   // m, kg, rad/s: the far edge goes up at 0.9 mm/s, below the rest speed
   auto block = rough(box("block", Vector3d::Constant(half), mass, {0, 0, half}, Vector3d::Zero()), 1.0);
   block.omega_world_rad_s = {0, rate, 0};               // about the edge at x = half, which lies still

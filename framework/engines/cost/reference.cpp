@@ -1,4 +1,4 @@
-// What runs are compared with: a closed form, or two runs that are finer than all others.
+// The reference solution: a closed form, or two runs finer than all others.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,24 +18,24 @@
 namespace tumble::engines {
 namespace {
 
-constexpr double kTight = 1e-13;          // tolerance of the truth: a hundred roundings, below which no method gets better
-constexpr double kGoodFloor = 1e-6;       // of the scale: a truth worse than this is looked for over less time
-constexpr double kFineFloor = 1e-12;      // of the scale: where half the step makes the truth 16 times better it is made as good as this, for runs reach it
-constexpr double kPoorFloor = 1e-4;       // of the scale: one that is better than nothing
-constexpr double kRoundings = 16.0;       // two runs that agree to the last bit may both be off by some
+constexpr double kTight = 1e-13;          // tolerance of the reference: a hundred roundings, below which no method improves
+constexpr double kGoodFloor = 1e-6;       // of the scale: for a worse floor the duration is shortened
+constexpr double kFineFloor = 1e-12;      // of the scale: where half the step lowers the floor 16-fold it is lowered to this, because runs reach it
+constexpr double kPoorFloor = 1e-4;       // of the scale: still accepted
+constexpr double kRoundings = 16.0;       // two runs that agree to the last bit may both be wrong by some roundings
 constexpr int kMostHalvings = 7;
 constexpr long kFewestSamples = 4, kMostSamples = 24;
 constexpr double kStepsASample = 8.0;     // of the scene's own steps
-constexpr double kFramesASecond = 60.0;    // that numbers are judged by
-constexpr double kFinerSteps = 4.0;       // steps in one of the scene's own, of the coarser of two fine runs
+constexpr double kFramesASecond = 60.0;    // rate of frames for judgement by numbers
+constexpr double kFinerSteps = 4.0;       // per step of the scene, of the coarser of two fine runs
 constexpr double kOwnSteps = 0.5;         // the same where steps are free: the finer run has the scene's own
-constexpr double kNextPrice = 2.2;        // of a run with half the step, over the one before
-constexpr double kHelps = 0.7;            // of the floor: less gain from half the step is none
-constexpr double kOlder = 3.0;            // what a run with four times the step differs by, over one with twice: of first order, C h (4 - 1) over C h (2 - 1)
-constexpr double kShareLeft = 0.4;        // of the time: kept for looking at less of the scene
-constexpr double kTellEvery = 1.0;        // s of CPU
-constexpr int kLookEach = 32;             // evaluations: the clock itself takes time
-constexpr double kHopeless = 2.0;         // of the time there is: a run that is expected to take so much longer is given up
+constexpr double kNextPrice = 2.2;        // of a run with half the step, relative to the last one
+constexpr double kHelps = 0.7;            // of the floor: half the step must lower it at least to this
+constexpr double kOlder = 3.0;            // difference of a run with four times the step, relative to one with twice: of first order, C h (4 - 1) over C h (2 - 1)
+constexpr double kShareLeft = 0.4;        // of the time: kept for a shorter duration
+constexpr double kTellEvery = 1.0;        // s of CPU between progress reports
+constexpr int kLookEach = 32;             // evaluations between readings of the clock
+constexpr double kHopeless = 2.0;         // of the available time: a run that is expected to take longer is given up
 
 bool is_smooth(const scene::Scene& scene) {
   return std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const scene::BodySpec& body) { return body.collides; }) < 2;
@@ -46,17 +46,17 @@ long samples_of(const scene::Scene& scene, double duration, std::optional<double
   return std::clamp(std::lround(duration / (kStepsASample * scene.step_s)), kFewestSamples, kMostSamples);
 }
 
-/// What is looked at, and how much CPU time a run of it may take.
+/// The compared duration, and the CPU time of one run.
 struct Window {
   double duration_s;
   long samples;
   double most_s, until;   // of one run; process CPU time at which the search ends
-  const std::function<void(const std::string&)>& told;
+  const std::function<void(const std::string&)>& progress;
 };
 
 const std::string kTooLong = "it took too long";
 
-/// Records, says how far it is now and then, and ends a run that will not get through in its time.
+/// Records, reports progress, and ends a run that cannot finish in its time.
 class WatchedRecorder final : public TrajectorySink {
  public:
   explicit WatchedRecorder(const Window& window) : window_(window), begun_(cpu_seconds()), until_(std::min(begun_ + window.most_s, window.until)), next_(begun_ + kTellEvery) {}
@@ -64,11 +64,11 @@ class WatchedRecorder final : public TrajectorySink {
   void frame(const Frame& frame) override {
     recorder.frame(frame);
     const double now = cpu_seconds(), spent = now - begun_;
-    const double expected = frame.time > 0.0 ? spent * window_.duration_s / frame.time : 0.0;   // what falls gets dearer when it has come down
+    const double expected = frame.time > 0.0 ? spent * window_.duration_s / frame.time : 0.0;   // contacts at the end of a fall make the rest costlier
     if (now > until_ || (spent > kTellEvery && expected > kHopeless * (until_ - begun_))) throw StoppedRun(kTooLong);
-    if (!window_.told || now < next_) return;
+    if (!window_.progress || now < next_) return;
     next_ = now + kTellEvery;
-    window_.told(fmt::format("  {:.3g} of {:.3g} s simulated, at most {:.0f} s left for this run", frame.time, window_.duration_s, std::max(0.0, until_ - now)));
+    window_.progress(fmt::format("  {:.3g} of {:.3g} s simulated, at most {:.0f} s left for this run", frame.time, window_.duration_s, std::max(0.0, until_ - now)));
   }
   void event(const Event& event) override {
     recorder.event(event);
@@ -100,7 +100,7 @@ FinerRun run_finely(const scene::Scene& scene, const Laws& laws, const Window& w
   WatchedRecorder watched(window);
   Laws timed = laws;
   timed.integrate_step = [step = laws.integrate_step, until = watched.until(), calls = 0](const OdeFunction& f, double t, const VectorXd& y, double h) mutable {
-    const OdeFunction counted = [&](double at, const VectorXd& state) -> VectorXd {   // a step may take many
+    const OdeFunction counted = [&](double at, const VectorXd& state) -> VectorXd {   // a step may take many evaluations
       if (++calls % kLookEach == 0 && cpu_seconds() > until) throw OutOfTime(kTooLong);
       return f(at, state);
     };
@@ -109,7 +109,7 @@ FinerRun run_finely(const scene::Scene& scene, const Laws& laws, const Window& w
   std::string stopped_by;
   try {
     run_scene(stepped.scene, timed, options, watched);
-  } catch (const StoppedRun& stop) {   // before the engine looks for it
+  } catch (const StoppedRun& stop) {   // before the engine reports it
     stopped_by = stop.what();
   }
   const Trajectory& run = watched.recorder.trajectory();
@@ -128,11 +128,11 @@ Laws with_method(Laws laws, const std::string& word) {
   return laws;
 }
 
-/// Two runs of which each is right, as far as it goes, by itself.
+/// Two runs, each valid by itself for as long as it goes.
 struct Pair {
   FinerRun run, other{};
   std::string what;
-  std::vector<Frame> older{};   // of a third, with twice the step of `other`; empty: none
+  std::vector<Frame> older{};   // of a third run, with twice the step of `other`; empty: none
 };
 
 Pair run_closed(const scene::Scene& scene, const Laws& laws, const Window& window) {
@@ -140,17 +140,18 @@ Pair run_closed(const scene::Scene& scene, const Laws& laws, const Window& windo
   ordered.engine = "ordered";
   stepped.propagator = "auto";
   return {run_finely(scene, laws, window, 1, ordered), run_finely(scene, laws, window, 4, stepped),
-          "closed form (parabola, free rotation by elliptic functions) from one impact to the next; its floor is what two engines that use it differ by"};
+          "closed form (parabola, free rotation by elliptic functions) from one impact to the next; its error floor is the difference of two engines that use it"};
 }
 
-/// Of the coarser of two fine runs. Where nothing happens once a step, tolerance alone makes them fine.
+/// Of the coarser of two fine runs. Where nothing happens once per step, the tolerance alone makes
+/// them fine.
 long steps_a_sample(const scene::Scene& scene, const Window& window) {
   const double finer = steps_are_free(scene) ? kOwnSteps : kFinerSteps;
   return std::max(1L, std::lround(finer * window.duration_s / scene.step_s / static_cast<double>(window.samples)));
 }
 
 std::string two_steps_in_words(long steps, const Window& window) {
-  return fmt::format("a run by Fehlberg 7(8) with tolerance {:.0e} at steps of 1/{:.0f} s; its floor is what twice the step differs by", kTight, static_cast<double>(steps * window.samples) / window.duration_s);
+  return fmt::format("a run by Fehlberg 7(8) with tolerance {:.0e} at steps of 1/{:.0f} s; its error floor is the difference to twice the step", kTight, static_cast<double>(steps * window.samples) / window.duration_s);
 }
 
 Pair run_converged(const scene::Scene& scene, const Laws& laws, const Window& window) {
@@ -159,7 +160,7 @@ Pair run_converged(const scene::Scene& scene, const Laws& laws, const Window& wi
   if (!pair.run.stopped_by.empty()) return pair;
   pair.what = two_steps_in_words(2 * steps, window);
   pair.other = run_finely(scene, with_method(laws, is_smooth(scene) ? "bulirsch-stoer" : "fehlberg78"), window, steps, {});
-  if (is_smooth(scene)) pair.what = fmt::format("a run by Fehlberg 7(8) with tolerance {:.0e}; its floor is what Bulirsch-Stoer with twice the step differs by", kTight);
+  if (is_smooth(scene)) pair.what = fmt::format("a run by Fehlberg 7(8) with tolerance {:.0e}; its error floor is the difference to Bulirsch-Stoer with twice the step", kTight);
   return pair;
 }
 
@@ -169,40 +170,41 @@ std::vector<double> radii_of(const scene::Scene& scene) {
   return radii;
 }
 
-/// Takes as many of the pair's samples as agree to a part of the motion. @return whether these are enough
-bool take(const Pair& pair, double agreement, const Window& window, CostTruth& truth) {
-  truth.what = pair.what;
-  truth.floor_m = truth.scale_m = 0.0;
-  for (const double radius : truth.radii) truth.scale_m = radius > truth.scale_m ? radius : truth.scale_m;   // of what only rests
+/// Keeps the samples up to which the pair agrees within a fraction of the motion. @return whether
+/// they are enough
+bool take(const Pair& pair, double agreement, const Window& window, CostReference& reference) {
+  reference.what = pair.what;
+  reference.floor_m = reference.scale_m = 0.0;
+  for (const double radius : reference.radii) reference.scale_m = radius > reference.scale_m ? radius : reference.scale_m;   // also for scenes in which only the start moves
   std::size_t agreed = 0;
-  double floor = 0.0, scale = truth.scale_m;
+  double floor = 0.0, scale = reference.scale_m;
   for (std::size_t k = 0; k < std::min(pair.run.frames.size(), pair.other.frames.size()); ++k) {
-    scale = std::max(scale, distance_between(pair.run.frames[k], pair.run.frames.front(), truth.radii));
-    floor = std::max({distance_between(pair.other.frames[k], pair.run.frames[k], truth.radii), floor, kRoundings * std::numeric_limits<double>::epsilon() * scale});   // NaN stays
-    if (k < pair.older.size()) floor = std::max(floor, distance_between(pair.older[k], pair.run.frames[k], truth.radii) / kOlder);
+    scale = std::max(scale, distance_between(pair.run.frames[k], pair.run.frames.front(), reference.radii));
+    floor = std::max({distance_between(pair.other.frames[k], pair.run.frames[k], reference.radii), floor, kRoundings * std::numeric_limits<double>::epsilon() * scale});   // keeps NaN
+    if (k < pair.older.size()) floor = std::max(floor, distance_between(pair.older[k], pair.run.frames[k], reference.radii) / kOlder);
     if (!(floor <= kPoorFloor * scale)) break;
-    if (!(floor <= agreement * scale)) continue;   // what moves on may make up for it
+    if (!(floor <= agreement * scale)) continue;   // a larger motion later may allow it
     agreed = k + 1;
-    truth.floor_m = floor;
-    truth.scale_m = scale;
+    reference.floor_m = floor;
+    reference.scale_m = scale;
   }
   if (agreed <= static_cast<std::size_t>(kFewestSamples)) return false;
-  truth.samples.assign(pair.run.frames.begin(), pair.run.frames.begin() + static_cast<std::ptrdiff_t>(agreed));
-  truth.intervals = static_cast<long>(agreed) - 1;
-  truth.duration_s = window.duration_s * static_cast<double>(truth.intervals) / static_cast<double>(window.samples);
+  reference.samples.assign(pair.run.frames.begin(), pair.run.frames.begin() + static_cast<std::ptrdiff_t>(agreed));
+  reference.intervals = static_cast<long>(agreed) - 1;
+  reference.duration_s = window.duration_s * static_cast<double>(reference.intervals) / static_cast<double>(window.samples);
   return true;
 }
 
-std::string why_not(const Pair& pair, const CostTruth& truth) {
+std::string why_not(const Pair& pair, const CostReference& reference) {
   if (const std::string stopped = pair.run.stopped_by + pair.other.stopped_by; !stopped.empty()) return stopped;
-  return fmt::format("two fine runs of it do not stay together ({:.1e} m apart at the end): errors grow too fast in it, or an impact hangs on the last digit",
-                     farthest(pair.other.frames, pair.run.frames, truth.radii));
+  return fmt::format("two fine runs of it diverge ({:.1e} m apart at the end): errors grow too fast in it, or rounding decides an impact",
+                     farthest(pair.other.frames, pair.run.frames, reference.radii));
 }
 
 const std::string kNoTruthRemedy = "Leave --accuracy and --budget-s out and judge the scene by its numbers, or see what its steps cost with tumble cost ";
 
-/// Rounded down to what a person would type.
-double holds_for(const CostTruth& truth) { return std::floor(100.0 * truth.duration_s) / 100.0; }
+/// Rounded down to two decimals.
+double holds_for(const CostReference& reference) { return std::floor(100.0 * reference.duration_s) / 100.0; }
 
 }  // namespace
 
@@ -214,7 +216,7 @@ double distance_between(const Frame& found, const Frame& expected, const std::ve
     const Quaterniond turn = a.world_from_body * b.world_from_body.conjugate();
     const double angle = 2.0 * std::atan2(turn.vec().norm(), std::abs(turn.w()));
     const double distance = (a.com_world - b.com_world).norm() + radii[i] * angle;
-    if (!(distance <= most)) most = distance;   // NaN stays
+    if (!(distance <= most)) most = distance;   // keeps NaN
     if (std::isnan(most)) return most;
   }
   return most;
@@ -222,29 +224,32 @@ double distance_between(const Frame& found, const Frame& expected, const std::ve
 
 namespace {
 
-bool is_whole(const CostTruth& truth, const Window& window) { return truth.intervals == window.samples; }
+bool is_whole(const CostReference& reference, const Window& window) { return reference.intervals == window.samples; }
 
-/// Takes what a pair shows, if anything: a poor truth of all of it is worth more than a good one of a part.
-bool take_either(const Pair& pair, const Window& window, CostTruth& truth) {
-  CostTruth poor = truth;
+/// Keeps what the pair gives: a coarse reference for all of the scene is worth more than a fine one
+/// for a part.
+bool take_either(const Pair& pair, const Window& window, CostReference& reference) {
+  CostReference poor = reference;
   const bool is_poor = take(pair, kPoorFloor, window, poor);
-  if (take(pair, kGoodFloor, window, truth) && (is_whole(truth, window) || !is_whole(poor, window))) return true;
-  truth = poor;
+  if (take(pair, kGoodFloor, window, reference) && (is_whole(reference, window) || !is_whole(poor, window))) return true;
+  reference = poor;
   return is_poor;
 }
 
-/// Where contacts, rods or motors push once a step, the step itself is what is not fine enough: halves it as long as that helps and there is time.
-/// Where something lands, two runs may agree by chance: then a third must, if there is time for it, and what it contradicts is given up.
-void refine(const scene::Scene& scene, const Laws& laws, const Window& window, double until, Pair pair, bool& found, CostTruth& truth) {
+/// Where contacts, rods or motors act once per step, the step is the largest error: it is halved as
+/// long as that helps and time is left. For contacts that begin, two runs may agree by chance: then
+/// a third must agree, if there is time for it; a contradicted reference is discarded.
+void refine(const scene::Scene& scene, const Laws& laws, const Window& window, double until, Pair pair, bool& found, CostReference& reference) {
   double price = pair.run.cpu_s;
   const bool by_chance = scene.contact.has_value();
-  // Between impacts a tolerance alone makes a run fine; where an impact is, hangs on the path within a step, whose error goes with its
-  // fourth power. So a truth with impacts that is good to a millionth is worse than the runs that it is to judge, and a few halvings mend it.
+  // Between impacts the tolerance alone makes a run fine; the time of an impact depends on the path
+  // within a step, whose error is of fourth order in the step. So a reference with impacts can be
+  // worse than the runs that it judges; a few halvings correct that.
   const bool pushed_once_a_step = by_chance || scene::asks_for(scene, [](const scene::Traits& traits) { return traits.looks || traits.constrains; });
   const double good_floor = pushed_once_a_step ? kGoodFloor : kFineFloor;
   bool confirmed = !by_chance;
   for (long steps = 4 * steps_a_sample(scene, window);; steps *= 2) {
-    const bool is_good = confirmed && found && is_whole(truth, window) && truth.floor_m <= good_floor * truth.scale_m;
+    const bool is_good = confirmed && found && is_whole(reference, window) && reference.floor_m <= good_floor * reference.scale_m;
     if (is_good || !pair.run.stopped_by.empty() || cpu_seconds() + kNextPrice * price > until) return;
     pair.older = std::move(pair.other.frames);
     pair.other = std::move(pair.run);
@@ -252,15 +257,15 @@ void refine(const scene::Scene& scene, const Laws& laws, const Window& window, d
     pair.what = two_steps_in_words(steps, window);
     price = pair.run.cpu_s;
     if (!pair.run.stopped_by.empty()) return;
-    CostTruth finer = truth;
+    CostReference finer = reference;
     confirmed = true;
     if (!take_either(pair, window, finer)) {
       if (found && !by_chance) return;
       found = false;
       continue;
     }
-    const bool helps = !found || finer.intervals > truth.intervals || (finer.intervals == truth.intervals && finer.floor_m < kHelps * truth.floor_m);
-    if (helps || by_chance) truth = finer;
+    const bool helps = !found || finer.intervals > reference.intervals || (finer.intervals == reference.intervals && finer.floor_m < kHelps * reference.floor_m);
+    if (helps || by_chance) reference = finer;
     found = true;
     if (!helps) return;
   }
@@ -272,67 +277,67 @@ bool goes_in_closed_form(const scene::Scene& scene) {
   return !scene.contact && !scene::asks_for(scene, [](const scene::Traits& traits) { return !traits.leaves_flight; });
 }
 
-std::optional<CostTruth> try_truth(const scene::Scene& scene, const Laws& laws, const CostOptions& options, std::string& why) {
-  CostTruth truth;
-  truth.asked_s = options.duration_s.value_or(scene.duration_s);
-  truth.radii = radii_of(scene);
+std::optional<CostReference> try_reference(const scene::Scene& scene, const Laws& laws, const CostOptions& options, std::string& why) {
+  CostReference reference;
+  reference.asked_s = options.duration_s.value_or(scene.duration_s);
+  reference.radii = radii_of(scene);
   const bool closed = goes_in_closed_form(scene);
   const double until = cpu_seconds() + options.most_of_search_s;
-  double duration = truth.asked_s;
-  for (int halving = 0; halving <= kMostHalvings && cpu_seconds() < until && duration >= options.least_share * truth.asked_s; ++halving, duration *= 0.5) {
-    const Window window{duration, samples_of(scene, duration, options.frame_rate_hz), options.most_of_truth_s, until, options.told};
-    if (options.told) options.told(fmt::format("the truth of {} over {:.3g} s{}", scene.name, duration, closed ? ", in closed form" : fmt::format(": two fine runs, at most {:.0f} s of CPU time", until - cpu_seconds())));
+  double duration = reference.asked_s;
+  for (int halving = 0; halving <= kMostHalvings && cpu_seconds() < until && duration >= options.least_share * reference.asked_s; ++halving, duration *= 0.5) {
+    const Window window{duration, samples_of(scene, duration, options.frame_rate_hz), options.most_of_reference_s, until, options.progress};
+    if (options.progress) options.progress(fmt::format("the reference solution of {} over {:.3g} s{}", scene.name, duration, closed ? ", in closed form" : fmt::format(": two fine runs, at most {:.0f} s of CPU time", until - cpu_seconds())));
     Pair pair = closed ? run_closed(scene, laws, window) : run_converged(scene, laws, window);
-    const std::string here = why_not(pair, truth);
-    bool found = take_either(pair, window, truth);
-    if (!closed && !is_smooth(scene)) refine(scene, laws, window, until - kShareLeft * (until - cpu_seconds()), std::move(pair), found, truth);
+    const std::string here = why_not(pair, reference);
+    bool found = take_either(pair, window, reference);
+    if (!closed && !is_smooth(scene)) refine(scene, laws, window, until - kShareLeft * (until - cpu_seconds()), std::move(pair), found, reference);
     if (why.empty()) why = here;
-    if (!found || truth.duration_s < options.least_share * truth.asked_s) continue;
-    if (truth.duration_s < (1.0 - 1e-9) * truth.asked_s) truth.shortened_by = why;
-    return truth;
+    if (!found || reference.duration_s < options.least_share * reference.asked_s) continue;
+    if (reference.duration_s < (1.0 - 1e-9) * reference.asked_s) reference.shortened_by = why;
+    return reference;
   }
   return std::nullopt;
 }
 
-CostTruth find_truth(const scene::Scene& scene, const Laws& laws, const CostOptions& options) {
+CostReference find_reference(const scene::Scene& scene, const Laws& laws, const CostOptions& options) {
   std::string why;
-  const std::optional<CostTruth> truth = try_truth(scene, laws, options, why);
-  if (!truth)
-    throw UserError(scene.name, "no truth to compare with, however short a time is looked at: " + why, options.shorten ? "Compare its judged numbers: tumble cost " + scene.name + " does." : kNoTruthRemedy + scene.name + ".");
-  if (truth->shortened_by.empty() || options.shorten) return *truth;
-  throw UserError(scene.name, fmt::format("there is no truth for {:.4g} s of this scene: {}", truth->asked_s, truth->shortened_by),
-                  fmt::format("It holds for {0:.4g} s: ask for these with --duration-s {0:.4g}; or leave --accuracy and --budget-s out and judge the scene by its numbers; or see how its error goes with tumble cost {1}.", holds_for(*truth), scene.name));
+  const std::optional<CostReference> reference = try_reference(scene, laws, options, why);
+  if (!reference)
+    throw UserError(scene.name, "it has no reference solution, not even for a short time: " + why, options.shorten ? "Compare its judged numbers: tumble cost " + scene.name + " does." : kNoTruthRemedy + scene.name + ".");
+  if (reference->shortened_by.empty() || options.shorten) return *reference;
+  throw UserError(scene.name, fmt::format("this scene has no reference solution for {:.4g} s: {}", reference->asked_s, reference->shortened_by),
+                  fmt::format("It holds for {0:.4g} s: request these with --duration-s {0:.4g}; or leave --accuracy and --budget-s out and judge the scene by its numbers; or see its error with tumble cost {1}.", holds_for(*reference), scene.name));
 }
 
-void check_truth(const scene::Scene& scene, const Laws& laws, const std::vector<truths::KnownPlace>& places, const std::string& source, CostTruth& truth) {
+void check_reference(const scene::Scene& scene, const Laws& laws, const std::vector<truths::KnownPosition>& places, const std::string& source, CostReference& reference) {
   const Laws fine = with_method(laws, "fehlberg78");
   std::optional<Frame> frame;
   double off = 0.0;
   int instants = 0;
-  for (const truths::KnownPlace& place : places) {
-    if (place.time_s > truth.duration_s * (1.0 + 1e-12)) continue;
+  for (const truths::KnownPosition& place : places) {
+    if (place.time_s > reference.duration_s * (1.0 + 1e-12)) continue;
     if (!frame || frame->time != place.time_s) {
       frame = truths::frame_at(scene, fine, place.time_s);
-      frame->time = place.time_s;   // a rounding beside it
+      frame->time = place.time_s;   // without its rounding
       ++instants;
     }
     off = std::max(off, (frame->poses.at(place.body).com_world - place.com_world).norm());
   }
   if (instants == 0) return;
-  truth.floor_m = std::max(truth.floor_m, off);
-  truth.what += fmt::format(", or what {} differs by where it knows the place ({} instant{}: {:.1e} m)", source, instants, instants == 1 ? "" : "s", off);
+  reference.floor_m = std::max(reference.floor_m, off);
+  reference.what += fmt::format(", or the difference to {} ({} instant{}: {:.1e} m)", source, instants, instants == 1 ? "" : "s", off);
 }
 
-CostTruth by_numbers(const scene::Scene& scene, const CostOptions& options, const std::string& why) {
-  CostTruth truth;
-  truth.asked_s = truth.duration_s = options.duration_s.value_or(scene.duration_s);
-  truth.intervals = samples_of(scene, truth.duration_s, kFramesASecond);
-  truth.by_numbers = true;
-  truth.why_by_numbers = why;
-  truth.what = "what the scene is judged by";
-  truth.floor_m = 0.0;
-  truth.scale_m = std::numeric_limits<double>::infinity();
-  return truth;
+CostReference by_numbers(const scene::Scene& scene, const CostOptions& options, const std::string& why) {
+  CostReference reference;
+  reference.asked_s = reference.duration_s = options.duration_s.value_or(scene.duration_s);
+  reference.intervals = samples_of(scene, reference.duration_s, kFramesASecond);
+  reference.by_numbers = true;
+  reference.why_by_numbers = why;
+  reference.what = "the scene's own numbers";
+  reference.floor_m = 0.0;
+  reference.scale_m = std::numeric_limits<double>::infinity();
+  return reference;
 }
 
 }  // namespace tumble::engines

@@ -1,7 +1,9 @@
-/// What an impact does to two bodies on their flights: the laws' impulse, a rest, or a hop.
+/// Collision response of two bodies on their flights: the laws' impulse, rest, or a separation
+/// impulse below the restitution threshold.
 ///
-/// The law of several bodies that touch at one instant is the order of events (flight.h): pairs collide one after the other, lowest
-/// generation first, then lowest bodies. For equal balls in a row and restitution 1 this is Newton's cradle.
+/// Several bodies that touch at one instant collide pair by pair in the order of events (flight.h):
+/// lowest microstep first, then lowest bodies. For equal balls in a row and restitution 1 this is
+/// Newton's cradle.
 #pragma once
 
 #include <vector>
@@ -12,30 +14,31 @@
 
 namespace tumble::engines {
 
-/// What the flights of a pair become, or those of a process.
-struct Meeting {
-  EventKey key;
-  Flight a, b;                 // of key.body_a and key.body_b, from key.time on; serials are the caller's to give
-  std::vector<BegunFlight> begun;   // where processes took part: all flights that begin, and `a` and `b` are not used
+/// A discontinuity: the event, and the flights of its pair or its processes that begin with it.
+struct Discontinuity {
+  EventStamp key;
+  Flight a, b;                 // of key.body_a and key.body_b, from key.time on; the caller sets their versions
+  std::vector<BegunFlight> begun;   // with processes: all flights that begin; `a` and `b` are then unused
   double impulse = 0.0;        // sum of the impulses along the normal [N s]
-  Event first;                 // the first impulse, or the rest that came without one
-  std::vector<Event> more;     // flat landings take several; coming to rest
-  bool is_silent = false;      // members of a process only part: nothing is said of it
+  Event first;                 // the first impulse, or the transition to rest without one
+  std::vector<Event> more;     // further impulses of flat contacts; transitions to rest
+  bool is_silent = false;      // members of a process separate without contact: no event is recorded
 };
 
-struct MeetingRules {
+struct FlightImpactRules {
   double rest_speed;           // [m/s]
-  double micro_interval;       // a pair that meets again within this, slower than the rest speed, is sent apart at the rest speed [s]
+  double micro_interval;       // a pair slower than the restitution threshold that meets again within this time gets that separation speed [s]
 };
 
-class MeetingOfFlights {
+class FlightImpactResponse {
  public:
   /// @pre `laws` has the three laws of an impact
-  MeetingOfFlights(const FlightWorld& world, const Laws& laws, MeetingRules rules) : world_(world), laws_(laws), rules_(rules) {}
+  FlightImpactResponse(const FlightWorld& world, const Laws& laws, FlightImpactRules rules) : world_(world), laws_(laws), rules_(rules) {}
 
   /// @param f, g  flights of key.body_a and key.body_b, which meet at key.time
-  /// @throws StoppedRun where the laws leave the two approaching, or give what is not a number
-  Meeting meet(const EventKey& key, const Flight& f, const Flight& g) const;
+  /// @throws StoppedRun where the laws leave the two approaching, or return values that are not
+  ///   finite
+  Discontinuity resolve_impact(const EventStamp& key, const Flight& f, const Flight& g) const;
 
  private:
   struct Work;
@@ -48,7 +51,7 @@ class MeetingOfFlights {
 
   const FlightWorld& world_;
   const Laws& laws_;
-  MeetingRules rules_;
+  FlightImpactRules rules_;
 };
 
 }  // namespace tumble::engines

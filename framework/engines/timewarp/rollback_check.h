@@ -1,6 +1,7 @@
-/// A debug mode of timewarp: now and then everything is rolled back to one time, goes on from there, and is rolled back to the same time
-/// again. Rolled back means as if it had never been, so what stands there both times must be the same bytes; and since the run then goes on
-/// from there, its committed trace must be what it is without.
+/// A debug mode of timewarp: at intervals all processes are rolled back to one time, advance, and
+/// are rolled back to the same time again. A rolled-back state must be as if its future had never
+/// been computed, so both snapshots must have the same bytes; and the run continues from there, so
+/// its committed trace must be that of a run without this mode.
 #pragma once
 
 #include <functional>
@@ -8,22 +9,23 @@
 
 namespace tumble::engines {
 
-/// What stands in a timewarp at one time, as bytes. Nothing in them tells how it came about: numbers that are never used twice (tickets,
-/// passages), places in memory and what is stale are left out.
-struct Standing {
-  std::string states;   // by body: local virtual time, every flight that is kept
-  std::string groups;   // by flight on a passage: who moves together, from what state, the steps so far, all that the same event began
-  std::string events;   // that wait and are to come; that were worked at and are not taken back; which callbacks were called
-  std::string cells;    // boxes swept from global to local virtual time, the cells they touch, who stands in which, which overlap
+/// The state of a timewarp at one time, as bytes. It does not depend on how the state came about:
+/// numbers that are used only once (versions, segments), addresses in memory and stale items are
+/// left out.
+struct StateSnapshot {
+  std::string states;   // by body: local virtual time and every saved flight
+  std::string groups;   // by flight on a segment: the island's members, start state, steps so far, and all flights that began with the same event
+  std::string events;   // the pending events; the executed events that are not rolled back; the callbacks that have been executed
+  std::string cells;    // boxes swept from global to local virtual time, their cells, the bodies of each bucket, and the overlapping pairs
 };
 
-struct RollbackWatch {
-  int every = 0;        // events (with several threads: rounds) between two trials, at least; 0: never
-  int most_steps = 50;  // that processes take in between, one with the other: 1 to this, each number in its turn (with several threads: rounds)
-  int first = 0;        // where in that row the first trial is
-  /// @param t      to which all went back [s]
-  /// @param steps  that were taken in between
-  std::function<void(double t, int steps, const Standing& before, const Standing& after)> tell;
+struct RollbackCheck {
+  int every = 0;        // events (with several threads: epochs) between two injections, at least; 0: never
+  int most_steps = 50;  // of processes between the two rollbacks, in total: 1 to this number, each in turn (with several threads: epochs)
+  int first = 0;        // place of the first injection in that sequence
+  /// @param t      the time of both rollbacks [s]
+  /// @param steps  taken between them
+  std::function<void(double t, int steps, const StateSnapshot& before, const StateSnapshot& after)> report;
 };
 
 }  // namespace tumble::engines

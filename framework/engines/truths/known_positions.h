@@ -1,4 +1,4 @@
-/// Where a scene's bodies have to be, by a truth file about the same problem.
+/// Expected positions of a scene's bodies, from a file of reference values for the same problem.
 #pragma once
 
 #include <vector>
@@ -8,15 +8,16 @@
 
 namespace tumble::truths {
 
-struct KnownPlace {
+struct KnownPosition {
   double time_s;
   std::size_t body;           // of the scene
   Vector3d com_world;         // [m]
 };
 
-/// Families chain and double_pendulum (a scene of point masses on rods in the x-z plane, released from rest) and bouncing_ball (one ball above a
-/// plane). The scene is the same problem where masses, lengths, places, speeds and gravity are, to a rounding or two.
-/// @return by time, then body; nothing where the case is about something else
-std::vector<KnownPlace> known_places(const scene::Scene& scene, const Case& truth);
+/// Families chain and double_pendulum (point masses on rods in the x-z plane, released from rest)
+/// and bouncing_ball (one ball above a plane). The scene is the same problem where masses, lengths,
+/// positions, velocities and gravity agree to a rounding or two.
+/// @return by time, then body; nothing where the case is another problem
+std::vector<KnownPosition> known_positions(const scene::Scene& scene, const Case& truth);
 
 }  // namespace tumble::truths

@@ -1,4 +1,4 @@
-/// Which part of the room is whose: one box a thread, or several, with about the same work in each.
+/// The partition of space: one box per thread, or several, with about the same work in each.
 #pragma once
 
 #include <vector>
@@ -9,25 +9,27 @@
 
 namespace tumble::a4 {
 
-/// How many there are: as many as threads, and a multiple of that where there are so many bodies that looking at them in the order of events
-/// would bring each from memory each time. What is done in one territory, for a while, stays in the nearer caches.
-int territories_for(const engines::FlightWorld& world, const engines::RunOptions& options);
+/// The number of regions: that of threads, or a multiple of it for very many bodies, whose entries
+/// would otherwise come from main memory at each event. The working set of one region stays in the
+/// nearer caches.
+int regions_for(const engines::FlightWorld& world, const engines::RunOptions& options);
 
-/// Where a body is, and what it has cost of late.
-struct Burden {
+/// The position of a body and its recent cost.
+struct WorkLoad {
   Vector3d middle_world;   // [m]
   double work;             // in any unit, >= 0
 };
 
-/// Cuts the room across its longest side, again and again.
+/// Cuts space across its longest side, recursively.
 /// @param count  of boxes, >= 1
-/// @return boxes that share no point of their insides and fill all space
-/// Source: M. Berger, S. Bokhari, "A partitioning strategy for nonuniform problems on multiprocessors", IEEE Transactions on Computers 36, 1987.
-std::vector<engines::Box> cut_into_territories(std::vector<Burden> burdens, int count);
+/// @return boxes with disjoint interiors that fill all space
+/// Source: M. Berger, S. Bokhari, "A partitioning strategy for nonuniform problems on
+/// multiprocessors", IEEE Transactions on Computers 36, 1987.
+std::vector<engines::Box> partition_space(std::vector<WorkLoad> work_loads, int count);
 
-/// Whether a box lies in a territory and touches none of its neighbours'.
-inline bool holds(const engines::Box& territory, const engines::Box& box) {
-  return (territory.low.array() <= box.low.array()).all() && (box.high.array() < territory.high.array()).all();
+/// Whether a box lies inside a region.
+inline bool holds(const engines::Box& region, const engines::Box& box) {
+  return (region.low.array() <= box.low.array()).all() && (box.high.array() < region.high.array()).all();
 }
 
 }  // namespace tumble::a4
