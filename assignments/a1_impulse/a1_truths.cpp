@@ -205,7 +205,7 @@ void compare_hit(const Value& expected, bool exact_inputs, bool is_alone, const 
     comparison.not_compared(name, expected.at("class").text() + ": the ray lies in the triangle's plane, any answer will do");
     return;
   }
-  const bool should_hit = expected.at("hit").truth();
+  const bool should_hit = expected.at("hit").boolean();
   const std::string& kind = expected.at("class").text();
   if (hit.has_value() != should_hit) {
     // Inputs that are not binary fractions move by a rounding, and with them a point on the very edge.
@@ -242,7 +242,7 @@ void compare_rays(const Module& module, const Case& truth, Comparison& compariso
   }
   for (const Value& row : truth.output("rays").list()) {
     const Ray ray{row.at("origin").vector3(), row.at("direction").vector3()};
-    const bool exact_inputs = row.at("inputs_exact_in_binary64").truth();
+    const bool exact_inputs = row.at("inputs_exact_in_binary64").boolean();
     comparison.attempt(row.at("name").text(), [&] {
       bool any_hit = false, unanswerable = false;
       for (const Value& expected : row.at("per_triangle").list()) {
@@ -255,7 +255,7 @@ void compare_rays(const Module& module, const Case& truth, Comparison& compariso
       }
       // Of triangles that share an edge or a corner at least one is hit: nothing leaks through.
       if (!unanswerable && triangles.size() > 1)
-        comparison.agree(row.at("name").text() + ".any_hit", any_hit == row.at("any_hit").truth(), "at least one of the triangles around a shared edge or corner");
+        comparison.agree(row.at("name").text() + ".any_hit", any_hit == row.at("any_hit").boolean(), "at least one of the triangles around a shared edge or corner");
     });
   }
 }

@@ -1,4 +1,5 @@
-// tumble audit a1 [--mutants FOLDER] [--lines]: do the tests catch every known-wrong solution, and accuse no right one?
+// tumble audit a1 [--mutants FOLDER] [--lines]: do the tests catch every known-wrong solution, and
+// accept every right one?
 #include <cstdio>
 #include <memory>
 #include <thread>
@@ -83,7 +84,7 @@ void print_lines(const grading::TouchedLines& lines, bool json) {
     fmt::print("{}\n", nlohmann::ordered_json{{"file", lines.file.string()}, {"code_lines", lines.code_lines}, {"touched", lines.touched}, {"untouched", untouched}}.dump(2));
     return;
   }
-  constexpr std::size_t kWidth = 80;   // of a line of code that is shown
+  constexpr std::size_t kWidth = 80;   // of a shown line of code
   fmt::print("{}\nno slip touches\n{:>9}  {:>4}  beginning with\n", share_touched(lines), "lines", "code");
   for (const grading::LineRange& range : lines.untouched)
     fmt::print("{:>9}  {:>4}  {}\n", range.first == range.last ? std::to_string(range.first) : fmt::format("{}-{}", range.first, range.last), range.code_lines, range.text.substr(0, kWidth));

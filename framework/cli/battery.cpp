@@ -1,4 +1,5 @@
-// tumble battery: every case that is known to break simulations, against thresholds derived beforehand, on one page.
+// tumble battery: the cases that are known to break simulations, against thresholds derived
+// beforehand, on one page.
 #include "framework/cli/battery.h"
 
 #include <algorithm>
@@ -36,7 +37,8 @@ bool is_wanted(const battery::Case& a_case, const std::vector<std::string>& only
          });
 }
 
-/// Fills in laws and modules: by the word given, else the reference's where this tree has one, else the student's.
+/// Adds laws and modules: by the given word, else the reference's where this tree has one, else the
+/// student's.
 void provide(const Context& context, const std::string& word, battery::Given& given) {
   given.laws = library_laws();
   for (const modules::ModuleKind* kind : context.registry.all()) {
@@ -48,7 +50,7 @@ void provide(const Context& context, const std::string& word, battery::Given& gi
   }
 }
 
-// Cut in the middle, where names say least.
+// Names are cut in the middle, which carries the least information.
 void print_measure(const std::string& name, const Measure& m) {
   fmt::print("{:<24} {:<50} {:>15} {:>15} {:>9}  {}\n", without_middle(name, 24), without_middle(m.what, 50), report::shown_value(m), report::shown_threshold(m),
              report::shown_margin(m), report::word_of(report::outcome_of(m)));
@@ -56,7 +58,7 @@ void print_measure(const std::string& name, const Measure& m) {
   if (!note.empty()) fmt::print("{:<24}   {}\n", "", note);
 }
 
-// One line a case, and one for whatever is not as it should be; methods that must fail are always shown.
+// One line per case, and one for every failure; methods that must fail are always shown.
 void print_row(const BatteryRow& row, bool each) {
   const std::string name = fmt::format("{:>2} {}", row.row, row.name);
   const Measure* worst = report::tightest(row);

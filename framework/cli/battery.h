@@ -1,7 +1,7 @@
-/// The stability battery as cases that can be run: the words that the verb, the test and the cases share.
+/// The stability battery: types that the verb, the test and the cases share.
 ///
-/// A case builds its scenes, runs them by the laws given, and measures. It takes its truths from closed forms or from files, never
-/// from what this project computed.
+/// A case builds its scenes, runs them by the given laws, and measures. Its reference values come
+/// from closed forms or files, never from this project's own results.
 #pragma once
 
 #include <functional>
@@ -16,16 +16,16 @@
 
 namespace tumble::battery {
 
-/// What a case is run with.
+/// Input of a case.
 struct Given {
-  Laws laws;                                                    // what nobody provides is empty
-  bool is_long = false;                                         // the lengths of the table; else short ones, for every day
+  Laws laws;                                                    // laws without a provider are empty
+  bool is_long = false;                                         // the durations of the table; else short ones, for daily use
   std::function<truths::Case(const std::string& id)> truth;     // a file of reference values: "chain/links8_horizontal"
-  std::map<std::string, modules::AnyModule> modules{};          // whose functions are no laws, by id; what nobody provides is absent
-  std::function<void(const report::Measure&)> on_measure{};     // told of each as it is found: long rows take minutes; may be empty
+  std::map<std::string, modules::AnyModule> modules{};          // modules whose functions are no laws, by id; without those that nothing provides
+  std::function<void(const report::Measure&)> on_measure{};     // called with each measure when it is found, because long rows take minutes; may be empty
 };
 
-/// Collects what a case measures.
+/// Collects the measures of a case.
 class Findings {
  public:
   /// @param on_measure  as Given::on_measure
@@ -33,14 +33,15 @@ class Findings {
 
   void at_most(const std::string& what, double value, double threshold, const std::string& unit, const std::string& why);
   void at_least(const std::string& what, double value, double threshold, const std::string& unit, const std::string& why);
-  /// The same as at_most by a method known not to hold: it must be seen failing.
+  /// As at_most, for a method that is known to violate it: the measure must fail.
   void must_fail(const std::string& what, double value, double threshold, const std::string& unit, const std::string& why);
-  /// A question that must be answered with yes.
+  /// A condition that must be true.
   void is_true(const std::string& what, bool answer, const std::string& why);
   void not_run(const std::string& what, const std::string& reason);
   void plot(report::Plot plot) { row_.plots.push_back(std::move(plot)); }
 
-  /// Runs a part of a case. What stops it becomes a line of its own: "not run" for what nobody has written yet, else an error.
+  /// Runs a part of a case. An exception gives a line of its own: "not run" for a missing function,
+  /// else an error.
   void part(const std::string& what, const std::function<void()>& measure);
 
  private:
@@ -54,7 +55,7 @@ class Findings {
 struct Case {
   int row;
   std::string name, about;
-  std::string needs;                                            // which laws beside integration: "", "a1", "a3", "a1 a3"
+  std::string needs;                                            // laws needed besides integration: "", "a1", "a3", "a1 a3"
   std::function<void(const Given&, Findings&)> run;             // empty: not part of the battery yet, for the reason in `not_part`
   std::string not_part{};
 };

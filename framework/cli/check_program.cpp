@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using grading::Output;
 using grading::ProgramOutcome;
 
-constexpr double kLoadLimit = 10.0;   // s: a program of tests starts in 20 ms; this is for a loaded machine
+constexpr double kLoadLimit = 10.0;   // s: a test program starts in 20 ms; the rest is for a loaded machine
 
 bool has_colours() { return ::isatty(STDOUT_FILENO) == 1; }
 
@@ -29,11 +29,11 @@ void print_indented(const std::string& text) {
   for (std::string line; std::getline(lines, line);) fmt::print("    {}\n", line);
 }
 
-// Shows the compiler's errors as the verdict that they are.
+// Shows the compiler's errors as a verdict.
 ExitCode does_not_compile(const fs::path& file, const fs::path& header, const std::string& said) {
   fmt::print("{}does not compile{}: {}\n\n", has_colours() ? "\033[31m" : "", has_colours() ? "\033[0m" : "", file.filename().string());
   print_indented(grading::compiler_story(said, file, header));
-  fmt::print("\nno test ran: the first error is the one to mend\n");
+  fmt::print("\nno test ran: correct the first error first\n");
   return ExitCode::kCheckFailed;
 }
 
@@ -51,16 +51,17 @@ ExitCode run_tests(const Context& context, const CheckWords& words, std::vector<
   std::fflush(stdout);
   const int code = grading::run_program(command, Output::kOurs).code;
   if (code < 0 || code > static_cast<int>(ExitCode::kNotAttempted)) {
-    fmt::print("\nthe program that holds your code ended with code {} before its tests could be judged: look for code that runs before main\n", code);
+    fmt::print("\nthe program with your code ended with code {} before its tests could be judged: look for code that runs before main\n", code);
     return ExitCode::kCheckFailed;
   }
   return static_cast<ExitCode>(code);
 }
 
-// ---- the student's own file: the build knows how ----
+// ---- The student's own file, built by the build tree ----
 
-/// What the compiler said of the file when it last compiled it. Warnings stay until they are mended, though a file that
-/// has not changed is not compiled again: words older than the object are not of it, and it is compiled once more.
+/// The compiler's output for the file at its last compilation. Warnings are shown until they are
+/// corrected, although an unchanged file is not compiled again: output older than the object
+/// belongs to another version, and the file is compiled once more.
 class KeptWords {
  public:
   KeptWords(const Context& context, const std::string& id, const std::string& folder)
@@ -69,7 +70,7 @@ class KeptWords {
     std::error_code ignored;
     if (!are_of_object()) fs::remove(object_, ignored);
   }
-  /// @param said  what the build printed just now: nothing where there was nothing to do
+  /// @param said  output of this build: empty where there was nothing to do
   std::string after_build(const std::string& said) const {
     if (!are_of_object()) write_whole(words_, said);
     return text_of(words_);
@@ -86,7 +87,8 @@ class KeptWords {
   fs::path object_, words_;
 };
 
-// A global object's initial value is worked out before main: one that does not end would hang every test.
+// The initial value of a global object is computed before main: one that does not end would hang
+// every test.
 bool starts(const fs::path& program) {
   return grading::run_program({program.string(), "--debug", "--gtest_list_tests"}, Output::kDropped, kLoadLimit).in_time;
 }
@@ -105,7 +107,7 @@ ExitCode check_own(const Context& context, const CheckWords& words, const fs::pa
   return run_tests(context, words, {program.string()});
 }
 
-// ---- a file that is not one's own: compiled and called in the sandbox ----
+// ---- Another file, compiled and called in the sandbox ----
 
 ExitCode check_foreign(const Context& context, const CheckWords& words, const fs::path& file, const fs::path& header) {
   const fs::path program = context.build / "bin" / ("check_" + words.id + "_sandboxed");

@@ -1,4 +1,4 @@
-/// Builds and runs the program that checks a student's file.
+/// Builds and runs the test program of a student's file.
 #pragma once
 
 #include <filesystem>
@@ -16,15 +16,16 @@ struct CheckWords {
   std::vector<std::string> patterns;           // of test names
 };
 
-/// Declares "a1 [FILE] [PATTERN...]" on a verb and gives what was said, when asked after the parse.
+/// Declares "a1 [FILE] [PATTERN...]" on a verb; `rest` and `id` hold the words after the parse.
 void add_check_words(Verb& verb, std::vector<std::string>& rest, std::string& id);
 /// @throws UserError for an unknown assignment or a missing file
 CheckWords read_check_words(const Context& context, const std::string& id, const std::vector<std::string>& rest);
 
-/// The file that is checked.
+/// The checked file.
 std::filesystem::path checked_file(const Context& context, const CheckWords& words);
 
-/// Builds, then runs the public tests, which print their table. A compiler's error is a verdict with its place.
+/// Builds, then runs the public tests, which print their table. A compiler error is a verdict with
+/// its position.
 ExitCode check_once(const Context& context, const CheckWords& words);
 
 }  // namespace tumble::cli

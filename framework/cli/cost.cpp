@@ -1,5 +1,7 @@
-// tumble cost SCENE: what accuracy costs in a scene, by every method and engine, drawn and read.
-// tumble cost a2: the same for a student's module, against the reference. tumble cost toi: of times of impact. tumble cost all: every scene.
+// tumble cost SCENE: error against cost in a scene, by every method and engine, with plots and
+// sentences.
+// tumble cost a2: the same for a student's module, against the reference. tumble cost toi: for
+// times of impact. tumble cost all: for every scene.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -26,7 +28,7 @@ void print(const report::CostPage& page) {
     for (const report::CostPoint& point : curve.points)
       if (point.stopped_by.empty() && std::isfinite(point.error) && (least == nullptr || point.error < least->error)) least = &point;
     fmt::print("{:<{}} {:>6}  {:<32}", curve.name, width, std::isfinite(curve.order) ? fmt::format("{:.2f}", curve.order) : "-",
-               least == nullptr ? "does not get through" : fmt::format("{:.1e}{} at {}", least->error, page.error_unit.empty() ? "" : " " + page.error_unit, least->fineness));
+               least == nullptr ? "does not reach the end" : fmt::format("{:.1e}{} at {}", least->error, page.error_unit.empty() ? "" : " " + page.error_unit, least->fineness));
     for (const double mark : page.marks) {
       const report::CostPoint* point = report::cheapest(curve, mark);
       fmt::print(" {:>14}", point == nullptr ? "-" : report::price_of(point->cpu_s));

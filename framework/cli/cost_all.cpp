@@ -26,16 +26,16 @@ using report::Look;
 using report::PeerRow;
 
 constexpr double kMarks[] = {1e-3, 1e-6, 1e-9};   // m
-constexpr double kBudget = 4.0;                   // s a scene: sixty take some minutes
+constexpr double kBudget = 4.0;                   // s per scene: sixty scenes take some minutes
 const std::string kOurs = "Tumble";
 
 struct SceneLine {
   std::string scene;
-  std::string problem;                 // why there is nothing; empty: there is
+  std::string problem;                 // the error that prevented the measurement; empty: none
   std::optional<MeasuredCost> cost;
 };
 
-/// Why nothing gets to an error.
+/// The reason why no run reaches an error.
 std::string why_not(const report::CostPage& page, double mark) {
   if (page.floor > mark) return fmt::format("truth known to {:.0e} m", page.floor);
   double least = std::numeric_limits<double>::infinity();
@@ -50,7 +50,7 @@ std::string why_not(const report::CostPage& page, double mark) {
   return std::isfinite(least) ? fmt::format("least {:.1e} m", least) : "nothing gets through";
 }
 
-/// What is paid for an error, and by what.
+/// The least cost of an error, and its method.
 Cell cell_of(const report::CostPage& page, double mark) {
   const report::CostCurve* curve = cheapest_curve(page, mark);
   if (curve == nullptr) return {"\u2013 (" + why_not(page, mark) + ")", "", Look::kMuted};
@@ -58,10 +58,11 @@ Cell cell_of(const report::CostPage& page, double mark) {
   return {fmt::format("{}: {}, {}", report::price_of(point->cpu_s), curve->name, point->fineness)};
 }
 
-/// Scene, then a cell a mark; a scene without a truth says what being right costs.
+/// One row per scene with a cell for each error; a scene without a reference solution shows the
+/// cost of a right run.
 report::Table table_of(const std::vector<SceneLine>& lines) {
   report::Table table;
-  table.caption = "CPU time that an error of at most 1e-3, 1e-6, 1e-9 m costs, and what it was reached by. \u2013: nothing that was run gets there, and why.";
+  table.caption = "CPU time for an error of at most 1e-3, 1e-6, 1e-9 m, and the method. \u2013: no run reaches it, with the reason.";
   table.columns = {{"Scene"}, {"Looked at"}, {"1e-3 m"}, {"1e-6 m"}, {"1e-9 m"}};
   for (const SceneLine& line : lines) {
     const Cell name{line.cost && !line.cost->size.empty() ? line.scene + ", " + line.cost->size : line.scene, line.cost ? line.scene + "/index.html" : ""};
@@ -75,7 +76,7 @@ report::Table table_of(const std::vector<SceneLine>& lines) {
     if (page.error_unit.empty()) {
       const Cell right = cell_of(page, 1.0);
       cells.push_back({"right by its numbers: " + right.text, "", right.look});
-      cells.insert(cells.end(), {{"no truth", "", Look::kMuted}, {"", "", Look::kMuted}});
+      cells.insert(cells.end(), {{"no reference solution", "", Look::kMuted}, {"", "", Look::kMuted}});
     } else {
       for (const double mark : kMarks) cells.push_back(cell_of(page, mark));
     }
@@ -86,7 +87,7 @@ report::Table table_of(const std::vector<SceneLine>& lines) {
 
 std::string peer_cell(const PeerRow* row) { return fmt::format("{} {}", row->engine, report::price_of(row->cpu_s)); }
 
-/// How close rows come that do not get to an error.
+/// The smallest error of rows that do not reach the required one.
 std::string least_of(const std::vector<PeerRow>& rows, const std::string& bench, bool of_others) {
   double least = std::numeric_limits<double>::infinity();
   for (const PeerRow& row : rows)
@@ -94,10 +95,10 @@ std::string least_of(const std::vector<PeerRow>& rows, const std::string& bench,
   return std::isfinite(least) ? fmt::format("\u2013 (least {:.0e})", least) : "\u2013 (does not finish)";
 }
 
-/// @param page  of the peers, to link to, relative to this one
+/// @param page  of the peers, as a link relative to this page
 report::Table table_of_peers(const report::PeerRows& measured, const std::string& page) {
   report::Table table;
-  table.caption = "Beside other engines: what an error of at most 1e-3, 1e-6, 1e-9 (of the scene's own kind) costs Tumble, and the cheapest peer that gets there.";
+  table.caption = "Beside other engines: the CPU time of Tumble for an error of at most 1e-3, 1e-6, 1e-9 (of the scene's own kind), and of the cheapest peer that reaches it.";
   table.columns = {{"Scene"}, {"1e-3"}, {"best peer"}, {"1e-6"}, {"best peer"}, {"1e-9"}, {"best peer"}};
   std::set<std::string> benches;
   for (const PeerRow& row : measured.rows) benches.insert(row.bench);
@@ -114,7 +115,7 @@ report::Table table_of_peers(const report::PeerRows& measured, const std::string
   return table;
 }
 
-/// Columns as wide as their widest cell; letters are counted, not bytes.
+/// Columns as wide as their widest cell, counted in characters, not bytes.
 void print(const report::Table& table) {
   const auto letters = [](const std::string& text) { return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0) != 0x80; })); };
   std::vector<std::size_t> widths;
@@ -140,7 +141,7 @@ SceneLine line_of(const Context& context, const CostWords& words, const std::str
   try {
     line.cost = measure_cost(context, own);
     report::write_cost_page(line.cost->page, fs::path(words.out) / scene / "index.html");
-  } catch (const std::exception& error) {   // what goes wrong in one scene is told in its line
+  } catch (const std::exception& error) {   // an error in one scene is shown in its row
     line.problem = error.what();
   }
   return line;
@@ -148,9 +149,9 @@ SceneLine line_of(const Context& context, const CostWords& words, const std::str
 
 void write_page(const Context& context, const std::vector<report::Table>& tables, const CostWords& words, bool has_peers) {
   report::Page page("What accuracy costs, scene by scene", "Every scene over its methods, steps, tolerances and engines");
-  page.paragraph("Each scene has a page of its own, with curves. Prices are CPU times of this machine in this run: ratios matter. Where a truth holds for a part of a scene only, that part is what was looked at.");
+  page.paragraph("Each scene has a page of its own, with curves. Costs are CPU times of this machine in this run: only ratios matter. Where the reference solution holds for a part of a scene only, runs were compared over that part.");
   for (const report::Table& table : tables) page.table(table);
-  if (!has_peers) page.paragraph("Other engines are not in it: tests/bench/peers/run.sh measures those that are installed.", Look::kMuted);
+  if (!has_peers) page.paragraph("Other engines are not included: tests/bench/peers/run.sh measures those that are installed.", Look::kMuted);
   page.record(record_of(context));
   page.write(fs::path(words.out) / "index.html");
 }

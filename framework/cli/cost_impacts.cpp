@@ -19,10 +19,10 @@ namespace {
 
 using truths::ImpactProblem;
 
-constexpr double kStep = 1.0 / 60.0;      // s: the bracket that a step gives
-constexpr int kRungs = 15;                // tolerances 1e-2 to 1e-16 of a second
-constexpr double kMeasured = 5e-3;        // s of CPU at least, of each point
-constexpr double kRoundings = 100.0;      // truths/comparison.h: what a closed form may be off by, in the files' own floors
+constexpr double kStep = 1.0 / 60.0;      // s: the length of the bracket
+constexpr int kResolutions = 15;                // tolerances 1e-2 to 1e-16 of a second
+constexpr double kMeasured = 5e-3;        // s of CPU at least, for each point
+constexpr double kRoundings = 100.0;      // truths/comparison.h: error of a closed form in the files' own floors
 
 struct Problems {
   std::vector<ImpactProblem> all;
@@ -44,7 +44,8 @@ Problems problems_of(const Context& context) {
   return problems;
 }
 
-/// One root finder at one tolerance, over all problems: the worst error, and the price of one search.
+/// One root finder at one tolerance, over all problems: the worst error, and the cost of one
+/// search.
 report::CostPoint point_of(const Problems& problems, const ImpactFinder& find, double tolerance) {
   report::CostPoint point{fmt::format("tolerance\u00a0{:.0e}", tolerance), tolerance, 0.0, 0.0, 0.0, ""};
   for (const ImpactProblem& problem : problems.all) {
@@ -52,7 +53,7 @@ report::CostPoint point_of(const Problems& problems, const ImpactFinder& find, d
     if (found.status == RootStatus::kNoSignChange) point.stopped_by = problem.name + ": it sees no impact";
     if (found.status == RootStatus::kNotConverged) point.stopped_by = problem.name + ": it does not converge";
     const double error = std::abs(found.time - problem.toi);
-    if (!(error <= point.error)) point.error = error;   // NaN stays
+    if (!(error <= point.error)) point.error = error;   // keeps NaN
     point.evaluations += static_cast<double>(found.evaluations) / static_cast<double>(problems.all.size());
   }
   const double begun = cpu_seconds();
@@ -77,11 +78,11 @@ report::CostCurve curve_of(const Problems& problems, const std::string& name, co
   for (const report::CostPoint& point : curve.points)
     if (point.stopped_by.empty() && (best == nullptr || point.error < best->error)) best = &point;
   if (best == nullptr) curve.reading = fmt::format("{} finds no impact: {}.", name, curve.points.empty() ? "nothing was run" : curve.points.back().stopped_by);
-  else curve.reading = fmt::format("{} gets to {:.1e} s at {}, with {:.1f} gaps looked at a search, for {}.", name, best->error, best->fineness, best->evaluations, report::price_of(best->cpu_s));
+  else curve.reading = fmt::format("{} reaches {:.1e} s at {}, with {:.1f} gap evaluations per search, for {}.", name, best->error, best->fineness, best->evaluations, report::price_of(best->cpu_s));
   return curve;
 }
 
-/// Ball and plane alone: a quadratic.
+/// Ball and plane only: a quadratic.
 report::CostCurve curve_of_closed_forms(const Problems& problems) {
   report::CostCurve curve;
   curve.name = "closed form (ball, plane)";
@@ -96,14 +97,14 @@ report::CostCurve curve_of_closed_forms(const Problems& problems) {
       }
   point.cpu_s = (cpu_seconds() - begun) / std::max(1, searches);
   curve.points.push_back(point);
-  curve.reading = fmt::format("{} is off by {:.1e} s, and has no tolerance to choose; it looks at no gap, and costs {} with the case's numbers read each time.", curve.name, point.error, report::price_of(point.cpu_s));
+  curve.reading = fmt::format("{} has an error of {:.1e} s and no tolerance to choose; it evaluates no gap, and costs {} with the case's numbers read each time.", curve.name, point.error, report::price_of(point.cpu_s));
   return curve;
 }
 
 std::vector<double> tolerances_of(const CostWords& words) {
   if (!words.tolerances.empty()) return words.tolerances;
   std::vector<double> all;
-  for (int k = 0; k < kRungs; ++k) all.push_back(std::pow(10.0, -2.0 - k));
+  for (int k = 0; k < kResolutions; ++k) all.push_back(std::pow(10.0, -2.0 - k));
   return all;
 }
 
@@ -114,14 +115,14 @@ report::CostPage cost_of_impacts(const Context& context, const CostWords& words)
   const std::vector<double> tolerances = tolerances_of(words);
   report::CostPage page;
   page.title = "Times of impact";
-  page.about = fmt::format("{} truths of tests/truths: balls, rods and boxes on given motions, each searched in the step of 1/60 s in which it meets something.", problems.all.size());
+  page.about = fmt::format("{} cases of tests/truths: balls, rods and boxes on given motions, each searched in the step of 1/60 s with its impact.", problems.all.size());
   page.error_name = "error of the time of impact";
   page.error_unit = "s";
   page.finer = {"tolerance", "s", report::Scale::kLog};
   page.counted = "gaps looked at";
   page.truth = "files computed to 60 digits";
-  page.what_error_is = fmt::format("Errors are the largest over these cases, against {}; double precision itself forces {:.1e} s on the latest of them (t = {:.3g} s). Grazes are double roots and not in here.", page.truth, problems.floor, problems.latest);
-  page.what_price_is = "CPU time is that of one search, the average over the cases. On this machine, in this run: ratios matter.";
+  page.what_error_is = fmt::format("Errors are the largest over these cases, against {}; double precision itself forces {:.1e} s on the latest of them (t = {:.3g} s). Grazing impacts are double roots and left out.", page.truth, problems.floor, problems.latest);
+  page.what_price_is = "CPU time is that of one search, the average over the cases. On this machine, in this run: only ratios matter.";
   page.floor = problems.floor;
   page.scale = kStep;
   page.marks = {1e-6, 1e-9, 1e-12};
@@ -137,7 +138,7 @@ report::CostPage cost_of_impacts(const Context& context, const CostWords& words)
     page.curves.push_back(curve_of(problems, "find_impact_time of " + words.modules, chosen.laws.find_impact_time, tolerances));
   }
   page.curves.push_back(curve_of_closed_forms(problems));
-  if (page.curves.back().points.front().error > kRoundings * problems.floor) page.readings.push_back("The closed form is off by more than a few roundings: a truth file, or the formula, is wrong.");
+  if (page.curves.back().points.front().error > kRoundings * problems.floor) page.readings.push_back("The error of the closed form is more than a few roundings: a file of reference values, or the formula, is wrong.");
   return page;
 }
 

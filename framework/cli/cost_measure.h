@@ -1,34 +1,36 @@
-/// What tumble cost measures of one scene or module, as a page.
+/// The measurements of tumble cost for one scene or module, as a page.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "framework/cli/cost_ways.h"
+#include "framework/cli/cost_methods.h"
 #include "framework/report/cost_page.h"
 
 namespace tumble::cli {
 
 struct MeasuredCost {
   report::CostPage page;
-  std::string against;            // what errors are measured against, in a line
-  double duration_s, asked_s;     // looked at, and asked for
+  std::string against;            // the reference of errors, in one line
+  double duration_s, asked_s;     // compared duration, and requested duration
   std::string size;               // of a scene whose usual size is too large; else empty
-  bool not_attempted = false;     // something that is needed is a stub
+  bool not_attempted = false;     // a required function is a stub
 };
 
-/// Finds the truth, runs every ladder, reads them. Progress goes to stderr.
-/// @throws UserError as find_subject, and for a scene with neither a truth nor numbers to be judged by
+/// Computes the reference, runs every refinement, and reads them. Progress goes to stderr.
+/// @throws UserError as find_subject, and for a scene with neither a reference solution nor numbers
+///   of its own
 MeasuredCost measure_cost(const Context& context, const CostWords& words);
 
-/// A file of tests/truths about the same problem tells the truth's error better than two runs of one engine do.
+/// A file of tests/truths for the same problem gives a better error floor than two runs of one
+/// engine.
 /// @param laws  right ones
-void check_with_files(const Context& context, const scene::Scene& scene, const Laws& laws, engines::CostTruth& truth);
+void check_with_files(const Context& context, const scene::Scene& scene, const Laws& laws, engines::CostReference& reference);
 
-/// Which way pays at which error, a sentence each.
+/// The cheapest method for each error, one sentence each.
 std::vector<std::string> verdicts(const report::CostPage& page);
 
-/// The curve that gets to an error for the least price; nullptr where none does.
+/// The curve that reaches an error at the least cost; nullptr where none does.
 const report::CostCurve* cheapest_curve(const report::CostPage& page, double mark);
 
 }  // namespace tumble::cli

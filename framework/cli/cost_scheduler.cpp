@@ -23,24 +23,24 @@ namespace {
 using engines::SchedulerCurve;
 using engines::SchedulerReading;
 using engines::SchedulerRun;
-using engines::SchedulerTrial;
+using engines::SchedulerRunOptions;
 
 constexpr int kSizes[] = {6, 12, 24, 48, 96};
 constexpr double kSizedDuration = 1.0;   // s
-constexpr double kGrowth = 3.0;          // price of a size over the one before, as expected: as many bodies again, and each is asked about more
-constexpr int kRuns = 5;                 // of short ones: the least disturbed counts
+constexpr double kGrowth = 3.0;          // expected cost of a size relative to the last one: as many bodies again, and each is tested against more
+constexpr int kRuns = 5;                 // of short ones: the fastest counts
 constexpr double kMostOfARun = 0.5;      // of the budget
-constexpr double kOfTheFirst = 0.6;      // of the budget, or less where others come after: what looks at steps may take
+constexpr double kOfTheFirst = 0.6;      // of the budget, or less where sizes follow: for the runs over steps
 
-/// Of what is asked for in a sandbox most is waiting, which is no CPU time of this process.
+/// Wall time: a run in a sandbox mostly waits, which is no CPU time of this process.
 double now_s() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-/// What is compared: a scheduler, or an engine that asks nobody.
+/// A compared scheduler, or an engine without decisions of a module.
 struct Way {
   SchedulerCurve curve;
   std::string modules;                   // as for tumble run; empty: an engine
   std::string engine = "tw";
-  bool is_sandboxed = false;             // its CPU time is another process's: nothing is gained by running it again
+  bool is_sandboxed = false;             // its CPU time is another process's: repeating a run improves nothing
 };
 
 std::string known_words(const CostWords& words) {
@@ -73,7 +73,7 @@ class Measuring {
  private:
   void over_steps(Way& way) const {
     const ChosenLaws chosen = laws_of(way, scene_);
-    SchedulerTrial trial = trial_of(way, duration_s_);
+    SchedulerRunOptions trial = trial_of(way, duration_s_);
     for (const double step : steps_) {
       trial.step_s = step;
       one(scene_, chosen.laws, way, trial, way.curve.by_step);
@@ -86,7 +86,7 @@ class Measuring {
     double took = 0.0;
     for (const int n : kSizes) {
       if (now_s() + kGrowth * took > until_) return;
-      SchedulerTrial trial = trial_of(way, kSizedDuration);
+      SchedulerRunOptions trial = trial_of(way, kSizedDuration);
       trial.n = n;
       const double begun = now_s();
       one(find_scene(context_, sized_, n), chosen.laws, way, trial, way.curve.by_size);
@@ -95,8 +95,8 @@ class Measuring {
     }
   }
 
-  SchedulerTrial trial_of(const Way& way, double duration_s) const {
-    SchedulerTrial trial;
+  SchedulerRunOptions trial_of(const Way& way, double duration_s) const {
+    SchedulerRunOptions trial;
     trial.engine = way.engine;
     trial.timewarp = engines::fast_timewarp();
     trial.duration_s = duration_s;
@@ -105,7 +105,7 @@ class Measuring {
     return trial;
   }
 
-  /// What the scheduler is not about comes from the reference where there is one.
+  /// Other modules come from the reference where there is one.
   ChosenLaws laws_of(const Way& way, const scene::Scene& scene) const {
     std::string words = way.modules;
     for (const std::string& id : scene.needs)
@@ -116,7 +116,7 @@ class Measuring {
     return chosen;
   }
 
-  void one(const scene::Scene& scene, const Laws& laws, const Way& way, const SchedulerTrial& trial, std::vector<SchedulerRun>& runs) const {
+  void one(const scene::Scene& scene, const Laws& laws, const Way& way, const SchedulerRunOptions& trial, std::vector<SchedulerRun>& runs) const {
     runs.push_back(engines::run_scheduler(scene, laws, trial, engines::events_due(scene, laws, trial)));
     const SchedulerRun& run = runs.back();
     const std::string found = run.is_right() ? fmt::format("{:.2f} integrations an event, {}", run.per_event(run.integrations), report::price_of(run.cpu_s)) : fmt::format("{} of {} events", run.committed, run.due);
@@ -132,8 +132,8 @@ class Measuring {
   std::vector<double> steps_;
 };
 
-/// Your scheduler, engines that ask nobody, and last the reference.
-std::vector<Way> ways_of(const Context& context, const modules::ModuleKind& kind, const CostWords& words) {
+/// The student's scheduler, engines without a module, and last the reference.
+std::vector<Way> methods_of(const Context& context, const modules::ModuleKind& kind, const CostWords& words) {
   const std::string word = words.modules.empty() ? "student" : words.modules;
   const bool has_reference = std::filesystem::exists(context.build / "modules" / (kind.id + "_reference.so"));
   std::vector<Way> ways{{{"your scheduler", false, {}, {}}, kind.id + "=" + word, "tw", word != "student" && word != "reference"}};
@@ -145,7 +145,7 @@ std::vector<Way> ways_of(const Context& context, const modules::ModuleKind& kind
 
 report::Plot plot_of_prices(const std::vector<Way>& ways) {
   report::Plot plot{"CPU time against the number of processes", {"processes", "-", report::Scale::kLog}, {"CPU time for each committed event", "s", report::Scale::kLog}, {}, {},
-                    "What the same trace costs, by whatever engine. The engine that asks a module is made to be understood: it asks every body about every other. What runs in the sandbox pays for each call besides, mostly by waiting."};
+                    "The cost of the same trace by each engine. The engine that calls a module is written to be understood: it tests every body against every other. In the sandbox each call costs extra, mostly waiting."};
   for (const Way& way : ways) {
     report::Curve curve{way.curve.name, {}, {}, true};
     for (const SchedulerRun& run : way.curve.by_size) {
@@ -176,7 +176,7 @@ void cost_of_scheduler(Context& context, const modules::ModuleKind& kind, const 
   if (const std::string flag = known_words(words); !flag.empty())
     throw UserError(flag, "a scheduler decides in which order a scene goes on, not by which method, so this changes nothing in tumble cost " + kind.id, "Leave it out. What can be chosen: --modules, --on SCENE, --steps, --duration-s, --n, --budget-s.");
   const Measuring measuring(context, kind, words);
-  std::vector<Way> ways = ways_of(context, kind, words);
+  std::vector<Way> ways = methods_of(context, kind, words);
   for (Way& way : ways) measuring.run(way);
 
   std::vector<SchedulerCurve> curves{ways[0].curve};
@@ -198,7 +198,7 @@ void cost_of_scheduler(Context& context, const modules::ModuleKind& kind, const 
   page.heading("How it was measured");
   page.paragraph(measuring.scene().about);
   page.paragraph(grading::what_a_scheduler_pays());
-  page.paragraph("CPU time is that of the engine without the ordered reference that each run is compared with, the best of up to five runs. On this machine, in this run: ratios matter.");
+  page.paragraph("CPU time is that of the engine without the ordered reference that each run is compared with, the best of up to five runs. On this machine, in this run: only ratios matter.");
   page.record(record_of(context, measuring.scene()));
   const std::filesystem::path file = std::filesystem::path(words.out) / words.name() / "index.html";
   page.write(file);

@@ -1,8 +1,8 @@
-/// tumble cost a4: what a scheduler pays for each event that it commits, over its step and over the number of processes, beside the
-/// reference and the other engines.
+/// tumble cost a4: the work of a scheduler per committed event, over its step and over the number
+/// of processes, beside the reference and the other engines.
 #pragma once
 
-#include "framework/cli/cost_ways.h"
+#include "framework/cli/cost_methods.h"
 #include "framework/modules/registry.h"
 
 namespace tumble::cli {

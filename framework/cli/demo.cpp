@@ -1,4 +1,4 @@
-// tumble demo: the whole path once, from submissions to pages, on submissions whose scores are known beforehand.
+// tumble demo: the whole workflow, from submissions to pages, on submissions with known scores.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -49,12 +49,13 @@ void tell_progress(const std::string& id, const grading::GradeProgress& progress
   if (!progress.finished.empty()) fmt::print(stderr, "tumble: {} {}: {} of {} graded{}\n", id, progress.finished, progress.done, progress.total, left);
 }
 
-// What must hold of each, whatever the assignment; empty where it does.
+// Difference from the expected result of each submission, for any assignment; empty where there is
+// none.
 std::string surprise(int which, const Grade& grade) {
   if (!grade.is_final()) return "the grader failed";
   const bool fine = which == kReference ? grade.score == grade.possible : which == kStarter ? grade.score == 0.0 : grade.score > 0.0 && grade.score < grade.possible;
   if (fine) return "";
-  return which == kReference ? "expected all points" : which == kStarter ? "expected none" : "expected some of the points";
+  return which == kReference ? "expected all points" : which == kStarter ? "expected no points" : "expected some of the points";
 }
 
 std::size_t count_of(const Grade& grade, grading::Verdict verdict) {
@@ -84,7 +85,7 @@ void write_index(const Context& context, const std::vector<Graded>& all, const f
   page.links(links);
   page.heading("Scores", 2, "scores");
   page.paragraph("The reference solution, the stub as students get it, and a submission with mistakes that students make. Each was compiled and run in a sandbox, "
-                 "and judged from outside it. The names lead to what a student is told.");
+                 "and judged from outside it. The names link to the student's page.");
   add_scores(page, all);
   for (const Graded& graded : all) {
     const fs::path folder = graded.kind->id;
@@ -92,7 +93,7 @@ void write_index(const Context& context, const std::vector<Graded>& all, const f
   }
   for (const Graded& graded : all) {
     const Grade& flawed = graded.grades[kFlawed];
-    page.heading(fmt::format("{} {}: what the flawed submission is told", graded.kind->id, graded.kind->title), 2, "stories-" + graded.kind->id);
+    page.heading(fmt::format("{} {}: report of the flawed submission", graded.kind->id, graded.kind->title), 2, "stories-" + graded.kind->id);
     grading::add_stories(page, flawed);
     page.heading(fmt::format("{} {}: scenes, flawed submission beside reference", graded.kind->id, graded.kind->title), 2, "scenes-" + graded.kind->id);
     grading::add_media(page, flawed.media, fs::path(graded.kind->id) / flawed.folder / "media");
@@ -101,7 +102,7 @@ void write_index(const Context& context, const std::vector<Graded>& all, const f
   page.write(out / "index.html");
 }
 
-// @return how many scores are not what they must be
+// @return the number of unexpected scores
 int print_table(const std::vector<Graded>& all) {
   int surprises = 0;
   fmt::print("{:<22} {:<12} {:>6} {:>5} {:>7} {:>7} {:>15} {:>7}\n", "assignment", "submission", "score", "of", "right", "wrong", "not attempted", "scenes");
@@ -138,7 +139,7 @@ void demo(Context& context, const DemoOptions& options) {
   const int surprises = print_table(all);
   fmt::print("{}\n", (out / "index.html").string());
   if (surprises > 0) {
-    fmt::print(stderr, "tumble: {} of these scores are known beforehand and came out otherwise: this is our bug, please report it\n", surprises);
+    fmt::print(stderr, "tumble: {} of these scores differ from the expected ones: this is our bug, please report it\n", surprises);
     context.exit = ExitCode::kOurBug;
   }
 }

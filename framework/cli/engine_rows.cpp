@@ -26,9 +26,9 @@ namespace {
 using report::EngineRow;
 
 constexpr int kShortRuns = 4;
-constexpr double kShort = 0.5;        // [s] of CPU: what takes longer is timed once
-constexpr double kNoFrames = 1e-6;    // [1/s], where time is taken
-constexpr std::size_t kFewestSamples = 25;   // a share is then known to a tenth
+constexpr double kShort = 0.5;        // [s] of CPU: longer runs are timed once
+constexpr double kNoFrames = 1e-6;    // [1/s], for timed runs
+constexpr std::size_t kFewestSamples = 25;   // a fraction is then known to 10 %
 constexpr double kNoTime = 1e-9;      // steps: a run that ends before anything moves
 
 std::string meaning_of(const std::string& engine) {
@@ -39,14 +39,14 @@ std::string meaning_of(const std::string& engine) {
   throw UserError("--engines " + engine, "there is no engine of that name", fmt::format("Known: {}.", fmt::join(words, ", ")));
 }
 
-// Before chaos: how far apart in time the first collisions of each body are at most.
+// Agreement before chaos: largest difference in time of the first collisions of each body.
 constexpr std::size_t kFirstCollisions = 5;
-constexpr double kSamePlace = 1e-3;   // [m]: far above roundings, far below what is seen
+constexpr double kSamePlace = 1e-3;   // [m]: far above rounding, far below what is visible
 constexpr double kSameTime = 1e-9;    // [s], of frames
 
 using Pairs = std::set<std::pair<int, int>>;
 
-/// Pairs that come to lie on each other: engines tell the blows within a lasting contact differently.
+/// Pairs in persistent contact: engines record the impacts within such a contact differently.
 Pairs in_contact(const Trajectory& run) {
   Pairs pairs;
   for (const Event& event : run.events)
@@ -64,7 +64,8 @@ std::vector<std::vector<double>> first_collisions(const Trajectory& run, const P
   return times;
 }
 
-/// How long every body's centre is where the other run has it [s], at the frames that both have; nothing: to the end.
+/// The time until which every body's centre agrees with the other run [s], at common frames;
+/// nothing: to the end.
 std::optional<double> parted_at(const Trajectory& reference, const Trajectory& run) {
   std::size_t k = 0;
   for (const Frame& frame : run.frames) {
@@ -91,12 +92,12 @@ std::string agreement_of(const Trajectory& reference, const Trajectory& run) {
     for (std::size_t k = 0; k < both; ++k, ++compared) farthest = std::max(farthest, std::abs(expected[i][k] - found[i][k]));
     missing += std::max(expected[i].size(), found[i].size()) - both;
   }
-  const std::string places = parted ? fmt::format("places within 1 mm until {:.2f} s", *parted) : "places within 1 mm to the end";
-  if (compared == 0) return places;   // one of the two does blows within steps, and tells none
+  const std::string places = parted ? fmt::format("positions within 1 mm until {:.2f} s", *parted) : "positions within 1 mm to the end";
+  if (compared == 0) return places;   // one of the two resolves impacts within steps, and records none
   return fmt::format("{}; first {} collisions of each body within {:.1e} s ({} compared{})", places, kFirstCollisions, farthest, compared, missing > 0 ? fmt::format(", {} in one only", missing) : "");
 }
 
-/// Of the run that is shown: its energy, and how far it came. Counts and time are those of a run without pictures.
+/// Energy and duration of the shown run. Counts and time are those of the run without pictures.
 void keep(EngineRow& row, const Trajectory& run) {
   row.stopped_by = run.stopped_by;
   row.faults = in_words(run.counters.faults);
@@ -111,13 +112,13 @@ void keep(EngineRow& row, const Trajectory& run) {
   }
 }
 
-/// Stops a run that has taken its time, where it calls a law: that of a step, and that of an impact.
+/// Stops a run at its CPU limit, at a call of a law: of a step, or of an impact.
 class Deadline {
  public:
   explicit Deadline(double most_s) : most_s_(most_s), until_(cpu_seconds() + most_s) {}
   bool is_over() const { return is_over_; }
   void look() {
-    thread_local std::uint64_t looks = 0;   // one of all threads would go to and fro between their caches
+    thread_local std::uint64_t looks = 0;   // per thread: a shared counter would move between the threads' caches
     if (++looks % kLooksAClock != 0 || !(cpu_seconds() > until_)) return;
     is_over_ = true;
     throw engines::OutOfTime(fmt::format("it takes more than {:.0f} s", most_s_));
@@ -144,10 +145,11 @@ class Deadline {
   std::atomic<bool> is_over_ = false;
 };
 
-/// CPU time, or time by the clock, of a run without pictures [s]. What comes before the first step (models, shapes, overlaps) is the same for all engines and is
-/// no part of what they cost. The best of several short runs is the least disturbed one.
-/// @param counts  what it counted
-/// @param shares  where its time went
+/// CPU time, or wall time, of a run without pictures [s]. Set-up before the first step (models,
+/// shapes, overlaps) is the same for all engines and is not part of their cost. The fastest of
+/// several short runs counts.
+/// @param counts  its counters
+/// @param shares  fractions of its time
 /// @return nothing where it takes more than most_s
 std::optional<double> seconds_of_run(const scene::Scene& scene, const Laws& laws, engines::RunOptions options, bool by_the_clock, double most_s, std::map<std::string, std::uint64_t>& counts, engines::TimeShares& shares) {
   options.frame_rate_hz = kNoFrames;
@@ -159,7 +161,7 @@ std::optional<double> seconds_of_run(const scene::Scene& scene, const Laws& laws
     Deadline deadline(most_s);
     const Laws watched = deadline.watched(laws);
     const auto clock = std::chrono::steady_clock::now();
-    const double begin = thread_seconds();   // several threads are timed by the clock
+    const double begin = thread_seconds();   // several threads are timed by wall time
     engines::run_scene(scene, watched, how, recorder);
     is_over = is_over || deadline.is_over();
     const double seconds = by_the_clock ? std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count() : thread_seconds() - begin;
@@ -167,7 +169,8 @@ std::optional<double> seconds_of_run(const scene::Scene& scene, const Laws& laws
     return seconds;
   };
   StackSamples samples;
-  // While samples are taken the system's clock of CPU time goes by ticks of milliseconds: short runs are timed without.
+  // While samples are taken, the system's clock of CPU time has a resolution of milliseconds: short
+  // runs are timed without samples.
   double building = seconds_of(nothing);
   samples.begin();
   double whole = seconds_of(options);
@@ -193,7 +196,7 @@ std::vector<EngineChoice> engines_named(const std::string& words) {
     if (c == ',') choices.emplace_back();
     else choices.back().engine += c;
   }
-  for (const EngineChoice& choice : choices) meaning_of(choice.engine);   // refused before anything runs
+  for (const EngineChoice& choice : choices) meaning_of(choice.engine);   // refused before any run
   return choices;
 }
 
@@ -211,7 +214,7 @@ EngineRun measure_engine(const Context& context, const scene::Scene& scene, cons
   EngineRow& row = measured.row;
   row.engine = choice.engine;
   row.meaning = meaning_of(choice.engine);
-  if (choice.engine == "rd") row.meaning += choice.propagator == "auto" ? ", in closed form" : ", by the laws' integrator";   // the others go in closed form
+  if (choice.engine == "rd") row.meaning += choice.propagator == "auto" ? ", in closed form" : ", by the laws' integrator";   // the others have closed forms
   row.label = choice.label.empty() ? choice.engine : choice.label;
   for (const scene::BodySpec& body : scene.bodies) row.bodies += body.immovable ? 0 : 1;
   engines::TimeShares shares;
@@ -219,7 +222,7 @@ EngineRun measure_engine(const Context& context, const scene::Scene& scene, cons
     const auto seconds = choice.is_timed ? seconds_of_run(scene, chosen.laws, options, choice.by_the_clock, choice.most_s, row.counts, shares) : std::optional(kUnset);
     if (!seconds) {
       row.counts.clear();
-      row.stopped_by = fmt::format("left out, for it takes more than {:.0f} s", choice.most_s);
+      row.stopped_by = fmt::format("left out: it takes more than {:.0f} s", choice.most_s);
       return measured;
     }
     row.cpu_s = *seconds;
@@ -244,7 +247,7 @@ EngineRun measure_engine(const Context& context, const scene::Scene& scene, cons
 }
 
 void tell_agreement(std::vector<EngineRun>& runs) {
-  std::size_t reference = 0;   // one that goes event by event, if it ran
+  std::size_t reference = 0;   // an event-driven run, if there is one
   for (std::size_t k = 0; k < runs.size(); ++k)
     if (runs[k].row.engine != "rd" && runs[k].row.stopped_by.empty()) reference = k;
   for (std::size_t k = 0; k < runs.size(); ++k)

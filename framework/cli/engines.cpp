@@ -1,4 +1,5 @@
-// tumble engines SCENE: the same scene by every engine, what each counted, whether they agree, and how long they took against each other.
+// tumble engines SCENE: the same scene by every engine, with counters, agreement, and relative
+// times.
 // Without a scene: the course's scenes on one page (engines_all).
 #include <cstdio>
 #include <memory>
@@ -34,7 +35,7 @@ std::vector<EngineRow> run_all(const Context& context, const scene::Scene& scene
 
 void run_engines(Context& context, const EnginesWords& words) {
   if (words.scene.empty() || words.scene == kAllScenes) return engines_of_all(context, words);
-  if (words.full || words.small || words.no_videos) throw UserError(words.full ? "--full" : words.small ? "--small" : "--no-videos", "is of the page of all scenes", "Leave it out, or leave the scene out.");
+  if (words.full || words.small || words.no_videos) throw UserError(words.full ? "--full" : words.small ? "--small" : "--no-videos", "belongs to the page of all scenes", "Leave it out, or leave the scene out.");
   const scene::Scene scene = find_scene(context, words.scene, words.n);
   const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(words.modules, context.registry), words.engines);
   refuse_threads_of_sandboxes(chosen, words.threads);

@@ -24,27 +24,28 @@ namespace fs = std::filesystem;
 using report::EngineRow;
 using report::EnginesScene;
 
-/// How a scene is shown. Shares are about how long its runs and pictures take, against the others: for the time that is left only.
+/// A scene of the page. Shares are the relative times of its runs and pictures, for the estimate of
+/// the remaining time.
 struct Shown {
   const char* name;
   int small_n, n, paper_n;  // 0: not shown
-  double paper_duration;    // compared so long at the paper's size [s]; 0: as long as the scene lasts
-  double speed;             // seconds of the run in a second of video
+  double paper_duration;    // compared duration at the paper's size [s]; 0: the scene's
+  double speed;             // seconds of the run per second of video
   double share, paper_share;
 };
 constexpr Shown kShown[] = {{"atoms", 60, 100, 300, 0, 0.5, 5, 60},         {"cars", 9, 40, 400, 0, 0.5, 10, 100},     {"robots", 1, 4, 20, 0.8, 0.5, 14, 250}, {"avalanche", 5, 16, 300, 0.7, 1.0, 20, 400},
                             {"pong", 0, 200, 2000, 0, 0.5, 5, 200}, {"dominoes_row", 0, 12, 50, 0, 1.0, 14, 250}, {"cradle", 0, 8, 20, 0, 1.0, 5, 20}};
 
-// The slides' sizes are 100 and 200 atoms; both stand in every ladder. The others are ours.
+// The slides' sizes are 100 and 200 atoms; both are in every list of sizes. The others are ours.
 const std::vector<int> kSmallLadder = {50, 100, 200}, kLadder = {25, 50, 100, 200}, kPaperLadder = {50, 100, 200, 400};
 const std::vector<int> kSmallPong = {1, 50}, kPong = {1, 200, 2000};   // ours: the slides show Pong, without these sizes
-constexpr double kMostOfPong = 10.0;                       // s of CPU: an engine that takes longer is left out at that size
+constexpr double kMostOfPong = 10.0;                       // s of CPU: a slower engine is left out at that size
 constexpr double kLadderShare = 12, kPaperLadderShare = 150, kPongShare = 10;
-constexpr double kMostOfPaper = 60.0;                      // s of CPU: an engine that takes longer for a scene is left out of the paper's sizes
-constexpr double kPlayedRate = 60.0, kEnergyRate = 10.0;   // frames a second: of runs that are shown, and of others
+constexpr double kMostOfPaper = 60.0;                      // s of CPU: a slower engine is left out of the paper's sizes for that scene
+constexpr double kPlayedRate = 60.0, kEnergyRate = 10.0;   // frames per second: of shown runs, and of others
 constexpr int kWidth = 960, kHeight = 540;
 
-/// Says what is being done and how long the rest may take.
+/// Reports the current scene and the estimated remaining time.
 class TableProgress {
  public:
   explicit TableProgress(double total) : total_(total), begun_(std::chrono::steady_clock::now()) {}
@@ -64,10 +65,11 @@ int size_of(const EnginesWords& words, const Shown& shown) { return words.full ?
 
 std::string modules_of(const Context& context, const EnginesWords& words) {
   if (!words.modules.empty()) return words.modules;
-  return fs::is_directory(context.root / "solutions_private") ? "reference" : "";   // what is compared is engines, not submissions
+  return fs::is_directory(context.root / "solutions_private") ? "reference" : "";   // engines are compared, not submissions
 }
 
-/// Each engine as the page shows it. rd goes in closed form where the others do, so that a ratio is of scheduling and not of integration.
+/// Each engine as shown on the page. rd uses closed forms where the others do, so that a ratio
+/// compares scheduling and not integration.
 std::vector<EngineChoice> choices_of(const EnginesWords& words) {
   std::vector<EngineChoice> choices = engines_named(words.engines);
   for (EngineChoice& choice : choices) {
@@ -79,8 +81,8 @@ std::vector<EngineChoice> choices_of(const EnginesWords& words) {
   return choices;
 }
 
-/// Retroactive detection at the two steps of the slides, and the others, at the scene's own.
-std::vector<EngineChoice> choices_of_ladder(const EnginesWords& words) {
+/// Retroactive detection at the two steps of the slides, and the others at the scene's own step.
+std::vector<EngineChoice> choices_of_refinement(const EnginesWords& words) {
   std::vector<EngineChoice> choices;
   for (EngineChoice choice : choices_of(words)) {
     choice.frame_rate_hz = kEnergyRate;
@@ -97,7 +99,8 @@ std::vector<EngineChoice> choices_of_ladder(const EnginesWords& words) {
   return choices;
 }
 
-/// The page that plays timewarp's run, and beside it retroactive detection's, with every move of the local virtual times.
+/// The page that plays timewarp's run beside that of retroactive detection, with every change of
+/// the local virtual times.
 void write_players(const Context& context, const scene::Scene& scene, const std::vector<EngineRun>& runs, const fs::path& file) {
   report::PlayerOptions options;
   options.root = context.root;
@@ -111,7 +114,8 @@ void write_players(const Context& context, const scene::Scene& scene, const std:
   if (!played.empty()) report::write_player(file, scene, played, options);
 }
 
-/// Timewarp's run of the whole scene, where engines were compared over a part of it: for pictures, as far as it comes in a few minutes.
+/// Timewarp's run of the whole scene where engines were compared over a part of it: for pictures,
+/// as far as it gets in a few minutes.
 std::optional<EngineRun> whole_run(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const EnginesWords& words) {
   constexpr double kMost = 200.0;   // s of CPU
   for (EngineChoice choice : choices_of(words)) {
@@ -182,7 +186,7 @@ EnginesScene show(const Context& context, const EnginesWords& words, const Shown
     if (words.no_videos) return shown;
     render::write_video(folder / "video.mp4", scene, best->run, picture);
     shown.figure.video = fs::path(which.name) / "video.mp4";
-  } catch (const std::exception& error) {   // what goes wrong in one scene is told in its place
+  } catch (const std::exception& error) {   // an error in one scene is shown in its place
     shown.problem = error.what();
   }
   return shown;
@@ -194,7 +198,7 @@ std::vector<std::vector<EngineRow>> climb(const Context& context, const EnginesW
     const scene::Scene scene = find_scene(context, name, n);
     const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(modules_of(context, words), context.registry), words.engines);
     std::vector<EngineRun> runs;
-    for (EngineChoice choice : choices_of_ladder(words)) {
+    for (EngineChoice choice : choices_of_refinement(words)) {
       choice.most_s = std::min(choice.most_s, most_s);
       runs.push_back(measure_engine(context, scene, chosen, choice));
     }
@@ -240,7 +244,7 @@ void engines_of_all(Context& context, const EnginesWords& words) {
     progress.finish(share_of(shown));
     const EnginesScene& scene = index.scenes.back();
     if (!scene.problem.empty() || !scene.is_right) context.exit = ExitCode::kCheckFailed;
-    report::write_engines_index(index, fs::path(words.out) / "index.html");   // after each scene: whoever stops it early has the page so far
+    report::write_engines_index(index, fs::path(words.out) / "index.html");   // after each scene: a stopped run leaves the page of all scenes so far
     if (!words.quiet) print_scene(scene);
   }
   if (words.quiet) return;

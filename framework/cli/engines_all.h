@@ -18,14 +18,14 @@ struct EnginesWords {
   std::optional<int> n;
   std::optional<double> duration_s, step_s;
   int threads = 1;          // of tw, in one scene
-  bool full = false;        // sizes as in the paper
+  bool full = false;        // sizes of the paper
   bool no_videos = false;
   bool small = false;       // a few scenes, smaller still
-  bool quiet = false;       // nothing on stdout: of a report that has more to say
+  bool quiet = false;       // nothing on stdout: used within a larger report
 };
 
 /// Runs them and writes words.out/index.html, with a folder beside it for each scene.
-/// Says in context.exit where a run is not right by its scene's numbers.
+/// Sets context.exit where a run fails its scene's checks.
 /// @throws UserError for words that belong to one scene
 void engines_of_all(Context& context, const EnginesWords& words);
 

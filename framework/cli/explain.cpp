@@ -1,4 +1,5 @@
-// tumble explain SCENE: which effects a scene calls for, who asked for each, which stages a run of it has, and what each costs.
+// tumble explain SCENE: the effects of a scene, the entries that call for each, the stages of a
+// run, and their cost.
 #include <algorithm>
 #include <cstdio>
 #include <memory>
@@ -22,7 +23,7 @@ struct ExplainWords {
   std::optional<double> duration_s;
 };
 
-/// A part of a run: built where an effect needs it.
+/// A part of a run, built where an effect needs it.
 struct Stage {
   std::string name;
   std::string does;
@@ -38,7 +39,7 @@ bool is_stage_asked(const std::vector<EffectUse>& effects, const std::string& st
   return std::any_of(effects.begin(), effects.end(), [&](const EffectUse& effect) { return effect.stage == stage && effect.is_on(); });
 }
 
-/// Counts of the effects whose code stands in a stage, and those of the stage itself.
+/// Counters of the effects in a stage, and those of the stage itself.
 std::vector<std::string> counts_of(const std::vector<EffectUse>& effects, const std::string& stage, std::vector<std::string> before, const std::vector<std::string>& after) {
   for (const EffectUse& effect : effects)
     if (effect.stage == stage) before.push_back(effect.counter);
@@ -50,16 +51,16 @@ std::vector<Stage> stages_of(const std::vector<EffectUse>& effects) {
   const bool constrained = is_stage_asked(effects, "constraints"), colliding = is_on(effects, "collision"), sleeping = is_on(effects, "sleep");
   const bool forced = constrained || is_stage_asked(effects, "forces");
   return {
-      {"integration", "moves bodies by their forces, and takes back what went too far", true,
+      {"integration", "moves bodies by their forces, and back to the first impact", true,
        counts_of(effects, "integration", {"steps", "synchronisations", "shortened_steps", "integrations", "undone_integrations", "derivative_evaluations", "rollbacks"}, {})},
-      {"forces", "forces on bodies that are tied or do not fly freely, with their gravity", forced, counts_of(effects, "forces", {}, {})},
-      {"constraints", "the forces that hold rods and joints, and bringing them back", constrained, counts_of(effects, "constraints", {}, {"constraint_solves", "constraint_corrections"})},
-      {"control", "motors look and set their torques", is_stage_asked(effects, "control"), counts_of(effects, "control", {}, {})},
-      {"collision", "which bodies are near, how far apart, when they meet", colliding, {"candidate_pairs", "gap_evaluations", "root_findings"}},
-      {"impacts", "impulses where bodies meet", colliding, sleeping ? std::vector<std::string>{"impacts", "impulses", "micro_impacts", "nudges"} : std::vector<std::string>{"impacts", "impulses", "micro_impacts", "nudges", "bodies_put_to_rest", "bodies_woken"}},
-      {"contacts", "the forces where bodies lie, slide and roll", is_on(effects, "lasting contact"),
+      {"forces", "forces on bodies that are linked or do not fly freely, with their gravity", forced, counts_of(effects, "forces", {}, {})},
+      {"constraints", "constraint forces of rods and joints, and their projection", constrained, counts_of(effects, "constraints", {}, {"constraint_solves", "constraint_corrections"})},
+      {"control", "motors are sampled and set their torques", is_stage_asked(effects, "control"), counts_of(effects, "control", {}, {})},
+      {"collision", "candidate pairs, gaps, times of impact", colliding, {"candidate_pairs", "gap_evaluations", "root_findings"}},
+      {"impacts", "impulses of collisions", colliding, sleeping ? std::vector<std::string>{"impacts", "impulses", "micro_impacts", "nudges"} : std::vector<std::string>{"impacts", "impulses", "micro_impacts", "nudges", "bodies_put_to_rest", "bodies_woken"}},
+      {"contacts", "forces of resting, sliding and rolling contacts", is_on(effects, "lasting contact"),
        {"contact_solves", "contact_points", "contact_sweeps", "contact_factorisations", "contact_unsolved", "contacts_begun", "contacts_ended", "friction_points"}},
-      {"sleep", "bodies at rest that are left alone, until something would move them", sleeping, {"bodies_put_to_sleep", "bodies_woken", "body_steps_asleep"}},
+      {"sleep", "bodies at rest are skipped until something would move them", sleeping, {"bodies_put_to_sleep", "bodies_woken", "body_steps_asleep"}},
       {"recording", "frames and events", true, {}},
   };
 }
@@ -69,7 +70,7 @@ std::uint64_t count_of(const Trajectory& run, const std::string& name) {
   return found == run.counters.counts.end() ? 0 : found->second;
 }
 
-/// Counts of a run that no stage here lists: later engines may count more.
+/// Counters of a run that no stage lists.
 std::vector<std::string> other_counts(const std::vector<Stage>& stages, const Trajectory& run) {
   std::vector<std::string> names;
   for (const auto& [name, value] : run.counters.counts)
@@ -78,14 +79,14 @@ std::vector<std::string> other_counts(const std::vector<Stage>& stages, const Tr
   return names;
 }
 
-/// "1234567" as people read it.
+/// A number with groups of digits: "1,234,567".
 std::string grouped(std::uint64_t value) {
   std::string digits = std::to_string(value);
   for (int at = static_cast<int>(digits.size()) - 3; at > 0; at -= 3) digits.insert(static_cast<std::size_t>(at), " ");
   return digits;
 }
 
-/// The entries that asked, those of one entry (a chain, a lattice) on one line.
+/// The entries that call for an effect; those of one entry (a chain, a lattice) share a line.
 struct AskerLine {
   std::string pointer, place, what;
   std::size_t count;
@@ -104,7 +105,7 @@ std::vector<AskerLine> lines_of(const EffectUse& effect, const scene::Scene& sce
 
 constexpr std::size_t kMostLines = 6;   // of one effect
 
-/// Of the column that says where the entries stand.
+/// Width of the column with the positions of entries.
 std::size_t width_of_places(const std::vector<EffectUse>& effects, const scene::Scene& scene) {
   constexpr std::size_t kLeast = 20, kMost = 60;
   std::size_t width = kLeast;
@@ -127,7 +128,7 @@ void print_effects(const scene::Scene& scene, const std::vector<EffectUse>& effe
       name.clear();
     }
     if (lines.size() > kMostLines) fmt::print("  {:<16} {:<{}} (--json lists all)\n", "", fmt::format("... and {} more", lines.size() - kMostLines), width);
-    if (run != nullptr) fmt::print("  {:<16} {:<{}} asked {} times ({})\n", "", "", width, grouped(count_of(*run, effect.counter)), effect.counter);
+    if (run != nullptr) fmt::print("  {:<16} {:<{}} called {} times ({})\n", "", "", width, grouped(count_of(*run, effect.counter)), effect.counter);
     if (!effect.note.empty()) fmt::print("  {:<16} note: {}\n", "", effect.note);
   }
   std::string off, notes;
@@ -182,7 +183,7 @@ void print_stages(const std::vector<Stage>& stages, const Trajectory* run) {
     fmt::print("  {:<16}\n", "other counts");
     print_counts(others, *run);
   }
-  fmt::print("\n  A stage's time holds that of the stages it asks: moving bodies that are tied (integration) asks for their forces and constraints.\n"
+  fmt::print("\n  A stage's time includes that of the stages it calls: integration of linked bodies calls forces and constraints.\n"
              "  Gravity and point forces on free bodies are counted, not timed: a clock would cost more than they do.\n");
 }
 

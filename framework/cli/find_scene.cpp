@@ -54,7 +54,7 @@ fs::path find_model_file(const Context& context, const std::string& word) {
     const auto path = context.root / "models" / name;
     if (fs::is_regular_file(path)) return path.lexically_proximate(fs::current_path());
   }
-  return word;  // the loader says that it is not there
+  return word;  // the loader reports the missing file
 }
 
 scene::Scene scene_of_words(const Context& context, const RunWords& words, bool turns) {
@@ -72,14 +72,14 @@ scene::Scene scene_of_words(const Context& context, const RunWords& words, bool 
 scene::Scene find_scene(const Context& context, const std::string& word, std::optional<int> n, const scene::ModelSceneOptions& model) {
   if (const scene::SizedScene* sized = scene::sized_scene_named(word); sized != nullptr && !fs::is_regular_file(word)) {
     scene::Scene made = scene::make_sized_scene(word, n.value_or(sized->default_n));
-    made.file = context.root / "models" / word;   // models are looked for beside it
+    made.file = context.root / "models" / word;   // models are found beside it
     return made;
   }
   if (n) throw UserError("--n " + std::to_string(*n), "'" + word + "' has one size", "Sizes are parameters of " + sized_names() + ".");
   if (scene::names_model(word)) return scene::make_model_scene(find_model_file(context, word), model);
   if (fs::is_regular_file(word)) return scene::load_scene(word);
   if (word.ends_with(".json") || word.find('/') != std::string::npos) throw UserError(word, "there is no such file", "Check the path, or give a scene's bare name: " + listing(context));
-  std::vector<fs::path> beginning;   // a name may be cut short where that is clear
+  std::vector<fs::path> beginning;   // an unambiguous prefix of a name is accepted
   std::vector<std::string> names_there;
   for (const auto& file : scenes_of(context)) {
     if (file.stem() == word) return scene::load_scene(file);

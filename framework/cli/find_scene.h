@@ -1,4 +1,4 @@
-/// Scenes and models by what a person calls them.
+/// Scenes and models by name or path.
 #pragma once
 
 #include <filesystem>
@@ -15,20 +15,22 @@ namespace tumble::cli {
 
 /// @param word   path of a scene file, or the bare name of one under assignments/*/scenes,
 ///               or the name of a scene whose size is a parameter,
-///               or a .3ds file (a path, or one of models/): the scene is made of it (scene/model_scene.h)
+///               or a .3ds file (a path, or one of models/): a scene with that model
+///               (scene/model_scene.h)
 /// @param n      that size; nothing: its default
 /// @param model  how a scene is made of a .3ds file
-/// @throws UserError naming the scenes there are, that a scene has one size only, or what is wrong with a model
+/// @throws UserError with the known scenes, with the one size of a scene, or with the defect of a
+///   model
 scene::Scene find_scene(const Context& context, const std::string& word, std::optional<int> n = std::nullopt, const scene::ModelSceneOptions& model = {});
 
-/// The scene that the words of a run name. @param turns  of a .3ds file: whether it turns by itself
-/// @throws UserError also where words about a model stand beside a scene that is none
+/// The scene of a run's words. @param turns  of a .3ds file: whether it rotates from the start
+/// @throws UserError also for words about a model with a scene that is none
 scene::Scene scene_of_words(const Context& context, const RunWords& words, bool turns);
 
 /// A .3ds file by its path, or by its name in models/ with or without its ending; the word itself where there is none.
 std::filesystem::path find_model_file(const Context& context, const std::string& word);
 
-/// The names of every scene there is: those of the assignments, then those with a size.
+/// The names of all scenes: those of the assignments, then those with a size.
 std::vector<std::string> scene_names(const Context& context);
 
 }  // namespace tumble::cli

@@ -58,7 +58,7 @@ void print_table(const std::vector<grading::Grade>& grades) {
 void grade(Context& context, const GradeWords& words) {
   const modules::ModuleKind& kind = context.registry.find(words.id);
   const grading::Course course{context.root, context.build, &context.registry, context.command_line};
-  grading::judge_of(course, words.id);  // refused before anything is looked at
+  grading::judge_of(course, words.id);  // refused before any submission is read
   const auto found = grading::find_submissions(words.folder, kind);
   grading::GradeOptions options;
   options.jobs = words.jobs;

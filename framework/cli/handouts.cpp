@@ -1,4 +1,5 @@
-// tumble handouts: every handout as a page and as a PDF, with figures that the framework draws now.
+// tumble handouts: every handout as a page and as a PDF, with figures drawn by the framework at
+// build time.
 #include <cstdlib>
 #include <fstream>
 #include <memory>
@@ -52,7 +53,7 @@ std::vector<Handout> read_handouts(const fs::path& folder) {
   return handouts;
 }
 
-// Why a link leads nowhere; empty where it leads somewhere.
+// The fault of a link; empty for a valid link.
 std::string fault_of(const std::string& link, const Handout& from, const std::vector<Handout>& all, const fs::path& figures) {
   static const std::regex scheme("[a-z]+:.*");
   if (std::regex_match(link, scheme)) return "";
@@ -74,12 +75,12 @@ void check_links(const std::vector<Handout>& handouts, const fs::path& figures) 
       for (std::sregex_iterator it(handout.lines[i].begin(), handout.lines[i].end(), link), end; it != end; ++it)
         if (const std::string fault = fault_of((*it)[1], handout, handouts, figures); !fault.empty())
           faults += fmt::format("\n  {}:{}: ({}): {}", handout.file.filename().string(), i + 1, std::string((*it)[1]), fault);
-  if (!faults.empty()) throw UserError("handouts", "links that lead nowhere:" + faults, "Mend them, then run the command again.");
+  if (!faults.empty()) throw UserError("handouts", "links that lead nowhere:" + faults, "Correct them, then run the command again.");
 }
 
-// Draws the figures where the reference solutions are; a tree without them has the pictures that came with it.
+// Draws the figures where the reference solutions are; a tree without them contains the pictures.
 void make_figures(const Context& context, const fs::path& figures) {
-  fs::remove_all(figures);   // a picture from an earlier time would hide that nobody draws it any more
+  fs::remove_all(figures);   // an old picture would hide that it is not drawn any more
   fs::create_directories(figures);
   if (!fs::exists(context.root / "solutions_private")) {
     fs::copy(context.root / "handouts/figures", figures, fs::copy_options::overwrite_existing | fs::copy_options::recursive);
@@ -87,18 +88,19 @@ void make_figures(const Context& context, const fs::path& figures) {
     return;
   }
   const auto made = grading::run_program({"bash", (context.root / "handouts/make_figures.sh").string(), figures.string()}, grading::Output::kCaptured);
-  if (made.code != 0) throw UserError("handouts/make_figures.sh", "did not draw the figures; it said:\n" + made.printed, "Mend what it says, then run the command again.");
+  if (made.code != 0) throw UserError("handouts/make_figures.sh", "did not draw the figures; it said:\n" + made.printed, "Correct what it names, then run the command again.");
 }
 
 void run_pandoc(const Context& context, const Handout& handout, const fs::path& out, const std::vector<std::string>& more) {
   const fs::path folder = context.root / "handouts";
-  // Pictures are looked for where they have just been drawn, not beside the handout. What pandoc warns of (a picture that it does not find, a formula that it cannot read) is an error.
+  // Pictures are taken from the folder where they were just drawn, not from beside the handout. A
+  // warning of pandoc (a missing picture, a formula that it cannot read) is an error.
   std::vector<std::string> words = {"pandoc", handout.file.string(), "--from=markdown", "--standalone", "--fail-if-warnings", "--lua-filter=" + (folder / "pages.lua").string(),
                                     "--resource-path=" + out.string(), "--metadata=root:" + fs::relative(folder, out).string() + "/", "--metadata=lang:en"};
   words.insert(words.end(), more.begin(), more.end());
   const auto done = grading::run_program(words, grading::Output::kCaptured, 300);
   if (done.code == 127) throw UserError("pandoc", "is not installed", "Install what packages.txt lists.");
-  if (done.code != 0) throw UserError(handout.file.string(), "could not be built; pandoc said:\n" + done.printed, "Mend what it names.");
+  if (done.code != 0) throw UserError(handout.file.string(), "could not be built; pandoc said:\n" + done.printed, "Correct what it names.");
 }
 
 void write_index(const Context& context, const std::vector<Handout>& handouts, const HandoutsOptions& options, const fs::path& out) {
@@ -120,7 +122,7 @@ void build_handouts(Context& context, const HandoutsOptions& options) {
   const std::vector<Handout> handouts = read_handouts(folder);
   make_figures(context, figures);
   check_links(handouts, figures);
-  ::setenv("SOURCE_DATE_EPOCH", "0", 1);   // no clock in a PDF: the same handout gives the same bytes
+  ::setenv("SOURCE_DATE_EPOCH", "0", 1);   // no date in a PDF: the same handout gives the same bytes
   ::setenv("FORCE_SOURCE_DATE", "1", 1);
   for (const Handout& handout : handouts) {
     const std::string name = (out / handout.file.stem()).string();

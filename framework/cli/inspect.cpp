@@ -1,4 +1,5 @@
-// tumble inspect FILE: what a .3ds file holds, whether each object is a solid, what it weighs, and what is wrong with it.
+// tumble inspect FILE: the objects of a .3ds file, whether each is a solid, its mass properties,
+// and its defects.
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -20,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double kWater = 1000.0;       // kg/m^3
-constexpr double kShownAsZero = 1e-12;  // of the largest number beside it: round-off of the integrals
+constexpr double kShownAsZero = 1e-12;  // relative to the largest number beside it: round-off of the integrals
 
 struct InspectWords {
   std::string file;
@@ -29,7 +30,7 @@ struct InspectWords {
   bool json = false;
 };
 
-/// Colours where a person looks, none in a file or a pipe.
+/// Colours on a terminal, none in a file or a pipe.
 struct Paint {
   bool on = isatty(STDOUT_FILENO) != 0;
   std::string operator()(const char* code, const std::string& text) const { return on ? fmt::format("\033[{}m{}\033[0m", code, text) : text; }
@@ -39,7 +40,7 @@ struct Paint {
   std::string odd(const std::string& text) const { return (*this)("33", text); }
 };
 
-/// A word that a shell takes as one.
+/// A word quoted for a shell.
 std::string quoted(const std::string& word) {
   if (word.find_first_not_of("abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_./-+=:@%,") == word.npos && !word.empty()) return word;
   std::string text = "'";
@@ -128,7 +129,7 @@ Json to_json(const LoadedObject& object, double density) {
   return json;
 }
 
-/// What to type next: of a model that is a solid, to see it move.
+/// The next commands: for a solid model, to see it move.
 void print_next(const InspectWords& words, const std::filesystem::path& path) {
   const std::string scale = words.metres_per_unit == 1.0 ? "" : fmt::format(" --scale {:g}", words.metres_per_unit);
   const std::string density = words.density == kWater ? "" : fmt::format(" --density {:g}", words.density);

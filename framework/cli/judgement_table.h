@@ -1,4 +1,4 @@
-/// The judgement of a run as a table: quantity, found, allowed, why.
+/// The judgement of a run as a table: quantity, value, tolerance, reason.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace tumble::cli {
 
-/// @return lines for people, each at most 110 columns wide; "" where nothing was judged
+/// @return lines for people, each at most 110 columns wide; "" without checks
 std::string judgement_table(const std::vector<engines::CheckResult>& checks);
 
 }  // namespace tumble::cli

@@ -16,8 +16,8 @@ namespace {
 
 using tumble::ExitCode;
 
-// The build tree is where this program lies (build/bin/tumble); the source tree is told by the launcher, else it is the
-// build tree's parent.
+// The build tree is that of this program (build/bin/tumble); the source tree is given by the
+// launcher, else it is the parent of the build tree.
 void find_trees(tumble::cli::Context& context) {
   const auto program = std::filesystem::canonical("/proc/self/exe");
   context.build = program.parent_path().parent_path();
@@ -31,7 +31,7 @@ std::string joined(const std::vector<std::string>& words) {
   return all;
 }
 
-// The parser would only say that a verb is missing.
+// The parser would only report a missing verb.
 void refuse_unknown_verb(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') return;
   std::vector<std::string> known;
@@ -40,7 +40,7 @@ void refuse_unknown_verb(const CLI::App& app, int argc, char** argv) {
   throw tumble::UserError(argv[1], "there is no such verb." + tumble::did_you_mean(argv[1], known), "Known: " + joined(known) + ". tumble --help says what each does.");
 }
 
-// The parser would only say that a flag was not expected.
+// The parser would only report an unexpected flag.
 void refuse_unknown_flag(const CLI::App& app) {
   for (const CLI::App* verb : app.get_subcommands()) {
     std::vector<std::string> known;
@@ -54,7 +54,7 @@ void refuse_unknown_flag(const CLI::App& app) {
   }
 }
 
-// The parser tells a range of 309 digits where a number has to be positive.
+// The parser reports a range of 309 digits where a number has to be positive.
 std::string without_digits(const std::string& told) {
   constexpr const char* kRange = " not in range 0.000000 to 1797";   // the largest double
   const std::size_t begin = told.find(kRange);

@@ -31,7 +31,8 @@ fs::path built(const Context& context, const std::string& id, const std::string&
   return context.build / "modules" / (id + '_' + word + ".so");
 }
 
-/// Compiles as the build does (assignments/CMakeLists.txt: tumble_module_object). The compiler's words go to stderr.
+/// Compiles as the build does (assignments/CMakeLists.txt: tumble_module_object). The compiler's
+/// output goes to stderr.
 void compile(const Context& context, const fs::path& source, const fs::path& object) {
   std::vector<std::string> words = {"g++", "-std=c++20", "-O2", "-fPIC", "-shared", "-ffp-contract=off", "-fno-finite-loops", "-fno-gnu-unique", "-Wl,-z,defs",
                                     "-DTUMBLE_BUILDING_MODULE", "-I", context.root.string(), "-isystem", TUMBLE_EIGEN_INCLUDE,
@@ -51,8 +52,9 @@ void compile(const Context& context, const fs::path& source, const fs::path& obj
 /// The student's file, for people: from the root of the tree.
 std::string student_file(const ModuleKind& kind) { return "assignments/" + kind.folder + "/" + kind.folder + ".cpp"; }
 
-/// The student's module, built from the file as it is now.
-/// @throws UserError with the compiler's words: an old object must not stand in for a file that does not compile
+/// The student's module, built from the current file.
+/// @throws UserError with the compiler's output: an old object must not replace a file that does
+///   not compile
 fs::path build_student(const Context& context, const ModuleKind& kind) {
   const fs::path object = built(context, kind.id, "student"), source = context.root / student_file(kind);
   static std::set<std::string> fresh;   // ids, built by this process
@@ -70,12 +72,12 @@ fs::path build_student(const Context& context, const ModuleKind& kind) {
   return object;
 }
 
-/// Code of one's own, in this process: guarded against its slips.
+/// The user's own code in this process, with guards against errors.
 AnyModule load_own(const ModuleKind& kind, const fs::path& object, const std::string& file) {
   return grading::guarded(kind, grading::guarded_load(file, [&] { return modules::load_module(kind, object); }), file);
 }
 
-/// Whether this tree has the module that a word means.
+/// Whether this tree has the module of a word.
 bool is_there(const Context& context, const ModuleKind& kind, const std::string& word) {
   return word == "student" ? fs::exists(context.root / student_file(kind)) : fs::exists(built(context, kind.id, word));
 }
@@ -105,7 +107,7 @@ namespace {
 
 bool is_path(const std::string& word) { return !word.empty() && word != "student" && word != "reference" && word != "library"; }
 
-/// The file that a path means for a module; empty where the path, given for all modules, is about others.
+/// The file of a path for a module; empty where the path, given for all modules, belongs to others.
 fs::path file_for(const Context& context, const ModuleKind& kind, const std::string& word, bool for_all) {
   const std::string flag = "--modules " + (for_all ? word : kind.id + '=' + word);
   const fs::path path = word;
@@ -132,12 +134,13 @@ std::string stand_in(Law& law, const Law& library, const Call& call) {
   } catch (const NotImplemented& missing) {
     law = library;
     return missing.function();
-  } catch (const std::exception&) {   // it is written; whether it is right is not asked here
+  } catch (const std::exception&) {   // it is written; whether it is right is not checked here
   }
   return "";
 }
 
-/// Puts the library's laws of motion where a stub still stands. @return the functions that are not written, or nothing
+/// Replaces stubs of the laws of motion by the library's. @return the replaced functions, or
+/// nothing
 std::vector<std::string> stand_in_for_stubs(Laws& laws) {
   const Laws library = library_laws();
   const VectorXd y = VectorXd::Constant(1, 1.0);
@@ -164,10 +167,10 @@ bool is_own(const scene::Scene& scene, const ModuleKind& kind) {
   return scenes.filename() == "scenes" && scenes.parent_path().filename() == kind.folder;
 }
 
-/// The word for a module that nobody named; empty: the scene does not need it.
+/// The word of a module without one; empty: the scene does not need it.
 std::string default_word(const Context& context, const scene::Scene& scene, const ModuleKind& kind, bool scene_has_home) {
   if (is_own(scene, kind)) return "student";
-  if (scene::names_model(scene.file.string()) && !kind.methods.empty()) return best_available(context, kind.id);   // moves by what is written, or by the library
+  if (scene::names_model(scene.file.string()) && !kind.methods.empty()) return best_available(context, kind.id);   // moved by the written module, or by the library
   if (std::find(scene.needs.begin(), scene.needs.end(), kind.id) == scene.needs.end()) return "";
   return scene_has_home ? best_available(context, kind.id) : "student";
 }
@@ -184,7 +187,7 @@ ModuleWords parse_module_words(const std::string& text, const modules::Registry&
     const std::size_t equals = part.find('=');
     const std::string id = equals == std::string::npos ? "" : part.substr(0, equals);
     const std::string word = equals == std::string::npos ? part : part.substr(equals + 1);
-    if (!id.empty()) registry.find(id);   // throws, naming the known ids
+    if (!id.empty()) registry.find(id);   // throws, with the known ids
     if (word.empty()) throw UserError("--modules " + text, "nothing stands after '" + id + "='", "Give student, reference, library, PATH.so or PATH.cpp.");
     if (!words.emplace(id, word).second) throw UserError("--modules " + text, id.empty() ? "more than one word for all modules" : id + " is named twice", "Name each module once: a1=student,a2=library");
   }
@@ -203,7 +206,7 @@ void add_module(const Context& context, const scene::Scene& scene, const ModuleK
   if (word == "library") return;
   if (!file.empty()) {
     const SandboxedModule sandboxed = load_sandboxed(context, kind, file);
-    Laws step, derivative;   // from workers of their own, for calls inside calls
+    Laws step, derivative;   // from workers of their own, for calls within calls
     modules::bind_laws(kind, sandboxed.search.module, kind.id + " " + word, result.laws);
     kind.bind(sandboxed.step.module, step);
     kind.bind(sandboxed.derivative.module, derivative);
@@ -245,7 +248,7 @@ void refuse_unknown_needs(const scene::Scene& scene, const std::vector<const Mod
 
 namespace {
 
-/// A module that the scene does not need, for what may still be asked: from what there is, if it compiles.
+/// A module that the scene does not need, for later calls: from the existing build, if it compiles.
 void bind_spare(const Context& context, const ModuleKind& kind, ChosenLaws& result) {
   const std::string word = best_available(context, kind.id);
   if (kind.is_scheduler || !is_there(context, kind, word)) return;
@@ -262,7 +265,8 @@ ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const 
   const auto kinds = context.registry.all();
   refuse_unknown_needs(scene, kinds);
   const bool has_home = std::any_of(kinds.begin(), kinds.end(), [&](const ModuleKind* kind) { return is_own(scene, *kind); });
-  // Who names a scheduler is at work on it, whatever the scene: earlier assignments that are not done are not in its way.
+  // A named scheduler is the user's current work in any scene: unfinished earlier assignments must
+  // not prevent the run.
   const bool is_for_scheduler = std::any_of(kinds.begin(), kinds.end(), [&](const ModuleKind* kind) { return kind->is_scheduler && words.contains(kind->id); });
   const bool needs_scheduler = (engine.empty() ? scene.engine : engine).find("tw") != std::string::npos && !engines::fast_timewarp();
   std::map<std::string, std::string> chosen;   // by id
@@ -272,20 +276,22 @@ ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const 
     const bool is_asked = kind->is_scheduler && needs_scheduler;
     const std::string otherwise = is_asked ? best_available(context, kind->id) : default_word(context, scene, *kind, has_home || is_for_scheduler);
     chosen[kind->id] = told != words.end() ? told->second : otherwise;
-    // One word for all modules is meant for those that the scene is about and those there are: "reference" where a later
-    // assignment has none yet.
-    // A scheduler is meant where an engine is that has no other: a tree without the fast one runs timewarp by the student's.
+    // One word for all modules applies to those that the scene is about and those that exist:
+    // "reference" is not applied where an assignment has none yet. A scheduler is included where
+    // the engine needs it: a tree without the fast one runs timewarp by the student's.
     const bool for_all = told != words.end() && told->first.empty() && (told->second == "reference" || told->second == "student");
     const bool left_out = kind->is_scheduler ? !needs_scheduler : !is_there(context, *kind, told == words.end() ? "" : told->second);
     if (for_all && !is_about(scene, *kind) && left_out) chosen[kind->id] = otherwise;
     if (told == words.end() || !is_path(told->second)) continue;
     files[kind->id] = file_for(context, *kind, told->second, told->first.empty());
-    // A submission of another assignment beside it: this one must not be paid for, so it is right where it can be.
+    // The submission is another assignment's: this one must not make it fail, so it is right where
+    // possible.
     if (files[kind->id].empty()) chosen[kind->id] = otherwise.empty() ? "" : best_available(context, kind->id);
   }
 
   ChosenLaws result;
-  // What the scene does not need may still be asked for (a push by hand): from what is built, if it is.
+  // Modules that the scene does not need may still be called (a push by hand): from the existing
+  // build, if there is one.
   for (const ModuleKind* kind : kinds) {
     if (chosen[kind->id].empty()) bind_spare(context, *kind, result);
   }

@@ -1,12 +1,14 @@
-/// Whose laws a scene runs by: turns the words after --modules into laws.
+/// The laws of a scene, from the words after --modules.
 ///
-/// A word is `student` (build/modules/aN_student.so), `reference`, `library` (Boost.Odeint: motion only), a shared object
-/// PATH.so, a source file PATH.cpp, or a submission's folder with such a file. What a path names is compiled and called in the
-/// sandbox, never loaded here. `a1=WORD,a2=WORD` chooses for each module, a WORD alone for all that it can be about.
-/// What is not named: the scene's own assignment runs on the student's file; other modules that the scene needs run on the
-/// reference where there is one; what it does not need comes from the library where that has it. So a later assignment
-/// never fails for an earlier bug, and scenes run before a student has written an integrator: a stub of a module that the
-/// scene is not about is stood in for by the library, and a notice says so.
+/// A word is `student` (build/modules/aN_student.so), `reference`, `library` (Boost.Odeint: motion
+/// only), a shared object PATH.so, a source file PATH.cpp, or a submission's folder with such a
+/// file. A path's code is compiled and called in the sandbox, never loaded here. `a1=WORD,a2=WORD`
+/// chooses for each module, a WORD alone for every module to which it can apply.
+/// Modules without a word: the scene's own assignment runs on the student's file; other modules
+/// that the scene needs run on the reference where there is one; the rest comes from the library
+/// where it has them. So a later assignment never fails because of an earlier one, and scenes run
+/// before a student has written an integrator: the library replaces a stub of a module that the
+/// scene is not about, with a notice.
 #pragma once
 
 #include <map>
@@ -20,10 +22,10 @@
 
 namespace tumble::cli {
 
-/// By module id; the id "" is for all modules that are not named.
+/// By module id; the id "" stands for all modules without a word of their own.
 using ModuleWords = std::map<std::string, std::string>;
 
-/// @param text  "a1=student,a2=library" or "reference"; empty: nothing is told
+/// @param text  "a1=student,a2=library" or "reference"; empty: no words
 /// @throws UserError for an id that is no module, or a module named twice
 ModuleWords parse_module_words(const std::string& text, const modules::Registry& registry);
 
@@ -34,22 +36,23 @@ struct ChosenModule {
 
 struct ChosenLaws {
   Laws laws;
-  std::vector<ChosenModule> modules;  // those that the scene needs or that were named, by id
-  std::vector<std::string> notices;   // for people: who stands in for what is not written yet
+  std::vector<ChosenModule> modules;  // modules that the scene needs or that were named, by id
+  std::vector<std::string> notices;   // for people: what replaces functions that are not written yet
   std::vector<std::shared_ptr<void>> connections;   // to sandboxes: must outlive every call of the laws
 };
 
-/// @param engine  that will run the scene; empty: the scene's own. In a tree without a fast scheduler, timewarp (a list of engines
-///                that names "tw") asks for a scheduler's module as a scene about it does.
-/// @throws UserError when a word names nothing that can be loaded, with what to do
+/// @param engine  of the run; empty: the scene's own. In a tree without a fast scheduler, timewarp
+///   (or a list of engines with "tw") needs a scheduler's module, as a scene about it does.
+/// @throws UserError for a word that names nothing that can be loaded, with a remedy
 ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const ModuleWords& words, const std::string& engine = "");
 
-/// @throws UserError where several threads would call laws of a sandbox, which answers one call at a time
+/// @throws UserError where several threads would call laws of a sandbox, which executes one call at
+///   a time
 void refuse_threads_of_sandboxes(const ChosenLaws& chosen, int threads);
 
-/// One module by its word, loaded into this process: for code of one's own.
+/// One module by its word, loaded into this process: for the user's own code.
 /// @param word  student, reference, PATH.so, or PATH.cpp, which is compiled first
-/// @throws UserError when the word names nothing that can be loaded, with what to do
+/// @throws UserError when the word names nothing that can be loaded, with a remedy
 modules::AnyModule load_word(const Context& context, const modules::ModuleKind& kind, const std::string& word);
 
 }  // namespace tumble::cli

@@ -13,28 +13,30 @@
 namespace tumble::cli {
 namespace {
 
-/// Of a half-line [m].
+/// Distance of a point from a half-line [m].
 double distance_to(const Vector3d& point_world, const Ray& ray) {
   const Vector3d to_point = point_world - ray.origin_world;
   const double along = std::max(0.0, to_point.dot(ray.direction_world) / ray.direction_world.squaredNorm());
   return (to_point - along * ray.direction_world).norm();
 }
 
-// Length of the coordinates that are rounded on the way to a point on the ray [m].
+// Size of the coordinates that are rounded in computing a point on the ray [m].
 double coordinates(const Ray& ray, const Vector3d& centre_world, double along) {
   return ray.origin_world.norm() + centre_world.norm() + along;
 }
 
 bool meets_ball(const Ray& ray, const Vector3d& centre_world, double radius) {
-  // distance_to rounds numbers of that length about ten times: a ray that grazes the ball is asked about, not decided here.
+  // distance_to rounds numbers of that size about ten times: a ray that grazes the ball is tested
+  // further, not decided here.
   const double rounding = 32 * std::numeric_limits<double>::epsilon() * (coordinates(ray, centre_world, 0.0) + radius);
   return !std::isfinite(radius) || distance_to(centre_world, ray) <= radius + rounding;
 }
 
-// Whether two ways of finding a point on the ray found one point. Each rounds its coordinates about ten times, in the body's frame
-// or in the world's, which moves a face by some 1e-15 of their length, and the point on a ray that meets the face at the angle a
-// by 1 / sin a of that: 1e-9 is met by all rays but those within 1e-6 rad of the face. Those, and every answer that is wrong by
-// more, take the long way, where only the law is asked: nothing but the time taken hangs on the number.
+// Whether two methods found the same point on the ray. Each rounds its coordinates about ten times,
+// in the body's frame or in the world's, which moves a face by some 1e-15 of their size, and the
+// point on a ray at the angle a to the face by 1 / sin a of that: 1e-9 accepts all rays except
+// those within 1e-6 rad of the face. For those, and for every larger error, the law is called for
+// all faces: the number only affects the time.
 bool is_same_place(double t, double other, const Ray& ray, const Vector3d& centre_world) {
   constexpr double kRelative = 1e-9;
   const double length = ray.direction_world.norm();
@@ -43,10 +45,10 @@ bool is_same_place(double t, double other, const Ray& ray, const Vector3d& centr
 
 double drawn_extent(const scene::BodySpec& body) {
   const auto* plane = std::get_if<scene::PlaneSpec>(&body.shape);
-  return plane == nullptr ? 1.0 : plane->drawn_half_extent_m;   // of a body with an end the extent is not asked
+  return plane == nullptr ? 1.0 : plane->drawn_half_extent_m;   // the extent is not used for a bounded body
 }
 
-/// The law's own answer for one face.
+/// The law's answer for one face.
 std::optional<RayHit> ask(const Laws& laws, const Ray& ray, const scene::BodySpec& body, const TriangleMesh& surface, int face) {
   const auto world = [&](int corner) -> Vector3d {
     const int vertex = surface.faces[static_cast<std::size_t>(face)][static_cast<std::size_t>(corner)];
@@ -65,8 +67,9 @@ std::optional<PickedFace> pick_face(const scene::Scene& scene, const Laws& laws,
   for (std::size_t i = 0; i < solids.size(); ++i) {
     const scene::BodySpec& body = scene.bodies[i];
     if (!meets_ball(ray, body.position_m, bounding_radius(solids[i].shape))) continue;
-    // The tree finds the face, the law says where on it. Where the law disagrees (a slip of the student's, or a seam that it does
-    // not count to this face), every face is asked, so that what is picked is what the law says.
+    // The tree finds the face, the law computes the point. Where they disagree (an error of the
+    // student's, or a seam that the law assigns to another face), the law is called for every face,
+    // so that its answer counts.
     const RayTree tree(surface_of(solids[i].shape, drawn_extent(body)));
     const Quaterniond body_from_world = body.world_from_body.conjugate();
     const auto found = tree.nearest(body_from_world * (ray.origin_world - body.position_m), body_from_world * ray.direction_world);

@@ -1,4 +1,4 @@
-/// Which face of which body a ray meets first: what a click on a picture picks.
+/// The first face that a ray hits: what a click on a picture selects.
 #pragma once
 
 #include <filesystem>
@@ -12,20 +12,22 @@ namespace tumble::cli {
 
 struct PickedFace {
   int body = -1;                           // index
-  int face = -1;                           // of the body's surface as it is drawn
+  int face = -1;                           // of the body's surface as drawn
   Vector3d point_world = unset_vector();   // [m]
   double distance = kUnset;                // from the ray's origin [m]
 };
 
-/// A tree of boxes finds the face of each body, and the law says where on it. Where the law does not say what the tree says, the
-/// law is asked about every face of that body, and its nearest answer counts.
-/// @param laws  whose intersect_ray_triangle is asked; bodies whose bounding ball the ray misses are not asked about
-/// @param root  source root, where models are looked for
+/// A tree of boxes finds the face of each body, and the law computes the point on it. Where the two
+/// disagree, the law is called for every face of that body, and its nearest answer counts.
+/// @param laws  for intersect_ray_triangle; bodies whose bounding ball the ray misses are skipped
+/// @param root  source root, for models
 /// @return the nearest hit at time 0, or nothing
-/// Cost: O(n log n) for the tree over a body's n faces, and one call of the law a body; n calls where tree and law disagree
+/// Cost: O(n log n) for the tree over a body's n faces, and one call of the law per body; n calls
+/// where tree and law disagree
 std::optional<PickedFace> pick_face(const scene::Scene& scene, const Laws& laws, const Ray& ray, const std::filesystem::path& root);
 
-/// What a ray that hits nothing came nearest to, for people: "it passes body 'box' at 0.53 m from its centre, ...".
+/// The nearest miss of a ray without a hit, for people: "it passes body 'box' at 0.53 m from its
+/// centre, ...".
 std::string nearest_miss(const scene::Scene& scene, const Ray& ray, const std::filesystem::path& root);
 
 }  // namespace tumble::cli

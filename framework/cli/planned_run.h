@@ -1,5 +1,5 @@
-/// What the words of a run come to: the scene, laws and options that an engine is given. Where an error or a time is asked for
-/// (--accuracy, --budget-s), method and step are looked for first, and what was chosen, expected and paid is told.
+/// The scene, laws and options of a run, from its words. With --accuracy or --budget-s, method and
+/// step are searched for first, and the choice, its expected and its actual cost are reported.
 #pragma once
 
 #include <optional>
@@ -20,12 +20,12 @@ struct PlannedRun {
   Laws laws;
   engines::RunOptions options;
 
-  /// Where something was asked for.
+  /// Set where an error or a time was requested.
   struct Search {
-    engines::CostWish wish;
-    engines::CostTruth truth;
+    engines::CostGoal goal;
+    engines::CostReference reference;
     engines::CostChoice choice;
-    double seconds = 0.0;            // CPU that it took
+    double seconds = 0.0;            // its CPU time
     bool was_cut_short = false;
   };
   std::optional<Search> search;
@@ -34,10 +34,11 @@ struct PlannedRun {
 /// Declares --accuracy, --budget-s, --method and --tolerance.
 void add_plan_words(Verb& verb, RunWords& words);
 
-/// @throws UserError where words contradict each other, where the scene has no truth, or where nothing reaches what is asked for
+/// @throws UserError where words contradict each other, where the scene has no reference solution,
+///   or where no method fulfils the request
 PlannedRun plan_run(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const RunWords& words);
 
-/// What was chosen and expected, and what was paid. @param cpu_s  of the run, with models and shapes
+/// The choice with expected and actual cost. @param cpu_s  of the run, with models and shapes
 std::string search_in_words(const PlannedRun::Search& search, const Trajectory& run, double cpu_s);
 nlohmann::ordered_json search_as_json(const PlannedRun::Search& search, const Trajectory& run, double cpu_s);
 

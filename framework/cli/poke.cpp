@@ -1,4 +1,4 @@
-// tumble poke SCENE: pushes a body where a pixel, a ray or a point says, and shows what comes of it.
+// tumble poke SCENE: pushes a body at a pixel, along a ray or at a point, and shows the motion.
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -17,19 +17,19 @@ namespace tumble::cli {
 namespace {
 
 struct PokeWords : RunWords {
-  std::string pixel, ray, point;   // where; exactly one
+  std::string pixel, ray, point;   // position of the force; exactly one of them
   std::string force;               // "FX,FY,FZ" [N]
   double push_s = 0.0;
 };
 
-/// Where the force acts, and how it was found.
+/// The point of the force, and how it was found.
 struct Target {
   std::string body;
   Vector3d point_world;
   std::string found;   // for people
 };
 
-/// A force on a point of a body, from the start on.
+/// A force on a point of a body, from the start.
 struct Push {
   std::string body;
   Vector3d force_world, point_world;   // [N], [m]
@@ -37,7 +37,7 @@ struct Push {
 };
 
 std::string show(const Vector3d& v) {
-  const auto clean = [](double x) { return std::abs(x) < 1e-12 ? 0.0 : x; };   // no "-0" and no round-off in talk
+  const auto clean = [](double x) { return std::abs(x) < 1e-12 ? 0.0 : x; };   // no "-0" and no round-off in messages
   return fmt::format("({:.4g}, {:.4g}, {:.4g})", clean(v.x()), clean(v.y()), clean(v.z()));
 }
 
@@ -49,7 +49,7 @@ Ray ray_of_words(const PokeWords& words, const scene::Scene& scene) {
     if (std::sscanf(words.pixel.c_str(), "%lf,%lf%c", &x, &y, &rest) != 2 || !(x >= 0 && x < size.width && y >= 0 && y < size.height))
       throw UserError("--pixel " + words.pixel, fmt::format("expected X,Y inside a picture of {}x{}; (0,0) is the top left corner", size.width, size.height),
                       "Give the picture's size with --size where it is another.");
-    return render::pixel_ray(scene.camera, size.width, size.height, x + 0.5, y + 0.5);   // through the pixel's middle
+    return render::pixel_ray(scene.camera, size.width, size.height, x + 0.5, y + 0.5);   // through the centre of the pixel
   }
   Ray ray{Vector3d::Zero(), Vector3d::Zero()};
   Vector3d& o = ray.origin_world;
@@ -88,11 +88,12 @@ const scene::BodySpec& pushed_body(const scene::Scene& scene, const Target& targ
   throw UserError("poke", "no body is named '" + target.body + "'." + did_you_mean(target.body, names), "Movable bodies: " + movable + ".");
 }
 
-/// Momentum and angular momentum that a closed system has after the push, and how far the latter may be off.
+/// Momentum and angular momentum of a closed system after the push, and the tolerance of the
+/// latter.
 struct AfterPush {
   Vector3d momentum = Vector3d::Zero(), angular_momentum = Vector3d::Zero();   // the latter about the world's origin
-  double momentum_scale = 0.0, angular_scale = 0.0;                            // what rounding is relative to
-  double point_travel = 0.0;                                                   // at most, while the push lasts [m]
+  double momentum_scale = 0.0, angular_scale = 0.0;                            // scales of rounding errors
+  double point_travel = 0.0;                                                   // at most, during the push [m]
 };
 
 /// @return nothing where gravity or an immovable body may exchange momentum
@@ -119,7 +120,8 @@ std::optional<AfterPush> after_push(const Context& context, const scene::Scene& 
     const Vector3d arm = push.point_world - body.position_m, w = body.omega_world_rad_s;
     const double turning = (inertia_world.inverse() * arm.cross(push.force_world)).norm();
     const double acceleration = push.force_world.norm() / solids[i].mass_kg + arm.norm() * (turning + w.squaredNorm());
-    // v T + a T^2 / 2 at a constant acceleration; twice the last, for it changes as the body turns.
+    // v T + a T^2 / 2 at a constant acceleration; twice the last term, because the acceleration
+    // changes as the body rotates.
     after.point_travel = (body.velocity_m_s + w.cross(arm)).norm() * time + acceleration * time * time;
   }
   return after;
@@ -134,8 +136,8 @@ scene::CheckSpec expectation(const char* kind, const Vector3d& expected, double 
   return check;
 }
 
-/// The scene's checks speak of a run without this push: those that hold of any run stay, and what a closed system has after
-/// a push is known.
+/// The scene's checks apply to a run without this push: those that hold for any run are kept, and
+/// the momenta of a closed system after a push are known.
 void replace_checks(const Context& context, scene::Scene& scene, const Push& push) {
   std::erase_if(scene.checks, [](const scene::CheckSpec& check) { return check.kind != "gap" && check.kind != "restitution_law" && check.kind != "side_of_wall"; });
   const auto after = after_push(context, scene, push);
@@ -150,7 +152,7 @@ void replace_checks(const Context& context, scene::Scene& scene, const Push& pus
 void poke(Context& context, const PokeWords& words) {
   if ((words.pixel.empty() ? 0 : 1) + (words.ray.empty() ? 0 : 1) + (words.point.empty() ? 0 : 1) != 1)
     throw UserError("poke", "expected exactly one of --pixel, --ray, --point", "For example --pixel 200,250.");
-  scene::Scene scene = scene_of_words(context, words, false);   // a model rests until it is pushed
+  scene::Scene scene = scene_of_words(context, words, false);   // a model is at rest before the push
   const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(words.modules, context.registry), words.engine);
   if (!chosen.laws.wrench_of_point_force) throw UserError("--modules", "no module here turns a point force into force and torque", "Build a1, or name one: --modules a1=PATH.cpp");
 
@@ -162,9 +164,9 @@ void poke(Context& context, const PokeWords& words) {
                                         words.push_s, show(target.point_world - body.position_m), show(wrench.force_world), show(wrench.torque_world));
 
   const Push push{target.body, force, target.point_world, words.push_s};
-  scene::remove_entries(scene, "point_forces");   // instead of the scene's own: what is seen comes of this push
+  scene::remove_entries(scene, "point_forces");   // instead of the scene's own: the motion shows this push
   scene::EntryWriter{scene}("point_forces", {{"body", push.body}, {"force_n", push.force_world}, {"point_m", push.point_world}, {"duration_s", push.duration_s}});
-  scene.duration_s = std::max(scene.duration_s, words.push_s + 2.0);   // s: time to see what comes of it
+  scene.duration_s = std::max(scene.duration_s, words.push_s + 2.0);   // s: time to see the motion afterwards
   scene.title = "Poked by hand: scene " + scene.name;
   scene.about.clear();
   replace_checks(context, scene, push);

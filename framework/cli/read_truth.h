@@ -1,4 +1,4 @@
-/// Reads truth files (JSON) into plain data.
+/// Reads files of reference values (JSON) into plain data.
 #pragma once
 
 #include <filesystem>
@@ -8,10 +8,11 @@
 
 namespace tumble::cli {
 
-/// @throws UserError when the file cannot be read, is not JSON, or is not a truth file; later, when a value is of an odd kind
+/// @throws UserError when the file cannot be read, is not JSON, or is no file of reference values;
+///   later, when a value is of another kind
 truths::Case read_truth(const std::filesystem::path& file);
 
-/// The truth files of a folder in order of their names, or the one file given.
+/// The files of reference values of a folder in order of their names, or the one file given.
 /// @throws UserError when there is no such folder, or no .json file in it
 std::vector<std::filesystem::path> find_truths(const std::filesystem::path& folder_or_file);
 

@@ -1,4 +1,4 @@
-/// The last line of a page, and the head of what is printed for machines: which command of which program, and which scene.
+/// Provenance: the last line of a page, and the head of JSON output: command, version, and scene.
 #pragma once
 
 #include <string>

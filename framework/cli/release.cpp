@@ -1,5 +1,6 @@
-// tumble release FOLDER [--publish a1]: the tree that students get. It is the tree without solutions_private/, proven so,
-// with a README that begins with the student. It was built once, and every stub in it is "not attempted".
+// tumble release FOLDER [--publish a1]: the tree for students. It is the tree without
+// solutions_private/, checked for leaks, with a README that starts with the student. It is built
+// once, and every stub in it is "not attempted".
 #include <algorithm>
 #include <array>
 #include <cstdio>
@@ -30,7 +31,8 @@ struct ReleaseOptions {
   bool build = true;
 };
 
-// Never part of a release, whatever the tree is under: build trees, results, the version control's own folder.
+// Never part of a release, with or without version control: build trees, results, the version
+// control's own folder.
 bool is_made_here(const std::string& name) {
   return name == ".git" || name == "out" || name == "build" || name.starts_with("build-") || name == kPrivate;
 }
@@ -49,8 +51,8 @@ std::vector<fs::path> listed_by_git(const fs::path& root, const std::string& whi
   return files;
 }
 
-// The files that belong to the project, relative to the root. In a git checkout these are the tracked ones, so that a
-// teacher's notes lying about are not handed out by accident.
+// The files of the project, relative to the root. In a git checkout these are the tracked files, so
+// that untracked notes are not released by accident.
 std::vector<fs::path> project_files(const fs::path& root) {
   if (fs::exists(root / ".git")) {
     const std::vector<fs::path> files = listed_by_git(root, "");
@@ -85,7 +87,7 @@ bool is_published(const Context& context, const std::vector<std::string>& publis
   });
 }
 
-// The whole wrong solution that a slip stands for, each line with its place in the slip or in its base.
+// The whole wrong solution of a slip, each line with its position in the slip or in its base.
 grading::PrivateFile made_of_slip(const Context& context, const fs::path& slip) {
   const grading::MadeSolution made = grading::make_solution(slip, slip.parent_path().parent_path());
   grading::PrivateFile whole{slip.lexically_relative(context.root), made.text};
@@ -94,14 +96,16 @@ grading::PrivateFile made_of_slip(const Context& context, const fs::path& slip) 
   return whole;
 }
 
-// A flawed submission is a student's file: what it left of the stub is the stub. What CMake says of solutions is in no student's way.
+// A flawed submission is a student's file: its unchanged part is the stub. What CMake says of
+// solutions is harmless.
 std::vector<grading::PrivateFile> private_files(const Context& context, const std::vector<std::string>& published) {
   std::vector<grading::PrivateFile> files;
   if (!fs::exists(context.root / kPrivate)) return files;
   for (const auto& entry : fs::recursive_directory_iterator(context.root / kPrivate)) {
     const fs::path file = entry.path().lexically_relative(context.root), folder = file.parent_path().filename();
     if (!entry.is_regular_file() || file.filename() == "CMakeLists.txt" || folder == "flawed_submission" || is_published(context, published, file)) continue;
-    // Once a reference is public, so is what its wrong and other versions share with it.
+    // Once a reference is public, the parts that its wrong and alternative versions share with it
+    // are public too.
     const bool of_published = std::any_of(published.begin(), published.end(), [&](const std::string& id) { return *std::next(file.begin()) == context.registry.find(id).folder; });
     if (of_published && (folder == "mutants" || folder == "alternatives")) continue;
     files.push_back({file, text_of(entry.path()), folder == "tests" || folder == "support"});
@@ -117,7 +121,8 @@ void refuse(const std::vector<grading::Finding>& findings, const std::string& re
   throw UserError(findings.front().where, findings.front().problem + more, remedy + " Nothing was released.");
 }
 
-// The points of each assignment, public and hidden together, are read as the grader reads them: a sum that is not 100 is refused.
+// The points of each assignment, public and hidden together, are read as the grader reads them: a
+// sum other than 100 is refused.
 void refuse_odd_rubrics(const Context& context) {
   const grading::Course course{context.root, context.build, &context.registry, context.command_line};
   for (const modules::ModuleKind* kind : context.registry.all())
@@ -132,7 +137,7 @@ void refuse_what_is_no_stub(const Context& context, const fs::path& release, con
   }
 }
 
-// Builds the tree and everything in it, then checks each stub as a student does first.
+// Builds the tree completely, then checks each stub as a student does first.
 void build_and_check(const Context& context, const fs::path& release, const std::vector<std::string>& published) {
   const PrivateFolder folder;
   const auto launch = [&](const std::string& words) {
@@ -160,7 +165,7 @@ void release(Context& context, const ReleaseOptions& options) {
   if (fs::exists(context.root / ".git"))
     refuse(grading::missing_files(context.root, files, listed_by_git(context.root, "--others")), "git add it, or take out what needs it.");
 
-  // Built beside the target and renamed last: a release is there whole or not at all.
+  // Built beside the target and renamed last: a release is complete or absent.
   const fs::path partial = target.string() + ".partial";
   fs::remove_all(partial);
   std::size_t count = 0;

@@ -1,4 +1,4 @@
-// tumble run SCENE: runs a scene on any mix of modules, judges it by its numbers, shows it.
+// tumble run SCENE: runs a scene with any mix of modules, judges it by its numbers, and shows it.
 #include <memory>
 
 #include "framework/cli/planned_run.h"

@@ -27,7 +27,7 @@ struct Second {
 
 std::string short_name(const std::string& source) { return source.find('/') == source.npos && source.find('.') == source.npos ? source : fs::path(source).stem().string(); }
 
-/// Whose laws a run has, as far as the other run has others; else its engine or step.
+/// The label of a run: the laws that the other run does not have; else its engine or step.
 std::string label_of(const ChosenLaws& mine, const ChosenLaws& others, const TrajectoryInfo& info, const TrajectoryInfo& other) {
   std::set<std::string> names;
   for (const ChosenModule& module : mine.modules)
@@ -58,7 +58,7 @@ Second second_run(const Context& context, const scene::Scene& scene, const Chose
   const ChosenLaws other = choose_laws(context, scene, with_changes(mine, parse_module_words(beside.modules, context.registry)), beside.engine.empty() ? words.engine : beside.engine);
   engines::RunOptions options;
   options.engine = beside.engine.empty() ? words.engine : beside.engine;
-  VirtualTimes times;   // of the fast scheduler; the teaching one tells them to the recorder
+  VirtualTimes times;   // of the fast scheduler; the teaching timewarp sends them to the recorder
   options.timewarp = engines::fast_timewarp(&times);
   options.step_s = beside.step_s ? beside.step_s : words.step_s;
   options.duration_s = words.duration_s;
@@ -79,7 +79,7 @@ Second second_run(const Context& context, const scene::Scene& scene, const Chose
   return second;
 }
 
-/// The chart of a run's local virtual times, where it has some.
+/// The chart of a run's local virtual times, where it has any.
 void add_panel(const report::PlayedRun& played, report::PlayerOptions& options) {
   if (played.run.virtual_times.moves.empty()) return;
   options.panels.push_back(report::virtual_times_panel(played.run.virtual_times));

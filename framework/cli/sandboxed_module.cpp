@@ -30,7 +30,7 @@ SandboxedModule load_sandboxed(const Context& context, const modules::ModuleKind
   grading::WorkerOptions options;
   options.id = kind.id;
   options.module = file;
-  options.session_own_s = 600.0;            // of a whole scene, watched by the person who started it
+  options.session_own_s = 600.0;            // for a whole scene, watched by its user
   options.callback_budget = 1'000'000'000;   // the wall limit comes first
   if (file.extension() == ".cpp") {
     options.module = folder.path() / (kind.id + ".so");
@@ -38,7 +38,7 @@ SandboxedModule load_sandboxed(const Context& context, const modules::ModuleKind
   }
   grading::call_log() = grading::CallLog{};
   const auto depth = [&]() -> SandboxedModule::Depth {
-    auto connection = std::make_shared<grading::WorkerConnection>(options);   // copies the object: the folder may go
+    auto connection = std::make_shared<grading::WorkerConnection>(options);   // copies the object: the folder may be deleted
     return {kind.make_proxy(*connection), connection};
   };
   return {depth(), depth(), depth()};

@@ -8,8 +8,9 @@
 
 namespace tumble::cli {
 
-/// One worker answers one call at a time, and laws of motion call each other: the search for an impact asks for a step, a
-/// step asks for a derivative. So each depth has a worker of its own, which starts when it is first called.
+/// A worker executes one call at a time, but laws of motion call each other: the search for an
+/// impact calls a step, a step calls a derivative. So each depth has a worker of its own, started
+/// at its first call.
 struct SandboxedModule {
   struct Depth {
     modules::AnyModule module;         // forwards every call
@@ -19,7 +20,8 @@ struct SandboxedModule {
 };
 
 /// @param file  a source file, or a shared object
-/// @throws UserError when it does not compile (with the compiler's words), or the sandbox is not built
+/// @throws UserError when it does not compile (with the compiler's message), or the sandbox is not
+///   built
 SandboxedModule load_sandboxed(const Context& context, const modules::ModuleKind& kind, const std::filesystem::path& file);
 
 }  // namespace tumble::cli

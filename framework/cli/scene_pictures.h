@@ -1,4 +1,4 @@
-/// The pictures that a run was asked for.
+/// The pictures of a run.
 #pragma once
 
 #include "framework/cli/run_words.h"
@@ -8,7 +8,7 @@
 
 namespace tumble::cli {
 
-/// Writes words.png, words.sheet and words.video where they are named, and says so on stderr.
+/// Writes words.png, words.sheet and words.video where they are named, and reports it on stderr.
 void write_pictures(const Context& context, const scene::Scene& scene, const Trajectory& run, const RunWords& words, const PictureSize& size);
 
 }  // namespace tumble::cli

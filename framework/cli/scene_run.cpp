@@ -64,7 +64,7 @@ std::map<std::string, int> count_events(const Trajectory& run) {
   return counts;
 }
 
-/// What happened at all, three to a line, numbers under numbers; what is 0 stands in --json.
+/// Counters that are not 0, three per line, aligned; --json has all.
 void print_counts(const std::map<std::string, std::uint64_t>& counts) {
   constexpr int kColumns = 3;
   int column = 0;
@@ -92,13 +92,13 @@ void print_summary(const scene::Scene& scene, const Laws& laws, const Trajectory
   for (const auto& [name, count] : count_events(run)) events += fmt::format("{}{} {}", events.empty() ? "" : " · ", name, count);
   fmt::print("  events   {}\n", events.empty() ? "none" : events);
   print_counts(run.counters.counts);
-  fmt::print("  w h      {:.3g}: impacts and other sudden changes (w, a body and second) in the largest step (h); the larger, the more timewarp saves{}\n", engines::discontinuities_a_body_and_step(run),
+  fmt::print("  w h      {:.3g}: discontinuities (w, per body and second) in the largest step (h); the larger, the more timewarp saves{}\n", engines::discontinuities_a_body_and_step(run),
              run.counters.counts.contains("sliding_changes") ? "; without the sliding changes above, for which no engine ends a step of all bodies" : "");
   for (const auto& notice : run.counters.notices) fmt::print("  note     {}\n", notice);
   if (!run.stopped_by.empty()) fmt::print("  STOPPED  {}\n", run.stopped_by);
   fmt::print("{}", judgement_table(checks));
   const bool all_right = std::all_of(checks.begin(), checks.end(), [](const CheckResult& check) { return check.passed; });
-  if (!searched.empty() && run.stopped_by.empty() && !all_right) fmt::print("  the run is what was asked for; the scene's own numbers may ask for more: a smaller --accuracy, or more --budget-s, shows whether they do\n");
+  if (!searched.empty() && run.stopped_by.empty() && !all_right) fmt::print("  the run meets the requested error or time, but some of the scene's own checks failed: try a smaller --accuracy or a larger --budget-s\n");
 }
 
 void print_json(const scene::Scene& scene, const PlannedRun& plan, const Trajectory& run, const std::vector<CheckResult>& checks, double cpu_s) {
@@ -128,7 +128,7 @@ void print_json(const scene::Scene& scene, const PlannedRun& plan, const Traject
   fmt::print("{}\n", page.dump(2));
 }
 
-/// A run that was asked to be shorter than the scene is not judged by what it cannot have reached.
+/// A run shorter than the scene is judged only by checks that apply until its end.
 scene::Scene judged_part(scene::Scene scene, const RunWords& words) {
   const bool is_shorter = words.duration_s && *words.duration_s < scene.duration_s;
   if (is_shorter) std::erase_if(scene.checks, [](const scene::CheckSpec& check) { return !check.expected.empty(); });
@@ -169,7 +169,7 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   check_page_words(context, words);
   for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
   PlannedRun plan = plan_run(context, scene, chosen, words);
-  VirtualTimes times;   // of the fast scheduler; the teaching one tells them to the recorder
+  VirtualTimes times;   // of the fast scheduler; the teaching timewarp sends them to the recorder
   if (!words.html.empty()) plan.options.timewarp = engines::fast_timewarp(&times);
   TrajectoryRecorder recorder;
   const auto start = std::chrono::steady_clock::now();

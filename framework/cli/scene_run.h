@@ -1,4 +1,4 @@
-/// What `run` and `poke` share: a scene run, its files written, and how it went.
+/// The common part of `run` and `poke`: the run of a scene, its files, and its summary.
 #pragma once
 
 #include <string>
@@ -13,8 +13,8 @@ namespace tumble::cli {
 /// Declares the words on a verb. `words` must outlive the parse.
 void add_run_words(Verb& verb, RunWords& words);
 
-/// Runs the scene, writes the files asked for, prints the summary and sets context.exit.
-/// @param extra  a line of talk that stands in the summary under the title (may be empty)
+/// Runs the scene, writes the requested files, prints the summary and sets context.exit.
+/// @param extra  a line for the summary, under the title (may be empty)
 void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const RunWords& words, const std::string& extra = "");
 
 }  // namespace tumble::cli

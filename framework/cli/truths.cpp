@@ -1,4 +1,5 @@
-// tumble truths FOLDER: what this project computes, against reference values computed elsewhere at high precision.
+// tumble truths FOLDER: results of this project against reference values computed elsewhere at high
+// precision.
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -28,7 +29,7 @@ struct TruthsOptions {
   bool json = false;
 };
 
-/// The modules chosen, as tables and as laws.
+/// The chosen modules, as function tables and as laws.
 struct Chosen {
   std::map<std::string, modules::AnyModule> tables;  // by id
   Laws laws = library_laws();
@@ -39,8 +40,9 @@ bool mentions(const std::filesystem::path& source, const std::string& word) {
   return std::string(std::istreambuf_iterator<char>(stream), {}).find(word) != std::string::npos;
 }
 
-/// The file for a module's part in a choice that names no module: student, reference, a file of this module, or a submission's
-/// folder (ID.so, else the student's file by its name). Empty: the choice holds nothing of this module.
+/// The file of a module in a choice that names no module: student, reference, a file of this
+/// module, or a submission's folder (ID.so, else the student's file by its name). Empty: the choice
+/// has nothing of this module.
 std::string word_for(const modules::ModuleKind& kind, const std::string& choice) {
   namespace fs = std::filesystem;
   const fs::path path = choice;
@@ -49,7 +51,7 @@ std::string word_for(const modules::ModuleKind& kind, const std::string& choice)
       if (fs::exists(path / name)) return path / name;
     return "";
   }
-  // A source file includes its own module's header, which stands in the assignment's folder.
+  // A source file includes its own module's header, which is in the assignment's folder.
   if (path.extension() == ".cpp" && fs::exists(path)) return mentions(path, "assignments/" + kind.folder + "/") ? choice : "";
   return choice;
 }
@@ -85,7 +87,7 @@ Chosen load_modules(const Context& context, const std::string& choice) {
   return chosen;
 }
 
-/// Everything that is known about a case; nothing when its family is not.
+/// All comparisons of a case; nothing for an unknown family.
 std::optional<CaseResult> compute(const Context& context, const Chosen& chosen, const Case& truth) {
   Comparison comparison;
   bool known = false;
@@ -104,16 +106,16 @@ std::optional<CaseResult> compute(const Context& context, const Chosen& chosen, 
   return CaseResult{truth.id, truth.family, comparison.lines()};
 }
 
-/// A file that is no truth file: what is wrong with it, and what to do.
+/// A file that cannot be read: its error and remedy.
 struct OddFile {
   std::string file, problem;
 };
 
-/// A line on stderr every ten seconds: how many files are done, and how long the others will take.
+/// A line on stderr every ten seconds: the number of files done, and the estimated remaining time.
 class Progress {
  public:
   explicit Progress(std::size_t count) : count_(count) {}
-  /// Before each file.
+  /// Called before each file.
   void tell() {
     constexpr double kEvery = 10.0;   // s
     const double now = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun_).count();
@@ -156,7 +158,7 @@ ExitCode run_truths(const Context& context, const TruthsOptions& options) {
       }
       results.push_back(*result);
       if (!options.json) print_truths_case(*result, options.each, said), std::fflush(stdout);
-    } catch (const UserError& error) {   // one odd file does not keep the others from being compared
+    } catch (const UserError& error) {   // one wrong file does not prevent the comparison of the others
       if (files.size() == 1) throw;
       odd.push_back({file.string(), error.what()});
       std::fprintf(stderr, "tumble: %s\n", error.what());

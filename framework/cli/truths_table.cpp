@@ -24,10 +24,10 @@ std::string show(double x) {
   return text;
 }
 
-/// Cut in the middle, where names say least.
+/// Names are cut in the middle, which carries the least information.
 void print_row(const std::string& name, const std::string& output, const Line& line, const std::string& verdict) {
   std::printf("%-40s %-20s %7s %7s %7s  %s\n", without_middle(name, kCaseWidth).c_str(), without_middle(output, kOutputWidth).c_str(), show(line.error).c_str(),
-              show(line.floor).c_str(), show(line.pass_mark).c_str(), verdict.c_str());
+              show(line.error_floor).c_str(), show(line.tolerance).c_str(), verdict.c_str());
 }
 
 /// Wrapped at blanks, indented.
@@ -49,7 +49,7 @@ void print_output(const Line& line) {
   if (!line.note.empty()) print_note(line.note);
 }
 
-/// What an integrator's order was measured to be: shown also where all is right.
+/// Whether the line is the measured order of an integrator, which is also shown where all is right.
 bool is_order(const Line& line) { return line.verdict == Verdict::kRight && line.output.find("order_") != std::string::npos; }
 
 void print_failures(const CaseResult& result) {
@@ -61,7 +61,7 @@ void print_failures(const CaseResult& result) {
   if (failures > kMostFailures) std::printf("    and %zu more outputs are wrong: --each shows all\n", failures - kMostFailures);
 }
 
-// What is not written yet is said once, below the first case that misses it.
+// Missing functions are listed once, below the first case that needs them.
 void print_stubs(const CaseResult& result, std::set<std::string>& said) {
   for (const Line& line : result.lines) {
     if (line.verdict == Verdict::kNotAttempted && said.insert(line.note).second) print_note(line.note);
@@ -121,7 +121,7 @@ nlohmann::ordered_json truths_to_json(const std::vector<CaseResult>& results, co
   for (const CaseResult& result : results) {
     Json lines = Json::array();
     for (const Line& line : result.lines) {
-      lines.push_back({{"output", line.output}, {"error", number(line.error)}, {"floor", number(line.floor)}, {"pass_mark", number(line.pass_mark)},
+      lines.push_back({{"output", line.output}, {"error", number(line.error)}, {"floor", number(line.error_floor)}, {"pass_mark", number(line.tolerance)},
                        {"verdict", truths::word_of(line.verdict)}, {"note", line.note}});
     }
     cases.push_back({{"id", result.id}, {"verdict", truths::word_of(truths::verdict_of(result.lines))}, {"outputs", lines}});

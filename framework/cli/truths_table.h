@@ -1,4 +1,4 @@
-/// How the cases of `tumble truths` are shown: a case a line within 100 columns, or JSON.
+/// Output of `tumble truths`: one line of at most 100 columns per case, or JSON.
 #pragma once
 
 #include <map>
@@ -20,11 +20,11 @@ struct CaseResult {
 };
 
 void print_truths_head();
-/// One line; below it what failed, what was measured about convergence, or what is not attempted.
+/// One line; below it failures, measured orders, or what is not attempted.
 /// @param each  every output, with its note
-/// @param said  hints that stand above already, not to be repeated; grows
+/// @param said  hints that were printed already, not to be repeated; grows
 void print_truths_case(const CaseResult& result, bool each, std::set<std::string>& said);
-/// @param skipped  how many cases of each family are not known here
+/// @param skipped  number of cases of each unknown family
 void print_truths_count(const std::vector<CaseResult>& results, const std::map<std::string, int>& skipped);
 
 nlohmann::ordered_json truths_to_json(const std::vector<CaseResult>& results, const std::map<std::string, int>& skipped);

@@ -1,4 +1,5 @@
-/// The command line: one file a verb. A verb's `add_` function declares its words and what runs when they are given.
+/// The command line: one file per verb. A verb's `add_` function declares its words and the
+/// function that it runs.
 #pragma once
 
 #include <filesystem>
@@ -10,13 +11,13 @@
 
 namespace tumble::cli {
 
-/// What every verb is given.
+/// Data that every verb receives.
 struct Context {
   std::filesystem::path root;       // of the source tree
-  std::filesystem::path build;      // of the build tree that this program is from
+  std::filesystem::path build;      // of the build tree of this program
   std::string command_line;         // as typed, for records
   modules::Registry registry;
-  ExitCode exit = ExitCode::kFine;  // what the verb that ran says
+  ExitCode exit = ExitCode::kFine;  // set by the verb that ran
 };
 
 // stdout is the result (--json for machines), stderr is talk and progress.

@@ -1,4 +1,4 @@
-// The list of verbs, in the order in which help shows them.
+// The list of verbs, in the order of help.
 #include "framework/cli/verb.h"
 
 namespace tumble::cli {

@@ -18,8 +18,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Tells when a file was saved, however the editor does it: written in place, or written aside and renamed over it. The
-/// folder is watched, not the file, since the second way puts a new file under the old name.
+/// Detects when a file was saved, whether an editor writes it in place or renames a new file over
+/// it. It watches the folder, not the file, because the second way gives the old name to a new
+/// file.
 class SaveWatch {
  public:
   explicit SaveWatch(const fs::path& file) : name_(file.filename().string()), fd_(::inotify_init1(IN_CLOEXEC)) {
@@ -31,7 +32,7 @@ class SaveWatch {
   SaveWatch(const SaveWatch&) = delete;
   SaveWatch& operator=(const SaveWatch&) = delete;
 
-  /// Waits for a save, then until the editor has been quiet for a moment: some write twice.
+  /// Waits for a save, then until the file has not changed for a moment: some editors write twice.
   void wait() {
     constexpr int kForever = -1, kQuietMs = 60;
     while (!saved(kForever)) {}
@@ -63,7 +64,8 @@ void watch(Context& context, const CheckWords& words) {
   const bool screen = ::isatty(STDOUT_FILENO) == 1;
   for (;;) {
     if (screen) fmt::print("\033[2J\033[3J\033[H");
-    // The test program and the compiler have endings of their own; what the loop itself meets is told and outlived.
+    // The test program and the compiler have exit codes of their own; errors of the loop itself are
+    // reported and do not end it.
     try {
       check_once(context, words);
     } catch (const UserError& error) {

@@ -1,5 +1,6 @@
-/// The words of a verb: positional words, options with a value, flags. The command line's parser is behind it, seen by
-/// words.cpp and main.cpp only: it is expensive to compile, and forty files need nothing of it but this.
+/// The words of a verb: positional words, options with a value, flags. The parser of the command
+/// line is hidden behind it and seen by words.cpp and main.cpp only, because it is expensive to
+/// compile and forty files need only this interface.
 #pragma once
 
 #include <functional>
@@ -12,21 +13,21 @@ class Option;
 
 namespace tumble::cli {
 
-/// One word, as it was declared; each function says one more thing of it.
+/// A declared word; each function adds one property.
 class Word {
  public:
   explicit Word(CLI::Option* option) : option_(option) {}
 
   Word& required();
-  Word& type_name(const std::string& name);   // what help writes for the value, e.g. FILE
-  Word& positive();                            // a value that is not above 0 is refused
+  Word& type_name(const std::string& name);   // the name of the value in help, e.g. FILE
+  Word& positive();                            // refuses a value that is not above 0
   Word& not_negative();
   Word& between(int least, int most);          // both ends allowed
   Word& between(double least, double most);
   Word& separated_by(char separator);          // of lists: 1,2,3
-  Word& shows_default();                       // help tells the value that the variable has now
-  Word& default_text(const std::string& text); // help tells this instead
-  Word& excludes(const std::string& name);     // refused beside that word
+  Word& shows_default();                       // help shows the current value of the variable
+  Word& default_text(const std::string& text); // help shows this instead
+  Word& excludes(const std::string& name);     // refused together with that word
   Word& needs(const Word& other);              // refused without it
 
  private:
@@ -37,8 +38,9 @@ class Verb {
  public:
   Verb(CLI::App& app, const std::string& name, const std::string& help);
 
-  /// `name` is "--step-s" of an option, "scene" of a positional word. `value` must outlive the parsing and keeps what it
-  /// has where the word is not given. For strings, paths, numbers, optionals and lists of them (words.cpp has the list).
+  /// `name` is "--step-s" for an option, "scene" for a positional word. `value` must outlive the
+  /// parse and keeps its value where the word is not given. For strings, paths, numbers, optionals
+  /// and lists of them (words.cpp has the list).
   template <class Value>
   Word option(const std::string& name, Value& value, const std::string& help);
 
@@ -46,7 +48,7 @@ class Verb {
   Word flag(const std::string& name, bool& value, const std::string& help);
 
   void footer(const std::string& text);
-  void runs(std::function<void()> run);   // called once all words are read and right
+  void runs(std::function<void()> run);   // called after a successful parse
 
  private:
   CLI::App* app_;

@@ -15,23 +15,23 @@
 
 namespace tumble {
 
-/// What happens, in the order in which it does at one instant and in one generation.
+/// What happens, in the order in which it does at one instant and in one microstep.
 enum class WorkKind : std::uint8_t { kCallback = 1, kCollision = 2, kGroup = 3, kRedraw = 4 };
 
 /// Generation of a redraw: a frame shows what has happened at its instant, so it comes last.
-constexpr std::uint32_t kLastGeneration = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t kLastMicrostep = std::numeric_limits<std::uint32_t>::max();
 
 /// When and where something happens. No two things of a run have the same stamp.
 struct Stamp {
   double time = kUnset;             // [s]
-  std::uint32_t generation = 0;     // at one instant an effect has a larger one than its cause
+  std::uint32_t microstep = 0;     // at one instant an effect has a larger one than its cause
   WorkKind kind = WorkKind::kCollision;
   std::int32_t body_a = -1, body_b = -1;   // body_a < body_b; of a callback or a group (its lowest member) body_b is -1, of a redraw both are
 };
 
 /// An event in the queue.
 struct ScheduledEvent {
-  Stamp stamp;                            // of a check: when the next look is due; its generation is 0 (of a group's: that of what was found)
+  Stamp stamp;                            // of a check: when the next look is due; its microstep is 0 (of a group's: that of what was found)
   double safe_time = kUnset;              // nothing that this event may still change lies before it [s]: of a check the time up to which its
                                           // bodies were verified disjoint, of a callback its own time, of a redraw infinity
   std::vector<std::int32_t> receivers;    // processes that must have come to stamp.time, ascending; walls are none. Of a redraw empty: all

@@ -25,12 +25,12 @@ const BodySpec& Anchors::expect_body(const std::string& name, const std::string&
 }
 
 const std::vector<Vector3d>& Anchors::vertices_of(const BodySpec& body, const std::string& pointer) {
-  std::string key = body.name;   // bodies of one model share its vertices
+  std::string key = body.name;   // bodies with one model share its vertices
   if (const auto* model = std::get_if<ModelSpec>(&body.shape)) key = "\n" + model->file + "\n" + model->object + "\n" + std::to_string(model->metres_per_unit);
   const auto known = vertices_.find(key);
   if (known != vertices_.end()) return known->second;
   if (std::holds_alternative<SphereSpec>(body.shape) || std::holds_alternative<PlaneSpec>(body.shape) || std::holds_alternative<EllipsoidSpec>(body.shape))
-    document_.refuse(pointer, "body '" + body.name + "' has no vertices", "Only models and boxes have: give point_body_m or point_world_m.");
+    document_.refuse(pointer, "body '" + body.name + "' has no vertices", "Only models and boxes have vertices: give point_body_m or point_world_m.");
   try {
     return vertices_.emplace(key, surface_of(build_solid(body, scene_.file).shape).vertices).first->second;
   } catch (const UserError& error) {
@@ -50,7 +50,7 @@ Vector3d Anchors::vertex(const json& value, const BodySpec& body, const std::str
   }
   const Vector3d direction = read_vector(value.at("vertex_towards"));
   if (direction.isZero(0.0)) document_.refuse(at, "found the zero vector, expected a direction");
-  // The first of those that are equally far.
+  // The first of the farthest vertices.
   return *std::max_element(vertices.begin(), vertices.end(), [&](const Vector3d& a, const Vector3d& b) { return a.dot(direction) < b.dot(direction); });
 }
 

@@ -1,4 +1,5 @@
-/// Bodies by name, and points of them, while a scene is read. For the .cpp files of this folder only.
+/// Bodies by name and points of them, while a scene is read. For the .cpp files of this folder
+/// only.
 #pragma once
 
 #include <map>
@@ -11,22 +12,23 @@
 
 namespace tumble::scene {
 
-/// At most the first eight of a list of words, for errors.
+/// At most the first eight names of a list, for errors.
 std::string listed(const std::vector<std::string>& names);
 
 class Anchors {
  public:
-  /// Both must outlive it. Bodies may still be added to the scene: those that are there when a question is asked are known.
+  /// Both must outlive it. Bodies may still be added to the scene: a query sees those that exist at
+  /// its time.
   Anchors(const Document& document, const Scene& scene) : document_(document), scene_(scene) {}
 
   /// @throws UserError at `pointer` when no body has that name
   const BodySpec& expect_body(const std::string& name, const std::string& pointer);
 
   /// @param value  an entry of the schema's kind "anchor"
-  /// @throws UserError when it names no body, two points at once, or a vertex that is not there
+  /// @throws UserError when it names no body, two points at once, or a missing vertex
   AnchorSpec read_anchor(const nlohmann::json& value, const std::string& pointer);
 
-  /// Where an anchor is at the start. World frame [m].
+  /// Position of an anchor at the start. World frame [m].
   Vector3d place_at_start(const AnchorSpec& anchor);
 
  private:
@@ -37,7 +39,7 @@ class Anchors {
   const Scene& scene_;
   std::map<std::string, std::size_t> index_;
   std::size_t indexed_ = 0;
-  std::map<std::string, std::vector<Vector3d>> vertices_;   // by what makes the shape
+  std::map<std::string, std::vector<Vector3d>> vertices_;   // by the definition of the shape
 };
 
 }  // namespace tumble::scene

@@ -14,7 +14,7 @@
 namespace tumble::scene {
 namespace {
 
-constexpr double kPointGyrationRadius = 1.0;   // m: of a point mass; of no consequence, see build_shape.h
+constexpr double kPointGyrationRadius = 1.0;   // m: of a point mass; without effect, see build_shape.h
 
 /// Surface, volume, and moments of inertia at unit mass (about the centre of mass, body axes) [m^2].
 struct UnitSolid {
@@ -30,14 +30,14 @@ UnitSolid sphere(double r) {
 }
 
 UnitSolid box(const Vector3d& h) {
-  // I_xx = m (h_y^2 + h_z^2) / 3 with half extents h, and so on round
+  // I_xx = m (h_y^2 + h_z^2) / 3 with half extents h, and cyclically
   const Vector3d s = h.cwiseProduct(h);
   const Vector3d moments = Vector3d(s.y() + s.z(), s.z() + s.x(), s.x() + s.y()) / 3.0;
   return {Box{h}, 8.0 * h.prod(), moments.asDiagonal()};
 }
 
 UnitSolid ellipsoid(const EllipsoidSpec& spec) {
-  // I_xx = m (b^2 + c^2) / 5 with semi-axes a, b, c, and so on round; about its middle
+  // I_xx = m (b^2 + c^2) / 5 with semi-axes a, b, c, and cyclically; about its centre
   const Vector3d s = spec.semi_axes_m.cwiseProduct(spec.semi_axes_m);
   const Vector3d moments = Vector3d(s.y() + s.z(), s.z() + s.x(), s.x() + s.y()) / 5.0;
   return {Ellipsoid{spec.semi_axes_m, spec.center_m}, 4.0 / 3.0 * std::numbers::pi * spec.semi_axes_m.prod(), moments.asDiagonal()};
@@ -84,7 +84,7 @@ class Models {
   UnitSolid read(const ModelSpec& spec, const std::string& body) const {
     const std::filesystem::path file = find_model(spec.file, scene_file_, root_);
     if (!std::filesystem::exists(file))
-      throw UserError("body '" + body + "': " + spec.file, "no such file." + did_you_mean(spec.file, models_in(file.parent_path())), "It is looked for beside the scene, then in " + file.parent_path().string() + ".");
+      throw UserError("body '" + body + "': " + spec.file, "no such file." + did_you_mean(spec.file, models_in(file.parent_path())), "It is searched beside the scene, then in " + file.parent_path().string() + ".");
     try {
       SolidModel model = load_solid(file, spec.object, spec.metres_per_unit);
       return {std::move(model.solid), model.volume, model.inertia_per_density_body / model.volume};

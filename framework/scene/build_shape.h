@@ -1,4 +1,4 @@
-/// Makes the solid that a scene's body is: its surface, its mass and its moments of inertia.
+/// Builds the solid of a scene's body: its surface, mass and moments of inertia.
 #pragma once
 
 #include <filesystem>
@@ -18,15 +18,18 @@ struct Solid {
 };
 
 /// @param body        one entry of a scene that load_scene accepted
-/// @param scene_file  the scene's file: models are looked for beside it first
-/// @param root        source root, whose models/ is looked in next; empty: the environment's TUMBLE_ROOT, else the nearest folder
-///                    above the scene file (or the working folder) that has a models/
-/// @return body frame: origin at the centre of mass, axes of the mesh. A sphere of radius 0 is a point mass: nothing can turn it,
-///         for no force acts off its centre, so it gets the inertia m * (1 m)^2, which keeps the equations regular.
-/// @throws UserError naming the body when a model is missing, not closed, or has no or several objects of that name
+/// @param scene_file  the scene's file: models are searched beside it first
+/// @param root        source root, whose models/ is searched next; empty: the environment's
+///   TUMBLE_ROOT, else the nearest folder above the scene file (or the working folder) with a
+///   models/
+/// @return body frame: origin at the centre of mass, axes of the mesh. A sphere of radius 0 is a
+///   point mass: no force acts off its centre, so its rotation never changes; its inertia is m * (1
+///   m)^2, which keeps the equations regular.
+/// @throws UserError with the body when a model is missing, not closed, or has no or several
+///   objects of that name
 Solid build_solid(const BodySpec& body, const std::filesystem::path& scene_file, const std::filesystem::path& root = {});
 
-/// Every body's solid, by body index; a model used by several bodies is read once.
+/// The solids of all bodies, by body index; a model of several bodies is read once.
 std::vector<Solid> build_solids(const Scene& scene, const std::filesystem::path& root = {});
 
 }  // namespace tumble::scene

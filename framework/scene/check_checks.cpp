@@ -8,10 +8,10 @@
 namespace tumble::scene {
 namespace {
 
-/// What a kind of check cannot do without.
+/// The values that a kind of check requires.
 struct CheckNeeds {
   bool body = false, other = false, axis = false, link = false, bodies = false;
-  int expected = 0;   // how many numbers; kAny: at least one
+  int expected = 0;   // number of values; kAny: at least one
 };
 constexpr int kAny = -1;
 
@@ -50,7 +50,7 @@ std::vector<std::string> names_of(const std::vector<Link>& links) {
   return names;
 }
 
-/// The effect that brings a kind of check with it; nullptr: none.
+/// The effect to which a kind of check belongs; nullptr: none.
 const Words* words_of_check(const std::string& kind) {
   for (const Words* words : all_words())
     for (const LinkCheck& check : words->link_checks())
@@ -77,7 +77,7 @@ void check_link(const CheckSpec& check, const std::string& pointer, const Scene&
 void check_expected(const CheckSpec& check, const std::string& pointer, int needed, const Refuse& refuse) {
   const bool is_vector = needed == 3 || check.kind.ends_with("momentum");
   const auto found = "found a list of " + std::to_string(check.expected.size());
-  if (check.expected.empty()) return;   // refused before where it is needed
+  if (check.expected.empty()) return;   // refused before, where it is required
   if (is_vector && check.expected.size() != 3) refuse(pointer + "/expected", found + ", expected [x, y, z]", "");
   if (needed == 1 && check.expected.size() != 1) refuse(pointer + "/expected", found + ", expected a list of one number", "");
 }
@@ -85,7 +85,7 @@ void check_expected(const CheckSpec& check, const std::string& pointer, int need
 void check_check(const CheckSpec& check, const std::string& pointer, const Names& bodies, const Scene& scene, const Refuse& refuse) {
   const auto found = check_needs().find(check.kind);
   if (found == check_needs().end() && words_of_check(check.kind) == nullptr) refuse(pointer + "/kind", "unknown kind of check '" + check.kind + "'", "");
-  const CheckNeeds needs = found == check_needs().end() ? CheckNeeds{} : found->second;   // those about links need nothing
+  const CheckNeeds needs = found == check_needs().end() ? CheckNeeds{} : found->second;   // checks of links require nothing
   const auto need = [&](bool needed, bool given, const char* key) {
     if (needed && !given) refuse(pointer, "a check of kind " + check.kind + " needs the key '" + key + "'", "Add it.");
   };

@@ -1,4 +1,5 @@
-/// What a schema cannot say about a scene's checks: what each kind needs, and names that resolve.
+/// Rules for a scene's checks that a schema cannot express: what each kind needs, and names that
+/// resolve.
 #pragma once
 
 #include "framework/scene/names.h"

@@ -34,7 +34,7 @@ void check_inertia(const Matrix3d& inertia, const Refuse& refuse) {
     refuse("inertia_body_kg_m2", "the matrix is not symmetric", "An inertia tensor is: check the entries beside the diagonal, whose sign is that of -sum m x y.");
   const Vector3d moments = symmetric_eigen(inertia).values;   // ascending
   if (!(moments[0] > 0)) refuse("inertia_body_kg_m2", "a principal moment is not above 0", "Every moment of a solid is positive.");
-  // Equality is a flat plate; 1e-9 forgives its rounding.
+  // Equality is a flat plate; 1e-9 allows for its rounding.
   if (moments[0] + moments[1] < moments[2] * (1 - 1e-9))
     refuse("inertia_body_kg_m2", "no solid has these moments: the largest exceeds the sum of the two others", "Ixx + Iyy >= Izz must hold, in any order.");
 }
@@ -70,7 +70,7 @@ namespace {
 void check_friction(const Scene& scene, const Refuse& refuse) {
   for (const BodySpec& body : scene.bodies)
     if (body.friction > 0.0 && !scene.contact)
-      refuse(body.pointer + "/friction", "body '" + body.name + "' has friction, which acts in lasting contact only, and the scene has none", "Add \"contact\": {} to the scene, or delete friction.");
+      refuse(body.pointer + "/friction", "body '" + body.name + "' has friction, which acts in persistent contact only, and the scene has none", "Add \"contact\": {} to the scene, or delete friction.");
 }
 
 }  // namespace

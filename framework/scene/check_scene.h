@@ -1,4 +1,5 @@
-/// What a schema cannot say about a scene: names that resolve, masses that fit, matrices that are inertias.
+/// Rules for a scene that a schema cannot express: names that resolve, consistent masses, valid
+/// inertia tensors.
 #pragma once
 
 #include "framework/scene/names.h"
@@ -6,13 +7,14 @@
 
 namespace tumble::scene {
 
-/// Everything that one body's entry must hold on its own.
+/// Checks the entry of one body by itself.
 void check_body(const BodySpec& body, const Refuse& refuse);
 
-/// That no ellipsoid may meet anything but planes.
+/// Refuses ellipsoids that may collide with anything but planes.
 void check_ellipsoids(const Scene& scene, const Refuse& refuse);
 
-/// Everything between entries. @pre names of bodies are different, and those that links name are there
+/// Checks the relations between entries. @pre names of bodies are different, and those that links
+/// name exist
 void check_scene(const Scene& scene, const Refuse& refuse);
 
 }  // namespace tumble::scene

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Iterator over the text that lets the parser's position be seen from its callback.
+/// Iterator over the text that makes the parser's position visible in its callback.
 struct WatchedIterator {
   using iterator_category = std::input_iterator_tag;
   using value_type = char;
@@ -71,7 +71,7 @@ class LineNotes {
   }
 
   std::map<std::string, int> lines;
-  std::optional<std::string> twice;   // first key that stands twice in one object
+  std::optional<std::string> twice;   // first duplicate key of one object
 
  private:
   struct Level {
@@ -90,7 +90,7 @@ class LineNotes {
     if (!levels_.empty() && levels_.back().index >= 0) ++levels_.back().index;
   }
   int line() {
-    // The parser may have read one character past the token: never count that one's line feed.
+    // The parser may have read one character past the token: its line feed must not be counted.
     const char* end = std::max(counted_ == nullptr ? text_.data() : counted_, *seen_ - 1);
     const char* begin = counted_ == nullptr ? text_.data() : counted_;
     line_ += static_cast<int>(std::count(begin, end, '\n'));
@@ -112,7 +112,7 @@ std::string line_and_column(const std::string& text, std::size_t byte) {
   return std::to_string(line) + ':' + std::to_string(end - (start == std::string::npos ? 0 : start + 1) + 1);
 }
 
-/// What is wrong in a message of nlohmann::json, without its own prefix and position.
+/// The problem in a message of nlohmann::json, without its prefix and position.
 std::string essence(const std::string& what) {
   const std::size_t dash = what.find(" - ");
   if (dash != std::string::npos) return what.substr(dash + 3);
@@ -152,7 +152,7 @@ bool has_type(const json& value, const std::string& type) {
   return value.is_number();
 }
 
-/// Says what is wrong with one value, whose children are all right.
+/// Reports the problem of one value, whose children are all valid.
 [[noreturn]] void explain(const Document& document, const std::string& pointer, const json& schema, const json& node) {
   const json& value = document.json.at(json::json_pointer(pointer));
   const json& rule = resolve(schema, node);
@@ -177,7 +177,8 @@ bool has_type(const json& value, const std::string& type) {
   document.refuse(pointer, "found " + show(value) + ", expected " + (pointer.empty() ? "an object, { ... }: what a scene says" : expected));
 }
 
-// Squares and cubes of what a scene says must stay within doubles, and so must products of three of them (2^-1074 to 2^1023).
+// Squares and cubes of a scene's numbers must stay within doubles, and so must products of three of
+// them (2^-1074 to 2^1023).
 constexpr int kDeepest = 100;
 constexpr double kLargest = 1e60, kSmallest = 1e-60;
 
@@ -189,8 +190,8 @@ void refuse_extreme_numbers(const Document& document, const json& value, const s
     for (std::size_t i = 0; i < value.size(); ++i) refuse_extreme_numbers(document, value[i], pointer + '/' + std::to_string(i), depth + 1);
   if (!value.is_number()) return;
   const double size = std::abs(value.get<double>());
-  if (size > kLargest) document.refuse(pointer, "found " + show(value) + ", too large to reckon with", "Numbers may be up to 1e60: check its digits and its unit.");
-  if (size > 0.0 && size < kSmallest) document.refuse(pointer, "found " + show(value) + ", too small to reckon with", "Numbers are 0 or at least 1e-60 in size: write 0, or check its unit.");
+  if (size > kLargest) document.refuse(pointer, "found " + show(value) + ", too large to compute with", "Numbers may be up to 1e60: check its digits and its unit.");
+  if (size > 0.0 && size < kSmallest) document.refuse(pointer, "found " + show(value) + ", too small to compute with", "Numbers are 0 or at least 1e-60 in size: write 0, or check its unit.");
 }
 
 }  // namespace
@@ -217,7 +218,7 @@ Document parse_document(const std::string& text, const std::filesystem::path& fi
     throw UserError(file.string() + ':' + line_and_column(text, static_cast<std::size_t>(seen - text.data())), essence(error.what()), "Write a number that a double can hold: check its digits.");
   }
   document.lines = std::move(notes.lines);
-  if (notes.twice) document.refuse(*notes.twice, "this key stands twice in the same object", "Delete one of the two.");
+  if (notes.twice) document.refuse(*notes.twice, "this key occurs twice in the same object", "Delete one of the two.");
   refuse_extreme_numbers(document, document.json, "");
   return document;
 }
@@ -230,7 +231,8 @@ void check_against_schema(const Document& document, const json& schema) {
   valijson::ValidationResults results;
   if (validator.validate(rules, valijson::adapters::NlohmannJsonAdapter(document.json), &results)) return;
 
-  // The innermost complaint, the first among equals, is the cause; those around it are its consequences.
+  // The innermost problem, the first of several, is the cause; those around it are its
+  // consequences.
   std::vector<std::string> deepest;
   for (const auto& error : results)
     if (error.context.size() > deepest.size()) deepest = error.context;

@@ -7,7 +7,7 @@
 namespace tumble::scene {
 namespace {
 
-/// Bodies that something may touch; none where all of them stand still or there is only one.
+/// Bodies that may collide; none where all of them are fixed or there is only one.
 std::vector<const BodySpec*> colliding_bodies(const Scene& scene) {
   std::vector<const BodySpec*> bodies;
   for (const auto& body : scene.bodies)
@@ -19,7 +19,7 @@ std::vector<const BodySpec*> colliding_bodies(const Scene& scene) {
 EffectUse collision(const Scene& scene) {
   EffectUse effect{"collision", "collision, impacts", "candidate_pairs", {}, ""};
   for (const BodySpec* body : colliding_bodies(scene)) effect.askers.push_back({body->pointer, fmt::format("{}: restitution {:g}", body->name, body->restitution)});
-  if (!effect.is_on()) effect.note = "no two bodies can meet: one alone, immovable, or \"collides\": false";
+  if (!effect.is_on()) effect.note = "no two bodies can collide: one alone, immovable, or \"collides\": false";
   return effect;
 }
 
@@ -27,7 +27,7 @@ EffectUse contact(const Scene& scene) {
   EffectUse effect{"lasting contact", "contacts", "contact_solves", {}, ""};
   if (!scene.contact) return effect;
   if (colliding_bodies(scene).empty()) {
-    effect.note = "/contact asks for it, but no two bodies can meet";
+    effect.note = "/contact asks for it, but no two bodies can collide";
     return effect;
   }
   const bool simultaneous = scene.contact->impact_law == ImpactLaw::kSimultaneous;
@@ -41,7 +41,7 @@ EffectUse friction(const Scene& scene) {
   for (const BodySpec* body : colliding_bodies(scene))
     if (body->friction > 0.0) effect.askers.push_back({body->pointer.empty() ? "" : body->pointer + "/friction", fmt::format("{}: {:g}", body->name, body->friction)});
   if (effect.askers.size() == 1) effect.note = effect.askers[0].pointer + " asks for it, but of a pair the smaller coefficient counts, and no other body has one";
-  if (effect.is_on() && !scene.contact) effect.note = "it acts in lasting contact only, and the scene has none";
+  if (effect.is_on() && !scene.contact) effect.note = "it acts in persistent contact only, and the scene has none";
   if (!effect.note.empty()) effect.askers.clear();
   return effect;
 }

@@ -36,7 +36,7 @@ Quaterniond orientation(const json& value, const Document& document, const std::
   if (value.contains("quaternion")) {
     const json& q = value.at("quaternion");
     const Quaterniond given(q.at(0).get<double>(), q.at(1).get<double>(), q.at(2).get<double>(), q.at(3).get<double>());
-    // 0.1 %: rounding to three digits is repaired, anything more is a slip.
+    // 0.1 %: the rounding to three digits is repaired; a larger deviation is a mistake.
     if (std::abs(given.norm() - 1.0) > 1e-3)
       document.refuse(pointer + "/quaternion", "found " + show(q) + " of length " + std::to_string(given.norm()) + ", expected a unit quaternion [w, x, y, z]",
                       "Divide by its length, or give euler_deg or rotation_vector_rad.");
@@ -61,7 +61,7 @@ Matrix3d inertia(const json& value) {
 
 }  // namespace
 
-/// "#rrggbb" is sRGB, as people pick it; linear light is what the renderer adds up.
+/// "#rrggbb" is sRGB, as in colour pickers; the renderer computes with linear light.
 /// Source: IEC 61966-2-1, the inverse of the transfer function.
 Vector3d read_color(const json& value) {
   if (value.is_array()) return read_vector(value);

@@ -1,4 +1,5 @@
-/// A body's entry, and a lattice of them, from JSON. For the .cpp files of this folder only.
+/// Reads the entry of a body, or of a lattice of bodies, from JSON. For the .cpp files of this
+/// folder only.
 #pragma once
 
 #include <string>
@@ -9,7 +10,7 @@
 namespace tumble::scene {
 
 /// @param value    an entry of the schema's kind "body"
-/// @param pointer  where it stands in the document
+/// @param pointer  its position in the document
 /// @throws UserError for what check_body refuses
 BodySpec read_body(const nlohmann::json& value, const Document& document, const std::string& pointer);
 

@@ -1,4 +1,4 @@
-// A chain is written out into bodies and the springs, rods or joints between them.
+// A chain is expanded into bodies and the springs, rods or joints between them.
 //
 //   rods, springs:  anchor --- link_1 --- link_2 --- ... --- link_n [--- end]      ties between centres of mass, spacing apart
 //   joints:         anchor o==link_1==o==link_2==o ... ==link_n== [o end]          ties at the links' ends, links spacing long
@@ -46,7 +46,7 @@ class ChainWriter {
   bool is_jointed() const { return kind_ == "ball_joints" || kind_ == "hinges"; }
   std::string tie_word() const { return kind_ == "rods" ? "rod" : kind_ == "springs" ? "spring" : "joint"; }
 
-  /// Keys that say something about another kind of chain.
+  /// Refuses keys of another kind of chain.
   void refuse_foreign_keys() const {
     for (const char* key : {"stiffness_n_m", "damping_n_s_m", "rest_length_m"})
       if (kind_ != "springs" && value_.contains(key)) document_.refuse(pointer_ + '/' + key, "a chain of " + kind_ + " has none", "Delete it, or choose \"springs\".");
@@ -54,7 +54,7 @@ class ChainWriter {
     if (kind_ != "hinges" && value_.contains("axis")) document_.refuse(pointer_ + "/axis", "a chain of " + kind_ + " has no axis", "Delete it, or choose \"hinges\".");
     if (kind_ == "hinges" && !value_.contains("axis")) document_.refuse(pointer_, "a chain of hinges needs the key 'axis': their direction in the world", "Add it.");
     if (is_jointed() && value_.contains("neighbours_apart")) document_.refuse(pointer_ + "/neighbours_apart", "joined bodies never collide", "Delete it.");
-    if (value_.at("link").contains("position_m")) document_.refuse(pointer_ + "/link/position_m", "the chain says where its links are", "Delete it.");
+    if (value_.at("link").contains("position_m")) document_.refuse(pointer_ + "/link/position_m", "the chain determines the positions of its links", "Delete it.");
   }
 
   ChainLine lay_line(const AnchorSpec& from, const std::optional<AnchorSpec>& to) {
@@ -100,7 +100,7 @@ class ChainWriter {
     return body.name;
   }
 
-  /// The k-th tie (from 1), between what stands before it and after it.
+  /// The k-th connection (from 1), between the bodies before and after it.
   void tie(const AnchorSpec& a, const AnchorSpec& b, int k, const std::string& name) {
     const double distance_m = (anchors_.place_at_start(b) - anchors_.place_at_start(a)).norm();
     if (kind_ == "rods") {
@@ -116,7 +116,7 @@ class ChainWriter {
     if (value_.value("neighbours_apart", false) && !a.body.empty() && !b.body.empty()) scene_.apart.emplace_back(a.body, b.body);
   }
 
-  /// What a file would say under a key, with the chain's own place for messages.
+  /// Adds an entry as in a file, with the chain's own position for messages.
   void add_entry(const char* key, const json& entry) {
     const Words* words = words_of(key);
     if (words == nullptr) document_.refuse(pointer_ + "/kind", std::string("this program is built without \"") + key + "\"");

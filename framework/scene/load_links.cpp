@@ -23,7 +23,7 @@ void read_stabilisation(const json& root, const Document& document, Scene& scene
   const bool is_needed = is_constrained(scene);
   if (is_needed) scene.stabilisation.emplace();
   if (!root.contains("stabilisation")) return;
-  if (!is_needed) document.refuse("/stabilisation", "there are neither rods nor joints to keep together", "Delete it.");
+  if (!is_needed) document.refuse("/stabilisation", "the scene has neither rods nor joints", "Delete it.");
   const json& value = root.at("stabilisation");
   const std::string kind = value.at("kind");
   scene.stabilisation->kind = kind == "none" ? StabilisationKind::kNone : kind == "baumgarte" ? StabilisationKind::kBaumgarte : StabilisationKind::kProjection;

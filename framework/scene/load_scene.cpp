@@ -125,7 +125,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& file) {
   read_bodies(document, scene);
   Anchors anchors(document, scene);
   read_chains(document, anchors, scene);
-  check_names(document, scene);   // before anything is looked up by name
+  check_names(document, scene);   // before any look-up by name
   read_effects(document, anchors, scene);
   read_links(document, anchors, scene);
   read_view(root, scene);
@@ -140,7 +140,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& file) {
 Scene load_scene(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream || std::filesystem::is_directory(file))
-    throw UserError(file.string(), std::filesystem::exists(file) ? "this cannot be read as a file" : "there is no such scene file", "Scenes stand in assignments/*/scenes.");
+    throw UserError(file.string(), std::filesystem::exists(file) ? "this cannot be read as a file" : "there is no such scene file", "Scenes are in assignments/*/scenes.");
   std::ostringstream text;
   text << stream.rdbuf();
   return parse_scene(text.str(), file);

@@ -1,4 +1,4 @@
-/// Lots for a scene that is made by code.
+/// Random numbers for a scene that is made by code.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace tumble::scene {
 
-/// The seed is noted in the scene, so that every record of a run names it.
+/// Notes the seed in the scene, so that every record of a run contains it.
 inline Random lots(std::uint64_t seed, Scene& scene) {
   scene.seeds.push_back(seed);
   return Random(seed);

@@ -19,15 +19,15 @@ namespace {
 
 constexpr double kGravity = 9.81;                    // m/s^2
 constexpr double kFieldOfView = 36.0;                // degrees, vertical
-constexpr double kMargin = 1.25;                     // of the model's radius: what the picture shows
-constexpr double kSmallest = 5e-3, kLargest = 50.0;  // m: beyond these a model's unit is probably not the metre
+constexpr double kMargin = 1.25;                     // of the model's radius: the extent of the picture
+constexpr double kSmallest = 5e-3, kLargest = 50.0;  // m: outside this range the model's unit is probably not the metre
 constexpr double kModelSpin = 1.2;                        // rad/s: a turn in five seconds
-constexpr double kFreeDuration = 8.0, kFreeStep = 1.0 / 240.0;   // s: 0.005 rad a step
+constexpr double kFreeDuration = 8.0, kFreeStep = 1.0 / 240.0;   // s: 0.005 rad per step
 
 /// An object of the file, about its centre of mass.
 struct Object {
   std::string name;
-  double radius = 0.0;              // of the smallest ball about the centre of mass that holds it [m]
+  double radius = 0.0;              // of the smallest ball about the centre of mass that contains it [m]
   double mass = 0.0;                // [kg]
   Matrix3d inertia = Matrix3d::Zero();   // mesh axes [kg m^2]
   Vector3d size = Vector3d::Zero();      // of its bounding box [m]
@@ -36,7 +36,7 @@ struct Object {
 std::vector<Object> read_objects(const std::filesystem::path& file, const ModelSceneOptions& options) {
   std::vector<Object> objects;
   for (const LoadedObject& loaded : load_3ds(file, {options.metres_per_unit}).objects) {
-    const SolidModel model = load_solid(file, loaded.name, options.metres_per_unit);   // refuses what is not closed
+    const SolidModel model = load_solid(file, loaded.name, options.metres_per_unit);   // refuses meshes that are not closed
     Object object{loaded.name, 0.0, options.density_kg_m3 * model.volume, options.density_kg_m3 * model.inertia_per_density_body, Vector3d::Zero()};
     for (const Vector3d& vertex : model.solid.mesh_body.vertices) object.radius = std::max(object.radius, vertex.norm());
     const Bounds bounds = bounds_of(model.solid.mesh_body);
@@ -54,7 +54,7 @@ CheckSpec check(const std::string& kind, double tolerance, const std::string& wh
   return spec;
 }
 
-/// 1, 2 or 5 times a power of ten, at most the length given: a grid that people can count.
+/// 1, 2 or 5 times a power of ten, at most the given length: a grid that is easy to count.
 double round_length(double length) {
   const double power = std::pow(10.0, std::floor(std::log10(length)));
   for (const double factor : {5.0, 2.0})
@@ -62,7 +62,7 @@ double round_length(double length) {
   return power;
 }
 
-/// Bodies in a row along x, with the origin in the middle and a clear gap between neighbours.
+/// Adds bodies in a row along x, with the origin in the middle and a gap between neighbours.
 void add_bodies(const std::vector<Object>& objects, const std::filesystem::path& file, const ModelSceneOptions& options, Scene& scene) {
   static const std::array<Vector3d, 4> colors = {Vector3d(0.82, 0.09, 0.05), Vector3d(0.03, 0.13, 0.27), Vector3d(0.84, 0.42, 0.07), Vector3d(0.05, 0.38, 0.30)};
   constexpr double kClear = 1.1;   // of the radius
@@ -84,7 +84,7 @@ void add_bodies(const std::vector<Object>& objects, const std::filesystem::path&
   }
 }
 
-/// Nothing acts: momentum, angular momentum and energy stay.
+/// Without forces: momentum, angular momentum and energy are constant.
 void set_free(const std::vector<Object>& objects, const ModelSceneOptions& options, Scene& scene) {
   const Vector3d spin = options.turns ? Vector3d(kModelSpin * Vector3d(0.25, 0.35, 0.9).normalized()) : Vector3d(Vector3d::Zero());
   double angular = 0.0, mass = 0.0;
@@ -100,7 +100,8 @@ void set_free(const std::vector<Object>& objects, const ModelSceneOptions& optio
                   check("energy", 1e-8, "no force does work: the same truncation")};
 }
 
-/// It falls by its own radius, lands and comes to rest in about fifteen times the time of a fall by its radius.
+/// It falls by its own radius, lands, and comes to rest within about fifteen times the duration of
+/// that fall.
 void set_dropped(double radius, Scene& scene) {
   const double fall = std::sqrt(radius / kGravity);   // s: the scale of all times here
   EntryWriter{scene}("gravity_m_s2", Vector3d(0, 0, -kGravity));
@@ -124,7 +125,7 @@ void set_dropped(double radius, Scene& scene) {
                   check("gap", 0.0, "nothing ever enters the floor")};
 }
 
-/// What a viewer should know: size, weight, and by which words they change.
+/// The description for a viewer: size, mass, and the flags that change them.
 std::string about(const std::vector<Object>& objects, const ModelSceneOptions& options) {
   double mass = 0.0, largest = 0.0;
   Vector3d size = Vector3d::Zero();
@@ -148,7 +149,7 @@ bool names_model(const std::string& word) {
   std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (ending == ".3ds") return true;
   if (!std::filesystem::is_regular_file(word)) return false;
-  char first[2] = {};   // the main chunk's number, 0x4D4D
+  char first[2] = {};   // magic number of the main chunk, 0x4D4D
   std::ifstream(word, std::ios::binary).read(first, sizeof first);
   return first[0] == 'M' && first[1] == 'M';
 }
@@ -158,11 +159,11 @@ Scene make_model_scene(const std::filesystem::path& file, const ModelSceneOption
   Scene scene;
   scene.name = file.stem().string();
   scene.title = fmt::format("{}, {}", file.filename().string(), options.is_dropped ? "dropped on a floor" : "free in space");
-  scene.file = std::filesystem::absolute(file);   // the model is looked for beside it
+  scene.file = std::filesystem::absolute(file);   // the model is searched beside it
   scene.about = about(objects, options);
   add_bodies(objects, file, options, scene);
 
-  // All that moves lies within `reach` of the middle.
+  // All moving bodies stay within `reach` of the middle.
   double radius = 0.0, reach = 0.0;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     radius = std::max(radius, objects[i].radius);

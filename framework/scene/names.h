@@ -1,4 +1,4 @@
-/// Names that resolve, and how one that does not is refused.
+/// Names that resolve, and the refusal of one that does not.
 #pragma once
 
 #include <functional>
@@ -11,16 +11,17 @@
 
 namespace tumble::scene {
 
-/// Called with a place (a key of the body, or a JSON pointer of the scene), what is wrong there, and what to do. Must throw.
+/// Called with a position (a key of the body, or a JSON pointer of the scene), the problem, and the
+/// remedy. Must throw.
 using Refuse = std::function<void(const std::string& place, const std::string& problem, const std::string& remedy)>;
 
-/// The names there are of a kind of thing.
+/// The known names of one kind of entry.
 class Names {
  public:
-  /// @param what, plural  as errors call them: "body", "Bodies"
+  /// @param what, plural  for errors: "body", "Bodies"
   Names(std::string what, std::string plural, std::vector<std::string> names) : what_(std::move(what)), plural_(std::move(plural)), names_(std::move(names)) {}
 
-  /// Refuses a name that is not among them, and says which is nearest.
+  /// Refuses an unknown name, with the nearest known one.
   void expect(const std::string& name, const std::string& pointer, const Refuse& refuse) const;
 
  private:

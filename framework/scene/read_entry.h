@@ -1,4 +1,4 @@
-/// What an Entry reads from. For the .cpp files of this folder only.
+/// The source of an Entry. For the .cpp files of this folder only.
 #pragma once
 
 #include "framework/scene/anchors.h"
@@ -12,7 +12,7 @@ struct EntrySource {
   Anchors& anchors;
 };
 
-/// As a file says it.
+/// As in a file.
 inline nlohmann::json json_of(const Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 inline nlohmann::json json_of(const AnchorSpec& anchor) {
   if (anchor.body.empty()) return {{"point_world_m", json_of(anchor.point_m)}};

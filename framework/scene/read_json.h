@@ -1,4 +1,5 @@
-/// Values of a JSON object into plain data. For the .cpp files of this folder only; the schema has been checked before.
+/// Reads values of a JSON object into plain data. For the .cpp files of this folder only; the
+/// schema has been checked before.
 #pragma once
 
 #include <optional>
@@ -12,7 +13,7 @@ inline Vector3d read_vector(const nlohmann::json& value) {
   return Vector3d(value.at(0).get<double>(), value.at(1).get<double>(), value.at(2).get<double>());
 }
 
-/// Leaves the target as it is where the key is absent.
+/// Leaves the target unchanged where the key is absent.
 inline void read(const nlohmann::json& object, const char* key, Vector3d& target) {
   if (object.contains(key)) target = read_vector(object.at(key));
 }

@@ -8,7 +8,8 @@
 namespace tumble::scene {
 namespace {
 
-/// Uniform over the circle of a plane, or over the sphere (height and azimuth are uniform there: Archimedes).
+/// Uniform over the circle of a plane, or over the sphere (height and azimuth are uniform there:
+/// Archimedes).
 Vector3d random_direction(Random& random, const std::string& directions) {
   const double azimuth = random.between(0.0, 2.0 * std::numbers::pi);
   const double c = std::cos(azimuth), s = std::sin(azimuth);

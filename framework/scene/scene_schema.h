@@ -1,4 +1,4 @@
-/// The schema of scene files, carried inside the program: the text of scene.schema.json at the time of the build.
+/// The schema of scene files inside the program: the text of scene.schema.json at build time.
 #pragma once
 
 namespace tumble::scene {

@@ -62,12 +62,12 @@ Scene scene_of(double duration, double step) {
 namespace {
 
 constexpr double kWheel = 0.22;          // radius [m]
-constexpr double kLane = 1.0;            // between pendula [m]: those that swing far meet their neighbours
+constexpr double kLane = 1.0;            // between pendula [m]: those with a large swing collide with their neighbours
 constexpr double kRod = 1.5;             // [m]
 constexpr double kBob = 0.12;            // [m]
 constexpr double kBay = 1.8;             // between vehicles side by side or behind each other [m]: one is 1.54 m wide and 1.28 m long
 
-// A motor asks for a turn that is never reached: full torque at a standstill, none at 10 rad/s.
+// The motor's target is never reached: full torque at a standstill, none at 10 rad/s.
 void add_vehicle(int number, const Vector3d& at, Scene& scene, EntryWriter& write) {
   const auto part = [&](const char* what) { return fmt::format("{}_{}", what, number); };
   BodySpec chassis = body_at(part("car"), BoxSpec{{0.6, 0.3, 0.08}}, 20.0, at + Vector3d(0, 0, 0.36), number);
@@ -100,8 +100,9 @@ Scene cars(int n) {
   floor.friction = 1.0;
   scene.bodies.push_back(floor);
   EntryWriter write(scene);
-  std::vector<Vector3d> bobs;   // where they begin: two that swing towards each other must not begin in each other
-  // Vehicles stand in front of the pendula, spread over their width; in ranks where one is too short.
+  std::vector<Vector3d> bobs;   // start positions: two that swing towards each other must not overlap at the start
+  // Vehicles start in front of the pendula, spread over their width; in several ranks where one is
+  // too short.
   const int most_abreast = std::max(1, static_cast<int>(kLane * across / kBay)), ranks = (vehicles - 1) / most_abreast + 1, abreast = (vehicles - 1) / ranks + 1;
   for (int v = 0; v < vehicles; ++v) add_vehicle(v + 1, {-0.5 * kLane * across - 0.9 - kBay * (v / abreast), ((v % abreast + 0.5) / abreast - 0.5) * kLane * across, 0}, scene, write);
   for (int i = 0; i < n; ++i) {
@@ -129,16 +130,17 @@ namespace {
 constexpr int kLinks = 8;
 constexpr double kLink = 0.2;            // length [m]
 constexpr double kShoulder = 0.9;        // above the floor [m]
-constexpr double kCell = 4.4;            // between arms [m]: none reaches another, what they throw may
+constexpr double kCell = 4.4;            // between arms [m]: an arm never reaches another, a thrown block may
 constexpr double kSwing = 1.75;          // of the hand about the shoulder [rad]
-// The model scoop.3ds: half its width, of its pocket, height, floor [m]. Its centre of mass above the underside is that of the block less the pocket.
+// The model scoop.3ds: half its width, of its pocket, height, floor [m]. Its centre of mass above
+// its underside is that of the block minus the pocket.
 constexpr double kScoop = 0.125, kPocket = 0.1015625, kScoopHigh = 0.1015625, kScoopFloor = 0.015625;
-constexpr double kBlock = 0.0703125;         // half a block's side [m]: some room in the pocket
+constexpr double kBlock = 0.0703125;         // half a block's side [m]: smaller than the pocket
 
-// Of a hinge of the arm, counted from the shoulder: about the upright axis; the others lift.
+// Whether a hinge of the arm, counted from the shoulder, has an upright axis; the others lift.
 bool turns_aside(int hinge) { return hinge == 0 || hinge == 4; }
 
-constexpr double kShares[kLinks] = {0.0, 0.35, 0.25, 0.2, 0.0, 0.1, 0.06, 0.04};   // of the swing, by hinge: those near the hand bear the least
+constexpr double kShares[kLinks] = {0.0, 0.35, 0.25, 0.2, 0.0, 0.1, 0.06, 0.04};   // of the swing, by hinge: those near the hand have the smallest torque
 constexpr double kLinkMass = 1.0, kBlockMass = 0.3;   // kg
 
 double scoop_centre() {
@@ -153,29 +155,31 @@ BodySpec block_at(const std::string& name, const Vector3d& place, int color) {
   return block;
 }
 
-// How far from the shoulder a link's centre is; the hand is the last. [m]
+// Distance of a link's centre from the shoulder; the hand is the last. [m]
 double arm_of(int link) { return (link + 0.5) * kLink + (link == kLinks - 1 ? 0.05 : 0.0); }
 
-// What a hinge has to hold up while the arm is stretched out. [N m]
+// Torque of gravity on a hinge with the arm stretched out. [N m]
 double weight_on(int hinge) {
   double torque = kBlockMass * (arm_of(kLinks - 1) - hinge * kLink);
   for (int k = hinge; k < kLinks; ++k) torque += kLinkMass * (arm_of(k) - hinge * kLink);
   return 9.81 * torque;
 }
 
-// From rest, carrying its weight, to the far end and back: target = weight / stiffness + a (1 - cos(2 pi f t)).
+// From rest, carrying its weight, to the far end and back: target = weight / stiffness + a (1 -
+// cos(2 pi f t)).
 void add_motor(const std::string& hinge, int k, double turn, double rate, EntryWriter& write) {
-  const double share = std::pow(static_cast<double>(kLinks - k) / kLinks, 2.5);   // as stiff as what hangs on it is heavy
-  const double stiffness = 6000.0 * share, damping = 4.0 * std::sqrt(share);      // more would shake the links: a torque is held until the motor looks again
-  const double period = 1.0 / 960.0;   // s: held longer, such a torque would throw the light links about
+  const double share = std::pow(static_cast<double>(kLinks - k) / kLinks, 2.5);   // stiffness in proportion to the load
+  const double stiffness = 6000.0 * share, damping = 4.0 * std::sqrt(share);      // more would make the links vibrate: a torque is held until the next sample
+  const double period = 1.0 / 960.0;   // s: held longer, such a torque would make the light links unstable
   write("motors", {{"joint", hinge}, {"amplitude_rad", 0.5 * turn}, {"frequency_hz", rate}, {"phase_rad", -0.5 * std::numbers::pi}, {"stiffness_n_m_rad", stiffness},
                    {"damping_n_m_s_rad", damping}, {"offset_rad", 0.5 * turn + (turns_aside(k) ? 0.0 : weight_on(k) / stiffness)}, {"period_s", period}});
 }
 
-// Stretched out backward along -x, its hand a scoop with a block in it. The hinges that lift swing it up and over: where the hand is slowed
-// down again the block flies on. The other two turn the arm to its sides.
+// Stretched out backward along -x, its hand a scoop with a block in it. The lifting hinges swing it
+// up and over; where the hand decelerates the block flies on. The other two turn the arm to its
+// sides.
 void add_arm(int number, const Vector3d& foot, Random& random, Scene& scene, EntryWriter& write) {
-  const double rate = random.between(0.55, 0.7), side = random.between(-0.2, 0.2);   // swings a second; how far it turns aside [rad]
+  const double rate = random.between(0.55, 0.7), side = random.between(-0.2, 0.2);   // swings per second; the angle to the side [rad]
   const Vector3d shoulder = foot + Vector3d(0, 0, kShoulder);
   std::vector<std::string> names;
   for (int k = 0; k < kLinks; ++k) {
@@ -216,7 +220,7 @@ Scene robots(int n) {
   for (int i = 0; i < n; ++i) {
     const Vector3d foot((i / across - 0.5 * (across - 1)) * kCell, (i % across - 0.5 * (across - 1)) * kCell, 0);
     add_arm(i + 1, foot, random, scene, write);
-    scene.bodies.push_back(block_at(fmt::format("block_{}_2", i + 1), foot + Vector3d(random.between(1.6, 2.2), random.between(-0.3, 0.3), kBlock), i + 3));   // where the first one flies
+    scene.bodies.push_back(block_at(fmt::format("block_{}_2", i + 1), foot + Vector3d(random.between(1.6, 2.2), random.between(-0.3, 0.3), kBlock), i + 3));   // where the first one is thrown
   }
   const int rows = (n - 1) / across + 1;
   const double middle = 0.5 * (rows - across) * kCell, wide = kCell * std::max(rows, across);
@@ -230,12 +234,12 @@ Scene robots(int n) {
 namespace {
 
 // The model mountainside.3ds: downhill along x, a flat valley at z = 0.
-const Vector3d kMountainCentre(-6.93285, -0.00113, 2.33035);   // its centre of mass in its own frame, where bodies are placed by [m]
-constexpr double kMountainWide = 6.6;    // of a piece: pieces stand side by side without a seam [m]
+const Vector3d kMountainCentre(-6.93285, -0.00113, 2.33035);   // its centre of mass in its own frame, by which bodies are placed [m]
+constexpr double kMountainWide = 6.6;    // width of a piece: pieces are placed side by side without a seam [m]
 constexpr double kRockApart = 0.7;       // of rocks at the start [m]
 constexpr double kFirstRow = 5.6;        // uphill of the valley [m]
 constexpr double kSteep = 0.7;           // tangent of the slope
-constexpr double kRelief = 1.45;         // how high the ground reaches above the even slope, with its step, and some room [m]
+constexpr double kRelief = 1.45;         // height of the ground above the even slope, with its step, and a margin [m]
 constexpr double kGround = 2.2;          // of ground beside the outermost rocks, both sides together [m]
 
 void add_mountain(double width, Scene& scene) {

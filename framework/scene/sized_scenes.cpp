@@ -21,13 +21,14 @@ constexpr int kMostBodies = 2'000'000;
 
 // ---- Atoms: balls and molecules of water in a box, divided by a wall down the middle --------------------------------
 
-// Balls fill a twentieth of the room: a ball of speed 1.5 m/s then hits another about sqrt(2) pi d^2 v rho = 3.2 times a second
-// (d its diameter, rho the bodies a volume; R. Clausius' mean free path), which is w h = 0.1 at steps of 1/30 s.
+// Balls fill 5 % of the room: a ball of speed 1.5 m/s then collides about sqrt(2) pi d^2 v rho =
+// 3.2 times per second (d its diameter, rho the bodies per volume; R. Clausius' mean free path),
+// which is w h = 0.1 at steps of 1/30 s.
 constexpr double kBall = 0.1;              // radius [m]
-constexpr double kApart = 0.44;            // of the lattice the bodies start on [m]: 11.7 bodies a cubic metre
+constexpr double kApart = 0.44;            // of the lattice of start positions [m]: 11.7 bodies per cubic metre
 constexpr double kSpeed = 1.5;             // of every body at the start [m/s]
 constexpr double kSpin = 2.0;              // of every molecule at the start [rad/s]
-constexpr double kMolecule = 0.22;         // metres a unit of the model: it reaches 0.16 m from its centre
+constexpr double kMolecule = 0.22;         // metres per unit of the model: it reaches 0.16 m from its centre
 constexpr double kMoleculeReach = 0.18;    // [m]
 constexpr double kDivider = 0.05;          // half the thickness of the wall in the middle [m]
 
@@ -78,7 +79,8 @@ BodySpec molecule_at(const std::string& name, const Vector3d& position, Random& 
   return body;
 }
 
-// Places of a lattice of `count` cells or more in a block as deep and high as `across` cells, from x = from to the right.
+// Positions of a lattice of at least `count` cells in a block as deep and high as `across` cells,
+// from x = from to the right.
 struct Block {
   double from;
   int across;
@@ -251,7 +253,7 @@ Scene make_sized_scene(const std::string& name, int n) {
   scene.about = sized.about;
   scene.title = fmt::format("{} (n = {})", sized.title, n);
   scene.digest = fmt::format("{} n={}", name, n);
-  if (scene.duration_s > 0) return scene;   // one that chose its own
+  if (scene.duration_s > 0) return scene;   // a scene with its own duration
   scene.duration_s = 2.0;
   scene.step_s = 1.0 / 30.0;
   return scene;

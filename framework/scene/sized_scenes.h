@@ -1,7 +1,8 @@
-/// Scenes whose number of bodies is a parameter, at kept density: what engines are compared on.
+/// Scenes with the number of bodies as a parameter, at constant density: for the comparison of
+/// engines.
 ///
-/// They are made here instead of standing in files because a file holds one size. In every other way they are scenes: each has a name, a
-/// default size, a camera, checks, and the same bytes for the same size.
+/// They are made by code because a file has one size. In every other respect they are scenes: each
+/// has a name, a default size, a camera, checks, and the same bytes for the same size.
 #pragma once
 
 #include <string>
@@ -14,12 +15,12 @@ namespace tumble::scene {
 struct SizedScene {
   std::string name;
   std::string title;
-  std::string counts;      // what n counts
+  std::string counts;      // the meaning of n
   int default_n;
-  std::string about;       // what a viewer should notice
+  std::string about;       // what to observe
 };
 
-/// All of them, in the order in which they are listed.
+/// All of them, in the order of listings.
 const std::vector<SizedScene>& sized_scenes();
 
 /// Nothing where no scene with a size has that name.
@@ -27,7 +28,7 @@ const SizedScene* sized_scene_named(const std::string& name);
 
 /// @param name  of sized_scenes()
 /// @param n     >= 1; the room grows with it
-/// @throws UserError for a name that is none of them, or an n that is out of range
+/// @throws UserError for an unknown name, or an n out of range
 Scene make_sized_scene(const std::string& name, int n);
 
 }  // namespace tumble::scene

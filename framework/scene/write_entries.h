@@ -1,6 +1,8 @@
-/// Adds entries of effects to a scene that is made in memory, in the words of a scene file: whoever makes such a scene needs to know no effect.
+/// Adds entries of effects to a scene made in memory, with the keys of a scene file, so that the
+/// code that makes a scene names no effect's types.
 ///   EntryWriter write(scene);
-///   write("rods", {{"name", "rod 1"}, {"a", AnchorSpec{}}, {"b", AnchorSpec{"bob"}}, {"length_m", 1.0}});
+///   write("rods", {{"name", "rod 1"}, {"a", AnchorSpec{}}, {"b", AnchorSpec{"bob"}}, {"length_m",
+///   1.0}});
 #pragma once
 
 #include <memory>
@@ -21,9 +23,10 @@ class EntryWriter {
   explicit EntryWriter(Scene& scene);
   ~EntryWriter();
 
-  /// Adds an entry. Bodies that it names are there. @throws UserError where the program is built without such entries, or this one cannot be
+  /// Adds an entry. The bodies that it names must exist. @throws UserError where the program has no
+  /// such effect, or the entry is impossible
   void operator()(const std::string& key, const std::vector<std::pair<std::string, Value>>& entry);
-  /// The same of what is three numbers, such as "gravity_m_s2".
+  /// The same for a value of three numbers, such as "gravity_m_s2".
   void operator()(const std::string& key, const Vector3d& value);
 
  private:
@@ -31,7 +34,7 @@ class EntryWriter {
   std::unique_ptr<EntryReader> reader_;
 };
 
-/// Takes all entries of a key out of a scene.
+/// Removes all entries of a key from a scene.
 void remove_entries(Scene& scene, const std::string& key);
 
 /// Whether a scene has entries of a key.

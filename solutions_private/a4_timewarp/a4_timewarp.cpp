@@ -31,7 +31,7 @@ ScheduledEvent with_times(ScheduledEvent event, double safe_time, double time) {
 }  // namespace
 
 bool comes_before(const Stamp& x, const Stamp& y) {
-  return std::tie(x.time, x.generation, x.kind, x.body_a, x.body_b) < std::tie(y.time, y.generation, y.kind, y.body_a, y.body_b);
+  return std::tie(x.time, x.microstep, x.kind, x.body_a, x.body_b) < std::tie(y.time, y.microstep, y.kind, y.body_a, y.body_b);
 }
 
 double next_check_time(double now, double gap, double closing_speed, double closing_acceleration, double step) {

@@ -22,14 +22,14 @@ ScheduledEvent group_check(std::vector<std::int32_t> members, double safe_time, 
 
 ScheduledEvent callback(std::int32_t body, double time) { return {{time, 0, WorkKind::kCallback, body, -1}, time, {body}}; }
 
-ScheduledEvent redraw(double time) { return {{time, kLastGeneration, WorkKind::kRedraw, -1, -1}, kInfinity, {}}; }
+ScheduledEvent redraw(double time) { return {{time, kLastMicrostep, WorkKind::kRedraw, -1, -1}, kInfinity, {}}; }
 
 Effect effect(double time, std::int32_t a, std::int32_t b, std::vector<std::int32_t> processes) {
   if (processes.empty()) processes = {a, b};
   return {impact(time, a, b), processes};
 }
 
-bool same(const Stamp& x, const Stamp& y) { return x.time == y.time && x.generation == y.generation && x.kind == y.kind && x.body_a == y.body_a && x.body_b == y.body_b; }
+bool same(const Stamp& x, const Stamp& y) { return x.time == y.time && x.microstep == y.microstep && x.kind == y.kind && x.body_a == y.body_a && x.body_b == y.body_b; }
 bool same(const Rollback& x, const Rollback& y) { return x.body == y.body && same(x.stamp, y.stamp); }
 
 std::string name_of(std::int32_t body) { return body == kWall ? "the wall" : body >= A && body <= E ? std::string(1, static_cast<char>('A' + body)) : "body " + std::to_string(body); }
@@ -55,8 +55,8 @@ std::string show(const Stamp& stamp) {
   if (stamp.body_a >= 0) text += " of " + name_of(stamp.body_a);
   if (stamp.body_b >= 0) text += " and " + name_of(stamp.body_b);
   text += " at " + show(stamp.time) + " s";
-  if (stamp.generation == kLastGeneration) return text + " (last generation)";
-  return stamp.generation == 0 ? text : text + " (generation " + std::to_string(stamp.generation) + ")";
+  if (stamp.microstep == kLastMicrostep) return text + " (last microstep)";
+  return stamp.microstep == 0 ? text : text + " (microstep " + std::to_string(stamp.microstep) + ")";
 }
 
 std::string show(const ScheduledEvent& event) { return show(event.stamp) + ", safe time " + show(event.safe_time) + " s"; }

@@ -36,7 +36,7 @@ inline std::string equation(int n) { return "handouts/a4_timewarp.md#eq-a4-" + s
 
 // ---- Events in few words -----------------------------------------------------------------------------------------------
 
-inline Stamp impact(double time, std::int32_t a, std::int32_t b, std::uint32_t generation = 0) { return {time, generation, WorkKind::kCollision, a, b}; }
+inline Stamp impact(double time, std::int32_t a, std::int32_t b, std::uint32_t microstep = 0) { return {time, microstep, WorkKind::kCollision, a, b}; }
 /// @param receivers  empty: both bodies
 ScheduledEvent collision_check(std::int32_t a, std::int32_t b, double safe_time, double time, std::vector<std::int32_t> receivers = {});
 ScheduledEvent group_check(std::vector<std::int32_t> members, double safe_time, double time);

@@ -68,7 +68,7 @@ TEST(OnCollisionCheck, DisjointBodiesGoOn) {
 TEST(OnCollisionCheck, AnImpactSendsBothBackToIt) {
   const Stamp contact = impact(0.375, A, B, 2);
   const CheckDecision found = a4_module().on_collision_check(collision_check(A, B, 0.25, 0.5), {contact, 0.0, 2.0, 0.0}, kStep);
-  const Story story{.scene = "the check of A and B looked at [0.25, 0.5] s and found them to meet at 0.375 s (generation 2)", .slip = "both go back to the stamp of the impact: not to the safe time, not to the time of the check", .handout = equation(3)};
+  const Story story{.scene = "the check of A and B looked at [0.25, 0.5] s and found them to meet at 0.375 s (microstep 2)", .slip = "both go back to the stamp of the impact: not to the safe time, not to the time of the check", .handout = equation(3)};
   expect_true(found.collides, "an impact", "no impact", {.scene = story.scene, .slip = "an impact in the past is an impact: this is what rollback is for", .handout = story.handout});
   expect_rollbacks(found.rollbacks, {back(A, contact), back(B, contact)}, story);
 }

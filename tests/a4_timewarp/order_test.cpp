@@ -23,16 +23,16 @@ TEST(ComesBefore, TimesAreComparedAsTheyAre) {
 }
 
 TEST(ComesBefore, AtOneInstantTheCauseIsFirst) {
-  const std::string slip = "the generation stands before kind and bodies: an effect must not come before its cause";
+  const std::string slip = "the microstep stands before kind and bodies: an effect must not come before its cause";
   expect_before(impact(1.0, C, D, 0), impact(1.0, A, B, 1), slip);
   expect_before({1.0, 1, WorkKind::kRedraw, -1, -1}, {1.0, 2, WorkKind::kCallback, A, -1}, slip);
 }
 
 TEST(ComesBefore, TiesGoByKindThenBodies) {
-  expect_before(callback(D, 1.0).stamp, impact(1.0, A, B), "of one time and generation, the kinds in the order of WorkKind");
-  expect_before(impact(1.0, C, D), {1.0, 0, WorkKind::kGroup, A, -1}, "of one time and generation, the kinds in the order of WorkKind");
-  expect_before(impact(1.0, A, D), impact(1.0, B, C), "of one time, generation and kind, the lower body_a");
-  expect_before(impact(1.0, A, B), impact(1.0, A, C), "of one time, generation, kind and body_a, the lower body_b");
+  expect_before(callback(D, 1.0).stamp, impact(1.0, A, B), "of one time and microstep, the kinds in the order of WorkKind");
+  expect_before(impact(1.0, C, D), {1.0, 0, WorkKind::kGroup, A, -1}, "of one time and microstep, the kinds in the order of WorkKind");
+  expect_before(impact(1.0, A, D), impact(1.0, B, C), "of one time, microstep and kind, the lower body_a");
+  expect_before(impact(1.0, A, B), impact(1.0, A, C), "of one time, microstep, kind and body_a, the lower body_b");
 }
 
 TEST(ComesBefore, NothingIsBeforeItself) {

@@ -113,7 +113,7 @@ TEST(Check, APatternThatChoosesNothingIsAnsweredWithTheNearestNames) {
   EXPECT_NE(outcome.printed.find("ColisionImpuls.*: no test has this name. Nearest: CollisionImpulse."), std::string::npos) << outcome.printed;
 }
 
-TEST(Check, AFileThatIsNotThereAndAnUnknownAssignmentAreToldWithWhatToDo) {
+TEST(Check, AMissingFileAndAnUnknownAssignmentAreReportedWithTheRemedy) {
   EXPECT_EQ(check({"/nowhere/mine.cpp"}).code, 2);
   const ProgramOutcome outcome = run_program({std::string(TUMBLE_BINARY_DIR) + "/bin/tumble", "check", "a99"}, Output::kCaptured);
   EXPECT_EQ(outcome.code, 2);

@@ -17,16 +17,16 @@ TEST_F(CommandLine, CostReadsTheOrderOfEachMethodAndDrawsIt) {
   EXPECT_TRUE(holds(page, "Error against CPU time") && holds(page, "error of the reference solution")) << page.size() << " bytes";
 }
 
-TEST_F(CommandLine, AnAccuracyChoosesMethodAndStepAndSaysWhatWasPaid) {
+TEST_F(CommandLine, AnAccuracyChoosesMethodAndStepAndReportsTheCost) {
   const Said said = type("run t_handle --modules a2=library --accuracy 1e-6 --duration-s 2");
   EXPECT_EQ(said.code, 0) << said.out << said.err;
-  for (const char* words : {"asked    an error of at most 1e-06 m", "truth    closed form", "chosen   ", "paid     ", "the same without looking: "}) EXPECT_TRUE(holds(said.out, words)) << words << '\n' << said.out;
+  for (const char* words : {"asked    an error of at most 1e-06 m", "truth    closed form", "chosen   ", "paid     ", "the same without a search: "}) EXPECT_TRUE(holds(said.out, words)) << words << '\n' << said.out;
 }
 
 TEST_F(CommandLine, ABudgetChoosesTheLeastErrorForIt) {
   const Said said = type("run t_handle --modules a2=library --budget-s 2 --duration-s 1");
   EXPECT_EQ(said.code, 0) << said.out << said.err;
-  EXPECT_TRUE(holds(said.out, "asked    the least error for 2 s of CPU time") && holds(said.out, "the truth's own error")) << said.out;
+  EXPECT_TRUE(holds(said.out, "asked    the least error for 2 s of CPU time") && holds(said.out, "the error floor of the reference solution")) << said.out;
 }
 
 TEST_F(CommandLine, AnAccuracyRefusesWhatContradictsItAndWhatCannotBe) {
@@ -34,7 +34,7 @@ TEST_F(CommandLine, AnAccuracyRefusesWhatContradictsItAndWhatCannotBe) {
   EXPECT_EQ(both.code, 2);
   EXPECT_TRUE(holds(both.err, "it chooses engine, method and step")) << both.err;
   EXPECT_EQ(too_fine.code, 2);
-  EXPECT_TRUE(holds(too_fine.err, "the truth itself is known to") && holds(too_fine.err, "Ask for ")) << too_fine.err;
+  EXPECT_TRUE(holds(too_fine.err, "the reference solution is known to") && holds(too_fine.err, "Request ")) << too_fine.err;
 }
 
 TEST_F(CommandLine, AMethodOfTheLibraryCanTakeTheLawsPlace) {
@@ -45,7 +45,7 @@ TEST_F(CommandLine, AMethodOfTheLibraryCanTakeTheLawsPlace) {
 TEST_F(CommandLine, CostOfTimesOfImpactReadsEachRootFinder) {
   const Said said = type("cost toi --tolerances 1e-3,1e-9");
   EXPECT_EQ(said.code, 0) << said.err;
-  for (const char* words : {"bisection gets to", "Newton, safeguarded gets to", "TOMS 748 gets to", "closed form (ball, plane) is off by"}) EXPECT_TRUE(holds(said.out, words)) << words << '\n' << said.out;
+  for (const char* words : {"bisection reaches", "Newton, safeguarded reaches", "TOMS 748 reaches", "closed form (ball, plane) has an error of"}) EXPECT_TRUE(holds(said.out, words)) << words << '\n' << said.out;
   EXPECT_TRUE(fs::exists(folder_ / "out" / "cost" / "toi" / "index.html"));
 }
 
@@ -81,13 +81,13 @@ TEST_F(CommandLine, CostShowsTheMethodsOfAModuleChosenByName) {
   EXPECT_FALSE(holds(library.out, "reference ") || holds(library.out, "your ")) << library.out;
 }
 
-TEST_F(CommandLine, CostSaysWhatItLeavesOut) {
+TEST_F(CommandLine, CostReportsWhatItLeavesOut) {
   const Said said = type("cost bowl --modules reference --methods rk4,euler,midpoint --duration-s 0.1 --budget-s 0.01");
   EXPECT_EQ(said.code, 0) << said.err;
   EXPECT_TRUE(holds(said.out, "Not run: ca: bodies that rest fall asleep")) << said.out;
 }
 
-TEST_F(CommandLine, AChoiceIsToldBeforeItIsPaid) {
+TEST_F(CommandLine, AChoiceIsReportedBeforeItsRun) {
   const Said said = type("run double_pendulum --modules reference --accuracy 1e-9 --duration-s 0.2");
   EXPECT_EQ(said.code, 0) << said.out << said.err;
   const std::size_t chosen = said.err.find("tumble: chosen "), ran = said.err.find("ran in ");
@@ -122,10 +122,10 @@ TEST_F(CommandLine, CostOfAnAssignmentReadsItsMethods) {
   EXPECT_TRUE(holds(contents_of(folder_ / "out" / "cost" / "a2" / "index.html"), "your rk4"));
 }
 
-TEST_F(CommandLine, AnAccuracyIsRefusedWhereASceneHasNoTruth) {
+TEST_F(CommandLine, AnAccuracyIsRefusedWhereASceneHasNoReferenceSolution) {
   const Said said = type("run collide_off_centre_e0 --modules reference --accuracy 1e-6");
   EXPECT_EQ(said.code, 2) << said.out;
-  EXPECT_TRUE(holds(said.err, "there is no truth for 4 s of this scene") && holds(said.err, "--duration-s")) << said.err;
+  EXPECT_TRUE(holds(said.err, "this scene has no reference solution for 4 s") && holds(said.err, "--duration-s")) << said.err;
 }
 #endif
 

@@ -56,7 +56,7 @@ TEST_F(GradingOfTimewarp, AFlawedSubmissionGetsPartOfThePointsAndAStoryForEachIt
 }
 
 // One slip is caught, by a story that names it; no right solution is accused.
-TEST_F(GradingOfTimewarp, AnAuditCatchesASlipByNameAndAccusesNobodyElse) {
+TEST_F(GradingOfTimewarp, AnAuditCatchesASlipByNameAndAcceptsAllOthers) {
   fs::create_directories(root / "wrong");
   std::vector<fs::path> slips;   // the first by name will do
   for (const auto& entry : fs::directory_iterator(kSolutions / "mutants")) slips.push_back(entry.path());
@@ -100,7 +100,7 @@ std::pair<std::string, int> spoilt_slip(char mark, const std::string& line) {
 }
 
 // A slip that does not compile, and one that its base has left behind, are told at their own lines.
-TEST_F(GradingOfTimewarp, AnAuditTellsWhichLineOfASlipIsAmiss) {
+TEST_F(GradingOfTimewarp, AnAuditReportsTheWrongLineOfASlip) {
   const auto [broken, at] = spoilt_slip('+', "  undeclared;");
   write_whole(root / "wrong/s.slip", broken);
   const ProgramOutcome refused = type({"audit", "a4", "--mutants", (root / "wrong").string(), "--only", "s"});

@@ -83,7 +83,7 @@ TEST_F(GradeAttack, TheKeyDoesNotLieAmongResults) {
   EXPECT_TRUE(says(outcome, "is the key of this machine")) << outcome.printed;
 }
 
-TEST_F(GradeAttack, NamesHoldAnythingAndStopNobody) {
+TEST_F(GradeAttack, AnyNameOfASubmissionIsGraded) {
   const std::vector<std::string> names = {"o'brien \"x\"", "new\nline", "tab\tbell\x07", "\xff\xfe", "\u202eevil", "$(touch pwned)", "-rf", ".hidden", "index.html", ".making-x", "_plain-0123456789abcdef", "\u5f20\u4f1f", std::string(250, 'n')};
   for (const std::string& name : names) put(name + "/a1_impulse.cpp", "int x = ;\n");   // not compiled: seconds for all of them
   const ProgramOutcome outcome = grade("out");

@@ -123,7 +123,7 @@ TEST_F(Grading, EndlessLoopsUseUpABudgetAndNoMore) {
   EXPECT_NE(text_of(root / "out/loops/index.html").find("tests were not run"), std::string::npos);
 }
 
-TEST_F(Grading, NoFolderIsToldWithWhatToDo) {
+TEST_F(Grading, AMissingFolderIsReportedWithTheRemedy) {
   const ProgramOutcome outcome = grade("out");
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.printed.find("one sub-folder per submission"), std::string::npos) << outcome.printed;

@@ -11,7 +11,7 @@
 namespace tumble::testing {
 namespace {
 
-TEST_F(CommandLine, WithoutAVerbOrWithAnUnknownOneItTellsAndExitsWith2) {
+TEST_F(CommandLine, WithoutAVerbOrWithAnUnknownOneItReportsItAndExitsWith2) {
   EXPECT_EQ(type("").code, 2);
   const Said said = type("simulate");
   EXPECT_EQ(said.code, 2);
@@ -49,7 +49,7 @@ TEST_F(CommandLine, HelpListsEveryVerb) {
 
 #ifdef TUMBLE_HAS_REFERENCE
 // Every engine tells w h, in words and as JSON: 2 x discontinuities x step over bodies and time.
-TEST_F(CommandLine, RunTellsDiscontinuitiesABodyAndStepWhateverTheEngine) {
+TEST_F(CommandLine, RunReportsDiscontinuitiesPerBodyAndStepForEveryEngine) {
   for (const std::string engine : {"rd", "ca", "ordered", "tw"}) {
     const std::string words = "run gas --n 8 --modules reference --duration-s 1 --propagator auto --engine " + engine;
     const nlohmann::json page = nlohmann::json::parse(type(words + " --json").out);
@@ -112,7 +112,7 @@ TEST_F(CommandLine, BesideThatCannotBeIsRefusedBeforeAnythingRuns) {
   EXPECT_TRUE(left_nothing());
 }
 
-TEST_F(CommandLine, AModelThatIsNoFileIsToldByName) {
+TEST_F(CommandLine, AMissingModelIsReportedByName) {
   const Said said = type("inspect nowhere.3ds");
   EXPECT_EQ(said.code, 2);
   EXPECT_TRUE(holds(said.err, "nowhere.3ds")) << said.err;
@@ -183,7 +183,7 @@ TEST_F(CommandLine, TruthsOfAFolderWithAnOddFileNameItAndCompareTheOthers) {
 #endif
 
 #ifdef TUMBLE_HAS_REFERENCE
-TEST_F(CommandLine, ARunIsJudgedOnStdoutAndToldOnStderr) {
+TEST_F(CommandLine, ARunIsJudgedOnStdoutWithProgressOnStderr) {
   const Said said = type("run t_handle --modules reference --png t.png --trajectory t.run");
   EXPECT_EQ(said.code, 0) << said.out << said.err;
   EXPECT_TRUE(holds(said.out, "right") && !holds(said.out, "WRONG")) << said.out;
@@ -225,7 +225,7 @@ TEST_F(CommandLine, TheSameWordsGiveTheSameBytes) {
   EXPECT_TRUE(a == b);
 }
 
-TEST_F(CommandLine, AFileThatCannotBeWrittenIsToldAndNothingIsLeft) {
+TEST_F(CommandLine, AFileThatCannotBeWrittenIsReportedAndNothingIsLeft) {
   const Said said = type("run t_handle --modules reference --png /proc/t.png");
   EXPECT_EQ(said.code, 2) << said.out;
   EXPECT_TRUE(holds(said.err, "/proc/t.png")) << said.err;

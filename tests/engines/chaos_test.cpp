@@ -1,4 +1,4 @@
-// A scene in which errors grow has a truth for a while only.
+// A scene in which errors grow has a reference solution for a limited time only.
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
@@ -11,7 +11,7 @@ namespace {
 
 using engines::CostOptions;
 
-/// Six balls between four walls: each meeting of two makes an error some three times as large.
+/// Six balls between four walls: each collision of two multiplies an error by about three.
 scene::Scene billiard() {
   scene::Scene scene = truths::empty_scene("billiard", 60.0, 1e-3);
   const std::pair<Vector3d, Vector3d> walls[] = {{{-2, 0, 0}, {1, 0, 0}}, {{2, 0, 0}, {-1, 0, 0}}, {{0, -2, 0}, {0, 1, 0}}, {{0, 2, 0}, {0, -1, 0}}};
@@ -26,10 +26,10 @@ TEST(Truth, OfChaosHoldsForAWhileAndIsRefusedForLonger) {
   std::string why;
   const auto truth = engines::try_truth(billiard(), test_laws(), options, why);
   ASSERT_TRUE(truth) << why;
-  EXPECT_GT(truth->duration_s, 1.0);    // errors of 1e-16 grow by e a collision: some forty of them, seconds
+  EXPECT_GT(truth->duration_s, 1.0);    // errors of 1e-16 grow by e per collision: some forty collisions, seconds
   EXPECT_LT(truth->duration_s, 59.0);
   EXPECT_LE(truth->floor_m, 1e-4 * truth->scale_m);
-  options.least_share = 0.3;   // a window of half the scene is tried, and holds for less
+  options.least_share = 0.3;   // half of the scene's duration is tried; the reference holds for less
   EXPECT_FALSE(engines::try_truth(billiard(), test_laws(), options, why)) << "it holds for a part";
   options.least_share = 0.0;
   options.shorten = false;

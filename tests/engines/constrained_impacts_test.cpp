@@ -96,7 +96,7 @@ TEST(ImpactsOnLinks, ABobOnARodYieldsAcrossItOnly) {
 }
 
 // A bar hinged at the origin, struck at a distance d by a ball: j = (1 + e) v / (1/m + d^2 / I).
-TEST(ImpactsOnLinks, AHingedBarTurnsAsItsMomentAboutTheHingeSays) {
+TEST(ImpactsOnLinks, AHingedBarRotatesByItsMomentAboutTheHinge) {
   const double m = 1.0, M = 3.0, v = 2.0, I = M * (1 + 0.01) / 12 + M * 0.25;
   for (const double d : {0.05, 0.3, 2.0 / 3, 0.9})
     for (const double e : {1.0, 0.5, 0.0}) {
@@ -115,7 +115,7 @@ TEST(ImpactsOnLinks, AHingedBarTurnsAsItsMomentAboutTheHingeSays) {
 }
 
 // A door slams against a stop: omega' = -e omega, the energy e^2 of what it was. Also with friction, which a hinge leaves nothing to do.
-TEST(ImpactsOnLinks, ADoorComesBackFromItsStopAsRestitutionSays) {
+TEST(ImpactsOnLinks, ADoorReboundsFromItsStopWithTheRestitution) {
   const double omega = 3.0;
   for (const double friction : {0.0, 0.4})
     for (const double e : {1.0, 0.5, 0.0}) {
@@ -401,7 +401,7 @@ TEST(ImpactsOnLinks, KeepTheirLawsInTreesAndLoopsDrawnAtRandom) {
 // ---- What links leave no impulse to do, and what the judge sees ---------------------------------------------------------------
 
 // A rod from a driven body drives a bob straight into a wall: nothing can give.
-TEST(ImpactsOnLinks, WhereRodsHoldBothNothingCanPartThemAndTheRunSaysSo) {
+TEST(ImpactsOnLinks, WhereRodsHoldBothBodiesNoImpulseSeparatesThemAndTheRunReportsIt) {
   scene::BodySpec driver = ball("driver", 0.05, 1.0, {0, 0, 0}, Vector3d::Zero()), wall = plane("wall", {1.2, 0, 0}, {-1, 0, 0});
   driver.immovable = true;
   driver.mass_kg.reset();

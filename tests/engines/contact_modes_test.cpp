@@ -56,7 +56,7 @@ TEST(ContactModes, ABallSticksWhereItBeginsToRoll) {
   EXPECT_NEAR(changes[1].time, 1.0 / (0.3 * kG), 1e-9);   // (2/7) v / (mu g)
 }
 
-TEST(ContactModes, WhatKeepsItsModeTellsNothing) {
+TEST(ContactModes, AContactThatKeepsItsModeReportsNothing) {
   EXPECT_EQ(changes_in(with_contact({sliding_block(0.5, 0.0), floor_of(0.5)}, 1.0)).size(), 0u);   // sticks from the beginning
   EXPECT_EQ(changes_in(with_contact({sliding_block(0.5, 9.0), floor_of(0.5)}, 1.0)).size(), 1u);   // still slides
   EXPECT_EQ(changes_in(with_contact({sliding_block(0.0, 2.0), floor_of(0.5)}, 1.0)).size(), 0u);   // without friction there are no modes
@@ -84,7 +84,7 @@ TEST(ContactModes, FrictionAtItsLimitIsNoSliding) {
 }
 
 // Shaken at 30 Hz it sticks and slides sixty times a second.
-TEST(ContactModes, ChatterIsToldTwentyTimesASecondAtMost) {
+TEST(ContactModes, ChatterIsReportedAtMostTwentyTimesASecond) {
   auto table = floor_of(0.5);
   const double w = 2 * 3.14159265358979 * 30;
   table.motion = scene::PrescribedMotion{Vector3d::Zero(), {1.3 * 0.5 * kG / (w * w), 0, 0}, w};

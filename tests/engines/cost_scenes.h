@@ -1,4 +1,5 @@
-/// What tests of costs share: a box that turns freely, and the library's methods as ways to run it.
+/// Shared by tests of costs: a box in free rotation, and the library's methods of integration as
+/// methods of the comparison.
 #pragma once
 
 #include <string>
@@ -8,7 +9,7 @@
 
 namespace tumble::testing {
 
-/// For a second, about no axis of its own.
+/// For a second, not about a principal axis.
 inline scene::Scene free_top(const Vector3d& omega_rad_s) {
   scene::Scene scene = truths::empty_scene("free top", 1.0, 1e-3);
   scene::BodySpec top = truths::point_mass("top", 1.0, Vector3d::Zero(), Vector3d(1.0, 0.0, 0.0));
@@ -18,15 +19,15 @@ inline scene::Scene free_top(const Vector3d& omega_rad_s) {
   return scene;
 }
 
-inline engines::CostWay way_of(const std::string& word) {
-  const Method& method = method_named(word);
-  engines::CostWay way;
-  way.name = method.name;
-  way.method = [method](double tolerance) { return step_of(method, tolerance); };
-  way.order = method.order;
-  way.controlled = method.controlled;
-  way.laws = library_laws();
-  return way;
+inline engines::CostMethod method_of(const std::string& word) {
+  const Method& integrator = method_named(word);
+  engines::CostMethod method;
+  method.name = integrator.name;
+  method.step_function = [integrator](double tolerance) { return step_of(integrator, tolerance); };
+  method.order = integrator.order;
+  method.controlled = integrator.controlled;
+  method.laws = library_laws();
+  return method;
 }
 
 }  // namespace tumble::testing

@@ -1,4 +1,5 @@
-// Scenes drawn by lot, whose groups fuse, split and are struck: every event-ordered engine commits one trace of them.
+// Random scenes whose islands fuse, split and are hit: every event-driven engine commits the same
+// trace.
 #include <gtest/gtest.h>
 
 #include "framework/core/random.h"
@@ -8,16 +9,17 @@
 namespace tumble::testing {
 namespace {
 
-Trajectory run_with(const std::string& engine, int threads, const scene::Scene& scene, const engines::TimewarpTrial& trial = {}) {
+Trajectory run_with(const std::string& engine, int threads, const scene::Scene& scene, const engines::FaultInjection& faults = {}) {
   static const Laws laws = reference_laws();
   engines::RunOptions options;
   options.engine = engine;
   options.threads = threads;
-  options.trial = trial;
+  options.faults = faults;
   return run_as_told(std::move(options), scene, laws);
 }
 
-// A row of boxes that stand or drop a little, and balls thrown at them: with and without friction and bounce, blows located or dealt with in steps.
+// A row of boxes that stand or fall a short way, and balls thrown at them: with and without
+// friction and restitution, with impacts located or resolved within steps.
 scene::Scene thrown_at_a_row(std::uint64_t seed) {
   Random random(seed);
   std::vector<scene::BodySpec> bodies{plane("floor", {0, 0, 0}, {0, 0, 1})};
@@ -42,7 +44,7 @@ scene::Scene thrown_at_a_row(std::uint64_t seed) {
   return scene;
 }
 
-TEST(Processes, OfScenesDrawnByLotCommitTheReferencesTrace) {
+TEST(LogicalProcesses, OfScenesDrawnByLotCommitTheReferencesTrace) {
   std::size_t events = 0;
   for (std::uint64_t seed = 1; seed <= 12; ++seed) {
     const scene::Scene scene = thrown_at_a_row(seed);

@@ -1,4 +1,5 @@
-// What the event-ordered engines make of scenes whose outcome is known: ties, cradles, Zeno, chains of events at one instant, elastic gas.
+// Event-driven engines in scenes with a known outcome: ties, cradles, Zeno, chains of events at one
+// instant, elastic gas.
 #include <algorithm>
 #include <cmath>
 
@@ -40,8 +41,9 @@ TEST(Ties, OfALatticeThatCollidesAtOnceEndTheSameInEveryOrder) {
   }
 }
 
-// Along each axis at once: where rows of all three cross, a ball is hit from six sides at the same instant, by blows of which none is first.
-TEST(Ties, OfBlowsAlongThreeAxesEndTheSameInEveryOrder) {
+// Along three axes at once: where rows of all three cross, a ball is hit from six sides at the same
+// instant, in no natural order.
+TEST(Ties, OfImpactsAlongThreeAxesEndTheSameInEveryOrder) {
   scene::Scene scene = lattice(6, 6, 6, 0.8);
   for (scene::BodySpec& body : scene.bodies)
     for (int axis = 0; axis < 3; ++axis) {
@@ -68,7 +70,7 @@ TEST(Ties, OfBlowsAlongThreeAxesEndTheSameInEveryOrder) {
   }
 }
 
-TEST(Cradle, WithGapsPassesTheBlowOnInOrder) {
+TEST(Cradle, WithGapsPassesTheImpactOnInOrder) {
   for (const int n : {5, 12, 50}) {
     std::vector<scene::BodySpec> bodies;
     for (int i = 0; i < n; ++i) bodies.push_back(ball("ball" + std::to_string(i), 0.1, 1.0, {i * (0.2 + 1e-9), 0, 0}, Vector3d::Zero()));
@@ -83,8 +85,9 @@ TEST(Cradle, WithGapsPassesTheBlowOnInOrder) {
   }
 }
 
-// A row of balls that touch, the first of which comes from afar; counted from where the blow comes, or from the other end: then each effect
-// has lower bodies than its cause, and must come after it all the same.
+// A row of touching balls, the first of which comes from afar; the bodies are numbered from that
+// end or from the other: then each effect has lower bodies than its cause, and must still come
+// after it.
 scene::Scene touching_row(int n, bool from_the_end) {
   std::vector<scene::BodySpec> bodies;
   for (int i = 0; i < n; ++i) {
@@ -104,7 +107,7 @@ void expect_the_blow_to_pass(const Trajectory& run, int n, bool from_the_end) {
   for (int i = 0; i < n; ++i) EXPECT_EQ(run.frames.back().poses[static_cast<std::size_t>(i)].velocity_world.x(), i == (from_the_end ? 0 : n - 1) ? 2.0 : 0.0) << "ball " << i;
 }
 
-TEST(Cradle, ThatTouchesPassesTheBlowOnInOneInstantByGenerations) {
+TEST(Cradle, ThatTouchesPassesTheImpactOnInOneInstantByMicrosteps) {
   for (const int n : {5, 12, 50})
     for (const bool from_the_end : {false, true}) {
       const scene::Scene scene = touching_row(n, from_the_end);
@@ -132,14 +135,14 @@ TEST(Zeno, ComesToRestInFiniteTimeAndFewEvents) {
     EXPECT_EQ(run.stopped_by, "") << engine;
     ASSERT_LT(run.events.size(), 60U) << engine;
     ASSERT_EQ(run.events.back().kind, EventKind::kRest) << engine;
-    EXPECT_NEAR(run.events.back().time, std::sqrt(2.0 / 9.81) * 3.0, 1e-3) << engine;   // s: what bounces below the rest speed of 1e-3 m/s would still take is 4e-4
+    EXPECT_NEAR(run.events.back().time, std::sqrt(2.0 / 9.81) * 3.0, 1e-3) << engine;   // s: the bounces below the restitution threshold of 1e-3 m/s would take another 4e-4
     EXPECT_EQ(run.frames.back().poses[1].velocity_world.norm(), 0.0);
     EXPECT_NEAR(run.frames.back().poses[1].com_world.z(), 0.1, 1e-12);
   }
 }
 
-// Others go on while it comes to rest: global virtual time, the earliest that anybody may still change, passes the instant at which its
-// bounces gather, and the run comes to its end.
+// Other bodies move on while it comes to rest: global virtual time passes the instant at which its
+// bounces accumulate, and the run ends.
 TEST(Zeno, AmongOtherMoversDoesNotHoldUpGlobalVirtualTime) {
   const double gathers = std::sqrt(2.0 / 9.81) * 3.0;   // s: 1.3546
   std::vector<scene::BodySpec> bodies{plane("floor", {0, 0, 0}, {0, 0, 1}), ball("ball", 0.1, 1.0, {0, 0, 1.1}, Vector3d::Zero())};
@@ -169,8 +172,8 @@ TEST(Zeno, AmongOtherMoversDoesNotHoldUpGlobalVirtualTime) {
   }
 }
 
-TEST(ZeroLookAhead, IsOrderedByGenerationAndAnEndlessChainIsReported) {
-  // A ball that fills the room between two walls bounces to and fro without time passing.
+TEST(ZeroLookAhead, IsOrderedByMicrostepAndAnEndlessChainIsReported) {
+  // A ball that fills the space between two walls bounces between them without time passing.
   std::vector<scene::BodySpec> bodies{plane("left", {-0.125, 0, 0}, {1, 0, 0}), plane("right", {0.125, 0, 0}, {-1, 0, 0}), ball("ball", 0.125, 1.0, {0, 0, 0}, {1, 0, 0})};
   for (const char* engine : kEventEngines) {
     const Trajectory run = run_by(engine, scene_of(bodies, 1.0));
@@ -179,7 +182,7 @@ TEST(ZeroLookAhead, IsOrderedByGenerationAndAnEndlessChainIsReported) {
   }
 }
 
-// Nothing is pushed into the sink that lies before what was pushed already: what is shown stays.
+// The sink refuses what lies before earlier output: a commit is final.
 class OrderOfCommits final : public TrajectorySink {
  public:
   void begin(const TrajectoryInfo&, const std::vector<TrajectoryBody>&) override {}
@@ -197,7 +200,7 @@ class OrderOfCommits final : public TrajectorySink {
   }
 };
 
-TEST(CommitSafety, NothingIsShownThatIsTakenBack) {
+TEST(CommitSafety, NothingIsCommittedThatIsRolledBack) {
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
     OrderOfCommits sink;
     engines::RunOptions options;
@@ -210,7 +213,8 @@ TEST(CommitSafety, NothingIsShownThatIsTakenBack) {
   }
 }
 
-// As it was written down at each move, on one thread and two, where work is done by lot and rolled back by force.
+// From the record of each change, on one thread and two, with random execution order and forced
+// rollbacks.
 TEST(CommitSafety, GlobalVirtualTimeNeverFalls) {
   for (const int threads : {1, 2})
     for (std::uint64_t seed = 1; seed <= 3; ++seed) {
@@ -237,7 +241,8 @@ TEST(ElasticGas, KeepsItsEnergyAndNothingOverlapsAtAnyRedraw) {
   const Trajectory run = run_by("tw", sized("gas", 300, 250.0), {}, 1.0);
   ASSERT_GT(run.events.size(), 100000U);
   const double energy = run.frames.front().kinetic_energy;
-  // Each collision rounds two velocities: a random walk of 1e5 steps of eps is 4e-14, a drift always one way 1e-11.
+  // Each collision rounds two velocities: a random walk of 1e5 steps of eps is 4e-14, a drift in
+  // one direction 1e-11.
   for (const Frame& frame : run.frames) ASSERT_NEAR(frame.kinetic_energy, energy, 1e-10 * energy);
   for (const Frame& frame : run.frames) {
     double smallest = 1.0;
@@ -249,7 +254,7 @@ TEST(ElasticGas, KeepsItsEnergyAndNothingOverlapsAtAnyRedraw) {
   }
 }
 
-// Retroactive detection steps by the laws' own integrator; before chaos it meets the same impacts.
+// Retroactive detection steps by the laws' own integrator; before chaos it finds the same impacts.
 TEST(Engines, AgreeOverTheFirstFiveCollisionsOfEachBody) {
   const scene::Scene scene = sized("gas", 60, 2.0);
   const Trajectory by_events = run_by("tw", scene), by_steps = run_by("rd", scene);
@@ -263,7 +268,8 @@ TEST(Engines, AgreeOverTheFirstFiveCollisionsOfEachBody) {
   EXPECT_GT(compared, 200U);
 }
 
-// In closed form retroactive detection goes the same flights: molecules that tumble meet at the same instants, far beyond what RK4 keeps.
+// With closed forms retroactive detection computes the same flights: rotating molecules collide at
+// the same times, much longer than with RK4.
 TEST(Engines, AgreeOnTumblingSolidsWhereRetroactiveDetectionGoesInClosedFormToo) {
   const scene::Scene scene = sized("atoms", 30, 1.0);
   const Trajectory expected = run_by("tw", scene);
@@ -289,8 +295,9 @@ TEST(Engines, FollowAShakenPlaneAndABallAtRest) {
 
 // ---- w h -------------------------------------------------------------------------------------------------------------------
 
-// A ball to and fro at 1.8 m/s where its centre has 1.8 m: a bounce each second, the first at 0.5 s. In 10 s that is D = 10, and w h = 2 D h / T.
-TEST(DiscontinuitiesABodyAndStep, OfABallBetweenTwoWallsAreTwoForEachBounceInEveryEngine) {
+// A ball between two walls at 1.8 m/s with 1.8 m for its centre: a bounce each second, the first at
+// 0.5 s. In 10 s that is D = 10, and w h = 2 D h / T.
+TEST(DiscontinuitiesPerBodyAndStep, OfABallBetweenTwoWallsAreTwoForEachBounceInEveryEngine) {
   const std::vector<scene::BodySpec> bodies{plane("left", {-1, 0, 0}, {1, 0, 0}), plane("right", {1, 0, 0}, {-1, 0, 0}), ball("ball", 0.1, 1.0, {0, 0, 0}, {1.8, 0, 0})};
   for (const double step : {1.0 / 30.0, 1.0 / 240.0}) {
     scene::Scene scene = scene_of(bodies, 10.0);
@@ -303,27 +310,27 @@ TEST(DiscontinuitiesABodyAndStep, OfABallBetweenTwoWallsAreTwoForEachBounceInEve
   }
 }
 
-TEST(DiscontinuitiesABodyAndStep, OfManyBallsAreTheSameInEveryEngine) {
+TEST(DiscontinuitiesPerBodyAndStep, OfManyBallsAreTheSameInEveryEngine) {
   const scene::Scene scene = sized("gas", 60, 1.0);
   const Trajectory reference = run_by("ordered", scene);
   const double w_h = engines::discontinuities_a_body_and_step(reference);
-  EXPECT_DOUBLE_EQ(w_h, 2.0 * static_cast<double>(reference.events.size()) * scene.step_s / 60.0);   // nothing but blows, one second
+  EXPECT_DOUBLE_EQ(w_h, 2.0 * static_cast<double>(reference.events.size()) * scene.step_s / 60.0);   // only impacts, in one second
   for (const char* engine : {"rd", "ca", "tw"}) EXPECT_DOUBLE_EQ(engines::discontinuities_a_body_and_step(run_by(engine, scene)), w_h) << engine;
 }
 
-TEST(DiscontinuitiesABodyAndStep, CountABlowOnceHoweverManyImpulsesItTakesAndNothingThatHoldsFromTheStart) {
+TEST(DiscontinuitiesPerBodyAndStep, CountAnImpactOnceForAnyNumberOfImpulsesAndNoContactOfTheStart) {
   const auto event = [](double time, EventKind kind, int a, int b) { return Event{time, kind, a, b, Vector3d::Zero(), Vector3d::UnitZ(), 0.0, 0.0}; };
   TrajectoryRecorder recorder;
   engines::DiscontinuityCount count(recorder);
   count.begin({}, {});
-  count.event(event(0.0, EventKind::kContact, 0, 1));     // lies there from the start
-  count.event(event(0.5, EventKind::kCollision, 0, 2));   // one blow on a pair of bodies that touch, passed to and fro
+  count.event(event(0.0, EventKind::kContact, 0, 1));     // in contact from the start
+  count.event(event(0.5, EventKind::kCollision, 0, 2));   // one impact on a pair of touching bodies, passed back and forth
   count.event(event(0.5, EventKind::kCollision, 2, 3));
   count.event(event(0.5, EventKind::kCollision, 0, 2));
   count.event(event(0.5, EventKind::kCollision, 2, 3));
-  count.event(event(0.5, EventKind::kContact, 0, 2));     // it does not rebound: the same discontinuity
+  count.event(event(0.5, EventKind::kContact, 0, 2));     // no rebound: the same discontinuity
   count.event(event(0.0, EventKind::kSlide, 0, 1));       // slides from the start
-  count.event(event(0.75, EventKind::kStick, 0, 2));      // counted apart: no engine ends a step of all bodies for it
+  count.event(event(0.75, EventKind::kStick, 0, 2));      // counted separately: no engine ends a step of all bodies for it
   count.event(event(0.75, EventKind::kBreak, 0, 2));
   count.event(event(0.8, EventKind::kCollision, 0, 2));   // again, later
   count.event(event(0.9, EventKind::kSleep, 0, -1));
@@ -333,7 +340,7 @@ TEST(DiscontinuitiesABodyAndStep, CountABlowOnceHoweverManyImpulsesItTakesAndNot
   EXPECT_EQ(recorder.trajectory().counters.counts.at("sliding_changes"), 1U);
 }
 
-// A point has no size to measure a grid by; nothing else is in its way but a floor.
+// A point has no size from which a grid could follow; only the floor can be hit.
 TEST(Engines, TakeOneBodyNoneAndOneWithoutSize) {
   for (const char* engine : kEventEngines) {
     EXPECT_EQ(run_by(engine, scene_of({plane("floor", {0, 0, 0}, {0, 0, 1})}, 0.5)).frames.size(), 31U) << engine;
@@ -343,12 +350,13 @@ TEST(Engines, TakeOneBodyNoneAndOneWithoutSize) {
   }
 }
 
-// Groups that keep their own time have no common step at whose end to fall asleep.
+// Islands with their own local virtual times have no common step at whose end they could fall
+// asleep.
 TEST(Engines, RefuseSleepAndSaySo) {
   scene::Scene scene = scene_of({ball("ball", 0.1, 1.0, {0, 0, 1}, Vector3d::Zero()), plane("floor", {0, 0, 0}, {0, 0, 1})}, 1.0);
   scene.contact = scene::ContactSpec{};
   scene.contact->sleep = true;
-  Laws laws = test_laws();   // sleep is refused before a law of contacts is asked for
+  Laws laws = test_laws();   // sleep is refused before a law of contacts is needed
   laws.ends_in_contact = [](double, double, double) { return true; };
   laws.contact_forces = [](const MatrixXd&, const VectorXd& b) { return VectorXd(VectorXd::Zero(b.size())); };
   for (const char* engine : kEventEngines) {

@@ -1,4 +1,4 @@
-/// Scenes of bodies that links and lasting contacts hold together, among others that fly.
+/// Scenes of linked bodies and bodies in persistent contact, among others in free flight.
 #pragma once
 
 #include "framework/effects/drag/drag.h"
@@ -12,7 +12,8 @@ namespace tumble::testing {
 
 inline const Vector3d kEarth(0, 0, -9.81);
 
-/// Bobs on rods from the ceiling, each a process, and balls in free flight among them; bob 0 is slowed by drag, ball 0 is pushed.
+/// Bobs on rods from the ceiling, each a process, and balls in free flight among them; bob 0 is
+/// slowed by drag, a force acts on ball 0.
 inline scene::Scene pendula_and_balls(int pendula, double duration) {
   std::vector<scene::BodySpec> bodies;
   scene::Scene scene;

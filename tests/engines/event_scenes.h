@@ -1,4 +1,5 @@
-/// What tests of the event-ordered engines share: runs by engine, and the sentence that says where a trace leaves the reference.
+/// Shared by tests of event-driven engines: runs by engine, and a sentence for the first difference
+/// of a trace from the reference.
 #pragma once
 
 #include <string>
@@ -10,7 +11,7 @@
 
 namespace tumble::testing {
 
-/// @param options  what a run is told beside; whose timewarp it is need not be
+/// @param options  of the run; its timewarp engine may be empty
 inline Trajectory run_as_told(engines::RunOptions options, const scene::Scene& scene, const Laws& laws) {
   TrajectoryRecorder recorder;
   options.timewarp = engines::fast_timewarp();
@@ -18,15 +19,15 @@ inline Trajectory run_as_told(engines::RunOptions options, const scene::Scene& s
   return recorder.trajectory();
 }
 
-inline Trajectory run_by(const std::string& engine, const scene::Scene& scene, const engines::TimewarpTrial& trial = {}, double frame_rate_hz = 60.0, const Laws& laws = test_laws()) {
+inline Trajectory run_by(const std::string& engine, const scene::Scene& scene, const engines::FaultInjection& faults = {}, double frame_rate_hz = 60.0, const Laws& laws = test_laws()) {
   engines::RunOptions options;
   options.engine = engine;
-  options.trial = trial;
+  options.faults = faults;
   options.frame_rate_hz = frame_rate_hz;
   return run_as_told(std::move(options), scene, laws);
 }
 
-/// Empty where two runs committed the same, frames included; else where they first part.
+/// Empty where two runs committed the same events and frames; else their first difference.
 inline std::string difference(const Trajectory& reference, const Trajectory& run) {
   if (const auto parted = engines::compare_traces(reference, run)) return parted->story;
   if (reference.stopped_by != run.stopped_by) return "one stopped: '" + reference.stopped_by + "' and '" + run.stopped_by + "'";

@@ -1,6 +1,6 @@
-// Contact groups under rollback: a hit that is found late takes back what became of a group since, its splitting or its birth. Who moves
-// with whom is read from the passages that flights name, as it was committed, a thousand times a run; rollbacks from the local virtual
-// times as they were written down.
+// Contact groups under rollback: a hit that is found late rolls back the later changes of a group,
+// its split or its formation. Membership is read from the segments that flights name at each
+// commit, a thousand times per run; rollbacks from the record of local virtual times.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -16,8 +16,9 @@ namespace {
 
 using engines::Membership;
 
-// Three blocks fall 2 to 8 cm and lie on each other from t1 = sqrt(2 * 0.08 / 9.81) = 0.1277 s on; from 0.35 s on the top one is pulled up, and
-// when it has come so far that it would not meet the others within two steps, at t2, it is a group with them no more.
+// Three blocks fall 2 to 8 cm and rest on each other from t1 = sqrt(2 * 0.08 / 9.81) = 0.1277 s on;
+// from 0.35 s on the top one is pulled up, and at t2, when it would not touch the others within two
+// steps, it leaves the group.
 constexpr double kFused = 0.1277, kPulled = 0.35, kSplit = 0.38, kEnd = 0.6;   // [s]; t2 < kSplit
 constexpr int kBlocks[] = {1, 2, 3}, kShot = 4;
 constexpr int kFrames = 1000;
@@ -26,7 +27,7 @@ constexpr double kShotSpeed = 8.0;   // [m/s]
 // The shot's centre stops 0.15 m from the tower's axis, half a block and its own radius.
 double way_to_the_tower(double hit_s) { return 0.15 + kShotSpeed * hit_s; }
 
-/// @param hit_s  when the shot meets the middle block; so high that it has come down to 0.32 m by then
+/// @param hit_s  when the shot hits the middle block; it starts high enough to reach 0.32 m by then
 scene::Scene tower(double hit_s) {
   std::vector<scene::BodySpec> bodies{plane("floor", {0, 0, 0}, {0, 0, 1})};
   for (int i = 0; i < 3; ++i) bodies.push_back(box("block" + std::to_string(i), {0.1, 0.1, 0.1}, 1.0, {0, 0, 0.12 + 0.23 * i}, Vector3d::Zero()));
@@ -68,7 +69,7 @@ std::vector<int> blocks_leads(const Membership& membership) {
   return leads;
 }
 
-// Equal at all times; and the flights of members, and of nobody else, name one passage.
+// Equal at all times; and exactly the members' flights name one segment.
 void expect_the_references_members(const Seen& reference, const Seen& seen) {
   EXPECT_EQ(difference(reference.run, seen.run), "");
   ASSERT_GE(reference.members.size(), static_cast<std::size_t>(kFrames));
@@ -77,19 +78,19 @@ void expect_the_references_members(const Seen& reference, const Seen& seen) {
     const Membership& now = seen.members[k];
     ASSERT_EQ(reference.members[k].time, now.time);
     ASSERT_EQ(reference.members[k].first_members, now.first_members) << "at " << now.time << " s";
-    for (std::size_t i = 0; i < now.passages.size(); ++i) {
-      ASSERT_EQ(reference.members[k].passages[i] < 0, now.passages[i] < 0) << "body " << i << " at " << now.time << " s";
+    for (std::size_t i = 0; i < now.segments.size(); ++i) {
+      ASSERT_EQ(reference.members[k].segments[i] < 0, now.segments[i] < 0) << "body " << i << " at " << now.time << " s";
       for (std::size_t j = 0; j < i; ++j)
-        ASSERT_EQ(now.passages[i] >= 0 && now.passages[i] == now.passages[j], now.first_members[i] == now.first_members[j]) << "bodies " << i << " and " << j << " at " << now.time << " s";
+        ASSERT_EQ(now.segments[i] >= 0 && now.segments[i] == now.segments[j], now.first_members[i] == now.first_members[j]) << "bodies " << i << " and " << j << " at " << now.time << " s";
     }
   }
 }
 
-/// Whether a body that stood beyond `from` went back to `to`, or before it, in one go or state by state.
+/// Whether a body beyond `from` was rolled back to `to` or earlier, at once or state by state.
 bool went_back(const Trajectory& run, int body, double from, double to) {
   const std::vector<std::string>& names = run.virtual_times.processes;
   const int process = static_cast<int>(std::find(names.begin(), names.end(), run.bodies[static_cast<std::size_t>(body)].name) - names.begin());
-  double stood = 0.0;   // before it began to go back [s]
+  double stood = 0.0;   // before its rollback [s]
   bool is_going_back = false;
   for (const VirtualTimes::Move& move : run.virtual_times.moves) {
     if (move.process != process) continue;
@@ -106,14 +107,15 @@ double time_of_hit(const Trajectory& run) {
   return kUnset;
 }
 
-// A passage or group check that nobody holds any more would have ended the run already; here it is counted.
+// A leaked segment or group check would have stopped the run already; here it is counted.
 void expect_nothing_leaked(const Seen& reference, const Seen& seen) {
   const auto& counts = seen.run.counters.counts;
   EXPECT_EQ(counts.at("passages_begun"), counts.at("passages_let_go"));
-  EXPECT_GT(counts.at("passages_begun"), reference.run.counters.counts.at("passages_begun"));   // those that were taken back among them
+  EXPECT_GT(counts.at("passages_begun"), reference.run.counters.counts.at("passages_begun"));   // with those that were rolled back
 }
 
-/// The shot is on its way from the start, or a callback turns it towards the tower when all else has come to the end.
+/// The shot moves from the start, or a callback turns it towards the tower after all other
+/// processes have reached the end.
 struct LateShot {
   scene::Scene scene;
   std::vector<engines::Callback> callbacks;
@@ -121,12 +123,13 @@ struct LateShot {
     constexpr double kTurned = 0.004;   // [s]
     scene::BodySpec& shot = scene.bodies[kShot];
     shot.velocity_m_s = Vector3d(-kShotSpeed, 0, 0);
-    shot.position_m.x() += 2 * kShotSpeed * kTurned;   // so that it is where it would be otherwise when it is turned
+    shot.position_m.x() += 2 * kShotSpeed * kTurned;   // so that it has the position of the other variant when it is turned
     callbacks = {{kTurned, {kShot}, [](int, RigidBodyState& state) { state.momentum_world.x() = 0.4 * kShotSpeed; }}};
   }
 };
 
-/// A check of the shot's that finds nothing is due again at `due_s` only; what lies between is verified then, as safe times promise.
+/// A check of the shot that finds nothing is due again at `due_s` only; safe times then cover the
+/// interval between.
 Laws looking_late(double due_s) {
   Laws laws = taught_reference_laws();
   laws.scheduling.on_collision_check = [right = laws.scheduling.on_collision_check, due_s](const ScheduledEvent& event, const CheckFinding& finding, double step) {
@@ -137,7 +140,7 @@ Laws looking_late(double due_s) {
   return laws;
 }
 
-// ---- Hit between fusing and splitting ------------------------------------------------------------------------------------
+// ---- Hit between fusion and split ------------------------------------------------------------
 
 constexpr double kHitBetween = 0.24;
 
@@ -149,14 +152,14 @@ TEST(TowerOfThree, FusesAndSplitsAsItsTestsSuppose) {
   EXPECT_EQ(blocks_leads(at(seen, kFused + 0.002)), (std::vector{1, 1, 1}));
   EXPECT_EQ(blocks_leads(at(seen, kPulled - 0.002)), (std::vector{1, 1, 1}));
   EXPECT_EQ(blocks_leads(at(seen, kSplit)), (std::vector{1, 1, 3}));
-  EXPECT_NEAR(time_of_hit(run_and_look("ordered", tower(kHitBetween), reference_laws()).run), kHitBetween, 1e-3);   // s: the block has sagged by rounding, no more
+  EXPECT_NEAR(time_of_hit(run_and_look("ordered", tower(kHitBetween), reference_laws()).run), kHitBetween, 1e-3);   // s: the block has moved by rounding only
 }
 
 void expect_the_split_was_taken_back(const Seen& seen) {
   for (const int block : kBlocks) EXPECT_TRUE(went_back(seen.run, block, kSplit, kHitBetween + 1e-3)) << "block " << block << ", which had split off by then";
 }
 
-TEST(TowerOfThree, WhoseSplitIsTakenBackByALateHitHasTheReferencesMembersInTheFastEngine) {
+TEST(TowerOfThree, WithASplitRolledBackByALateHitHasTheReferencesMembersInTheFastEngine) {
   const LateShot late(kHitBetween);
   engines::RunOptions options;
   options.callbacks = late.callbacks;
@@ -169,7 +172,7 @@ TEST(TowerOfThree, WhoseSplitIsTakenBackByALateHitHasTheReferencesMembersInTheFa
   expect_nothing_leaked(reference, seen);
 }
 
-TEST(TowerOfThree, WhoseSplitIsTakenBackByALateHitHasTheReferencesMembersInTheTaughtEngine) {
+TEST(TowerOfThree, WithASplitRolledBackByALateHitHasTheReferencesMembersInTheTaughtEngine) {
   const Seen reference = run_and_look("ordered", tower(kHitBetween), taught_reference_laws());
   const Seen seen = run_and_look("tw", tower(kHitBetween), looking_late(0.5));
   expect_the_references_members(reference, seen);
@@ -177,24 +180,25 @@ TEST(TowerOfThree, WhoseSplitIsTakenBackByALateHitHasTheReferencesMembersInTheTa
   expect_nothing_leaked(reference, seen);
 }
 
-// ---- Hit before the group was born ---------------------------------------------------------------------------------------
+// ---- Hit before the group formed -------------------------------------------------------------
 
-constexpr double kHitBefore = 0.05;   // s: nothing touches anything yet
+constexpr double kHitBefore = 0.05;   // s: before any contact
 
-// The blocks lay on each other and split again before it was found; from the hit on each goes its own way, on what its own queue says.
+// The blocks were in contact and separated again before the hit was found; after it each is a
+// process of its own.
 void expect_the_group_was_dissolved(const Seen& reference, const Seen& seen) {
   expect_the_references_members(reference, seen);
   ASSERT_NEAR(time_of_hit(seen.run), kHitBefore, 1e-3);
-  constexpr double kBorn = kFused + 1e-4;   // [s]; before it the top block was on its own, and fell
+  constexpr double kBorn = kFused + 1e-4;   // [s]; before it the top block was alone, falling
   for (const int block : kBlocks) EXPECT_TRUE(went_back(seen.run, block, kSplit, kBorn)) << "block " << block;
   const Membership& before = at(seen, kHitBefore - 0.005);
   const Membership& after = at(seen, kHitBefore + 0.01);
   for (const Membership* now : {&before, &after}) {
-    std::set<int> passages;
+    std::set<int> segments;
     for (const int block : kBlocks) {
       EXPECT_EQ(now->first_members[static_cast<std::size_t>(block)], block) << "at " << now->time << " s";
-      const int passage = now->passages[static_cast<std::size_t>(block)];
-      EXPECT_TRUE(passage < 0 || passages.insert(passage).second) << "block " << block << " shares a queue at " << now->time << " s";
+      const int segment = now->segments[static_cast<std::size_t>(block)];
+      EXPECT_TRUE(segment < 0 || segments.insert(segment).second) << "block " << block << " shares a queue at " << now->time << " s";
     }
   }
   expect_nothing_leaked(reference, seen);

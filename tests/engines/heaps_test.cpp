@@ -59,7 +59,7 @@ TEST(Heaps, AWaveOfDominoesFallsInAboutTheStepsThatTheSceneAsksFor) {
   for (const BodyPose& pose : result.frames.back().poses) EXPECT_LT(pose.velocity_world.norm(), 1e-6);
 }
 
-TEST(Heaps, StepsAndInstantsTellTheSameWave) {
+TEST(Heaps, StepsAndInstantsGiveTheSameWave) {
   constexpr int kLast = 13;
   const auto arrivals = [&](scene::PlasticImpacts plastic) {
     const Trajectory result = run(dominoes(kLast, 0.52, plastic), reference_laws());
@@ -72,7 +72,7 @@ TEST(Heaps, StepsAndInstantsTellTheSameWave) {
   for (int i = 1; i <= kLast; ++i) EXPECT_NEAR(in_steps[static_cast<std::size_t>(i - 1)], located[static_cast<std::size_t>(i - 1)], 1.01 / 60) << i;   // a frame
 }
 
-TEST(Heaps, AFewBodiesAreSolvedBlowByBlow) {
+TEST(Heaps, AFewBodiesAreSolvedImpactByImpact) {
   const Trajectory result = run(dominoes(8, 0.4, scene::PlasticImpacts::kAutomatic), reference_laws());
   EXPECT_EQ(result.counters.counts.at("heap_steps"), 0u);
   EXPECT_TRUE(result.counters.notices.empty());

@@ -1,5 +1,5 @@
-// What judges links, contacts, rest and falls, on runs made by hand: each says the number that the run was made with, and fails a
-// run that is wrong.
+// Checks of links, contacts, rest and falls, on runs made by hand: each returns the number with
+// which the run was made, and fails a wrong run.
 #include "framework/engines/judging/judge.h"
 
 #include <functional>
@@ -26,7 +26,8 @@ constexpr double kRounding = 1e-14;
 BodyPose at(const Vector3d& place, const Quaterniond& turn = Quaterniond::Identity()) { return {place, turn, Vector3d::Zero(), Vector3d::Zero()}; }
 Quaterniond turned(double angle, const Vector3d& axis) { return Quaterniond(Eigen::AngleAxisd(angle, axis)); }
 
-/// A scene of two movable boxes and a fixed one; a run of one second at 10 frames a second, moving as it is told.
+/// A scene of two movable boxes and a fixed one; a run of one second at 10 frames a second, with
+/// given motions.
 struct HandMade {
   scene::Scene scene;
   Trajectory run;
@@ -78,7 +79,8 @@ void expect_value(const HandMade& made, CheckSpec check, double value) {
 }
 
 TEST(Judge, ARodIsAsLongAsItsEndsAreFarApart) {
-  // The second body turns about its centre: the end of the rod goes from 1 m to 2 m.
+  // The second body rotates about its centre: the end of the rod moves from a distance of 1 m to 2
+  // m.
   HandMade made(stays({0, 0, 0}), [](double t) { return at({1.5, 0, 0}, turned(kPi * t, Vector3d::UnitZ())); });
   made.scene.effects.of<effects::RodSpec>().push_back({"stick", {"first", {0, 0, 0}}, {"second", {-0.5, 0, 0}}, 1.0, ""});
   expect_value(made, check_of("rod_length", 1e-6), 1.0);
@@ -101,7 +103,7 @@ TEST(Judge, RestitutionIsAskedOfImpactsNotOfBodiesThatTouchWithoutApproach) {
 }
 
 TEST(Judge, AHingeOpensByTheDistanceOfItsPointsAndTheAngleOfItsAxes) {
-  // The second body leans by 0.3 t about the shared point, which then slips by 0.02 t.
+  // The second body leans by 0.3 t about the shared point, which separates by 0.02 t.
   const Vector3d point(0.5, 0, 0);
   HandMade made(stays({0, 0, 0}), [&](double t) {
     const Quaterniond lean = turned(0.3 * t, Vector3d::UnitX());
@@ -116,7 +118,7 @@ TEST(Judge, AHingeOpensByTheDistanceOfItsPointsAndTheAngleOfItsAxes) {
   made.scene.effects.of<effects::JointSpec>().push_back(hinge);
   expect_value(made, check_of("joint_gap", 1e-6), 0.02);
   expect_value(made, check_of("joint_angle", 1e-6), 0.3);
-  made.scene.effects.of<effects::JointSpec>()[0].axis = Vector3d::UnitX();   // turning about its own axis is what a hinge is for
+  made.scene.effects.of<effects::JointSpec>()[0].axis = Vector3d::UnitX();   // rotation about its own axis is free
   expect_value(made, check_of("joint_angle", 1e-6), 0.0);
   made.scene.effects.of<effects::JointSpec>()[0].kind = effects::JointKind::kWeld;
   expect_value(made, check_of("joint_angle", 1e-6), 0.3);
@@ -124,7 +126,7 @@ TEST(Judge, AHingeOpensByTheDistanceOfItsPointsAndTheAngleOfItsAxes) {
   expect_value(made, check_of("joint_gap", 1e-6), 0.0);
 }
 
-TEST(Judge, TheForceInALinkIsComparedAsAPartOfTheTruth) {
+TEST(Judge, TheForceInALinkIsComparedRelativeToTheExpectedForce) {
   HandMade made(stays({0, 0, 0}), stays({1, 0, 0}));
   made.scene.effects.of<effects::SpringSpec>().push_back({"coil", {}, {}, 1, 0, 1, ""});
   made.scene.effects.of<effects::RodSpec>().push_back({"stick", {}, {}, 1, ""});
@@ -206,7 +208,7 @@ TEST(Judge, ACommonCentreOfMassIsWeighed) {
   expect_value(made, centre, 0.75);
 }
 
-TEST(Judge, AWayAndAnAngleAreCountedFromTheStart) {
+TEST(Judge, ADistanceAndAnAngleAreMeasuredFromTheStart) {
   HandMade made([](double t) { return at({1 + 3 * t, 4 * t, 0}, turned(7.0 * t, Vector3d::UnitZ())); }, stays({9, 0, 0}));
   CheckSpec way = check_of("distance_travelled", 0.01);
   way.body = "first";
@@ -254,11 +256,12 @@ TEST(Judge, DominoesFallInTheirOrder) {
   check.bodies = {"second", "first"};
   expect_value(made, check, 1.0);
   check.bodies = {"first", "second"};
-  check.expected = {1.0};   // the second never leans so far
+  check.expected = {1.0};   // the second never leans that far
   expect_value(made, check, 1.0);
 }
 
-/// At rest a hundred metres up: its energy trembles by roundings of m g z = 1962 J, and nothing else is there to compare that with.
+/// At rest a hundred metres up: its energy varies by roundings of m g z = 1962 J, and has no other
+/// scale.
 HandMade at_rest_high_up(double tremble_j) {
   HandMade made(stays({0, 0, 100}), stays({0, 0, 50}));
   effects::set_gravity(made.scene, Vector3d(0, 0, -9.81));
@@ -272,7 +275,8 @@ HandMade at_rest_high_up(double tremble_j) {
 }
 
 TEST(Judge, RoundingOfLargeTermsIsNoRiseOfEnergy) {
-  // A spacing of doubles at 2943 J is 4.5e-13 J. A hundred steps may add up to some ten of these; a micro-joule is none of it.
+  // The spacing of doubles at 2943 J is 4.5e-13 J. A hundred steps may add up to about ten of
+  // these; a microjoule is far above.
   for (const char* kind : {"energy", "energy_not_rising"}) {
     HandMade rounded = at_rest_high_up(9e-13), wrong = at_rest_high_up(1e-6);
     rounded.scene.checks = wrong.scene.checks = {check_of(kind, 1e-3)};
@@ -286,7 +290,7 @@ TEST(Judge, AGapBelowZeroByARoundingOfPlacesIsNone) {
   HandMade made = at_rest_high_up(0.0);
   made.scene.checks = {check_of("gap", 0.0)};
   EXPECT_TRUE(judge_run(made.scene, made.run)[0].passed);
-  made.run.frames[3].smallest_gap = -1e-11;   // a hundred times the rounding of places of 100 m
+  made.run.frames[3].smallest_gap = -1e-11;   // a hundred times the rounding of positions of 100 m
   EXPECT_FALSE(judge_run(made.scene, made.run)[0].passed);
 }
 

@@ -1,4 +1,4 @@
-// What lands has a truth.
+// A scene with a first contact has a reference solution.
 #include <gtest/gtest.h>
 
 #include "framework/effects/spring/spring.h"
@@ -10,20 +10,22 @@
 namespace tumble::testing {
 namespace {
 
-/// A box that comes down on a corner, tips to an edge and then to a face: how it lands must not hang on the step. It did where the edge's normal was
-/// whatever rounding left of it; runs at 1/960, 1/1920 and 1/3840 s then lay some 1e-3 m beside each other for good.
+/// A box that falls on a corner, tips to an edge and then to a face: the end state must not depend
+/// on the step. With an edge normal that is only rounding, runs at 1/960, 1/1920 and 1/3840 s
+/// differ by 1e-3 m permanently.
 TEST(Truth, OfALandingLastsToTheEndAndThreeRunsAgreeOnIt) {
   const scene::Scene scene = scene::load_scene(TUMBLE_SOURCE_DIR "/assignments/a3_constraints/scenes/drop_a_box.json");
   std::string why;
   const auto truth = engines::try_truth(scene, reference_laws(), {}, why);
   ASSERT_TRUE(truth) << why;
   EXPECT_EQ(truth->duration_s, scene.duration_s) << truth->shortened_by;
-  EXPECT_LE(truth->floor_m, 3e-4);   // what the finest steps leave: 6e-5 m where there is time for 1/7680 s
+  EXPECT_LE(truth->floor_m, 3e-4);   // error of the finest steps: 6e-5 m where there is time for 1/7680 s
 }
 
-TEST(CostTruth, ATruthWithImpactsIsAsGoodAsTheRunsThatItJudges) {
-  // A ball on a spring knocks at a wall: between impacts a tolerance makes a run fine, the instant of an impact hangs on the step's path. RK4 at
-  // 1/3840 s comes to 6e-12 m of the motion, which a truth that ends at 2e-7 m does not tell from a step thirty times as long.
+TEST(CostTruth, AReferenceWithImpactsIsAsAccurateAsTheRunsThatItJudges) {
+  // A ball on a spring hits a wall: between impacts the tolerance determines the error, the time of
+  // an impact depends on the path within a step. RK4 at 1/3840 s reaches an error of 6e-12 m; a
+  // reference with a floor of 2e-7 m could not distinguish it from a step thirty times as long.
   scene::Scene scene = truths::empty_scene("spring and wall", 1.5, 1.0 / 60.0);
   scene::BodySpec ball = truths::point_mass("ball", 1.0, Vector3d(0.5, 0, 0), Vector3d::Zero());
   ball.shape = scene::SphereSpec{0.1};

@@ -171,7 +171,7 @@ TEST(LinkTrouble, EnergyOfARodThatFeedsItsOwnErrorIsTheRods) {
   expect_runaway(scene, laws, {"'bob'", "comes from rod 'wire'", "constraint_multipliers"});
 }
 
-TEST(LinkTrouble, EnergyOfBlowsIsTheCollisions) {
+TEST(LinkTrouble, EnergyOfImpactsIsTheCollisions) {
   Laws laws = reference_laws();
   laws.collision_impulse = [right = laws.collision_impulse](const Contact& contact, const Body& a, const Body& b, double e) { return 1.5 * right(contact, a, b, e); };
   std::vector<scene::BodySpec> bodies{ball("ball", 0.1, 1.0, {0, 0, 0}, {1, 0, 0}), plane("left", {-1, 0, 0}, Vector3d::UnitX()), plane("right", {1, 0, 0}, -Vector3d::UnitX())};

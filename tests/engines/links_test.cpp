@@ -106,7 +106,7 @@ TEST(Links, ChainOfAHundredHangs) {
 }
 
 // RK4 turns y' = i w y by a number of square 1 - (w h)^6 / 72 + (w h)^8 / 576: so much energy goes in every step.
-TEST(Links, EnergyOfAnUndampedSpringFallsAsRk4Says) {
+TEST(Links, EnergyOfAnUndampedSpringFallsByTheErrorOfRk4) {
   const double k = 100.0, w = 10.0;
   for (const long steps : {200L, 400L, 800L}) {
     scene::Scene scene = truths::empty_scene("spring", 1.0, 1e-9);

@@ -1,8 +1,10 @@
-// A body in free flight, at rest or asleep pays nothing for its neighbours' contacts: what it costs beside a pile is what it costs alone.
+// A body in free flight, at rest or asleep costs the same beside a pile as alone: it pays nothing
+// for its neighbours' contacts.
 //
-// Retroactive detection (rd) takes all bodies to a common time at every discontinuity, by its definition: a body in flight pays one
-// integration for being begun with again and one for being stopped there, and nothing else. The same for conservative advancement (ca),
-// which moves all bodies to every event. Timewarp (tw) knows no such thing.
+// Retroactive detection (rd) takes all bodies to a common time at every discontinuity, by its
+// definition: a body in flight costs one integration for each start from that time and one for each
+// stop at it, and nothing else. The same holds for conservative advancement (ca), which moves all
+// bodies to every event. Timewarp (tw) has no common times.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -17,9 +19,10 @@ namespace {
 using Counts = std::map<std::string, std::uint64_t>;
 enum class Others { kNone, kFlying, kLying };
 constexpr int kOthers = 4;
-constexpr double kMassOfOthers = 3.0;   // kg: by it laws are asked whom they are about
+constexpr double kMassOfOthers = 3.0;   // kg: identifies them in calls of laws
 
-/// Five boxes that tumble onto a floor and onto each other, and slide: impacts, and contacts that begin, end and stop sliding.
+/// Five boxes that tumble onto a floor and onto each other, and slide: impacts, and contacts that
+/// begin, open and stop sliding.
 void add_pile(scene::Scene& scene, double height, double apart) {
   for (int i = 0; i < 5; ++i) {
     scene.bodies.push_back(box("crate " + std::to_string(i), {0.2, 0.2, 0.2}, 1.0, {0.1 * i, 0.05 * i, height + apart * i}, {1.0, 0, 0}));
@@ -28,7 +31,7 @@ void add_pile(scene::Scene& scene, double height, double apart) {
   }
 }
 
-/// A hundred metres beside the pile.
+/// A hundred metres from the pile.
 void add_others(scene::Scene& scene, Others others) {
   if (others == Others::kNone) return;
   for (int i = 0; i < kOthers; ++i) {
@@ -58,16 +61,17 @@ Counts counts_of(const scene::Scene& scene, const std::string& engine, const Law
   return recorder.trajectory().counters.counts;
 }
 
-/// How many bodies are taken to common times, and what a scheduler has to keep of the largest number: of these an engine pays by the body.
+/// Counters of common times and of the largest number of states: an engine pays them per body of
+/// the world.
 bool is_of_the_world(const std::string& counter) { return counter == "steps" || counter == "synchronisations" || counter == "states_kept" || counter == "most_states_of_a_body"; }
 
-/// What was never counted is 0.
+/// 0 for a counter that was never used.
 std::uint64_t count_in(const Counts& counts, const std::string& name) {
   const auto found = counts.find(name);
   return found == counts.end() ? 0 : found->second;
 }
 
-/// Every count of `both` is that of the pile and that of the others, except those named.
+/// Every count of `both` is the sum of the pile's and the others', except those named.
 void expect_sum(const Counts& pile, const Counts& alone, const Counts& both, const std::vector<std::string>& except, const std::string& story) {
   for (const auto& [name, count] : both)
     if (!is_of_the_world(name) && std::find(except.begin(), except.end(), name) == except.end()) {
@@ -77,8 +81,9 @@ void expect_sum(const Counts& pile, const Counts& alone, const Counts& both, con
   EXPECT_GT(pile.at("impacts"), 0u);
 }
 
-// What is done to bodies adds up to the last count. How far they go at once, and with it how often they are looked at, is chosen by the
-// engine for the mean distance of all, which others far away make longer: half as far costs a tenth.
+// Counts of both add up exactly. The engine chooses the distance of an advance, and with it the
+// number of checks, by the mean distance of all bodies, which far bodies enlarge: half the distance
+// costs 10 %.
 TEST(Neighbours, InTimewarpABodyInFlightOrAtRestPaysNothingForAPile) {
   constexpr double kOfLengths = 0.1;
   const std::vector<std::string> looks = {"integrations", "pair_checks", "gap_evaluations"};
@@ -94,7 +99,7 @@ TEST(Neighbours, InTimewarpABodyInFlightOrAtRestPaysNothingForAPile) {
   }
 }
 
-// Where all bodies are at each event, and nothing else, is what a body pays in conservative advancement.
+// In conservative advancement a body costs one position per event.
 TEST(Neighbours, InConservativeAdvancementABodyPaysItsPlaceAtEveryEventAndNothingElse) {
   const Counts pile = counts_of(scene_with(true, Others::kNone), "ca");
   for (const Others others : {Others::kFlying, Others::kLying}) {
@@ -112,20 +117,20 @@ TEST(Neighbours, InRetroactiveDetectionABodyInFlightPaysForCommonTimesAndNothing
   const std::vector<std::string> paid = {"integrations", "undone_integrations", "derivative_evaluations", "gravity_calls"};
   expect_sum(pile, alone, both, paid, "in flight");
   for (const char* same : {"steps", "synchronisations"}) EXPECT_EQ(both.at(same), pile.at(same)) << same;
-  // From every common time once as far as the step goes, if anybody asks how far that is; where the pile stops it, once as far as that. Contacts that
-  // begin a step again ask nothing of it.
+  // From every common time once to the end of the step, if its position there is needed; where the
+  // pile stops it, once to that time. Contacts that repeat a step need nothing of it.
   const std::uint64_t integrations = both.at("integrations") - pile.at("integrations");
   EXPECT_LE(integrations, kOthers * (both.at("steps") + both.at("synchronisations")));
   EXPECT_GE(integrations, kOthers * both.at("steps"));
-  EXPECT_EQ(both.at("gravity_calls") - pile.at("gravity_calls"), 4 * integrations);   // a step of Runge and Kutta's
+  EXPECT_EQ(both.at("gravity_calls") - pile.at("gravity_calls"), 4 * integrations);   // a step of Runge and Kutta
   EXPECT_EQ(alone.at("integrations"), kOthers * alone.at("steps"));
   EXPECT_EQ(alone.at("synchronisations"), 0u);
-  EXPECT_GT(both.at("contact_landings") + both.at("contacts_begun"), 10u);   // the pile has begun steps again
+  EXPECT_GT(both.at("contact_landings") + both.at("contacts_begun"), 10u);   // the pile has repeated steps
 }
 
-// They lie and fall asleep while the crates are still high above the floor.
+// They rest and fall asleep while the crates are still high above the floor.
 TEST(Neighbours, ABodyAsleepPaysNothingForAPile) {
-  constexpr double kHigh = 3.5, kApart = 0.8;   // m: 0.8 s, and as long as that no crate's box meets another's
+  constexpr double kHigh = 3.5, kApart = 0.8;   // m: 0.8 s, during which no crate's box touches another's
   const auto counts = [&](bool pile, Others others) {
     scene::Scene scene = scene_with(pile, others, kHigh, kApart, true);
     scene.duration_s = 1.5;
@@ -136,7 +141,7 @@ TEST(Neighbours, ABodyAsleepPaysNothingForAPile) {
   expect_sum(pile, alone, both, {}, "asleep");
 }
 
-/// Reference laws that count what is asked about the others, by their mass.
+/// Reference laws that count their calls for the others, recognised by their mass.
 Laws counting(std::uint64_t& derivatives, std::uint64_t& contact_rows) {
   Laws laws = reference_laws();
   laws.state_derivative = [&derivatives, ask = laws.state_derivative](const RigidBodyState& state, const Inertia& inertia, const Wrench& wrench) {
@@ -152,14 +157,15 @@ Laws counting(std::uint64_t& derivatives, std::uint64_t& contact_rows) {
   return laws;
 }
 
-// The pile's common times are its steps too. What begins a step again within the pile (blows, ends of sliding) does not solve its contacts again;
-// a box that lies has turning left of rounding, so that its path is looked at four times a step, as that of any body that may meet another.
+// The pile's common times are their steps too. A repeated step within the pile (impacts, ends of
+// sliding) does not solve their contacts again; a resting box has a rotation of rounding size, so
+// that its path is sampled four times per step, as for any body that may collide.
 TEST(Neighbours, InRetroactiveDetectionABodyAtRestPaysForCommonTimesOnly) {
   constexpr std::uint64_t kCorners = 4, kStages = 4, kLooks = 4;
   std::uint64_t derivatives = 0, rows = 0;
   const Counts both = counts_of(scene_with(true, Others::kLying), "rd", counting(derivatives, rows));
   const std::uint64_t begun = both.at("steps"), stopped = both.at("synchronisations");
-  EXPECT_GE(rows, kOthers * kCorners * begun / 2);   // it lies
+  EXPECT_GE(rows, kOthers * kCorners * begun / 2);   // it is in contact
   EXPECT_LE(rows, kOthers * kCorners * (begun + stopped));
   EXPECT_LE(derivatives, kOthers * kStages * (begun * (1 + kLooks) + stopped));
 }

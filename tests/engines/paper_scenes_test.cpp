@@ -1,5 +1,5 @@
-// The paper's four scenes, small: every engine that goes from event to event commits one trace, and a world of all bodies does the same until
-// chaos; arms throw what they carry, rocks come down the mountain and stay on it.
+// The paper's four scenes, small: every event-driven engine commits one trace, and a world of all
+// bodies agrees until chaos; arms throw their blocks, rocks slide down the mountain and stay on it.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -38,7 +38,7 @@ double farthest_apart(const Trajectory& x, const Trajectory& y, double until) {
   return farthest;
 }
 
-/// @param until  how long a world of all bodies is compared [s]; @param within [m]
+/// @param until  duration of the comparison with a world of all bodies [s]; @param within [m]
 void expect_engines_agree(const scene::Scene& scene, std::size_t least_events, double until, double within) {
   const Trajectory reference = run_with("ordered", scene);
   ASSERT_EQ(reference.stopped_by, "");
@@ -52,25 +52,27 @@ void expect_engines_agree(const scene::Scene& scene, std::size_t least_events, d
   for (const Frame& frame : reference.frames) ASSERT_GE(frame.smallest_gap, 0.0) << frame.time;
 }
 
-// Impacts of bodies that fly freely are found to roundings by all. RK4 adds 1e-10 m to molecules that spin, at this step, and each collision
-// multiplies it, by a hundred perhaps.
+// All engines find the impacts of free bodies up to rounding. RK4 adds 1e-10 m to rotating
+// molecules at this step, and each collision multiplies it, by up to a hundred.
 TEST(PaperScenes, AtomsAgree) {
   scene::Scene scene = sized("atoms", 12, 1.0);
   scene.step_s = 1.0 / 480.0;
   expect_engines_agree(scene, 10, 0.5, 1e-6);
 }
 
-// Contacts of wheels are of second order in steps that others cut in a world of all bodies, and not in their own process.
+// Contacts of wheels are of second order in the step, and steps end at other times in a world of
+// all bodies than in a process.
 TEST(PaperScenes, CarsAgree) { expect_engines_agree(sized("cars", 9, 1.2), 3, 0.5, 1e-3); }
 
 TEST(PaperScenes, RobotsAgree) { expect_engines_agree(sized("robots", 1, 0.7), 2, 0.5, 1e-3); }
 
-// Until rocks have been in lasting contact for some steps.
+// Until rocks have been in persistent contact for some steps.
 TEST(PaperScenes, AvalancheAgrees) { expect_engines_agree(sized("avalanche", 5, 1.5), 10, 0.5, 1e-3); }
 
-// A domino that does not bounce strikes the next: wherever the blow falls into a step, all that the two touch takes part in it, friction with the
-// floor among it. Both worlds are right to the step, so what is between them goes as steps do; a blow struck alone, before the floor answers,
-// leaves 2 mm between them however short the steps are.
+// A perfectly inelastic domino hits the next: wherever in a step the impact is, all contacts of the
+// two take part in it, with the floor's friction. Both worlds are right to the order of the step,
+// so their difference vanishes with it; an impact that is resolved alone, before the floor reacts,
+// leaves 2 mm at any step.
 TEST(PaperScenes, DominoesAgreeAsTheirStepsGoToNothing) {
   scene::Scene scene = sized("dominoes_row", 2, 0.2);
   const auto apart = [&](int finer) {
@@ -79,13 +81,13 @@ TEST(PaperScenes, DominoesAgreeAsTheirStepsGoToNothing) {
     return farthest_apart(run_with("tw", fine), run_with("rd", fine), scene.duration_s);
   };
   const double coarse = apart(1), fine = apart(16);
-  EXPECT_GT(coarse, 1e-4);     // m: they step differently, so there is something to go away
+  EXPECT_GT(coarse, 1e-4);     // m: their steps differ, so a difference exists
   EXPECT_LT(fine, 1e-4);       // m: a sixteenth of the 1.2 mm at the scene's own step
   EXPECT_LT(8 * fine, coarse);
 }
 
-// Where blows are located, each at its instant, the floor on which the struck domino stands answers at that instant, by the laws' impulses. One that
-// answers later, as a lasting contact with friction, leaves 2 mm too.
+// With located impacts the floor under the hit domino reacts at that instant, by the laws'
+// impulses. A later reaction, as a persistent contact with friction, leaves 2 mm too.
 TEST(PaperScenes, DominoesWithLocatedImpactsAgree) {
   scene::Scene scene = sized("dominoes_row", 2, 0.1);
   scene.contact->plastic_impacts = scene::PlasticImpacts::kLocated;
@@ -93,16 +95,16 @@ TEST(PaperScenes, DominoesWithLocatedImpactsAgree) {
   const Trajectory tw = run_with("tw", scene), rd = run_with("rd", scene);
   EXPECT_EQ(difference(run_with("ordered", scene), tw), "");
   ASSERT_TRUE(std::any_of(tw.events.begin(), tw.events.end(), [&](const Event& event) { return event.kind == EventKind::kCollision && event.body_b == body_named(tw, "domino_2"); }));
-  EXPECT_LT(farthest_apart(tw, rd, scene.duration_s), 1e-9);   // m: 1e-11 from roundings, which corners that strike in turn multiply
+  EXPECT_LT(farthest_apart(tw, rd, scene.duration_s), 1e-9);   // m: 1e-11 from rounding, multiplied by the alternating impacts of corners
 }
 
 // ---- The first collisions of each body, by all engines ----------------------------------------------------------------------
 
-constexpr std::size_t kFirst = 5;          // of a body: after so many a rounding has become a millionth of its way
+constexpr std::size_t kFirst = 5;          // per body: after so many a rounding has grown to a millionth of its path
 constexpr double kSameInstant = 1e-6;      // s
 
-/// Times of each body's first collisions, of pairs that do not come to lie on each other: of those a world of all bodies does blows within its
-/// steps, and tells them at their ends.
+/// Times of each body's first collisions, without pairs in persistent contact: a world of all
+/// bodies resolves their impacts within its steps and records them at the steps' ends.
 std::vector<std::vector<double>> first_collisions(const Trajectory& run, const std::set<std::pair<int, int>>& left_out) {
   std::vector<std::vector<double>> times(run.bodies.size());
   for (const Event& event : run.events)
@@ -131,18 +133,20 @@ void expect_the_first_collisions_agree(const scene::Scene& scene, std::size_t le
   EXPECT_GE(compared, 2 * least);
 }
 
-// Wheels roll, which is of second order in steps; pendula swing and are hit by other pendula.
+// Wheels roll, which is of second order in the step; pendula swing and hit each other.
 TEST(FirstCollisions, OfCarsAndPendulaAgree) { expect_the_first_collisions_agree(sized("cars", 20, 1.5), 8); }
 
-// Rocks that spin and fall, RK4 in a world of all bodies: 1e-6 s at 1/240 s becomes 1e-9 s at a quarter of that. From 0.7 s on rocks have lain
-// on others, and a blow multiplies what contacts that push once a step have added.
+// Rocks that rotate and fall, RK4 in a world of all bodies: an error of 1e-6 s at 1/240 s becomes
+// 1e-9 s at a quarter of that. From 0.7 s on rocks have been in contact, and an impact multiplies
+// the error of contacts with one impulse per step.
 TEST(FirstCollisions, OfRocksAgree) {
   scene::Scene scene = sized("avalanche", 24, 0.6);
   scene.step_s = 1.0 / 960.0;
   expect_the_first_collisions_agree(scene, 20);
 }
 
-// An arm hits nothing before it throws; what there is to agree on is the throw, and where everything is until the block comes down.
+// An arm hits nothing before it throws: the comparison is the throw, and all positions until the
+// block lands.
 TEST(FirstCollisions, OfARobotIsItsThrowWhichAgrees) {
   const scene::Scene scene = sized("robots", 1, 0.62);
   const Trajectory tw = run_with("tw", scene);
@@ -160,11 +164,12 @@ TEST(FirstCollisions, OfARobotIsItsThrowWhichAgrees) {
   }
 }
 
-// rd steps both robots at once: where the block in one hand begins to slide, the other robot's step is cut too. How a held block slides is right to
-// the step only, so that this moves it: by no more than the step itself is wrong.
+// rd steps both robots together: where the block in one hand begins to slide, the other robot's
+// step is cut too. The sliding of a held block is right to the order of the step only, so this
+// moves it by at most the error of the step.
 TEST(FirstCollisions, OfTwoRobotsAgreeAsFarAsTheirStepIsRight) {
   scene::Scene scene = sized("robots", 2, 0.35), finer = scene;
-  finer.step_s = scene.step_s / 8;   // a quarter changes nothing: contacts of links go by shorter steps of their own
+  finer.step_s = scene.step_s / 8;   // a quarter changes nothing: contacts of links use shorter steps of their own
   const Trajectory tw = run_with("tw", scene);
   const double of_the_step = farthest_apart(tw, run_with("tw", finer), scene.duration_s);
   EXPECT_LT(of_the_step, 1e-3);   // m
@@ -172,39 +177,41 @@ TEST(FirstCollisions, OfTwoRobotsAgreeAsFarAsTheirStepIsRight) {
   EXPECT_LT(farthest_apart(tw, run_with("rd", scene), scene.duration_s), of_the_step);
 }
 
-Trajectory run_on(int threads, const scene::Scene& scene, const engines::TimewarpTrial& trial, const std::vector<engines::Callback>& callbacks = {}, const std::string& engine = "tw") {
+Trajectory run_on(int threads, const scene::Scene& scene, const engines::FaultInjection& faults, const std::vector<engines::Callback>& callbacks = {}, const std::string& engine = "tw") {
   engines::RunOptions options;
   options.engine = engine;
-  options.trial = trial;
+  options.faults = faults;
   options.threads = threads;
   options.callbacks = callbacks;
   return run_as_told(std::move(options), scene, laws());
 }
 
-// What is undone over what is committed: nowhere more than all, and little of it on average, also where threads are held up.
+// Rolled-back work relative to committed work: nowhere more than all, and small on average, also
+// with delayed threads.
 TEST(PaperScenes, UndoLittleOfTheirWork) {
-  engines::TimewarpTrial delayed;
+  engines::FaultInjection delayed;
   delayed.seed = 14;
   delayed.delay_s = 1e-5;
   for (const int threads : {1, 2}) {
     double sum = 0.0;
     const std::vector<scene::Scene> scenes{sized("atoms", 60, 1.0), sized("cars", 30, 1.0), sized("robots", 2, 0.7), sized("avalanche", 10, 1.0)};
     for (const scene::Scene& scene : scenes) {
-      const Trajectory run = run_on(threads, scene, threads > 1 ? delayed : engines::TimewarpTrial{});
+      const Trajectory run = run_on(threads, scene, threads > 1 ? delayed : engines::FaultInjection{});
       ASSERT_EQ(run.stopped_by, "") << scene.name;
       const double undone = static_cast<double>(run.counters.counts.at("undone_integrations")), committed = static_cast<double>(run.counters.counts.at("integrations")) - undone;
       EXPECT_LE(undone, committed) << scene.name << ", " << threads << " threads";
-      EXPECT_TRUE(threads == 1 || run.counters.counts.at("least_events_of_a_thread") > 10) << scene.name;   // real threads, each with work of its own
+      EXPECT_TRUE(threads == 1 || run.counters.counts.at("least_events_of_a_thread") > 10) << scene.name;   // real threads, each with its own work
       sum += undone / committed;
     }
     EXPECT_LE(sum / static_cast<double>(scenes.size()), 0.15) << threads << " threads";
   }
 }
 
-// A row falls, each domino upon the next, until the last has been struck; then it turns out that somebody held the first at the start of its fall.
-// Groups that fused, split and fused again along the row are taken back, each body once.
+// A row falls, each domino onto the next, until the last has been hit; then a callback holds the
+// first at the start of its fall. Groups that fused, split and fused again along the row are rolled
+// back, each body once.
 TEST(LateEvent, AtTheFirstOfARowOfDominoesRollsEachBackOnce) {
-  engines::TimewarpTrial late;
+  engines::FaultInjection late;
   late.late_callbacks = true;
   for (const int n : {3, 6, 12}) {
     const scene::Scene row = sized("dominoes_row", n, 0.15 * n + 0.3);
@@ -219,10 +226,11 @@ TEST(LateEvent, AtTheFirstOfARowOfDominoesRollsEachBackOnce) {
   }
 }
 
-// Where the reference takes too long, timewarp in its own order stands for it; what it commits of smaller rows is the reference's, above.
+// Where the reference takes too long, timewarp in its own order replaces it; in smaller rows,
+// above, its trace is the reference's.
 TEST(LateEvent, AtTheFirstOfALongRowOfDominoesRollsEachBackOnce) {
   constexpr int kDominoes = 24;
-  engines::TimewarpTrial late;
+  engines::FaultInjection late;
   late.late_callbacks = true;
   const scene::Scene row = sized("dominoes_row", kDominoes, 0.15 * kDominoes + 0.3);
   const std::vector<engines::Callback> hold{{0.05, {body_named(run_with("tw", sized("dominoes_row", kDominoes, 0.0)), "domino_1")}, [](int, RigidBodyState& state) {
@@ -260,7 +268,7 @@ TEST(Avalanche, RocksComeDownTheMountainAndTouchIt) {
   ASSERT_EQ(run.stopped_by, "");
   const int mountain = body_named(run, "mountain_1");
   ASSERT_GE(mountain, 0);
-  // By impacts, or lying and rolling.
+  // By impacts, or by resting and rolling.
   bool touches = std::any_of(run.events.begin(), run.events.end(), [&](const Event& event) { return event.kind == EventKind::kCollision && (event.body_a == mountain || event.body_b == mountain); });
   for (const Frame& frame : run.frames)
     touches = touches || std::any_of(frame.contacts.begin(), frame.contacts.end(), [&](const ContactPoint& point) { return point.body_a == mountain || point.body_b == mountain; });
@@ -268,13 +276,13 @@ TEST(Avalanche, RocksComeDownTheMountainAndTouchIt) {
   for (std::size_t i = 0; i < run.bodies.size(); ++i) {
     if (run.bodies[i].immovable) continue;
     const Vector3d way = run.frames.back().poses[i].com_world - run.frames.front().poses[i].com_world;
-    EXPECT_LT(way.z(), -1.5) << run.bodies[i].name;    // m; from the air alone they fall less than 1.3 m
+    EXPECT_LT(way.z(), -1.5) << run.bodies[i].name;    // m; gravity alone makes them fall less than 1.3 m
     EXPECT_GT(way.x(), 0.5) << run.bodies[i].name;     // downhill
     EXPECT_GT(run.frames.back().poses[i].com_world.z(), 0.0) << run.bodies[i].name;
   }
 }
 
-// ---- Blows that do not bounce, each at its instant, in a scoop that motors drive -------------------------------------------
+// ---- Located perfectly inelastic impacts, in a scoop driven by motors ------------------------
 
 scene::Scene robot_with_located_impacts() {
   scene::Scene scene = sized("robots", 1, 0.35);
@@ -291,23 +299,25 @@ TEST(Robots, WithLocatedImpactsComeToTheirEnd) {
   }
 }
 
-// A scoop's corners glide over what it holds: taken for one another at the middle of a step, they leave 0.02 m here at every step.
+// A scoop's corners slide over its block: confused with each other in the middle of a step, they
+// cause 0.02 m at every step.
 TEST(Robots, ComeToOneMotionAtEveryStep) {
   scene::Scene scene = robot_with_located_impacts();
   const Trajectory coarse = run_by("rd", scene, {}, 60.0, reference_laws());
   scene.step_s /= 8;
   const Trajectory fine = run_by("rd", scene, {}, 60.0, reference_laws());
-  EXPECT_LT(farthest_apart(coarse, fine, scene.duration_s), 1e-3);   // m: 3e-4 of a reach of 2 m, by a law of friction of first order
+  EXPECT_LT(farthest_apart(coarse, fine, scene.duration_s), 1e-3);   // m: 3e-4 of a reach of 2 m, by a friction law of first order
 }
 
-// A torque held for 1/960 s that brakes an eighth of the arm's inertia by 60 N m s/rad turns it round, faster each time.
+// A torque held for 1/960 s that brakes an eighth of the arm's inertia by 60 N m s/rad reverses it,
+// faster each time.
 TEST(Robots, WhoseMotorsOvershootAreStoppedAtOnceAndNamed) {
   scene::Scene scene = robot_with_located_impacts();
   for (effects::MotorSpec& motor : scene.effects.of<effects::MotorSpec>()) motor.damping_n_m_s_rad = 60.0 * motor.stiffness_n_m_rad / 6000.0;
   for (const char* engine : {"rd", "tw"}) {
     const Trajectory run = run_by(engine, scene, {}, 60.0, reference_laws());
     for (const char* word : {"at t = ", "_1_", "period_s"}) EXPECT_NE(run.stopped_by.find(word), std::string::npos) << engine << ": " << run.stopped_by;
-    EXPECT_LT(run.events.size(), 50000U) << engine;   // links at 1e4 rad/s meet often; an engine bears 20,000 impacts a step, and this is the second or third
+    EXPECT_LT(run.events.size(), 50000U) << engine;   // links at 1e4 rad/s collide often; an engine stops at 20,000 impacts per step, and this is the second or third step
   }
 }
 

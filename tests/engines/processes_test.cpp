@@ -1,5 +1,6 @@
-// Bodies that links, forces and lasting contacts hold together are processes: every event-ordered engine commits the same of them, in
-// whatever order processes work, and what a world of all bodies does.
+// Linked bodies, bodies under forces and bodies in persistent contact are logical processes: every
+// event-driven engine commits the same trace of them, in any order of execution, and agrees with a
+// world of all bodies.
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -16,14 +17,14 @@
 namespace tumble::testing {
 namespace {
 
-using engines::TimewarpTrial;
+using engines::FaultInjection;
 
 const Laws& laws() {
   static const Laws reference = reference_laws();
   return reference;
 }
 
-Trajectory run_with(const std::string& engine, const scene::Scene& scene, const TimewarpTrial& trial = {}) { return run_by(engine, scene, trial, 60.0, laws()); }
+Trajectory run_with(const std::string& engine, const scene::Scene& scene, const FaultInjection& faults = {}) { return run_by(engine, scene, faults, 60.0, laws()); }
 
 scene::Scene course_scene(const std::string& name, double duration) {
   scene::Scene scene = scene::load_scene(std::filesystem::path(TUMBLE_SOURCE_DIR) / "assignments/a3_constraints/scenes" / (name + ".json"));
@@ -40,13 +41,13 @@ void expect_one_trace(const scene::Scene& scene, std::size_t least) {
 
 // ---- One trace ---------------------------------------------------------------------------------------------------------
 
-TEST(Processes, LinkedInTheCoursesScenesCommitTheReferencesTrace) {
+TEST(LogicalProcesses, LinkedInTheCoursesScenesCommitTheReferencesTrace) {
   expect_one_trace(course_scene("newtons_cradle", 1.0), 4);
   expect_one_trace(course_scene("newtons_cradle_springs", 1.0), 4);
   expect_one_trace(course_scene("robot_arm", 0.5), 0);
 }
 
-TEST(Processes, InLastingContactInTheCoursesScenesCommitTheReferencesTrace) {
+TEST(LogicalProcesses, InPersistentContactInTheCoursesScenesCommitTheReferencesTrace) {
   expect_one_trace(course_scene("drop_a_box", 1.5), 4);
   expect_one_trace(course_scene("dropped_on_a_hung_block", 0.6), 30);
   expect_one_trace(course_scene("card_tent", 0.8), 4);
@@ -55,12 +56,12 @@ TEST(Processes, InLastingContactInTheCoursesScenesCommitTheReferencesTrace) {
   EXPECT_EQ(difference(run_with("ordered", dominoes), run_with("tw", dominoes)), "");
 }
 
-TEST(Processes, AmongFreeBodiesCommitTheReferencesTrace) {
+TEST(LogicalProcesses, AmongFreeBodiesCommitTheReferencesTrace) {
   expect_one_trace(pendula_and_balls(6, 1.2), 15);
   expect_one_trace(tower_and_projectile(5.0), 15);
 }
 
-// ---- Hard orders ---------------------------------------------------------------------------------------------------------
+// ---- Adversarial orders ----------------------------------------------------------------------
 
 void expect_hard_orders_change_nothing(const scene::Scene& scene, int seeds) {
   const Trajectory reference = run_with("ordered", scene);
@@ -77,12 +78,13 @@ void expect_hard_orders_change_nothing(const scene::Scene& scene, int seeds) {
 
 TEST(AdversarialOrderOfProcesses, LeavesLinkedBodiesTraceAsItIs) { expect_hard_orders_change_nothing(pendula_and_balls(5, 0.9), 20); }
 
-// Towers fuse, are hit, come apart, and all of it is taken back again and again: groups below whose birth the rollback goes as well.
+// Towers fuse, are hit, come apart, and all of it is rolled back repeatedly, also to times before a
+// group formed.
 TEST(AdversarialOrderOfProcesses, LeavesGroupsInContactAsTheyAre) { expect_hard_orders_change_nothing(tower_and_projectile(5.0), 20); }
 
-// ---- Groups that come and go -----------------------------------------------------------------------------------------------
+// ---- Groups that fuse and split --------------------------------------------------------------
 
-/// Pairs in lasting contact at a time, as a run's events tell.
+/// Pairs in persistent contact at a time, from a run's events.
 std::set<std::pair<int, int>> together(const Trajectory& run, double t) {
   std::set<std::pair<int, int>> pairs;
   for (const Event& event : run.events) {
@@ -99,13 +101,13 @@ Trajectory run_on(int threads, const scene::Scene& scene) {
   options.engine = "tw";
   options.timewarp = engines::fast_timewarp();
   options.threads = threads;
-  options.trial.delay_s = 1e-5;
+  options.faults.delay_s = 1e-5;
   engines::run_scene(scene, laws(), options, recorder);
   return recorder.trajectory();
 }
 
-// The tower fuses block by block; the shot comes while it stands, and is found after much of it has been worked at. A passage or a change
-// that nobody holds any more would end the run (an orphan's check).
+// The tower fuses block by block; the shot hits it while it stands, and is found late. A leaked
+// segment or change would stop the run.
 TEST(ContactGroup, ThatSplitsUnderRollbackHasTheReferencesMembersAtAllTimes) {
   const scene::Scene scene = tower_and_projectile(5.0);
   const Trajectory reference = run_with("ordered", scene);
@@ -124,7 +126,7 @@ TEST(ContactGroup, ThatSplitsUnderRollbackHasTheReferencesMembersAtAllTimes) {
   }
 }
 
-TEST(Processes, OnSeveralThreadsCommitTheReferencesTrace) {
+TEST(LogicalProcesses, OnSeveralThreadsCommitTheReferencesTrace) {
   for (const auto& [scene, least] : {std::pair{pendula_and_balls(8, 0.8), 10}, {sized("avalanche", 24, 0.5), 20}, {sized("cars", 8, 0.1), 0}}) {
     const Trajectory reference = run_with("ordered", scene);
     ASSERT_GE(reference.events.size(), static_cast<std::size_t>(least)) << scene.name;
@@ -134,7 +136,8 @@ TEST(Processes, OnSeveralThreadsCommitTheReferencesTrace) {
 
 // ---- Bounds ----------------------------------------------------------------------------------------------------------------
 
-// Of rocks it is what a body has gone on that grows too long, of bobs, which swing on one flight, the steps that their passages keep.
+// For rocks a body's history of flights would grow too long; for bobs, which swing on one flight,
+// the steps of their segments.
 TEST(CapOfStates, OfEightIsKeptByProcessesAndChangesNothing) {
   for (const scene::Scene& scene : {sized("avalanche", 24, 2.5), pendula_and_balls(5, 0.9)}) {
     const Trajectory reference = run_with("ordered", scene);
@@ -144,7 +147,7 @@ TEST(CapOfStates, OfEightIsKeptByProcessesAndChangesNothing) {
       options.engine = "tw";
       options.threads = threads;
       options.most_states = most_states;
-      if (threads == 1) options.trial = {3, true, 1.0, 0, 0.0};   // work by lot up to a second ahead of global virtual time
+      if (threads == 1) options.faults = {3, true, 1.0, 0, 0.0};   // random order up to a second ahead of global virtual time
       return run_as_told(std::move(options), scene, laws());
     };
     const Trajectory free = run_capped(1, 0);
@@ -163,16 +166,16 @@ TEST(CapOfStates, OfEightIsKeptByProcessesAndChangesNothing) {
 
 // ---- Callbacks -------------------------------------------------------------------------------------------------------------
 
-Trajectory run_with_callbacks(const std::string& engine, const scene::Scene& scene, const std::vector<engines::Callback>& callbacks, const TimewarpTrial& trial = {}) {
+Trajectory run_with_callbacks(const std::string& engine, const scene::Scene& scene, const std::vector<engines::Callback>& callbacks, const FaultInjection& faults = {}) {
   engines::RunOptions options;
   options.engine = engine;
-  options.trial = trial;
+  options.faults = faults;
   options.callbacks = callbacks;
   return run_as_told(std::move(options), scene, laws());
 }
 
-// Each is handed to all balls at once, whose local virtual times lie beyond it by then.
-TEST(LateCallback, ActsOnceInTheCommittedTraceHoweverOftenItWasTakenBack) {
+// Each acts on all balls at once, whose local virtual times are later by then.
+TEST(LateCallback, ActsOnceInTheCommittedTraceHoweverOftenItWasRolledBack) {
   const scene::Scene scene = sized("gas", 60, 1.0);
   std::vector<engines::Callback> callbacks;
   std::vector<int> all;
@@ -196,9 +199,10 @@ TEST(LateCallback, ActsOnceInTheCommittedTraceHoweverOftenItWasTakenBack) {
     ASSERT_EQ(difference(reference, run), "") << "seed " << seed;
     EXPECT_EQ(acts(run), 180);
   }
-  EXPECT_GT(calls, 20 * 180);   // some were taken back
-  // Taken last of all, each finds its sixty balls at the end of the run already: the first alone sends 50 of them back or more.
-  engines::TimewarpTrial late;
+  EXPECT_GT(calls, 20 * 180);   // some were rolled back
+  // Executed last, each finds its sixty balls at the end of the run: the first alone rolls back at
+  // least 50 of them.
+  engines::FaultInjection late;
   late.late_callbacks = true;
   const Trajectory run = run_with_callbacks("tw", scene, {callbacks[0]}, late);
   EXPECT_EQ(difference(run_with_callbacks("ordered", scene, {callbacks[0]}), run), "");
@@ -215,19 +219,21 @@ TEST(LateCallback, ChangesProcessesToo) {
   for (std::uint64_t seed = 1; seed <= 10; ++seed) ASSERT_EQ(difference(reference, run_with_callbacks("tw", scene, callbacks, {seed, true, 0.2, 5, 0.05})), "") << "seed " << seed;
 }
 
-// The tower has fallen together, been shot at and come apart when its lowest block turns out to have been thrown up before all that.
+// The tower has fallen together, been hit and come apart when a callback throws its lowest block up
+// before all that.
 TEST(LateCallback, BelowAGroupsBirthDissolvesIt) {
   const scene::Scene scene = tower_and_projectile(5.0);
   const std::vector<engines::Callback> callbacks{{0.02, {1}, [](int, RigidBodyState& state) { state.momentum_world = Vector3d(0.4, 0.0, 0.5); }}};
-  engines::TimewarpTrial late;
+  engines::FaultInjection late;
   late.late_callbacks = true;
   const Trajectory reference = run_with_callbacks("ordered", scene, callbacks), run = run_with_callbacks("tw", scene, callbacks, late);
   EXPECT_EQ(difference(reference, run), "");
-  EXPECT_GE(run.counters.counts.at("rollbacks"), 3U);   // all three blocks, of which one passage told
+  EXPECT_GE(run.counters.counts.at("rollbacks"), 3U);   // all three blocks, as messages to one segment
   EXPECT_GT(run.counters.counts.at("undone_integrations"), 20U);
 }
 
-// A ball flies to 0.37 s, between two steps, is turned there, and turned again by two callbacks at the run's last instant, in their order.
+// A ball flies to 0.37 s, between two steps, is turned there, and turned again by two callbacks at
+// the run's last instant, in their order.
 TEST(Callback, ActsAtItsInstantInEveryEngine) {
   const Vector3d start(0, 0, 5), thrown(1.0, 0, 2.0), turned(-0.5, 0.25, 3.0);
   scene::Scene scene = scene_of({ball("ball", 0.1, 2.0, start, thrown), ball("other", 0.1, 1.0, {5, 0, 9}, Vector3d::Zero())}, 0.8, kEarth);
@@ -254,7 +260,7 @@ TEST(Callback, ActsAtItsInstantInEveryEngine) {
   }
 }
 
-// Who rests, lies or sleeps gets up.
+// A body at rest, in contact or asleep starts to move.
 TEST(Callback, SetsWhatLiesInMotionInTheWorldOfAllBodies) {
   const auto kick = [](int, RigidBodyState& state) { state.momentum_world.z() = 2.0; };
   scene::Scene resting = scene_of({plane("floor", {0, 0, 0}, {0, 0, 1}), ball("ball", 0.1, 1.0, {0, 0, 0.1}, Vector3d::Zero())}, 1.3, kEarth);
@@ -266,13 +272,15 @@ TEST(Callback, SetsWhatLiesInMotionInTheWorldOfAllBodies) {
   for (const scene::Scene& scene : {resting, lying, asleep}) {
     const Trajectory run = run_with_callbacks("rd", scene, {{1.0, {1}, kick}});
     ASSERT_EQ(run.stopped_by, "");
-    // 1.3 s is 0.3 s after the kick: 0.1 + 2 * 0.3 - 9.81 * 0.09 / 2 = 0.25855 m. The floor gives way by a contact's shell at most.
+    // 1.3 s is 0.3 s after the callback: 0.1 + 2 * 0.3 - 9.81 * 0.09 / 2 = 0.25855 m. The position
+    // of the floor's contact is known to a contact margin.
     EXPECT_NEAR(run.frames.back().poses[1].com_world.z(), 0.1 + 2.0 * 0.3 - 0.5 * 9.81 * 0.09, 1e-5);
     EXPECT_EQ(scene.contact && scene.contact->sleep, run.counters.counts.at("bodies_put_to_sleep") > 0);
   }
 }
 
-// Links, contacts, free flight: the same events in the same order, at the same times as far as steps allow.
+// Links, contacts, free flight: the same events in the same order, at times equal to the order of
+// the step.
 TEST(Callback, AgreesInEveryEngine) {
   const scene::Scene scene = pendula_and_balls(4, 0.5);
   const std::vector<engines::Callback> callbacks{{0.1234, {0, 1, 4}, [](int body, RigidBodyState& state) { state.momentum_world += Vector3d(0.02 * body, 0.3, 0); }},
@@ -287,12 +295,13 @@ TEST(Callback, AgreesInEveryEngine) {
     EXPECT_EQ(rd.events[k].kind, reference.events[k].kind) << k;
     EXPECT_EQ(rd.events[k].body_a, reference.events[k].body_a) << k;
     EXPECT_EQ(rd.events[k].body_b, reference.events[k].body_b) << k;
-    EXPECT_NEAR(rd.events[k].time, reference.events[k].time, 1e-6) << k;   // s: as where no callback acts, below
+    EXPECT_NEAR(rd.events[k].time, reference.events[k].time, 1e-6) << k;   // s: as without callbacks, below
   }
   for (std::size_t i = 0; i < rd.bodies.size(); ++i) EXPECT_LT((rd.frames.back().poses[i].com_world - reference.frames.back().poses[i].com_world).norm(), 1e-5) << rd.bodies[i].name;   // m
 }
 
-// A pull along the rod changes nothing, whatever keeps the rod afterwards: as after an impact, velocities are those that links allow.
+// A pull along the rod changes nothing, whatever stabilisation the rod has: as after an impact,
+// velocities are projected onto what links allow.
 TEST(Callback, LeavesLinksAsLongAsTheyAre) {
   for (const scene::StabilisationKind kind : {scene::StabilisationKind::kNone, scene::StabilisationKind::kBaumgarte, scene::StabilisationKind::kProjection}) {
     scene::Scene scene = truths::straight_chain({1.0}, 1.0, -Vector3d::UnitZ(), kEarth);
@@ -301,12 +310,13 @@ TEST(Callback, LeavesLinksAsLongAsTheyAre) {
     for (const char* engine : {"rd", "ordered", "ca", "tw"}) {
       const Trajectory run = run_with_callbacks(engine, scene, {{0.5, {0}, [](int, RigidBodyState& state) { state.momentum_world = Vector3d(0, 0, -1); }}});
       ASSERT_EQ(run.stopped_by, "") << engine;
-      EXPECT_NEAR(run.frames.back().poses[0].com_world.z(), -1.0, 1e-12) << engine;   // m: it hung there at rest
+      EXPECT_NEAR(run.frames.back().poses[0].com_world.z(), -1.0, 1e-12) << engine;   // m: it was at rest there
     }
   }
 }
 
-// Engines reckon from an origin nearby: who decides by places decides by those of the world. What it does to places is not taken.
+// Engines compute from a local origin: a callback still sees world positions. Its changes of
+// positions are ignored.
 TEST(Callback, SeesPlacesOfTheWorldAndMovesNone) {
   const Vector3d far(1e6, 0, 0);
   const scene::Scene scene = scene_of({ball("ball", 0.1, 1.0, far, Vector3d::Zero())}, 0.2);
@@ -315,7 +325,7 @@ TEST(Callback, SeesPlacesOfTheWorldAndMovesNone) {
                                                                  state.momentum_world = Vector3d(0, (state.com_world - far).norm() < 1e-9 ? 1.0 : -1.0, 0);
                                                                  state.com_world.setZero();
                                                                }}});
-    EXPECT_LT((run.frames.back().poses[0].com_world - far - Vector3d(0, 0.1, 0)).norm(), 1e-9) << engine;   // m: an ulp of 10^6 is 1e-10
+    EXPECT_LT((run.frames.back().poses[0].com_world - far - Vector3d(0, 0.1, 0)).norm(), 1e-9) << engine;   // m: the spacing of doubles at 10^6 is 1e-10
   }
 }
 
@@ -324,12 +334,12 @@ TEST(Callback, OnWhatCannotMoveIsRefused) {
   for (const char* engine : {"rd", "tw"}) EXPECT_THROW(run_with_callbacks(engine, scene, {{0.05, {0}, [](int, RigidBodyState&) {}}}), PreconditionError) << engine;
 }
 
-// ---- As a world of all bodies does it --------------------------------------------------------------------------------------
+// ---- Agreement with a world of all bodies ----------------------------------------------------
 
-// A step of fourth order, cut elsewhere: 1e-8 at 1/240 s, grown by some impacts.
+// A step of fourth order that ends elsewhere: 1e-8 at 1/240 s, multiplied by some impacts.
 constexpr double kTruncation = 1e-6;   // s, m
 
-TEST(Processes, MoveAsTheWorldOfAllBodiesDoes) {
+TEST(LogicalProcesses, MoveAsTheWorldOfAllBodiesDoes) {
   const scene::Scene scene = pendula_and_balls(6, 0.5);
   const Trajectory rd = run_with("rd", scene), tw = run_with("tw", scene);
   ASSERT_EQ(rd.events.size(), tw.events.size());
@@ -342,14 +352,14 @@ TEST(Processes, MoveAsTheWorldOfAllBodiesDoes) {
   for (std::size_t i = 0; i < rd.bodies.size(); ++i) EXPECT_LT((rd.frames.back().poses[i].com_world - tw.frames.back().poses[i].com_world).norm(), 10 * kTruncation) << rd.bodies[i].name;
 }
 
-TEST(Processes, RecordWhatTheirLinksAndContactsPullAndPush) {
+TEST(LogicalProcesses, RecordWhatTheirLinksAndContactsPullAndPush) {
   const Trajectory run = run_with("tw", pendula_and_balls(2, 0.1));
-  // m v^2 / l + m g at the lowest point, slowed by drag: v^2 = 0.64 less a little.
+  // m v^2 / l + m g at the lowest point, slightly slowed by drag: v^2 < 0.64.
   EXPECT_NEAR(run.frames.front().rod_tensions.at(0), 0.64 + 9.81, 1e-9);
   const Trajectory tower = run_with("tw", tower_and_projectile(0.1));
   double push = 0.0;
   for (const ContactPoint& point : tower.frames.back().contacts) push += point.body_a == 0 ? -point.force_on_a_world.z() : 0.0;
-  EXPECT_NEAR(push, 3.4 * 9.81, 1e-6 * 30);   // what three blocks weigh, and the shot that has fallen beside them
+  EXPECT_NEAR(push, 3.4 * 9.81, 1e-6 * 30);   // the weight of three blocks, and of the shot that has fallen beside them
 }
 
 TEST(SizedScenes, BeginApartAtTheirOwnSize) {
@@ -365,15 +375,17 @@ TEST(SizedScenes, BeginApartAtTheirOwnSize) {
 
 TEST(SizedScenes, BeginApartWhereTheyAreLarge) {
   for (const scene::SizedScene& sized_scene : scene::sized_scenes()) {
-    // Each rock is a solid of its own to prepare; an arm is ten bodies, of which each pair of links is looked up by name.
+    // Each rock is a shape of its own to build; an arm has ten bodies, and each pair of links is
+    // found by name.
     const int n = sized_scene.name == "avalanche" ? 1000 : sized_scene.name == "robots" ? 500 : 20'000;
     const scene::Scene scene = sized(sized_scene.name, n, 1e-6);
     EXPECT_NO_THROW(engines::FlightWorld(scene, "tw", laws(), {})) << sized_scene.name;   // an overlap at the start is refused
   }
 }
 
-// Four times the vehicles and pendula are four times the small worlds. Each that looked through all links, or at all other worlds, would make
-// it sixteen (it was thirteen); twice the linear ratio is left for caches and neighbours on the machine.
+// Four times the vehicles and pendula cost four times as much. A search of each world through all
+// links, or all other worlds, would cost sixteen times; twice the linear ratio allows for caches
+// and other programs on the machine.
 TEST(SettingUp, TakesTimeInProportionToTheNumberOfProcesses) {
   const Laws laws = reference_laws();
   const auto seconds_of = [&](int n) {

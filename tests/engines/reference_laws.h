@@ -1,4 +1,4 @@
-/// The laws of all reference modules, as a run of the course's scenes has them.
+/// The laws of all reference modules, as in a run of the course's scenes.
 #pragma once
 
 #include "assignments/a1_impulse/a1_binding.h"

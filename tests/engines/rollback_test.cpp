@@ -1,34 +1,34 @@
-// Rolled back is as if it had never been: states, groups, events and the cells of the grid, to the last byte; and what is committed in the
-// end is what the reference commits.
+// A rolled-back state is as if its future had never been computed: states, groups, events and the
+// cells of the grid, to the last byte; and the final committed trace is the reference's.
 #include <algorithm>
 #include <set>
 
 #include <gtest/gtest.h>
 
 #include "framework/core/random.h"
-#include "framework/engines/timewarp/taught_process.h"
+#include "framework/engines/timewarp/taught_logical_process.h"
 #include "tests/engines/event_process_scenes.h"
 #include "tests/engines/reference_laws.h"
 
 namespace tumble::testing {
 namespace {
 
-using engines::RollbackWatch;
-using engines::Standing;
+using engines::RollbackCheck;
+using engines::StateSnapshot;
 
 const Laws& laws() {
   static const Laws reference = reference_laws();
   return reference;
 }
 
-/// Where two rows of bytes first differ, in words; empty: nowhere.
+/// The first difference of two byte sequences, in words; empty: none.
 std::string parting(const char* what, const std::string& before, const std::string& after) {
   if (before == after) return "";
   const auto at = std::mismatch(before.begin(), before.end(), after.begin(), after.end()).first - before.begin();
   return std::string(what) + ": " + std::to_string(before.size()) + " and " + std::to_string(after.size()) + " bytes, the first that differs is " + std::to_string(at) + "; ";
 }
 
-/// What the trials of one run showed.
+/// The injections of one run.
 struct Trials {
   std::set<int> steps;
   int count = 0;
@@ -38,11 +38,11 @@ struct Trials {
 
 Trials roll_back_in(const scene::Scene& scene, int every, int threads, int first, const std::vector<engines::Callback>& callbacks = {}, int most_steps = 50) {
   Trials trials;
-  RollbackWatch watch;
+  RollbackCheck watch;
   watch.every = every;
   watch.first = first;
   watch.most_steps = most_steps;
-  watch.tell = [&](double t, int steps, const Standing& before, const Standing& after) {
+  watch.report = [&](double t, int steps, const StateSnapshot& before, const StateSnapshot& after) {
     ++trials.count;
     trials.steps.insert(steps);
     const std::string difference = parting("states", before.states, after.states) + parting("groups", before.groups, after.groups) + parting("events", before.events, after.events) + parting("cells", before.cells, after.cells);
@@ -66,7 +66,7 @@ void expect_as_if_it_had_never_been(const scene::Scene& scene, int every, int le
   options.callbacks = callbacks;
   engines::run_scene(scene, laws(), options, reference);
   for (const int threads : {1, 2}) {
-    const Trials trials = roll_back_in(scene, threads == 1 ? every : 1, threads, 20, callbacks, threads == 1 ? 50 : 7);   // steps, or rounds of some steps each
+    const Trials trials = roll_back_in(scene, threads == 1 ? every : 1, threads, 20, callbacks, threads == 1 ? 50 : 7);   // steps, or epochs of some steps each
     EXPECT_EQ(trials.first_difference, "") << scene.name << ", " << threads << " threads";
     EXPECT_EQ(difference(reference.trajectory(), trials.run), "") << scene.name << ", " << threads << " threads";
     EXPECT_GE(trials.count, threads == 1 ? least_trials : 2) << scene.name << ", " << threads << " threads";
@@ -74,10 +74,10 @@ void expect_as_if_it_had_never_been(const scene::Scene& scene, int every, int le
   }
 }
 
-/// In as many runs as it takes, each going on in the row of lengths where the last ended; a trial that the end of the run cuts short counts for
-/// what it took.
+/// In several runs, each continuing the sequence of lengths of the last; an injection that the end
+/// of the run cuts short counts with the steps it took.
 void expect_every_length_from_one_to_fifty(const scene::Scene& scene, int every, int threads) {
-  constexpr int kMostRuns = 20, kStride = 17;   // of the watch: from a length to the next
+  constexpr int kMostRuns = 20, kStride = 17;   // of the check: from one length to the next
   std::set<int> all_steps;
   int tried = 0;
   for (int k = 0; k < kMostRuns && all_steps.size() < 50; ++k) {
@@ -93,18 +93,19 @@ TEST(RollbackRestore, LeavesNoByteOfBallsChangedAfterOneToFiftySteps) {
   const scene::Scene scene = sized("gas", 60, 2.0);
   expect_as_if_it_had_never_been(scene, 100, 10);
   expect_every_length_from_one_to_fifty(sized("gas", 60, 10.0), 400, 1);
-  expect_every_length_from_one_to_fifty(sized("gas", 60, 30.0), 1, 2);   // rounds
+  expect_every_length_from_one_to_fifty(sized("gas", 60, 30.0), 1, 2);   // epochs
 }
 
 TEST(RollbackRestore, LeavesNoByteOfTumblingSolidsChanged) { expect_as_if_it_had_never_been(sized("atoms", 30, 0.6), 60, 5); }
 
-// Towers fuse and split between the two times: groups, and what the events that changed them began, are as they were.
+// Towers fuse and split between the two times: groups and the flights of the events that changed
+// them are restored.
 TEST(RollbackRestore, LeavesNoByteOfGroupsInContactChanged) {
   expect_as_if_it_had_never_been(tower_and_projectile(5.0), 12, 10);
   expect_as_if_it_had_never_been(sized("avalanche", 12, 0.5), 100, 5);
 }
 
-// Rocks that roll over each other: of a tower that lies still again little is left to do after so many steps.
+// Rocks that roll over each other: in a tower at rest little happens in so many steps.
 TEST(RollbackRestore, LeavesNoByteOfGroupsChangedAfterOneToFiftySteps) {
   for (const int threads : {1, 2}) expect_every_length_from_one_to_fifty(sized("avalanche", 8, 1.5), threads == 1 ? 120 : 10, threads);
 }
@@ -118,19 +119,19 @@ TEST(RollbackRestore, LeavesNoByteOfLinkedBodiesChanged) {
   expect_as_if_it_had_never_been(sized("robots", 1, 0.3), 30, 2);
 }
 
-// One that was called and taken back waits again.
+// A callback that was executed and rolled back is pending again.
 TEST(RollbackRestore, LeavesCallbacksAsTheyWere) {
   const std::vector<engines::Callback> callbacks{{0.25, {0, 1, 4}, [](int, RigidBodyState& state) { state.momentum_world.y() += 0.3; }},
                                                  {0.5, {2}, [](int, RigidBodyState& state) { state.momentum_world.x() -= 0.2; }}};
   expect_as_if_it_had_never_been(pendula_and_balls(4, 0.8), 28, 8, callbacks);
 }
 
-// What stands is told in enough detail to tell two times apart.
-TEST(RollbackRestore, WouldTellADifference) {
-  std::vector<Standing> seen;
-  RollbackWatch watch;
+// The snapshot is detailed enough to differ between two times.
+TEST(RollbackRestore, WouldShowADifference) {
+  std::vector<StateSnapshot> seen;
+  RollbackCheck watch;
   watch.every = 20;
-  watch.tell = [&](double, int, const Standing& before, const Standing&) { seen.push_back(before); };
+  watch.report = [&](double, int, const StateSnapshot& before, const StateSnapshot&) { seen.push_back(before); };
   TrajectoryRecorder recorder;
   engines::RunOptions options;
   options.engine = "tw";
@@ -145,8 +146,10 @@ TEST(RollbackRestore, WouldTellADifference) {
   EXPECT_NE(seen.front().groups, seen.back().groups);
 }
 
-// The teaching path's box: six heaps, from which what is taken back is thrown away when it comes to the top.
-// Boxes of a body at rest, in steady motion, and in one that comes back, of which global virtual time leaves three at a time.
+// The box of the teaching timewarp: six heaps, whose removed entries are deleted when they reach
+// the top.
+// Boxes of a body at rest, in uniform motion, and in an oscillation; global virtual time leaves
+// three at a time.
 TEST(SweptBox, KeepsNoMoreThanTwiceWhatIsThereHoweverManyStepsHavePassed) {
   const auto speeds = {Vector3d(0, 0, 0), Vector3d(0.5, -0.25, 0), Vector3d(1, 2, -3)};
   for (const Vector3d& speed : speeds) {
@@ -157,7 +160,7 @@ TEST(SweptBox, KeepsNoMoreThanTwiceWhatIsThereHoweverManyStepsHavePassed) {
       middle += (speed.x() == 1.0 && id % 200 >= 100 ? -1.0 : 1.0) * speed;
       swept.add(id, {middle - Vector3d::Ones(), middle + Vector3d::Ones()});
       ASSERT_LE(swept.kept(), 2 * std::min<std::size_t>(id + 1, 3) + 16) << "step " << id << " at " << speed.transpose() << " m a step";
-      if (id % 7 == 0) {   // and the box is around the last three
+      if (id % 7 == 0) {   // and the box encloses the last three
         const engines::Box box = swept.box();
         ASSERT_TRUE((box.low.array() <= middle.array() - 1).all() && (box.high.array() >= middle.array() + 1).all());
         ASSERT_LE((box.high - box.low - Vector3d::Constant(2)).cwiseAbs().maxCoeff(), 2 * speed.cwiseAbs().maxCoeff());

@@ -220,7 +220,7 @@ TEST(RunWatch, WhatTurnsTooFarInAStepIsStoppedInTime) {
 }
 
 // Eight boxes of 1 cm on ball joints, held out level: where they hang they swing too fast for 1/60 s.
-TEST(RunWatch, AChainOfSmallBoxesSaysWhichStepItNeeds) {
+TEST(RunWatch, AChainOfSmallBoxesIsReportedWithTheStepItNeeds) {
   const Trajectory run = run_by("rd", broken_scene("chain_0.01_1"));
   EXPECT_NE(said(run).find("between its joints"), std::string::npos) << said(run);
   EXPECT_TRUE(!run.stopped_by.empty() || !run.counters.faults.empty()) << said(run);

@@ -1,4 +1,5 @@
-// What a scheduler pays, read: right or wrong first, then what it pays beside the reference, with the cause that the counts show.
+// Sentences about the work of a scheduler: right or wrong first, then its work relative to the
+// reference's, with the cause that the counts show.
 #include <gtest/gtest.h>
 
 #include "framework/engines/cost/scheduler_work.h"
@@ -6,7 +7,7 @@
 namespace tumble::testing {
 namespace {
 
-/// Two runs with ten events each, in which every impact is worked at once.
+/// Two runs with ten events each, in which every impact is executed once.
 engines::SchedulerCurve scheduler(std::uint64_t undone, std::uint64_t rollbacks, std::uint64_t checks, std::uint64_t states) {
   engines::SchedulerCurve curve{"your scheduler", false, {}, {}};
   for (const double step : {0.5, 0.05}) {
@@ -24,14 +25,14 @@ std::string told_of(const engines::SchedulerCurve& curve, const engines::Schedul
   return all;
 }
 
-TEST(SchedulerCost, WhoeverPaysWhatTheReferencePaysIsToldSo) {
+TEST(SchedulerCost, WorkEqualToTheReferencesIsReported) {
   const engines::SchedulerCurve reference = scheduler(10, 15, 100, 20);
   const std::string told = told_of(scheduler(11, 15, 110, 21), &reference);
   EXPECT_NE(told.find("commits what the ordered reference commits"), std::string::npos) << told;
   EXPECT_NE(told.find("pays what the reference pays"), std::string::npos) << told;
 }
 
-TEST(SchedulerCost, BodiesSentBackForNothingAreNamedAsTheCause) {
+TEST(SchedulerCost, UnnecessaryRollbacksAreNamedAsTheCause) {
   const engines::SchedulerCurve reference = scheduler(10, 15, 100, 20);
   const std::string told = told_of(scheduler(32, 48, 100, 20), &reference);
   EXPECT_NE(told.find("undoes 3.2 times what the reference undoes"), std::string::npos) << told;
@@ -53,7 +54,7 @@ TEST(SchedulerCost, ChecksAndStatesHaveSentencesOfTheirOwn) {
   EXPECT_NE(told.find("keeps 10 times as many states"), std::string::npos) << told;
 }
 
-TEST(SchedulerCost, AWrongRunIsToldFirstAndPaysForNothing) {
+TEST(SchedulerCost, AWrongRunIsReportedFirstAndNotCounted) {
   const engines::SchedulerCurve reference = scheduler(10, 15, 100, 20);
   engines::SchedulerCurve wrong = scheduler(32, 48, 100, 20);
   wrong.by_step[1].committed = 4;
@@ -62,10 +63,10 @@ TEST(SchedulerCost, AWrongRunIsToldFirstAndPaysForNothing) {
   const std::vector<engines::SchedulerReading> readings = engines::read_scheduler(wrong, &reference);
   EXPECT_EQ(readings.front().kind, engines::SchedulerReading::Kind::kWrong);
   EXPECT_NE(readings.front().text.find("in 1 of 2 runs. With steps of 1/20 s it gets through 4 of 10 events: committed event 5"), std::string::npos) << readings.front().text;
-  EXPECT_NE(readings.at(1).text.find("3.20 integrations an event, where 1.00"), std::string::npos) << readings.at(1).text;   // of the run that is right
+  EXPECT_NE(readings.at(1).text.find("3.20 integrations an event, where 1.00"), std::string::npos) << readings.at(1).text;   // of the right run
 }
 
-TEST(SchedulerCost, WithoutAReferenceItsOwnNumbersSpeak) {
+TEST(SchedulerCost, WithoutAReferenceItsOwnNumbersAreGiven) {
   const std::string told = told_of(scheduler(32, 48, 100, 20), nullptr);
   EXPECT_NE(told.find("sends back 4.8 bodies: two take part in one"), std::string::npos) << told;
   EXPECT_EQ(told.find("reference pays"), std::string::npos) << told;

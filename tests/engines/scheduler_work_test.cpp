@@ -1,4 +1,5 @@
-// What a scheduler pays, measured: right decisions, decisions that are right and dear, decisions that are wrong, and one that never ends.
+// The measured work of schedulers: right decisions, right but costly decisions, wrong decisions,
+// and one that never ends.
 #include <gtest/gtest.h>
 
 #include "framework/engines/cost/scheduler_work.h"
@@ -11,11 +12,11 @@ namespace {
 using engines::SchedulerCurve;
 using engines::SchedulerReading;
 using engines::SchedulerRun;
-using engines::SchedulerTrial;
+using engines::SchedulerRunOptions;
 
 constexpr int kBalls = 8;
 
-/// Whatever happens sends back all, as retroactive detection does.
+/// Every event rolls back all bodies, as retroactive detection does.
 void send_everybody_back(const scene::Scene& scene, Laws& laws) {
   std::vector<std::int32_t> movers;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i)
@@ -34,7 +35,7 @@ void send_everybody_back(const scene::Scene& scene, Laws& laws) {
 
 SchedulerRun run_of(const Laws& laws, double most_s = 60.0) {
   const scene::Scene scene = sized("gas", kBalls, 1.0);
-  SchedulerTrial trial;
+  SchedulerRunOptions trial;
   trial.n = kBalls;
   trial.most_s = most_s;
   return engines::run_scheduler(scene, laws, trial, engines::events_due(scene, laws, trial));
@@ -50,7 +51,7 @@ TEST(SchedulerWork, RightDecisionsCommitAllAndAreCounted) {
   EXPECT_GT(run.integrations, run.undone);
 }
 
-TEST(SchedulerWork, SendingEverybodyBackIsRightAndDearAndTheCauseIsNamed) {
+TEST(SchedulerWork, RollingBackAllBodiesIsRightAndCostlyAndTheCauseIsNamed) {
   Laws laws = taught_laws();
   send_everybody_back(sized("gas", kBalls, 1.0), laws);
   const SchedulerCurve dear{"your scheduler", false, {}, {run_of(laws)}}, right{"reference", true, {}, {run_of(taught_laws())}};
@@ -67,7 +68,7 @@ TEST(SchedulerWork, AnImpactThatIsLostIsAnError) {
   lose_impacts_after(0.5, laws);
   const SchedulerRun run = run_of(laws);
   EXPECT_FALSE(run.is_right());
-  EXPECT_GT(run.error(), 0.2);   // of the second half of the time something like half of the events
+  EXPECT_GT(run.error(), 0.2);   // from the second half of the time about half of the events are lost
   EXPECT_LT(run.error(), 0.8);
   EXPECT_FALSE(run.stopped_by.empty());
 }

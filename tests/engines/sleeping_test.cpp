@@ -73,7 +73,7 @@ double farthest_apart(const Frame& a, const Frame& b) {
   return farthest;
 }
 
-TEST(Sleeping, AStackKeepsItsPlaceToTheLastBitAndStillTellsItsReactions) {
+TEST(Sleeping, AStackKeepsItsPositionToTheLastBitAndStillReportsItsReactions) {
   const Trajectory result = run_it(stack_of(10, 3.0));
   for (int i = 0; i < 10; ++i) EXPECT_EQ(times_of(result, EventKind::kSleep, i).size(), 1u) << i;
   const double asleep = times_of(result, EventKind::kSleep, 0).front();
@@ -122,7 +122,7 @@ TEST(Sleeping, ABallWakesTheWholeStackAndAllGoesOnAsIfNothingHadSlept) {
   EXPECT_LT(farthest_apart(slept.frames.back(), awake.frames.back()), 1e-6);
 }
 
-TEST(Sleeping, WhatOnlyPassesByWakesNobody) {
+TEST(Sleeping, APassingBodyWakesNoBody) {
   scene::Scene scene = block_on_floor(3.0);
   auto passer = ball("passer", 0.2, 1.0, {0.75, -4, 0.5}, {0, 3, 0});   // 5 cm beside the block, at t = 1.3 s
   passer.collides = true;
@@ -224,7 +224,7 @@ TEST(Sleeping, AMovingWallWakesWhatItMeets) {
   EXPECT_NEAR(result.frames.back().poses[0].com_world.x(), 0.25, 1e-3);   // pushed along
 }
 
-TEST(Sleeping, NobodySleepsOnWhatMoves) {
+TEST(Sleeping, NoBodySleepsOnAMovingBody) {
   scene::Scene scene = block_on_floor(3.0);
   scene.bodies[1].motion = scene::PrescribedMotion{Vector3d::Zero(), {0, 0, 1e-9}, 1.0};   // so little that it never moves fast enough to be seen
   EXPECT_FALSE(falls_asleep(run_it(scene), 0));

@@ -135,7 +135,7 @@ TEST(Spinning, TheErrorOfAPathsTurningIsBelowItsBound) {
   }
 }
 
-TEST(Spinning, AShortenedStepIsToldOnceAndCounted) {
+TEST(Spinning, AShortenedStepIsReportedOnceAndCounted) {
   auto scene = scene_of({box("wheel", {0.3, 0.3, 0.05}, 1.0, {0, 0, 0.35}, {0, 0, 0}), plane("floor", Vector3d::Zero(), Vector3d::UnitZ())}, 0.1, Vector3d(0, 0, -9.81));
   scene.bodies[0].omega_world_rad_s = {720, 0, 0};   // 12 rad in 1/60 s
   const Trajectory result = run(scene);

@@ -187,7 +187,7 @@ TEST(LargestStep, ProjectionHasNoSuchStep) {
 }
 
 // Two bobs of m and r m on rods of equal lengths: the faster swing has w^2 = (g/l) (1 + r + sqrt(r (1 + r))).
-TEST(LargestStep, ALightBodyAboveAHeavyOneIsToldOfWithTheLargestStep) {
+TEST(LargestStep, ALightBodyAboveAHeavyOneIsReportedWithTheLargestStep) {
   const double g = 9.81, l = 0.7;
   for (const double ratio : {100.0, 1e4, 1e6}) {
     const scene::Scene scene = truths::straight_chain({1.0, ratio}, l, -Vector3d::UnitZ(), Vector3d(0, 0, -g));
@@ -203,7 +203,7 @@ TEST(LargestStep, ALightBodyAboveAHeavyOneIsToldOfWithTheLargestStep) {
 }
 
 // A chain's swings across are the eigenvalues of a matrix with three numbers a row: rod i of n carries n - i + 1 links.
-TEST(LargestStep, OfAChainOfAnyLengthIsToldOf) {
+TEST(LargestStep, OfAChainOfAnyLengthIsReported) {
   const double g = 9.81, l = 0.05;
   for (const int n : {20, 300, 1000}) {
     const scene::Scene scene = truths::straight_chain(std::vector<double>(static_cast<std::size_t>(n), 0.1), l, -Vector3d::UnitZ(), Vector3d(0, 0, -g));
@@ -226,7 +226,7 @@ TEST(LargestStep, OfAChainOfAnyLengthIsToldOf) {
 }
 
 // The bound is one for what moves: beyond it a chain pushed aside by a micrometre is torn out of its energy, below it swings.
-TEST(LargestStep, WhatIsToldOfIsWhatHappens) {
+TEST(LargestStep, TheReportedLimitIsTheActualOne) {
   const double g = 9.81, l = 0.7, ratio = 1e4, largest = kRk4Swing / std::sqrt(g / l * (1 + ratio + std::sqrt(ratio * (1 + ratio))));
   for (const double part : {kUnder, kOver}) {
     scene::Scene scene = truths::straight_chain({1.0, ratio}, l, -Vector3d::UnitZ(), Vector3d(0, 0, -g));

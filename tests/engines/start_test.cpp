@@ -38,7 +38,7 @@ scene::Scene stack(double edge, double deep, const Vector3d& place, bool with_co
   return scene;
 }
 
-TEST(Start, OverlapsThatRoundingExplainsAreTakenBackAndToldOf) {
+TEST(Start, OverlapsThatRoundingExplainsAreRemovedAndReported) {
   // Half a spacing of float32 numbers of the place and half of the size, for each of the two: 2^-23 of their sum explains the deepest.
   for (const std::string& engine : kEngines)
     for (const bool with_contact : {true, false})
@@ -80,7 +80,7 @@ scene::Scene thrown_bob(const Vector3d& velocity) {
   return scene;
 }
 
-TEST(Start, VelocitiesThatARodDoesNotAllowAreToldWithWhatTheyBecame) {
+TEST(Start, VelocitiesThatARodDoesNotAllowAreReportedWithTheirCorrection) {
   for (const std::string& engine : kEngines) {
     const std::string told = notices_of(run_in(engine, thrown_bob({1, 2, 0})));
     for (const char* words : {"the start velocities of 'bob' do not fit what holds it ('rod')", "changed by 1 m/s", "\"velocity_m_s\" (", "2, 0)"}) EXPECT_NE(told.find(words), std::string::npos) << engine << ": " << told;
@@ -89,7 +89,7 @@ TEST(Start, VelocitiesThatARodDoesNotAllowAreToldWithWhatTheyBecame) {
   }
 }
 
-TEST(Start, VelocitiesThatAJointDoesNotAllowAreToldByBody) {
+TEST(Start, VelocitiesThatAJointDoesNotAllowAreReportedByBody) {
   scene::Scene scene = scene_of({box("door", {0.5, 0.05, 1.0}, 20.0, {0.5, 0, 0}, {0, 0, 1})}, 0.05, std::nullopt);
   scene.effects.of<effects::JointSpec>().push_back({"hinge", effects::JointKind::kHinge, "door", "", Vector3d::Zero(), Vector3d::UnitZ()});
   scene.stabilisation = scene::StabilisationSpec{};

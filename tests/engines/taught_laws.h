@@ -7,7 +7,7 @@
 
 namespace tumble::testing {
 
-/// Impulses in other words than any solution, decisions the reference's.
+/// Impulses by code independent of any solution, decisions by the reference.
 inline Laws taught_laws() {
   modules::Registry registry;
   register_assignments(registry);
@@ -17,14 +17,14 @@ inline Laws taught_laws() {
   return laws;
 }
 
-/// All laws the reference's: for scenes with links and lasting contacts.
+/// All laws from the reference: for scenes with links and persistent contacts.
 inline Laws taught_reference_laws() {
   Laws laws = reference_laws();
   laws.scheduling = taught_laws().scheduling;
   return laws;
 }
 
-/// An impact after so long is found and then forgotten.
+/// An impact after this time is found and then lost.
 inline void lose_impacts_after(double time_s, Laws& laws) {
   laws.scheduling.on_collision_check = [right = laws.scheduling.on_collision_check, time_s](const ScheduledEvent& event, CheckFinding finding, double step) {
     if (finding.contact && finding.contact->time > time_s) finding.contact.reset();

@@ -1,4 +1,5 @@
-// The teaching timewarp: on right decisions it commits what the reference commits; on wrong ones it stops, in words, and never crashes.
+// The teaching timewarp: with right decisions it commits the reference's trace; with wrong ones it
+// stops with a message and never crashes.
 #include <gtest/gtest.h>
 
 #include "framework/engines/run.h"
@@ -89,8 +90,8 @@ TEST(TaughtTimewarp, StopsWhereGroupsAreWrong) {
   EXPECT_NE(run_taught(tower_and_projectile(5.0), laws).stopped_by, "");
 }
 
-// Whatever is answered about groups and callbacks, the run ends with words.
-TEST(TaughtTimewarp, BearsAnyAnswerAboutGroups) {
+// For any answer about groups and callbacks, the run ends with a message.
+TEST(TaughtTimewarp, ToleratesAnyAnswerAboutGroups) {
   scene::Scene scene = tower_and_projectile(5.0);
   scene.duration_s = 0.3;
   const std::vector<engines::Callback> kick{{0.15, {1}, [](int, RigidBodyState& state) { state.momentum_world.z() += 0.5; }}};
@@ -122,16 +123,16 @@ TEST(TaughtTimewarp, BearsAnyAnswerAboutGroups) {
   }
 }
 
-TEST(TaughtTimewarp, StopsWhereACallbackSendsNobodyBack) {
+TEST(TaughtTimewarp, StopsWhereACallbackRollsBackNoBody) {
   Laws laws = taught_reference_laws();
   laws.scheduling.on_callback = [](const ScheduledEvent&, const std::vector<LocalTime>&) { return std::vector<Rollback>{}; };
   const std::vector<engines::Callback> kick{{0.213, {0, 1}, [](int, RigidBodyState& state) { state.momentum_world.y() += 0.3; }}};
   const std::string stop = run_taught(pendula_and_balls(2, 0.4), laws, kick).stopped_by;
   EXPECT_NE(stop.find("a callback acts on"), std::string::npos) << stop;
-  EXPECT_NE(stop.find("was not sent back"), std::string::npos) << stop;
+  EXPECT_NE(stop.find("was not rolled back"), std::string::npos) << stop;
 }
 
-TEST(TaughtTimewarp, TellsVirtualTimes) {
+TEST(TaughtTimewarp, RecordsVirtualTimes) {
   const Trajectory run = run_taught(sized("gas", 10, 1.5), taught_laws());
   ASSERT_EQ(run.virtual_times.processes.size(), 10U);
   std::vector<double> local(10, 0.0);
@@ -140,7 +141,7 @@ TEST(TaughtTimewarp, TellsVirtualTimes) {
   for (const VirtualTimes::Move& move : run.virtual_times.moves) {
     EXPECT_EQ(move.from_s, local[static_cast<std::size_t>(move.process)]);
     EXPECT_GE(move.global_virtual_time_s, gvt);
-    EXPECT_GE(move.to_s, gvt);   // nobody goes back to what is certain
+    EXPECT_GE(move.to_s, gvt);   // no rollback to before global virtual time
     local[static_cast<std::size_t>(move.process)] = move.to_s;
     gvt = move.global_virtual_time_s;
     back += move.to_s <= move.from_s ? 1 : 0;
@@ -180,8 +181,8 @@ TEST(TaughtTimewarp, StopsWhereNothingBecomesCertain) {
   EXPECT_NE(stop_of(laws).find("still stands"), std::string::npos);
 }
 
-// Whatever they answer, the run ends with words.
-TEST(TaughtTimewarp, BearsAnyAnswer) {
+// For any answer, the run ends with a message.
+TEST(TaughtTimewarp, ToleratesAnyAnswer) {
   const std::vector<double> odd{-1.0, 0.0, 0.3, 1e9, kInfinity, -kInfinity, kUnset};
   for (const double time : odd) {
     Laws laws = taught_laws();
@@ -202,7 +203,7 @@ TEST(TaughtTimewarp, BearsAnyAnswer) {
     if (time > 0.5 || time != time) EXPECT_NE(stop_of(laws), "") << time;
     else stop_of(laws);
   }
-  for (const std::int32_t body : {-1, 0, 3, 1000}) {   // a wall, a ball that is not concerned, nobody
+  for (const std::int32_t body : {-1, 0, 3, 1000}) {   // a wall, an uninvolved ball, no body
     Laws laws = taught_laws();
     laws.scheduling.plan_rollback = [body](const std::vector<Effect>&, std::vector<Rollback> first) {
       for (Rollback& rollback : first) rollback.body = body;

@@ -1,4 +1,5 @@
-// Timewarp on several threads commits what the reference commits, to the last bit, whatever the threads' timing; and it keeps its bounds.
+// Timewarp on several threads commits the reference's trace, to the last bit, whatever the threads'
+// timing; and it keeps its limits.
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -16,27 +17,27 @@ namespace {
 
 struct Threads {
   int count = 1;
-  engines::TimewarpTrial trial{};
+  engines::FaultInjection faults{};
   int most_states = 0;
 };
 
 Trajectory run_on(const Threads& threads, const scene::Scene& scene, double frame_rate_hz = 60.0, const Laws& laws = test_laws()) {
   engines::RunOptions options;
   options.engine = "tw";
-  options.trial = threads.trial;
+  options.faults = threads.faults;
   options.threads = threads.count;
   options.most_states = threads.most_states;
   options.frame_rate_hz = frame_rate_hz;
   return run_as_told(std::move(options), scene, laws);
 }
 
-engines::TimewarpTrial delayed(std::uint64_t seed, double delay_s, double disorder_s = 0.0) {
-  engines::TimewarpTrial trial;
-  trial.seed = seed;
-  trial.delay_s = delay_s;
-  trial.disorder_s = disorder_s;
-  trial.shuffle = true;
-  return trial;
+engines::FaultInjection delayed(std::uint64_t seed, double delay_s, double disorder_s = 0.0) {
+  engines::FaultInjection faults;
+  faults.seed = seed;
+  faults.delay_s = delay_s;
+  faults.disorder_s = disorder_s;
+  faults.shuffle = true;
+  return faults;
 }
 
 TEST(Threads, CommitTheReferencesTraceOfAtoms) {
@@ -50,16 +51,17 @@ TEST(Threads, CommitTheReferencesTraceOfAtoms) {
   }
 }
 
-// Room is cut finer than threads are many where there are very many bodies; here where there are few, so that most of them come to a border.
-TEST(Threads, WithSeveralTerritoriesEachCommitTheReferencesTrace) {
+// For very many bodies there are more regions than threads; here for few bodies, so that most of
+// them are at a boundary.
+TEST(Threads, WithSeveralRegionsEachCommitTheReferencesTrace) {
   for (const auto& [scene, duration] : {std::pair{"gas", 3.0}, {"atoms", 2.0}}) {
     const scene::Scene cut = sized(scene, 200, duration);
     const Trajectory reference = run_by("ordered", cut, {}, 5.0);
     ASSERT_GT(reference.events.size(), 300U) << scene;
     for (const int threads : {1, 2, 3}) {
-      engines::TimewarpTrial trial;
-      trial.territories = 7;   // no multiple of the threads: one has more of them
-      const Trajectory run = run_on({threads, trial}, cut, 5.0);
+      engines::FaultInjection faults;
+      faults.regions = 7;   // not a multiple of the threads: one has more of them
+      const Trajectory run = run_on({threads, faults}, cut, 5.0);
       EXPECT_EQ(difference(reference, run), "") << scene << ", " << threads << " threads";
       EXPECT_GE(run.counters.counts.at("rounds_of_threads"), 10U) << scene;
       EXPECT_LE(100 * run.counters.counts.at("undone_integrations"), 15 * run.counters.counts.at("integrations")) << scene << ", " << threads << " threads";
@@ -67,9 +69,10 @@ TEST(Threads, WithSeveralTerritoriesEachCommitTheReferencesTrace) {
   }
 }
 
-// From 12,000 bodies on one thread, too, goes by territories, and nobody asks it to. The reference would look at 7 * 10^7 pairs: conservative advancement
-// stands for it, which knows no territories and commits what the reference does (timewarp_test); over a longer time the same run in one territory.
-TEST(Threads, OneGoesByTerritoriesByItselfWhereBodiesAreMany) {
+// From 12,000 bodies on, one thread uses regions by default. The reference would check 7 * 10^7
+// pairs: conservative advancement replaces it, which has no regions and commits the reference's
+// trace (timewarp_test); over a longer time the same run in one region.
+TEST(Threads, OneUsesSeveralRegionsByItselfForVeryManyBodies) {
   constexpr int kBodies = 12'600;
   const scene::Scene brief = sized("gas", kBodies, 0.2);
   const Trajectory advanced = run_by("ca", brief, {}, 10.0);
@@ -79,18 +82,18 @@ TEST(Threads, OneGoesByTerritoriesByItselfWhereBodiesAreMany) {
   EXPECT_GE(by_itself.counters.counts.at("rounds_of_threads"), 5U);
 
   const scene::Scene longer = sized("gas", kBodies, 0.8);
-  engines::TimewarpTrial one_territory;
-  one_territory.territories = 1;
-  const Trajectory in_order = run_on({1, one_territory}, longer, 10.0);
+  engines::FaultInjection one_region;
+  one_region.regions = 1;
+  const Trajectory in_order = run_on({1, one_region}, longer, 10.0);
   EXPECT_EQ(in_order.counters.counts.at("rounds_of_threads"), 0U);
   for (const int threads : {1, 2}) {
     const Trajectory run = run_on({threads}, longer, 10.0);
     EXPECT_EQ(difference(in_order, run), "") << threads << " threads";
-    EXPECT_GT(run.counters.counts.at("anti_messages"), 0U) << threads << " threads";   // across borders somebody was wrong, and it was taken back
+    EXPECT_GT(run.counters.counts.at("anti_messages"), 0U) << threads << " threads";   // speculation across boundaries was wrong, and rolled back
   }
 }
 
-// 200 seeds: which legal event a thread takes, and when it is held up.
+// 200 seeds: random choice among the legal events of a thread, and random delays.
 TEST(Threads, InAdversarialOrderAndDelayedLeaveTheTraceAsItIs) {
   const scene::Scene scene = sized("gas", 60, 1.0);
   const Trajectory reference = run_by("ordered", scene);
@@ -102,22 +105,23 @@ TEST(Threads, InAdversarialOrderAndDelayedLeaveTheTraceAsItIs) {
     rollbacks += run.counters.counts.at("rollbacks");
     rounds += run.counters.counts.at("rounds_of_threads");
   }
-  EXPECT_GT(rollbacks, 200U * 2);   // the lot was hard enough
-  EXPECT_GT(rounds, 200U * 3);      // and threads worked side by side
+  EXPECT_GT(rollbacks, 200U * 2);   // the random choices were hard enough
+  EXPECT_GT(rounds, 200U * 3);      // and threads ran concurrently
 }
 
-// Counters too: what a thread sees does not depend on how fast the others are.
+// Counters too: a thread's view does not depend on the speed of the others.
 TEST(Threads, CountTheSameHoweverTheyAreDelayed) {
   const scene::Scene scene = sized("gas", 200, 1.0);
   const Trajectory plain = run_on({2}, scene);
   for (std::uint64_t seed = 1; seed <= 5; ++seed) {
-    engines::TimewarpTrial trial = delayed(seed, 50e-6);
-    trial.shuffle = false;
-    EXPECT_EQ(run_on({2, trial}, scene).counters.counts, plain.counters.counts) << "seed " << seed;
+    engines::FaultInjection faults = delayed(seed, 50e-6);
+    faults.shuffle = false;
+    EXPECT_EQ(run_on({2, faults}, scene).counters.counts, plain.counters.counts) << "seed " << seed;
   }
 }
 
-// Two bodies that hit each other again and again, at home in two territories; a ball each at the far ends keeps both threads busy.
+// Two bodies that hit each other repeatedly, in two regions; a ball at each far end keeps both
+// threads busy.
 scene::Scene echo() {
   std::vector<scene::BodySpec> bodies{plane("left", {-2, 0, 0}, {1, 0, 0}), plane("right", {2, 0, 0}, {-1, 0, 0})};
   bodies.push_back(ball("a", 0.1, 1.0, {-0.5, 0, 0}, {1.0, 0, 0}));
@@ -138,16 +142,17 @@ TEST(Echo, OfTwoBodiesUndoesNoMoreThanItCommits) {
     EXPECT_EQ(difference(reference, run), "") << "seed " << seed;
     const std::uint64_t undone = run.counters.counts.at("undone_integrations"), all = run.counters.counts.at("integrations");
     EXPECT_LE(undone, all - undone) << "seed " << seed;
-    // Each thread has its own of the two bodies: most of their impacts are of two territories, and both threads have work at home.
+    // Each thread owns one of the two bodies: most of their impacts cross regions, and both threads
+    // have work in their own.
     EXPECT_GT(2 * run.counters.counts.at("impacts_across_territories"), static_cast<std::uint64_t>(of_the_two)) << "seed " << seed;
     EXPECT_GT(run.counters.counts.at("least_events_of_a_thread"), 50U) << "seed " << seed;
-    EXPECT_GT(undone, 0U) << "seed " << seed;                                          // the ratio is of something,
-    EXPECT_GT(run.counters.counts.at("rounds_of_threads"), 100U) << "seed " << seed;   // and threads worked side by side all the time
+    EXPECT_GT(undone, 0U) << "seed " << seed;                                          // the ratio is not of zeros,
+    EXPECT_GT(run.counters.counts.at("rounds_of_threads"), 100U) << "seed " << seed;   // and threads ran concurrently all the time
   }
 }
 
-// A billiard of generations: rows that collide at once, cut by territories.
-TEST(Threads, TakeTiesAcrossTerritoriesInTheirOrder) {
+// Many microsteps: rows that collide at once, cut by regions.
+TEST(Threads, ExecuteTiesAcrossRegionsInTheirOrder) {
   std::vector<scene::BodySpec> bodies;
   for (int i = 0; i < 40; ++i)
     for (int j = 0; j < 5; ++j) bodies.push_back(ball("ball" + std::to_string(5 * i + j), 0.0625, 1.0, {0.25 * i, 0.25 * j, 0}, {i % 4 == 0 ? 0.5 : i % 4 == 2 ? -0.5 : 0.0, 0, 0}));
@@ -161,7 +166,7 @@ TEST(Threads, StopWhereTheReferenceStops) {
   Laws laws = test_laws();
   laws.collision_impulse = [law = laws.collision_impulse](const Contact& contact, const Body& a, const Body& b, double restitution) {
     const double impulse = law(contact, a, b, restitution);
-    return impulse > 2.5 ? kUnset : impulse;   // N s: the first hard blow
+    return impulse > 2.5 ? kUnset : impulse;   // N s: the first strong impact
   };
   const scene::Scene scene = sized("gas", 100, 2.0);
   const Trajectory reference = run_by("ordered", scene, {}, 60.0, laws);
@@ -169,7 +174,8 @@ TEST(Threads, StopWhereTheReferenceStops) {
   for (const int threads : {1, 2, 4}) EXPECT_EQ(difference(reference, run_on({threads}, scene, 60.0, laws)), "") << threads << " threads";
 }
 
-// Said once, to whoever asks just then: a thread that took it for a consequence of its own guesses would go on to the end.
+// The limit is reported once, to the calling thread: a thread that took it for a consequence of its
+// own speculation would run to the end.
 TEST(Threads, StopWhenTimeIsUpWhereverTheyAre) {
   const scene::Scene scene = sized("gas", 200, 2.0);
   const Trajectory reference = run_by("ordered", scene, {}, 30.0);
@@ -181,13 +187,13 @@ TEST(Threads, StopWhenTimeIsUpWhereverTheyAre) {
         if (++asked == last) throw engines::OutOfTime("it takes more than 1 s");
         return law(contact, a, b);
       };
-      engines::TimewarpTrial trial;
-      trial.territories = 4;
-      const Trajectory run = run_on({threads, trial}, scene, 30.0, laws);
+      engines::FaultInjection faults;
+      faults.regions = 4;
+      const Trajectory run = run_on({threads, faults}, scene, 30.0, laws);
       EXPECT_EQ(run.stopped_by.find("it takes more than 1 s"), 0U) << threads << " threads, " << last << ": " << run.stopped_by;
-      EXPECT_LT(asked, last + 200) << threads << " threads";   // the other thread comes to the end of its round
+      EXPECT_LT(asked, last + 200) << threads << " threads";   // the other thread finishes its epoch
       ASSERT_LT(run.events.size(), reference.events.size());
-      for (std::size_t k = 0; k < run.events.size(); ++k) ASSERT_EQ(run.events[k].time, reference.events[k].time) << threads << " threads, event " << k;   // what is told was certain
+      for (std::size_t k = 0; k < run.events.size(); ++k) ASSERT_EQ(run.events[k].time, reference.events[k].time) << threads << " threads, event " << k;   // what was committed was certain
     }
 }
 
@@ -195,27 +201,27 @@ TEST(Threads, AreRefusedInWordsWhereTheirNumberMakesNoSense) {
   EXPECT_THROW(run_on({0}, sized("gas", 4, 0.1)), UserError);
   EXPECT_THROW(run_on({1000}, sized("gas", 4, 0.1)), UserError);
   EXPECT_THROW(run_on({1, {}, 3}, sized("gas", 4, 0.1)), UserError);
-  engines::TimewarpTrial trial;
-  for (const int territories : {-1, 256, 1000}) {   // 256 in a byte is the border
-    trial.territories = territories;
+  engines::FaultInjection faults;
+  for (const int regions : {-1, 256, 1000}) {   // 256 in a byte is the boundary
+    faults.regions = regions;
     try {
-      run_on({1, trial}, sized("gas", 4, 0.1));
-      FAIL() << territories;
+      run_on({1, faults}, sized("gas", 4, 0.1));
+      FAIL() << regions;
     } catch (const PreconditionError& error) {
-      EXPECT_NE(std::string(error.what()).find("TimewarpTrial::territories"), std::string::npos) << error.what();
+      EXPECT_NE(std::string(error.what()).find("FaultInjection::regions"), std::string::npos) << error.what();
     }
   }
-  trial.territories = 255;
-  EXPECT_EQ(run_on({1, trial}, sized("gas", 40, 0.1)).stopped_by, "");
+  faults.regions = 255;
+  EXPECT_EQ(run_on({1, faults}, sized("gas", 40, 0.1)).stopped_by, "");
 }
 
 // ---- Bounds ----------------------------------------------------------------------------------------------------------------
 
-// An order by lot far ahead of global virtual time keeps many states, unless there is a cap.
+// A random order far ahead of global virtual time keeps many states, unless there is a limit.
 TEST(CapOfStates, OfEightIsKeptAndChangesNothing) {
   const scene::Scene scene = sized("gas", 40, 20.0);
   const Trajectory reference = run_by("ordered", scene, {}, 1.0);
-  engines::TimewarpTrial hard;
+  engines::FaultInjection hard;
   hard.disorder_s = 10.0;
   const Trajectory free = run_on({1, hard}, scene, 1.0), capped = run_on({1, hard, 8}, scene, 1.0), threaded = run_on({2, {}, 8}, scene, 1.0);
   EXPECT_EQ(difference(reference, free), "");
@@ -227,7 +233,7 @@ TEST(CapOfStates, OfEightIsKeptAndChangesNothing) {
   EXPECT_LE(threaded.counters.counts.at("most_states_of_a_body"), 8U);
 }
 
-// After 20 seconds and after 100: what is kept at most does not grow.
+// After 20 seconds and after 100: the largest number of states does not grow.
 TEST(Memory, OfAGasStaysFlat) {
   for (const int threads : {1, 2}) {
     const auto kept = [&](double duration) { return run_on({threads}, sized("gas", 400, duration), 1.0).counters.counts.at("states_kept"); };
@@ -236,8 +242,9 @@ TEST(Memory, OfAGasStaysFlat) {
   }
 }
 
-// One ball to and fro between two blocks, 10,000 times a second, and 12,600 others that hardly move: on one thread, which goes by territories here, a
-// round ends before anybody has done very much in it, so that no more is kept however long it goes on.
+// One ball between two blocks, 10,000 bounces per second, and 12,600 others that hardly move: one
+// thread uses regions here, and an epoch ends before any body has very many events in it, so that
+// no more is kept for any duration.
 TEST(Memory, OfABusyBodyAmongVeryManyStaysFlat) {
   constexpr int kBodies = 12'600;
   for (const double duration : {0.5, 1.0}) {
@@ -254,24 +261,24 @@ TEST(Memory, OfABusyBodyAmongVeryManyStaysFlat) {
     ASSERT_EQ(run.events.size(), static_cast<std::size_t>(10'000 * duration));
     EXPECT_GT(run.counters.counts.at("rounds_of_threads"), 10U);
     EXPECT_LE(run.counters.counts.at("most_states_of_a_body"), 300U) << duration << " s";
-    EXPECT_LE(run.counters.counts.at("states_kept"), kBodies + 300U) << duration << " s";   // without: a quarter of the events of the run
-    engines::TimewarpTrial one_territory;
-    one_territory.territories = 1;
-    EXPECT_EQ(difference(run_on({1, one_territory}, scene, 1.0), run), "") << duration << " s";
+    EXPECT_LE(run.counters.counts.at("states_kept"), kBodies + 300U) << duration << " s";   // otherwise: a quarter of the events of the run
+    engines::FaultInjection one_region;
+    one_region.regions = 1;
+    EXPECT_EQ(difference(run_on({1, one_region}, scene, 1.0), run), "") << duration << " s";
   }
 }
 
 // ---- A late event at the first of a row ----------------------------------------------------------------------------------
 
-// A ball hits the next one, that one the next, and so on; when the last has been hit, the first turns out to have been turned back before
-// it began. Nothing of it has happened.
+// A ball hits the next one, that one the next, and so on; when the last has been hit, a callback
+// turns the first back before it began. All of it is rolled back.
 Trajectory taken_back_row(int n, double duration = kUnset) {
   std::vector<scene::BodySpec> bodies;
   for (int i = 0; i < n; ++i) bodies.push_back(ball("ball" + std::to_string(i), 0.1, 1.0, {0.25 * i, 0, 0}, Vector3d::Zero()));
   bodies[0].velocity_m_s.x() = 1.0;
   engines::RunOptions options;
   options.engine = "tw";
-  options.trial.late_callbacks = true;
+  options.faults.late_callbacks = true;
   options.frame_rate_hz = 1e-6;
   options.callbacks = {{0.01, {0}, [](int, RigidBodyState& state) { state.momentum_world.x() = -1.0; }}};
   if (std::isnan(duration)) duration = 0.05 * n + 0.1;
@@ -294,7 +301,7 @@ TEST(LateEvent, AtTheFirstOfARowRollsEachBackOnceInTimeLinearInTheirNumber) {
   EXPECT_NEAR(0.5 * std::log10(work[100'000] / work[1000]), 1.0, 0.1);
 }
 
-/// CPU time that a row takes beyond what it takes to set it up, the least of several runs. [s]
+/// CPU time of a row minus that of its set-up, the least of several runs. [s]
 double seconds_of_row(int n) {
   double run = 1e9, building = 1e9, all = 0.0;
   for (int k = 0; k < 40 && (k < 5 || all < 0.5); ++k) {
@@ -309,7 +316,8 @@ double seconds_of_row(int n) {
   return run - building;
 }
 
-// Least squares through the logarithms: a tenth off is a factor of 1.6 over the two decades, which a neighbour on the machine does not make.
+// Least squares in the logarithms: a deviation of 10 % in the slope is a factor of 1.6 over two
+// decades, more than other programs on the machine cause.
 TEST(LateEvent, AtTheFirstOfARowTakesCpuTimeLinearInTheirNumber) {
   double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0;
   const std::vector<int> sizes{10, 32, 100, 316, 1000};

@@ -1,4 +1,5 @@
-// The parts that an engine's time is told in: their names are names of functions, and each engine's parts are its whole.
+// The parts of an engine's time: their names are names of functions, and the parts of each engine
+// add up to the whole.
 #include <gtest/gtest.h>
 
 #include "framework/engines/rd/recorder.h"
@@ -13,15 +14,16 @@ namespace {
 
 constexpr double kRounding = 1e-12;   // a sum of eight shares
 
-// A function that is renamed would silently count as scheduling.
+// A renamed function would silently count as scheduling.
 TEST(TimeParts, AreNamesOfFunctions) {
-  const Laws laws = reference_laws();   // theirs are among the parts
+  const Laws laws = reference_laws();   // their functions are among the parts
   for (const StackSamples::Part& part : engines::time_parts())
     for (const std::string& name : part.functions) EXPECT_TRUE(StackSamples::is_known(name)) << part.name << ": no function begins with " << name;
   for (const std::string& name : engines::set_up_functions()) EXPECT_TRUE(StackSamples::is_known(name)) << name;
 }
 
-// What a robot's arm costs is its rods, joints and the block in its scoop; nothing that an engine decides.
+// The cost of a robot's arm is its rods, joints and the block in its scoop, and no decision of an
+// engine.
 TEST(TimeParts, OfRobotsArePhysicsByEveryEngine) {
   const scene::Scene scene = scene::make_sized_scene("robots", 1);
   const Laws laws = reference_laws();

@@ -1,4 +1,5 @@
-// What schedulers of timewarp stand on: state queues, event queue, active pairs, the trace judge.
+// Components of timewarp schedulers: state queues, event queue, active pairs, the comparison of
+// traces.
 #include <cstring>
 #include <deque>
 #include <set>
@@ -17,10 +18,10 @@ namespace {
 using engines::Box;
 using engines::Flight;
 
-Flight flight_at(double begin, std::uint32_t serial, Random& random) {
+Flight flight_at(double begin, std::uint32_t version, Random& random) {
   Flight flight;
   flight.begin = begin;
-  flight.serial = serial;
+  flight.version = version;
   flight.com_world = Vector3d(random.unit(), random.unit(), random.unit());
   flight.velocity_world = Vector3d(random.unit(), random.unit(), random.unit());
   flight.world_from_body = Quaterniond(random.unit(), random.unit(), random.unit(), random.unit());
@@ -28,12 +29,12 @@ Flight flight_at(double begin, std::uint32_t serial, Random& random) {
   return flight;
 }
 
-// Every number of a flight, bit for bit; what lies between them is padding.
+// Every number of a flight, bit for bit, without padding.
 bool same_bytes(const Flight& x, const Flight& y) {
   const auto same = [](const auto& u, const auto& v) { return std::memcmp(u.data(), v.data(), sizeof(double) * static_cast<std::size_t>(u.size())) == 0; };
   return std::memcmp(&x.begin, &y.begin, sizeof x.begin) == 0 && same(x.com_world, y.com_world) && same(x.velocity_world, y.velocity_world) &&
-         same(x.world_from_body.coeffs(), y.world_from_body.coeffs()) && same(x.omega_body, y.omega_body) && x.partner == y.partner && x.partner_serial == y.partner_serial &&
-         x.generation == y.generation && x.serial == y.serial && x.is_resting == y.is_resting;
+         same(x.world_from_body.coeffs(), y.world_from_body.coeffs()) && same(x.omega_body, y.omega_body) && x.partner == y.partner && x.partner_version == y.partner_version &&
+         x.microstep == y.microstep && x.version == y.version && x.is_resting == y.is_resting;
 }
 
 TEST(FlightHistories, AreTheSameBytesAfterOneToFiftyFlightsAndARollback) {
@@ -41,27 +42,28 @@ TEST(FlightHistories, AreTheSameBytesAfterOneToFiftyFlightsAndARollback) {
   for (int steps = 1; steps <= 50; ++steps) {
     engines::FlightHistories histories(3);
     std::deque<Flight> expected;
-    std::uint32_t serial = 0;
+    std::uint32_t version = 0;
     double t = 0.0;
     for (int k = 0; k < 7; ++k) {
-      expected.push_back(flight_at(t, serial++, random));
+      expected.push_back(flight_at(t, version++, random));
       histories.push(1, expected.back());
       t += random.unit();
     }
-    for (int k = 0; k < steps; ++k) histories.push(1, flight_at(t += random.unit(), serial++, random));
+    for (int k = 0; k < steps; ++k) histories.push(1, flight_at(t += random.unit(), version++, random));
     for (int k = 0; k < steps; ++k) histories.pop(1);
-    const double gvt = expected[3].begin + 1e-9;   // what ended before is nobody's any more
+    const double gvt = expected[3].begin + 1e-9;   // what ended before is not needed any more
     histories.purge(1, gvt);
     ASSERT_EQ(histories[1].size(), 4U);
     for (std::size_t k = 0; k < 4; ++k) EXPECT_TRUE(same_bytes(histories[1][k], expected[k + 3])) << steps << " steps, flight " << k;
     EXPECT_EQ(histories[1].at(gvt), 0U);
-    EXPECT_EQ(histories[1].find(expected[5].serial), 2U);
-    EXPECT_EQ(histories[1].find(expected[1].serial), histories[1].size());
+    EXPECT_EQ(histories[1].find(expected[5].version), 2U);
+    EXPECT_EQ(histories[1].find(expected[1].version), histories[1].size());
     EXPECT_EQ(histories[0].size() + histories[2].size(), 0U);
   }
 }
 
-// However many flights a body once had, it soon holds memory for no more than it needs; those it has stay what they were, wherever they lie.
+// A body that once had many flights soon holds memory only for what it needs; its flights stay
+// unchanged wherever they are stored.
 TEST(FlightHistories, GiveBackTheMemoryOfFlightsThatAreGone) {
   Random random(7);
   engines::FlightHistories histories(1);
@@ -94,40 +96,41 @@ TEST(FlightHistories, GiveBackTheMemoryOfFlightsThatAreGone) {
   EXPECT_EQ(histories[0].held(), first);
 }
 
-// Ten events wait at any time, a tenth of a bin apart, over two turns of the bins: what is held is for some tens, not for each bin that ever held one.
+// Ten events wait at any time, a tenth of a bin apart, over two cycles of the bins: memory is held
+// for some tens, not for each bin that was ever used.
 TEST(EventQueue, HoldsNoMoreMemoryHoweverLongItGoesOn) {
   struct Item {
-    engines::EventKey key;
+    engines::EventStamp key;
   };
   engines::EventQueue<Item> queue(1.0);
   for (int k = 0; k < 100'000; ++k) {
-    queue.push({{0.1 * k, 0, engines::EventClass::kCollision, 0, 1}});
+    queue.push({{0.1 * k, 0, engines::StampKind::kCollision, 0, 1}});
     if (k >= 10) queue.pop();
   }
   EXPECT_EQ(queue.size(), 10U);
   EXPECT_LT(queue.held(), 200U);
 }
 
-// Whatever the width of its bins: one heap, some in a bin, most bins empty, all far ahead.
+// For every width of bins: one heap, some per bin, most bins empty, all far ahead.
 TEST(EventQueue, GivesKeysInTheirOrderWhateverTheOrderTheyCameIn) {
   struct Item {
-    engines::EventKey key;
+    engines::EventStamp key;
   };
   for (const double width : {std::numeric_limits<double>::infinity(), 0.7, 1e-3, 1e-7}) {
     Random random(5);
     engines::EventQueue<Item> queue(width);
     std::multiset<std::tuple<double, std::uint32_t, int, int>> expected;
-    const auto content = [](const Item& item) { return std::tuple(item.key.time, item.key.generation, item.key.body_a, item.key.body_b); };
+    const auto content = [](const Item& item) { return std::tuple(item.key.time, item.key.microstep, item.key.body_a, item.key.body_b); };
     double now = 0.0;
     for (int k = 0; k < 6000; ++k) {
       if (k < 4000) {
         const int a = static_cast<int>(random.below(50));
         const double time = random.below(3) == 0 ? now : now + 0.25 * static_cast<double>(random.below(40)) * (random.below(9) == 0 ? 100.0 : 1.0);
-        const Item item{{time, static_cast<std::uint32_t>(random.below(3)), engines::EventClass::kCollision, a, a + 1 + static_cast<int>(random.below(50))}};
+        const Item item{{time, static_cast<std::uint32_t>(random.below(3)), engines::StampKind::kCollision, a, a + 1 + static_cast<int>(random.below(50))}};
         queue.push(item);
         expected.insert(content(item));
         if (random.below(20) == 0) {   // a rollback: earlier than what was popped last
-          const Item early{{0.5 * now, 0, engines::EventClass::kCollision, 1, 2}};
+          const Item early{{0.5 * now, 0, engines::StampKind::kCollision, 1, 2}};
           queue.push(early);
           expected.insert(content(early));
         }
@@ -142,14 +145,14 @@ TEST(EventQueue, GivesKeysInTheirOrderWhateverTheOrderTheyCameIn) {
   }
 }
 
-TEST(EventKey, PutsCauseBeforeEffectWhereNoTimePasses) {
+TEST(EventStamp, PutsCauseBeforeEffectWhereNoTimePasses) {
   // Body 5 is hit at t and, at t, hits body 1: the effect has the lower bodies.
-  const engines::EventKey cause{1.0, 0, engines::EventClass::kCollision, 5, 9}, effect{1.0, 1, engines::EventClass::kCollision, 1, 5};
+  const engines::EventStamp cause{1.0, 0, engines::StampKind::kCollision, 5, 9}, effect{1.0, 1, engines::StampKind::kCollision, 1, 5};
   EXPECT_LT(cause, effect);
   EXPECT_FALSE(effect < cause);
 }
 
-TEST(ActivePairs, AreThoseWhoseBoxesOverlapAndEachIsToldOnce) {
+TEST(ActivePairs, AreThePairsOfOverlappingBoxesEachReportedOnce) {
   Random random(6);
   constexpr int kBodies = 150;
   engines::ActivePairs pairs(kBodies, 0.7);
@@ -185,7 +188,7 @@ TEST(ActivePairs, OfGridsThatShareBodiesKeepToTheirOwn) {
   for (int round = 0; round < 20; ++round) {
     for (int body = 0; body < kBodies; ++body) {
       const std::size_t next = random.below(kGrids);
-      for (engines::ActivePairs& grid : grids) grid.remove(body);   // of the two that do not hold it, nothing
+      for (engines::ActivePairs& grid : grids) grid.remove(body);   // no effect on the two grids that do not hold it
       ASSERT_FALSE(grids[home[static_cast<std::size_t>(body)]].holds(body));
       const Vector3d middle(random.between(-2, 2), random.between(-2, 2), random.between(-2, 2)), half = Vector3d::Constant(body % 20 == 0 ? 15.0 : 0.5);   // some are wide
       grids[next].set_box(body, {middle - half, middle + half});
@@ -203,7 +206,7 @@ TEST(ActivePairs, OfGridsThatShareBodiesKeepToTheirOwn) {
   }
 }
 
-// The judge names the first event at which a run leaves the reference.
+// The comparison names the first event that differs from the reference.
 class TraceJudge : public ::testing::Test {
  protected:
   const Trajectory reference = run_by("ordered", sized("gas", 20, 2.0));
@@ -222,16 +225,16 @@ TEST_F(TraceJudge, NamesAnImpulseThatIsOffByOneBit) {
   ASSERT_TRUE(parted.has_value());
   EXPECT_EQ(parted->index, 7U);
   EXPECT_NE(parted->story.find("event 8 of the committed trace"), std::string::npos) << parted->story;
-  EXPECT_NE(parted->story.find("a state that had been taken back"), std::string::npos) << parted->story;
+  EXPECT_NE(parted->story.find("a state that had been rolled back"), std::string::npos) << parted->story;
   EXPECT_NE(engines::trace_hash(reference), engines::trace_hash(run));
 }
 
-TEST_F(TraceJudge, TellsALostEventFromOneTooMany) {
+TEST_F(TraceJudge, DistinguishesALostEventFromAnExtraOne) {
   run.events.pop_back();
   EXPECT_NE(engines::compare_traces(reference, run)->story.find("an event was lost"), std::string::npos);
   run = reference;
   run.events.insert(run.events.begin() + 4, run.events[9]);
-  EXPECT_NE(engines::compare_traces(reference, run)->story.find("something was not taken back"), std::string::npos);
+  EXPECT_NE(engines::compare_traces(reference, run)->story.find("an event was not rolled back"), std::string::npos);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Timewarp commits what the reference commits, to the last bit, whatever order its processes work in.
+// Timewarp commits the reference's trace, to the last bit, in any order of execution.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace tumble::testing {
 namespace {
 
-using engines::TimewarpTrial;
+using engines::FaultInjection;
 using engines::trace_hash;
 
 TEST(CommittedTrace, OfGasIsTheReferencesInTimewarpAndInConservativeAdvancement) {
@@ -29,12 +29,13 @@ TEST(CommittedTrace, OfTumblingBoxesUnderGravityIsTheReferences) {
 }
 
 scene::BodySpec top(const std::string& name, const Vector3d& position, const Vector3d& velocity) {
-  scene::BodySpec body = box(name, {0.1, 0.2, 0.3}, 1.0, position, velocity);   // three different moments
+  scene::BodySpec body = box(name, {0.1, 0.2, 0.3}, 1.0, position, velocity);   // three different moments of inertia
   body.omega_world_rad_s = {0.1, 3.0, 0.2};
   return body;
 }
 
-// How a solid turns between two events is known in closed form: whoever meets nobody goes his way, not the scene's steps.
+// The rotation of a body between two events is known in closed form: a body without partners
+// advances by its own distance, not by the scene's steps.
 TEST(ATurningSolid, AloneTakesAsManyIntegrationsHoweverShortTheStep) {
   scene::Scene scene = scene_of({top("top", Vector3d::Zero(), {0.1, 0.0, 0.0}), plane("floor", {0, 0, -5}, {0, 0, 1})}, 100.0);
   std::vector<std::uint64_t> integrations, checks;
@@ -50,21 +51,22 @@ TEST(ATurningSolid, AloneTakesAsManyIntegrationsHoweverShortTheStep) {
   EXPECT_LT(integrations[0], 300U) << "3,000 steps of 1/30 s; a ball of that size goes a quarter of its size at once, 10 m in 67";
 }
 
-// From far away, so that each has gone on as if it were alone; the first to be hit is sent on by the blow.
+// From far away, so that each has advanced as if it were alone; the impact sends the first to be
+// hit further.
 TEST(ATurningSolid, ThatWentFarIsMetWhereItShouldBe) {
   for (const double step : {1.0 / 30, 1.0 / 300}) {
     scene::Scene scene = scene_of({top("left", {-6, 0, 0}, {1.0, 0, 0}), top("right", {6, 0.1, 0}, {-2.0, 0, 0}), top("third", {-9, 0.1, 0.1}, {3.0, 0, 0}), plane("wall", {8, 0, 0}, {-1, 0, 0})}, 12.0);
     scene.step_s = step;
     expect_the_references_trace(scene, 3);
-    for (const int territories : {2, 5}) {
-      engines::TimewarpTrial trial;
-      trial.territories = territories;
-      EXPECT_EQ(difference(run_by("ordered", scene), run_by("tw", scene, trial)), "") << territories << " territories";
+    for (const int regions : {2, 5}) {
+      engines::FaultInjection faults;
+      faults.regions = regions;
+      EXPECT_EQ(difference(run_by("ordered", scene), run_by("tw", scene, faults)), "") << regions << " territories";
     }
   }
 }
 
-// Processes take their turns in an order drawn by lot, up to a quarter of a second ahead of global virtual time.
+// Processes are executed in random order, up to a quarter of a second ahead of global virtual time.
 TEST(AdversarialOrder, LeavesTheTraceAsItIs) {
   const scene::Scene scene = sized("gas", 60, 1.5);
   const Trajectory reference = run_by("ordered", scene);
@@ -76,7 +78,7 @@ TEST(AdversarialOrder, LeavesTheTraceAsItIs) {
     rollbacks += run.counters.counts.at("rollbacks");
     anti_messages += run.counters.counts.at("anti_messages");
   }
-  // The lot was hard enough: effects on others were taken back many times a run.
+  // The random order was hard enough: effects on others were rolled back many times per run.
   EXPECT_GT(rollbacks, 200U * 10);
   EXPECT_GT(anti_messages, 200U * 10);
 }
@@ -90,7 +92,7 @@ TEST(ForcedRollback, LeavesTheTraceAsItIs) {
       engines::RunOptions options;
       options.engine = "tw";
       options.threads = threads;
-      options.trial = {seed, false, three_steps, 10, three_steps};
+      options.faults = {seed, false, three_steps, 10, three_steps};
       const Trajectory run = run_as_told(std::move(options), scene, test_laws());
       ASSERT_EQ(difference(reference, run), "") << "seed " << seed << ", " << threads << " threads";
       EXPECT_GT(run.counters.counts.at("rollbacks"), 10U) << "seed " << seed << ", " << threads << " threads";
@@ -108,7 +110,8 @@ TEST(ForcedRollback, CostsAtMostThreeTimesAsMuch) {
   EXPECT_LE(100 * plain.at("undone_integrations"), 15 * plain.at("integrations"));
 }
 
-// Solids without closed forms, gravity, walls that are boxes, and a plane that is shaken: every kind of check, out of order.
+// Shapes without closed forms, gravity, walls that are boxes, and a shaken plane: every kind of
+// check, out of order.
 TEST(AdversarialOrder, OfTumblingSolidsLeavesTheTraceAsItIs) {
   std::vector<scene::BodySpec> bodies{plane("shaken", {0, 0, 0}, {0, 0, 1}), box("wall", {0.05, 3, 3}, 1.0, {1.6, 0, 0}, Vector3d::Zero())};
   bodies[0].motion = scene::PrescribedMotion{Vector3d::Zero(), Vector3d(0, 0, 0.01), 15.0};

@@ -1,4 +1,4 @@
-// Laws that misbehave end the run with what happened, to which body and when; what was recorded before stays.
+// Faulty laws end the run with the error, the body and the time; the recording up to then is kept.
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -26,7 +26,7 @@ void expect_stopped(const Trajectory& result, std::initializer_list<const char*>
     for (const BodyPose& pose : frame.poses) EXPECT_TRUE(pose.com_world.allFinite() && pose.velocity_world.allFinite()) << frame.time;
 }
 
-// Every engine's record: pages, pictures and files are made of it.
+// Every engine's record, from which pages, pictures and files are made.
 TEST(Records, ARunNamesItsVersionItsSceneItsSeedsAndTheSourceOfEachLaw) {
   scene::Scene scene = head_on();
   scene.digest = "ab12";
@@ -128,7 +128,8 @@ TEST(Trouble, ARootFinderOfNonsenseChangesNothing) {
   }
 }
 
-// In free flight, too, where a path is known exactly: a search for its collisions looks at each radian.
+// In free flight, too, where a path is known exactly: a search for its collisions samples every
+// radian.
 TEST(Trouble, ABodyThatTurnsTooOftenAStepForItsCollisionsIsNamed) {
   for (const double rate : {1e4, 1e9}) {
     scene::BodySpec top = ball("top", 0.1, 1.0, {0, 0, 1}, Vector3d::Zero());
@@ -156,7 +157,8 @@ TEST(Trouble, ABodyThatTurnsTooOftenAStepForItsCollisionsIsNamed) {
   }
 }
 
-// Refused before it begins: nobody waits for 1e9 steps to learn that they were a slip, and frames are kept in memory.
+// Refused before it begins: a run of 1e9 steps is a mistake in the scene, and frames are kept in
+// memory.
 TEST(Trouble, ARunOfTooManyStepsOrFramesIsRefused) {
   const auto refused = [](double step, double duration, double rate) -> std::string {
     scene::Scene scene = head_on();

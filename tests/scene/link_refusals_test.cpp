@@ -116,7 +116,7 @@ TEST(LinkRefusals, AChainThatCannotBeLaid) {
   expect_words(chain(R"("kind": "rods", "to": { "body": "bob" }, "stiffness_n_m": 4)"), {"/chains/0/stiffness_n_m", "choose \"springs\""});
   expect_words(chain(R"("kind": "hinges", "to": { "body": "bob" })"), {"/chains/0", "needs the key 'axis'"});
   expect_words(chain(R"("kind": "rods", "to": { "body": "bob" })", R"({ "name": "bead", "shape": { "sphere": { "radius_m": 0.1 } }, "mass_kg": 1, "position_m": [0, 0, 0] })"),
-               {"/chains/0/link/position_m", "says where its links are"});
+               {"/chains/0/link/position_m", "determines the positions of its links"});
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ TEST(SceneRefusals, AnUnknownKindOfCheckIsNamedWithItsNeighbour) {
   expect_words(refusal(scene_with(kBall, checks)), {"/checks/0/kind", "Did you mean 'energy'"});
 }
 
-TEST(SceneRefusals, ATakenNameSaysWhoHasIt) { expect_words(refusal(scene_with(kBall + ",\n" + kBall)), {"s.json:6", "/bodies/1/name", "taken by /bodies/0"}); }
+TEST(SceneRefusals, ATakenNameIsReportedWithItsOwner) { expect_words(refusal(scene_with(kBall + ",\n" + kBall)), {"s.json:6", "/bodies/1/name", "taken by /bodies/0"}); }
 
 TEST(SceneRefusals, AQuaternionThatIsNotUnitSaysItsLength) {
   expect_words(refusal(scene_with(body_with(R"("mass_kg": 1, "orientation": { "quaternion": [1, 1, 0, 0] })"))), {"/bodies/0/orientation/quaternion", "unit quaternion"});

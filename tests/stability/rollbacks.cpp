@@ -27,12 +27,12 @@ scene::Scene gas(int n) {
   return scene;
 }
 
-Trajectory run_by(const std::string& engine, const scene::Scene& scene, const Laws& laws, const engines::TimewarpTrial& trial = {}) {
+Trajectory run_by(const std::string& engine, const scene::Scene& scene, const Laws& laws, const engines::FaultInjection& faults = {}) {
   TrajectoryRecorder recorder;
   engines::RunOptions options;
   options.engine = engine;
   options.timewarp = engines::fast_timewarp();
-  options.trial = trial;
+  options.faults = faults;
   engines::run_scene(scene, laws, options, recorder);
   return recorder.trajectory();
 }
@@ -115,7 +115,7 @@ Watch row_taken_back(int n, const Laws& laws) {
   options.timewarp = engines::fast_timewarp();
   options.duration_s = 0.5 * radius * n + 0.1;   // a gap of half a radius at 1 m/s
   options.frame_rate_hz = 1e-6;
-  options.trial.late_callbacks = true;
+  options.faults.late_callbacks = true;
   options.callbacks = {{0.01 * radius, {0}, [](int, RigidBodyState& state) { state.momentum_world = -state.momentum_world; }}};
   engines::run_scene(scene, laws, options, watch);
   return watch;

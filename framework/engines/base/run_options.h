@@ -14,7 +14,7 @@
 namespace tumble::engines {
 
 /// Makes a scheduler's life hard, for tests: none of it may change what is committed.
-struct TimewarpTrial {
+struct FaultInjection {
   std::uint64_t seed = 0;
   bool shuffle = false;          // processes begin in an order drawn by lot
   double disorder_s = 0.0;       // events up to so far ahead of global virtual time are taken in an order drawn by lot
@@ -22,7 +22,7 @@ struct TimewarpTrial {
   double rollback_s = 0.0;       // by up to this
   bool late_callbacks = false;   // with one thread: callbacks are taken after all that others could do without them
   double delay_s = 0.0;          // threads are held up, now and then, by up to this
-  int territories = 0;           // room is cut into so many, at most 255, however few bodies there are; 0: as it pays
+  int regions = 0;           // room is cut into so many, at most 255, however few bodies there are; 0: as it pays
 };
 
 /// What a program does to bodies while they move: at `time` it is handed the state of each of `bodies`, and may change velocities (not
@@ -36,7 +36,7 @@ struct Callback {
 /// Who moves with whom at a frame that is committed, as the flights of that instant say: what tests of groups look at.
 struct Membership {
   double time;                     // [s]
-  std::vector<int> passages;       // by body: of the process that it is part of; -1: it flies freely, or is immovable
+  std::vector<int> segments;       // by body: of the process that it is part of; -1: it flies freely, or is immovable
   std::vector<int> first_members;  // by body: the least body that moves with it, perhaps itself
 };
 
@@ -46,7 +46,7 @@ using Engine = std::function<void(const scene::Scene& scene, const Laws& laws, c
 
 struct RunOptions {
   std::string engine;                      // a word of engine_words(); empty: the scene's, or rd
-  TimewarpTrial trial;
+  FaultInjection faults;
   int threads = 1;                         // of the fast timewarp; what is committed is the same with any number
   int most_states = 0;                     // of a body that the fast timewarp keeps, at least 8; 0: as many as it takes
   Engine timewarp;                         // what "tw" is where the laws hold no scheduling; empty: nobody has written a scheduler

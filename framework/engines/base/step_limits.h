@@ -19,7 +19,7 @@ inline constexpr long most_impacts(int bodies) { return 500L * bodies; }
 
 /// Events at one instant, each caused by the last: a blow goes through a chain of touching bodies in as many as it has. A timewarp looks at all that
 /// a body flew at its instant, so the price of finding out goes with the square.
-inline constexpr std::uint32_t most_generations(int bodies) { return 1000 + 10 * static_cast<std::uint32_t>(bodies); }
+inline constexpr std::uint32_t most_microsteps(int bodies) { return 1000 + 10 * static_cast<std::uint32_t>(bodies); }
 
 /// @param bodies  names, as "bodies 'a' and 'b'"
 inline std::string endless_impacts_message(double time, const std::string& bodies) {

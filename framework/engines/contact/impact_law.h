@@ -3,7 +3,7 @@
 /// A pair that approaches gets the impulse of the laws at the middle of the region where the two touch, or, where the middle does not approach,
 /// at the corner of that region that approaches fastest; this is repeated until no point approaches faster than round-off.
 /// Callers fetch the bodies, and store what comes of it: a world of bodies with links and friction (sequential_impacts.h), and two free flights
-/// (events/meeting_of_flights.h).
+/// (events/flight_impact_response.h).
 #pragma once
 
 #include <string>

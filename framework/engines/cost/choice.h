@@ -1,7 +1,8 @@
-/// Chooses method and step for an error that is asked for, or for a time that may be spent.
+/// Chooses method and resolution for a requested error, or for a given CPU time.
 ///
-/// Nothing is extrapolated: a choice is a run that was made, with the very steps, tolerance and frames of the one to come. A run is
-/// deterministic, so its error is known before it is made again; only its price is an expectation.
+/// Nothing is extrapolated: a choice is a run that was made, with the steps, tolerance and frames
+/// of the run to come. A run is deterministic, so its error is known; only its CPU time is an
+/// estimate.
 #pragma once
 
 #include <functional>
@@ -14,30 +15,30 @@
 namespace tumble::engines {
 
 /// One of the two.
-struct CostWish {
-  std::optional<double> error_m;    // at most, at every sample of the truth
+struct CostGoal {
+  std::optional<double> error_m;    // at most, at every sample of the reference
   std::optional<double> price_s;    // at most, CPU time of the engine
 };
 
-/// A way with all that makes it one run.
+/// A method with its resolution: one run.
 struct CostChoice {
-  CostWay way;
-  long steps = 1;                   // a sample of the truth
+  CostMethod method;
+  long steps = 1;                   // per sample of the reference
   double tolerance = kUnset;        // of a controlled method
-  CostRung rung;                    // the trial that it stands on
+  CostResult result;                    // the measured run
 };
 
-/// What came of the search.
+/// Result of the search.
 struct CostChoices {
-  std::optional<CostChoice> best;   // what the wish asks for; empty: nothing fulfils it
-  std::optional<CostChoice> closest;   // least error (of a wish for accuracy) or least price of all that were tried
-  bool was_cut_short = false;       // by most_s: something better may exist
+  std::optional<CostChoice> best;   // fulfils the goal; empty: none does
+  std::optional<CostChoice> closest;   // least error (for a goal of accuracy) or least cost of all measured runs
+  bool was_cut_short = false;       // by most_s: a better one may exist
 };
 
-/// @param truth   its samples are the frames of the run to come
-/// @param most_s  CPU time of the search
-/// @param told    called after each trial, for progress
-CostChoices choose_way(const scene::Scene& scene, const std::vector<CostWay>& ways, const CostTruth& truth, const CostWish& wish, double most_s, const CostOptions& options,
-                       const std::function<void(const CostChoice&)>& told);
+/// @param reference  its samples are the frames of the run to come
+/// @param most_s     CPU time of the search
+/// @param progress   called after each measured run
+CostChoices choose_method(const scene::Scene& scene, const std::vector<CostMethod>& methods, const CostReference& reference, const CostGoal& goal, double most_s, const CostOptions& options,
+                       const std::function<void(const CostChoice&)>& progress);
 
 }  // namespace tumble::engines

@@ -19,22 +19,22 @@
 namespace tumble::engines {
 namespace {
 
-constexpr double kNoise = 0.02;           // of what comes before the first step: by so much its time differs from run to run
-constexpr double kCoarsest = 16.0;        // of the scene's own step: where a ladder begins
-constexpr double kLinkedSteps = 32.0;     // of the scene's own: after so long rods and joints are brought back, whatever method goes on between
-// A rung that costs less than kLeastGrowth times the one before shows that steps are not what costs:
+constexpr double kNoise = 0.02;           // of the set-up time: its variation from run to run
+constexpr double kCoarsest = 16.0;        // of the scene's own step: the coarsest step
+constexpr double kLinkedSteps = 32.0;     // of the scene's own: after so long rods and joints are projected, whatever the integration does between
+// A run that costs less than kLeastGrowth times the one before shows that steps are not the cost:
 constexpr double kWorthSkipping = 0.5;    // s: where it costs as much as this
-constexpr long kSkip = 8;                 // the next one has so many times its steps
-constexpr long kMostSteps = 1L << 24;      // a sample
-constexpr int kMostRungs = 14;
-constexpr double kNearFloor = 3.0;        // of the truth's floor: finer runs show nothing
-constexpr double kGood = 1e-3;            // of the scale: below it, errors that do not fall are round-off
-constexpr int kMostWorse = 2;             // rungs in a row that are no better than the best
-constexpr int kMostWorseInSteps = 4;      // the same where contacts push once a step: when something lands within a step is as good as drawn by lot
+constexpr long kSkip = 8;                 // the next run has this many times its steps
+constexpr long kMostSteps = 1L << 24;      // per sample
+constexpr int kMostResolutions = 14;
+constexpr double kNearFloor = 3.0;        // of the error floor: finer runs show nothing
+constexpr double kGood = 1e-3;            // of the scale: below it, errors that no longer decrease are round-off
+constexpr int kMostWorse = 2;             // runs in a row that are no better than the best
+constexpr int kMostWorseInSteps = 4;      // the same where contacts act once per step: the instant of a first contact within a step is practically random
 
 std::string too_long(double most_s) { return fmt::format("it would take more than {:.0f} s", most_s); }
 
-/// The run and its clock; ends a run that takes too long, whether or not it integrates.
+/// Records a run and its CPU time; ends a run that takes too long, with or without integration.
 class Measurement final : public TrajectorySink {
  public:
   explicit Measurement(double most_s) : most_s_(most_s) {}
@@ -58,7 +58,7 @@ class Measurement final : public TrajectorySink {
     recorder_.end(counters, stopped_by);
   }
   const Trajectory& run() const { return recorder_.trajectory(); }
-  double cpu_s = 0.0, building_s = 0.0;   // all of it; up to the first frame
+  double cpu_s = 0.0, building_s = 0.0;   // total; up to the first frame
 
  private:
   static constexpr int kLookEach = 256;
@@ -78,37 +78,37 @@ bool links_meet(const scene::Scene& scene) {
 
 double energy_of(const Frame& frame) { return frame.kinetic_energy + frame.potential_energy; }
 
-void compare(const std::vector<Frame>& frames, const CostTruth& truth, CostRung& rung) {
-  double scale = 0.0, lowest = truth.samples.front().potential_energy;
-  for (const Frame& frame : truth.samples) {
+void compare(const std::vector<Frame>& frames, const CostReference& reference, CostResult& result) {
+  double scale = 0.0, lowest = reference.samples.front().potential_energy;
+  for (const Frame& frame : reference.samples) {
     lowest = std::min(lowest, frame.potential_energy);
     scale = std::max(scale, frame.kinetic_energy + frame.potential_energy - lowest);
   }
-  rung.error_m = frames.size() < truth.samples.size() ? kUnset : 0.0;
-  for (std::size_t k = 0; k < std::min(frames.size(), truth.samples.size()); ++k) {
-    const double distance = distance_between(frames[k], truth.samples[k], truth.radii);
-    if (!(distance <= rung.error_m)) rung.error_m = std::isnan(rung.error_m) ? kUnset : distance;
-    rung.times.push_back(truth.samples[k].time);
-    rung.energy_errors.push_back(std::abs(energy_of(frames[k]) - energy_of(truth.samples[k])) / (scale > 0.0 ? scale : 1.0));
+  result.error_m = frames.size() < reference.samples.size() ? kUnset : 0.0;
+  for (std::size_t k = 0; k < std::min(frames.size(), reference.samples.size()); ++k) {
+    const double distance = distance_between(frames[k], reference.samples[k], reference.radii);
+    if (!(distance <= result.error_m)) result.error_m = std::isnan(result.error_m) ? kUnset : distance;
+    result.times.push_back(reference.samples[k].time);
+    result.energy_errors.push_back(std::abs(energy_of(frames[k]) - energy_of(reference.samples[k])) / (scale > 0.0 ? scale : 1.0));
   }
 }
 
-/// A run that is shorter than the scene is not judged by what it cannot have reached.
-scene::Scene judged_part(scene::Scene scene, const CostTruth& truth) {
-  if (truth.duration_s < scene.duration_s) std::erase_if(scene.checks, [](const scene::CheckSpec& check) { return !check.expected.empty(); });
+/// A run that is shorter than the scene is judged only by checks that apply until its end.
+scene::Scene judged_part(scene::Scene scene, const CostReference& reference) {
+  if (reference.duration_s < scene.duration_s) std::erase_if(scene.checks, [](const scene::CheckSpec& check) { return !check.expected.empty(); });
   return scene;
 }
 
-/// The worst of the scene's numbers, over what each is allowed.
-void judge(const scene::Scene& scene, const Trajectory& run, CostRung& rung) {
-  rung.error_m = 0.0;
+/// The worst of the scene's numbers, relative to its tolerance.
+void judge(const scene::Scene& scene, const Trajectory& run, CostResult& result) {
+  result.error_m = 0.0;
   for (const CheckResult& check : judge_run(scene, run)) {
     double share = check.at_least ? check.threshold / check.value : check.value / check.threshold;
-    if (check.threshold == 0.0) share = check.passed ? 0.0 : std::numeric_limits<double>::infinity();   // nothing at all is allowed
+    if (check.threshold == 0.0) share = check.passed ? 0.0 : std::numeric_limits<double>::infinity();   // no tolerance at all
     if (!check.passed && !(share > 1.0)) share = std::numeric_limits<double>::infinity();
-    if (share <= rung.error_m) continue;
-    rung.error_m = share;
-    rung.worst = fmt::format("{} of {}: {:.3g} {}{:.3g} {}", check.kind, check.subject, check.value, check.at_least ? ">= " : "<= ", check.threshold, check.unit);
+    if (share <= result.error_m) continue;
+    result.error_m = share;
+    result.worst = fmt::format("{} of {}: {:.3g} {}{:.3g} {}", check.kind, check.subject, check.value, check.at_least ? ">= " : "<= ", check.threshold, check.unit);
   }
   double scale = 0.0, lowest = std::numeric_limits<double>::infinity();
   for (const Frame& frame : run.frames) {
@@ -116,21 +116,22 @@ void judge(const scene::Scene& scene, const Trajectory& run, CostRung& rung) {
     scale = std::max(scale, energy_of(frame) - lowest);
   }
   for (const Frame& frame : run.frames) {
-    rung.times.push_back(frame.time);
-    rung.energy_errors.push_back(std::abs(energy_of(frame) - energy_of(run.frames.front())) / (scale > 0.0 ? scale : 1.0));
+    result.times.push_back(frame.time);
+    result.energy_errors.push_back(std::abs(energy_of(frame) - energy_of(run.frames.front())) / (scale > 0.0 ? scale : 1.0));
   }
 }
 
-RunOptions options_of(const CostWay& way, const CostOptions& options, double frame_rate_hz) {
+RunOptions options_of(const CostMethod& method, const CostOptions& options, double frame_rate_hz) {
   RunOptions how;
-  how.engine = way.engine;
-  if (way.engine == "rd") how.propagator = way.propagator;
+  how.engine = method.engine;
+  if (method.engine == "rd") how.propagator = method.propagator;
   how.timewarp = options.timewarp;
   how.frame_rate_hz = frame_rate_hz;
   return how;
 }
 
-/// Stops a run that takes too long. The clock is looked at rarely enough to cost nothing; within a step too where the method chooses its parts.
+/// Stops a run that takes too long. It reads the clock rarely, so that this costs nothing; also
+/// within a step where the method chooses its substeps.
 StepFunction until_too_long(const StepFunction& step, double most_s, bool controlled) {
   constexpr int kEach = 64;
   const auto calls = std::make_shared<int>(0);
@@ -156,7 +157,8 @@ std::uint64_t count_of(const Counters& counters, const std::string& name) {
   return found == counters.counts.end() ? 0 : found->second;
 }
 
-/// What models and shapes cost. Engines that step show their first frame just before the first step; the others show it when they can.
+/// CPU time of models and shapes. Engines with steps record their first frame just before the first
+/// step; the others, as soon as they can.
 double before_first_step(const scene::Scene& stepped, const Laws& laws, RunOptions how, const Measurement& run) {
   if (how.engine == "rd") return run.building_s;
   how.duration_s = 1e-9 * stepped.step_s;
@@ -167,149 +169,152 @@ double before_first_step(const scene::Scene& stepped, const Laws& laws, RunOptio
 
 }  // namespace
 
-CostRun run_of(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, long steps, double tolerance, const CostOptions& options) {
-  truths::SteppedScene stepped = truths::in_equal_steps(scene, truth.duration_s, truth.intervals * steps, truth.intervals);
-  CostRun run{std::move(stepped.scene), way.laws, options_of(way, options, stepped.frame_rate_hz)};
-  if (way.stabilisation) run.scene.stabilisation = way.stabilisation;
-  if (way.method) run.laws.integrate_step = way.method(tolerance);
-  if (way.tuned) way.tuned(tolerance, run.laws);
-  if (std::isfinite(options.most_of_rung_s)) run.laws.integrate_step = until_too_long(run.laws.integrate_step, options.most_of_rung_s, way.controlled);
+CostRun run_of(const scene::Scene& scene, const CostMethod& method, const CostReference& reference, long steps, double tolerance, const CostOptions& options) {
+  truths::SteppedScene stepped = truths::in_equal_steps(scene, reference.duration_s, reference.intervals * steps, reference.intervals);
+  CostRun run{std::move(stepped.scene), method.laws, options_of(method, options, stepped.frame_rate_hz)};
+  if (method.stabilisation) run.scene.stabilisation = method.stabilisation;
+  if (method.step_function) run.laws.integrate_step = method.step_function(tolerance);
+  if (method.tuned) method.tuned(tolerance, run.laws);
+  if (std::isfinite(options.most_of_run_s)) run.laws.integrate_step = until_too_long(run.laws.integrate_step, options.most_of_run_s, method.controlled);
   return run;
 }
 
-CostRung run_rung(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, long steps, double tolerance, const CostOptions& options) {
-  const auto [stepped, laws, how] = run_of(scene, way, truth, steps, tolerance, options);
-  CostRung rung;
-  rung.step_s = way.has_ladder ? stepped.step_s : kUnset;
-  if (way.controlled) rung.tolerance = tolerance;
+CostResult run_at_resolution(const scene::Scene& scene, const CostMethod& method, const CostReference& reference, long steps, double tolerance, const CostOptions& options) {
+  const auto [stepped, laws, how] = run_of(scene, method, reference, steps, tolerance, options);
+  CostResult result;
+  result.step_s = method.has_refinement ? stepped.step_s : kUnset;
+  if (method.controlled) result.tolerance = tolerance;
   double building = std::numeric_limits<double>::infinity(), whole = building;
   const double begun = cpu_seconds();
   try {
     for (int k = 0; k < options.runs && (k == 0 || cpu_seconds() - begun < kShort); ++k) {
-      Measurement run(options.most_of_rung_s);
+      Measurement run(options.most_of_run_s);
       run_scene(stepped, laws, how, run);
       building = std::min(building, before_first_step(stepped, laws, how, run));
       whole = std::min(whole, run.cpu_s);
       if (k > 0) continue;
-      rung.stopped_by = run.run().stopped_by;
-      rung.stage_seconds = run.run().counters.stage_seconds;
-      rung.evaluations = count_of(run.run().counters, way.counted);
-      if (truth.by_numbers) judge(judged_part(scene, truth), run.run(), rung);
-      else compare(run.run().frames, truth, rung);
-      if (!rung.stopped_by.empty() || rung.error_m > kAnswer * truth.scale_m) break;   // what such a run costs need not be known well
+      result.stopped_by = run.run().stopped_by;
+      result.stage_seconds = run.run().counters.stage_seconds;
+      result.evaluations = count_of(run.run().counters, method.counted);
+      if (reference.by_numbers) judge(judged_part(scene, reference), run.run(), result);
+      else compare(run.run().frames, reference, result);
+      if (!result.stopped_by.empty() || result.error_m > kAnswer * reference.scale_m) break;   // its exact cost is irrelevant
     }
   } catch (const UserError& error) {
-    rung.stopped_by = error.what();
-  } catch (const StoppedRun& stop) {   // before the engine looks for it
-    rung.stopped_by = stop.what();
+    result.stopped_by = error.what();
+  } catch (const StoppedRun& stop) {   // before the engine reports it
+    result.stopped_by = stop.what();
   } catch (const NotImplemented& missing) {
-    rung.stopped_by = missing.function() + " is not written yet";
-    rung.not_attempted = true;
+    result.stopped_by = missing.function() + " is not written yet";
+    result.not_attempted = true;
   }
-  rung.spent_s = cpu_seconds() - begun;
-  rung.took_too_long = rung.stopped_by.find(too_long(options.most_of_rung_s)) != std::string::npos;
-  if (!std::isfinite(whole)) return rung;   // it never came to an end
-  rung.cpu_s = std::max(1e-6, whole - building);
-  if (rung.cpu_s < kNoise * building) {   // the difference of two long times is noise: the stages' own clocks know better
+  result.spent_s = cpu_seconds() - begun;
+  result.took_too_long = result.stopped_by.find(too_long(options.most_of_run_s)) != std::string::npos;
+  if (!std::isfinite(whole)) return result;   // it did not finish
+  result.cpu_s = std::max(1e-6, whole - building);
+  if (result.cpu_s < kNoise * building) {   // the difference of two long times is noise: the clocks of the stages are more exact
     double stages = 0.0;
-    for (const auto& [stage, seconds] : rung.stage_seconds) stages += seconds;
-    rung.cpu_s = std::max(rung.cpu_s, std::min(stages, whole));
+    for (const auto& [stage, seconds] : result.stage_seconds) stages += seconds;
+    result.cpu_s = std::max(result.cpu_s, std::min(stages, whole));
   }
-  rung.building_s = building;
-  return rung;
+  result.building_s = building;
+  return result;
 }
 
-long first_steps(const scene::Scene& scene, const CostTruth& truth) {
-  const double interval = truth.duration_s / static_cast<double>(truth.intervals);
+long first_steps(const scene::Scene& scene, const CostReference& reference) {
+  const double interval = reference.duration_s / static_cast<double>(reference.intervals);
   return std::max(1L, std::lround(interval / (kCoarsest * scene.step_s)));
 }
 
 bool steps_are_free(const scene::Scene& scene) { return !has_control(scene) && !scene.contact && !links_meet(scene); }
 
-long outer_steps(const scene::Scene& scene, const CostTruth& truth) {
-  // Motors look between steps, and lasting contacts push once a step: there the step is part of the scene. Rods and joints are held to
-  // the tolerance within a step, and brought back at its end.
-  const double interval = truth.duration_s / static_cast<double>(truth.intervals);
+long outer_steps(const scene::Scene& scene, const CostReference& reference) {
+  // Motors are sampled between steps, and persistent contacts act once per step: there the step is
+  // part of the scene. Rods and joints stay within the tolerance during a step, and are projected
+  // at its end.
+  const double interval = reference.duration_s / static_cast<double>(reference.intervals);
   if (has_control(scene) || scene.contact) return std::max(1L, std::lround(interval / (2.0 * scene.step_s)));
-  const bool linked = scene::is_constrained(scene);   // what drifts apart for long pulls so hard that no tolerance helps
+  const bool linked = scene::is_constrained(scene);   // a constraint error that grows over a long step causes forces that no tolerance can correct
   return linked ? std::max(1L, std::lround(interval / (kLinkedSteps * scene.step_s))) : 1;
 }
 
 namespace {
 
-/// 10^-this is the first tolerance. Rods pull at once at whatever is out of place: by looser ones a run blows up, slowly.
+/// 10^-this is the first tolerance. Rods react at once to any error: with looser tolerances a run
+/// diverges, slowly.
 int first_decade(const scene::Scene& scene) { return scene::is_constrained(scene) ? 4 : 1; }
 
-std::size_t most_rungs(const scene::Scene& scene, const CostWay& way, const std::vector<double>& asked) {
-  if (!way.has_ladder) return 1;
-  return !asked.empty() ? asked.size() : static_cast<std::size_t>(kMostRungs - (way.controlled ? first_decade(scene) - 1 : 0));
+std::size_t most_resolutions(const scene::Scene& scene, const CostMethod& method, const std::vector<double>& asked) {
+  if (!method.has_refinement) return 1;
+  return !asked.empty() ? asked.size() : static_cast<std::size_t>(kMostResolutions - (method.controlled ? first_decade(scene) - 1 : 0));
 }
 
-/// Twice as many as in the last rung; more where these would cost next to nothing.
-long finer_steps(const std::vector<CostRung>& rungs, double interval) {
-  const auto last = std::lround(interval / rungs.back().step_s);
-  const bool skips = rungs.size() > 1 && rungs.back().stopped_by.empty() && rungs.back().spent_s > kWorthSkipping && rungs.back().spent_s < kLeastGrowth * rungs[rungs.size() - 2].spent_s;
+/// Twice as many as in the last run; more where these would cost next to nothing.
+long finer_steps(const std::vector<CostResult>& results, double interval) {
+  const auto last = std::lround(interval / results.back().step_s);
+  const bool skips = results.size() > 1 && results.back().stopped_by.empty() && results.back().spent_s > kWorthSkipping && results.back().spent_s < kLeastGrowth * results[results.size() - 2].spent_s;
   return std::min((skips ? kSkip : 2L) * last, kMostSteps);
 }
 
-/// Steps per sample of the next rung.
-long steps_of(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, const LadderWords& words, const std::vector<CostRung>& rungs) {
-  const double interval = truth.duration_s / static_cast<double>(truth.intervals);
-  // Motors look and contacts push once a step, and bodies that hang on others and meet something go along a curve through their steps'
-  // ends: there steps shrink with the tolerance, but where something else than the integration is looked at.
-  if ((way.controlled && (way.tuned || steps_are_free(scene))) || !way.has_ladder) return outer_steps(scene, truth);
-  if (!words.steps_s.empty() && !way.controlled) return std::max(1L, std::lround(interval / words.steps_s[rungs.size()]));
-  return rungs.empty() ? first_steps(scene, truth) : finer_steps(rungs, interval);
+/// Steps per sample of the next run.
+long steps_of(const scene::Scene& scene, const CostMethod& method, const CostReference& reference, const RefinementWords& words, const std::vector<CostResult>& results) {
+  const double interval = reference.duration_s / static_cast<double>(reference.intervals);
+  // Motors are sampled and contacts act once per step, and linked bodies that collide follow an
+  // interpolated path between the ends of steps: there the step is reduced with the tolerance,
+  // except where something other than the integration is varied.
+  if ((method.controlled && (method.tuned || steps_are_free(scene))) || !method.has_refinement) return outer_steps(scene, reference);
+  if (!words.steps_s.empty() && !method.controlled) return std::max(1L, std::lround(interval / words.steps_s[results.size()]));
+  return results.empty() ? first_steps(scene, reference) : finer_steps(results, interval);
 }
 
 }  // namespace
 
-bool ladder_is_done(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, const std::vector<CostRung>& rungs, const LadderWords& words) {
-  if (rungs.empty()) return false;
-  const std::vector<double>& asked = way.controlled ? words.tolerances : words.steps_s;
-  if (rungs.size() >= most_rungs(scene, way, asked) || rungs.back().not_attempted) return true;
+bool refinement_is_done(const scene::Scene& scene, const CostMethod& method, const CostReference& reference, const std::vector<CostResult>& results, const RefinementWords& words) {
+  if (results.empty()) return false;
+  const std::vector<double>& asked = method.controlled ? words.tolerances : words.steps_s;
+  if (results.size() >= most_resolutions(scene, method, asked) || results.back().not_attempted) return true;
   if (!asked.empty()) return false;
   double least = std::numeric_limits<double>::infinity();
   int worse = 0;
-  for (std::size_t k = 0; k < rungs.size(); ++k) {
-    const bool is_new = k == 0 || !way.controlled || rungs[k].evaluations > rungs[k - 1].evaluations;   // a tolerance that changes nothing tells nothing
-    worse = rungs[k].error_m < least ? 0 : worse + (is_new ? 1 : 0);
-    least = std::min(least, std::isfinite(rungs[k].error_m) ? rungs[k].error_m : least);
+  for (std::size_t k = 0; k < results.size(); ++k) {
+    const bool is_new = k == 0 || !method.controlled || results[k].evaluations > results[k - 1].evaluations;   // a tolerance without effect
+    worse = results[k].error_m < least ? 0 : worse + (is_new ? 1 : 0);
+    least = std::min(least, std::isfinite(results[k].error_m) ? results[k].error_m : least);
   }
   const int most_worse = scene.contact ? kMostWorseInSteps : kMostWorse;
-  return rungs.back().error_m <= kNearFloor * truth.floor_m || (worse >= most_worse && least < kGood * truth.scale_m);
+  return results.back().error_m <= kNearFloor * reference.floor_m || (worse >= most_worse && least < kGood * reference.scale_m);
 }
 
-double next_price(const std::vector<CostRung>& rungs) {
-  if (rungs.empty()) return 0.0;
-  const double last = rungs.back().spent_s, most = kGrowth * last;
-  if (rungs.size() < 2 || rungs.back().took_too_long || rungs[rungs.size() - 2].took_too_long) return most;
-  return std::clamp(last + kGrowth * (last - rungs[rungs.size() - 2].spent_s), kLeastGrowth * last, most);   // some of the price may be the same at any step
+double next_price(const std::vector<CostResult>& results) {
+  if (results.empty()) return 0.0;
+  const double last = results.back().spent_s, most = kGrowth * last;
+  if (results.size() < 2 || results.back().took_too_long || results[results.size() - 2].took_too_long) return most;
+  return std::clamp(last + kGrowth * (last - results[results.size() - 2].spent_s), kLeastGrowth * last, most);   // part of the cost may be the same at any step
 }
 
-void extend_ladder(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, double budget_s, const CostOptions& options, const LadderWords& words, std::vector<CostRung>& rungs,
-                   const std::function<void(const CostRung&)>& told) {
+void extend_refinement(const scene::Scene& scene, const CostMethod& method, const CostReference& reference, double budget_s, const CostOptions& options, const RefinementWords& words, std::vector<CostResult>& results,
+                   const std::function<void(const CostResult&)>& progress) {
   const double until = cpu_seconds() + budget_s;
-  const bool is_asked = !(way.controlled ? words.tolerances : words.steps_s).empty();
-  if (!rungs.empty() && rungs.back().took_too_long) {
-    if (options.most_of_rung_s < next_price(rungs)) return;
-    rungs.pop_back();
+  const bool is_asked = !(method.controlled ? words.tolerances : words.steps_s).empty();
+  if (!results.empty() && results.back().took_too_long) {
+    if (options.most_of_run_s < next_price(results)) return;
+    results.pop_back();
   }
-  while (!ladder_is_done(scene, way, truth, rungs, words)) {
-    const std::size_t k = rungs.size();
-    const double tolerance = !way.controlled ? kUnset : words.tolerances.empty() ? std::pow(10.0, -first_decade(scene) - static_cast<double>(k)) : words.tolerances[k];
-    rungs.push_back(run_rung(scene, way, truth, steps_of(scene, way, truth, words, rungs), tolerance, options));
-    told(rungs.back());
-    if (rungs.back().took_too_long) return;
-    if (!is_asked && cpu_seconds() + next_price(rungs) > until) return;
+  while (!refinement_is_done(scene, method, reference, results, words)) {
+    const std::size_t k = results.size();
+    const double tolerance = !method.controlled ? kUnset : words.tolerances.empty() ? std::pow(10.0, -first_decade(scene) - static_cast<double>(k)) : words.tolerances[k];
+    results.push_back(run_at_resolution(scene, method, reference, steps_of(scene, method, reference, words, results), tolerance, options));
+    progress(results.back());
+    if (results.back().took_too_long) return;
+    if (!is_asked && cpu_seconds() + next_price(results) > until) return;
   }
 }
 
-std::vector<CostRung> run_ladder(const scene::Scene& scene, const CostWay& way, const CostTruth& truth, double budget_s, const CostOptions& options, const std::vector<double>& steps_s,
-                                 const std::vector<double>& tolerances, const std::function<void(const CostRung&)>& told) {
-  std::vector<CostRung> rungs;
-  extend_ladder(scene, way, truth, budget_s, options, {steps_s, tolerances}, rungs, told);
-  return rungs;
+std::vector<CostResult> run_refinement(const scene::Scene& scene, const CostMethod& method, const CostReference& reference, double budget_s, const CostOptions& options, const std::vector<double>& steps_s,
+                                 const std::vector<double>& tolerances, const std::function<void(const CostResult&)>& progress) {
+  std::vector<CostResult> results;
+  extend_refinement(scene, method, reference, budget_s, options, {steps_s, tolerances}, results, progress);
+  return results;
 }
 
 }  // namespace tumble::engines

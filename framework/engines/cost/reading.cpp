@@ -9,110 +9,110 @@
 namespace tumble::engines {
 namespace {
 
-constexpr double kAsPromised = 0.25;     // off the order by less: terms of the next order at steps this coarse
-constexpr double kSettled = 0.5;         // slopes that lie farther apart show no order
+constexpr double kAsPromised = 0.25;     // largest deviation from the order: terms of the next order at steps this coarse
+constexpr double kSettled = 0.5;         // slopes that differ by more show no order
 constexpr double kNoOrder = 0.3;         // a slope below this is no convergence
-constexpr double kLeastSlope = 2.0, kMostSlope = 14.0;   // of a method that chooses its steps: others show that the tolerance was not what cost
-constexpr double kStaysBelow = 0.6;      // of the scale: errors as large as bodies move are alike whatever made them
-constexpr double kNoMotion = 0.3;        // of the scale: whoever stays above it has not found the motion
-constexpr double kSame = 0.02;           // errors that differ by less are one
-constexpr double kRoundOff = 1e-10;       // of the scale: smaller errors are
-constexpr double kWrongLimit = 100.0;    // floors: what does not shrink above this is wrong, not finished
+constexpr double kLeastSlope = 2.0, kMostSlope = 14.0;   // of a method that chooses its steps: other slopes show that the tolerance does not determine the cost
+constexpr double kStaysBelow = 0.6;      // of the scale: errors as large as the motion have no common cause
+constexpr double kNoMotion = 0.3;        // of the scale: larger errors mean that the motion was not found
+constexpr double kSame = 0.02;           // errors that differ by less are equal
+constexpr double kRoundOff = 1e-10;       // of the scale: smaller errors are round-off
+constexpr double kWrongLimit = 100.0;    // error floors: an error above this that does not decrease is wrong, not converged
 
-double least_error(const std::vector<CostRung>& rungs) {
+double least_error(const std::vector<CostResult>& results) {
   double least = std::numeric_limits<double>::infinity();
-  for (const CostRung& rung : rungs)
-    if (rung.stopped_by.empty() && rung.error_m < least) least = rung.error_m;
+  for (const CostResult& result : results)
+    if (result.stopped_by.empty() && result.error_m < least) least = result.error_m;
   return least;
 }
 
-/// Whether the last three errors are the same.
-bool stays(const std::vector<CostRung>& rungs) {
-  if (rungs.size() < 3) return false;
-  const double last = rungs.back().error_m;
-  return std::all_of(rungs.end() - 3, rungs.end(), [last](const CostRung& rung) { return rung.stopped_by.empty() && std::abs(rung.error_m - last) <= kSame * last; });
+/// Whether the last three errors are equal.
+bool stays(const std::vector<CostResult>& results) {
+  if (results.size() < 3) return false;
+  const double last = results.back().error_m;
+  return std::all_of(results.end() - 3, results.end(), [last](const CostResult& result) { return result.stopped_by.empty() && std::abs(result.error_m - last) <= kSame * last; });
 }
 
-/// Of what shows no order because nothing is left to show.
-std::string of_exact(const CostWay& way, double least, const CostTruth& truth) {
-  if (least > kRoundOff * truth.scale_m) return fmt::format("{} gets as close as the truth can tell: {:.1e} m.", way.name, least);
-  return fmt::format("{} is exact here, to round-off: {:.1e} m.", way.name, least);
+/// For a method without an order because its errors are at the floor.
+std::string of_exact(const CostMethod& method, double least, const CostReference& reference) {
+  if (least > kRoundOff * reference.scale_m) return fmt::format("{} reaches the error floor of the reference solution: {:.1e} m.", method.name, least);
+  return fmt::format("{} is exact here, to round-off: {:.1e} m.", method.name, least);
 }
 
-std::string of_stopped(const CostWay& way, const std::vector<CostRung>& rungs) {
-  if (!rungs.empty() && rungs.back().not_attempted) return fmt::format("{}: {}.", way.name, rungs.back().stopped_by);
-  return fmt::format("{} does not get through at any {}: {}", way.name, way.controlled ? "tolerance" : "step", rungs.empty() ? "nothing was run" : rungs.back().stopped_by);
+std::string of_stopped(const CostMethod& method, const std::vector<CostResult>& results) {
+  if (!results.empty() && results.back().not_attempted) return fmt::format("{}: {}.", method.name, results.back().stopped_by);
+  return fmt::format("{} does not reach the end at any {}: {}", method.name, method.controlled ? "tolerance" : "step", results.empty() ? "nothing was run" : results.back().stopped_by);
 }
 
-/// Runs judged by the scene's numbers: from which step on, and by how much.
-std::string of_numbers(const CostWay& way, const std::vector<CostRung>& rungs) {
-  const CostRung *best = nullptr, *coarsest = nullptr;
-  for (const CostRung& rung : rungs) {
-    if (!rung.stopped_by.empty() || !std::isfinite(rung.error_m)) continue;
-    if (best == nullptr || rung.error_m < best->error_m) best = &rung;
-    if (coarsest == nullptr && rung.error_m <= 1.0) coarsest = &rung;
+/// For runs judged by the scene's numbers: the coarsest right resolution, and its worst number.
+std::string of_numbers(const CostMethod& method, const std::vector<CostResult>& results) {
+  const CostResult *best = nullptr, *coarsest = nullptr;
+  for (const CostResult& result : results) {
+    if (!result.stopped_by.empty() || !std::isfinite(result.error_m)) continue;
+    if (best == nullptr || result.error_m < best->error_m) best = &result;
+    if (coarsest == nullptr && result.error_m <= 1.0) coarsest = &result;
   }
-  const CostRung* last = rungs.empty() ? nullptr : &rungs.back();
-  if (best == nullptr) return fmt::format("{} is right at no {}: {}.", way.name, way.controlled ? "tolerance" : "step", last == nullptr ? "nothing was run" : last->stopped_by.empty() ? last->worst : last->stopped_by);
-  const std::string worst = best->worst.empty() ? "nothing is used up of what is allowed" : fmt::format("the worst number is {}", best->worst);
-  if (coarsest == nullptr) return fmt::format("{} is wrong at every {}; at best {}.", way.name, way.controlled ? "tolerance" : "step", worst);
+  const CostResult* last = results.empty() ? nullptr : &results.back();
+  if (best == nullptr) return fmt::format("{} is right at no {}: {}.", method.name, method.controlled ? "tolerance" : "step", last == nullptr ? "nothing was run" : last->stopped_by.empty() ? last->worst : last->stopped_by);
+  const std::string worst = best->worst.empty() ? "no error at all" : fmt::format("the worst number is {}", best->worst);
+  if (coarsest == nullptr) return fmt::format("{} is wrong at every {}; at best {}.", method.name, method.controlled ? "tolerance" : "step", worst);
   const std::string from = std::isfinite(coarsest->tolerance) ? fmt::format("tolerance {:.0e}", coarsest->tolerance) : fmt::format("1/{:.0f} s", 1.0 / coarsest->step_s);
-  return fmt::format("{} is right by all numbers at {}; at best {}.", way.name, from, worst);
+  return fmt::format("{} is right by all numbers at {}; at best {}.", method.name, from, worst);
 }
 
-std::string of_wrong_limit(const CostWay& way, double least) {
-  return fmt::format("{} does not converge: its error stays at {:.1e} m however small the step. What it computes is not this motion (a wrong law, or a term left out).", way.name, least);
+std::string of_wrong_limit(const CostMethod& method, double least) {
+  return fmt::format("{} does not converge: its error stays at {:.1e} m however small the step. It computes another motion (a wrong law, or a missing term).", method.name, least);
 }
 
-std::string of_order(const CostWay& way, const FittedOrder& fit, bool smooth) {
-  const std::string seen = fmt::format("{} converges with order {:.2f}", way.name, fit.order);
-  if (std::isnan(way.order)) return seen + ".";
-  const double off = fit.order - way.order;
-  if (std::abs(off) <= kAsPromised) return fmt::format("{}, as it should ({:.0f}).", seen, way.order);
-  if (off > 0) return fmt::format("{}, better than the {:.0f} it promises: in this scene its leading error cancels.", seen, way.order);
-  if (!smooth) return fmt::format("{} where the method promises {:.0f}: here impacts, rods or contacts may set the order, not the method.", seen, way.order);
-  if (way.order >= 4 && fit.order > 0.6) return fmt::format("{} where {:.0f} is promised: a stage is off (its weight, its place in time, or the slope it starts from).", seen, way.order);
-  return fmt::format("{} where {:.0f} is promised: the step is not the method's.", seen, way.order);
+std::string of_order(const CostMethod& method, const FittedOrder& fit, bool smooth) {
+  const std::string seen = fmt::format("{} converges with order {:.2f}", method.name, fit.order);
+  if (std::isnan(method.order)) return seen + ".";
+  const double off = fit.order - method.order;
+  if (std::abs(off) <= kAsPromised) return fmt::format("{}, as it should ({:.0f}).", seen, method.order);
+  if (off > 0) return fmt::format("{}, better than its order {:.0f}: in this scene its leading error cancels.", seen, method.order);
+  if (!smooth) return fmt::format("{} where the method has {:.0f}: here impacts, rods or contacts may determine the order, not the method.", seen, method.order);
+  if (method.order >= 4 && fit.order > 0.6) return fmt::format("{} where {:.0f} is expected: a stage is wrong (its weight, its time, or the slope it starts from).", seen, method.order);
+  return fmt::format("{} where {:.0f} is expected: the step is not that of the method.", seen, method.order);
 }
 
 }  // namespace
 
-std::optional<FittedOrder> order_of(const CostWay& way, const std::vector<CostRung>& rungs, const CostTruth& truth) {
+std::optional<FittedOrder> order_of(const CostMethod& method, const std::vector<CostResult>& results, const CostReference& reference) {
   std::vector<double> h, error;
-  for (const CostRung& rung : rungs) {
-    h.push_back(way.controlled ? 1.0 / std::max<double>(1.0, static_cast<double>(rung.evaluations)) : rung.step_s);
-    error.push_back(rung.stopped_by.empty() ? rung.error_m : kUnset);
+  for (const CostResult& result : results) {
+    h.push_back(method.controlled ? 1.0 / std::max<double>(1.0, static_cast<double>(result.evaluations)) : result.step_s);
+    error.push_back(result.stopped_by.empty() ? result.error_m : kUnset);
   }
-  return way.has_ladder && !truth.by_numbers ? fit_order(h, error, truth.floor_m, kAnswer * truth.scale_m) : std::nullopt;
+  return method.has_refinement && !reference.by_numbers ? fit_order(h, error, reference.floor_m, kAnswer * reference.scale_m) : std::nullopt;
 }
 
-bool keeps_promise(const CostWay& way, const std::vector<CostRung>& rungs, const CostTruth& truth) {
-  const std::optional<FittedOrder> fit = order_of(way, rungs, truth);
-  const double least = least_error(rungs);
-  if (!fit || fit->order < kNoOrder) return least <= kWrongLimit * truth.floor_m;
-  return std::isnan(way.order) || fit->order >= way.order - kAsPromised;
+bool keeps_promise(const CostMethod& method, const std::vector<CostResult>& results, const CostReference& reference) {
+  const std::optional<FittedOrder> fit = order_of(method, results, reference);
+  const double least = least_error(results);
+  if (!fit || fit->order < kNoOrder) return least <= kWrongLimit * reference.floor_m;
+  return std::isnan(method.order) || fit->order >= method.order - kAsPromised;
 }
 
-std::string read_ladder(const CostWay& way, const std::vector<CostRung>& rungs, const CostTruth& truth, bool smooth) {
-  if (truth.by_numbers) return of_numbers(way, rungs);
-  const double least = least_error(rungs);
-  if (!std::isfinite(least)) return of_stopped(way, rungs);
-  if (!way.has_ladder && least <= truth.floor_m) return fmt::format("{} has no step to choose: it is as good as the truth.", way.name);
-  if (!way.has_ladder) return fmt::format("{} has no step to choose: it is off by {:.1e} m.", way.name, least);
-  const std::optional<FittedOrder> fit = order_of(way, rungs, truth);
-  if (!fit && way.controlled) return fmt::format("{} gets to {:.1e} m.", way.name, least);
-  if (!fit && least <= kWrongLimit * truth.floor_m) return of_exact(way, least, truth);
-  if (!way.controlled && stays(rungs) && least > kWrongLimit * truth.floor_m && least < kStaysBelow * truth.scale_m) return of_wrong_limit(way, least);
-  if (!fit && least > kNoMotion * truth.scale_m) return fmt::format("{} does not find the motion: its error is still {:.1e} m at the finest {}, where bodies move {:.1e} m. Either a law is wrong, or the steps are far too long.", way.name, least, way.controlled ? "tolerance" : "step", truth.scale_m);
-  if (!fit) return fmt::format("{} shows no order yet: its error is still {:.1e} m where bodies move {:.1e} m.", way.name, least, truth.scale_m);
-  if (way.controlled && (fit->order < kLeastSlope || fit->order > kMostSlope)) return fmt::format("{} gets to {:.1e} m.", way.name, least);
-  if (way.controlled) return fmt::format("{} gets to {:.1e} m; each ten times the evaluations divide its error by 10^{:.1f}.", way.name, least, fit->order);
-  if (fit->order < kNoOrder && least <= kWrongLimit * truth.floor_m) return of_exact(way, least, truth);
-  if (fit->pairs < 2) return fmt::format("{} gets to {:.1e} m; its ladder is too short to show an order.", way.name, least);
-  if (fit->order < kNoOrder && least > kWrongLimit * truth.floor_m)
-    return of_wrong_limit(way, least);
-  if (fit->spread > kSettled) return fmt::format("{} gets to {:.1e} m; its order has not settled ({:.1f}, slopes {:.1f} apart).", way.name, least, fit->order, fit->spread);
-  return of_order(way, *fit, smooth);
+std::string read_refinement(const CostMethod& method, const std::vector<CostResult>& results, const CostReference& reference, bool smooth) {
+  if (reference.by_numbers) return of_numbers(method, results);
+  const double least = least_error(results);
+  if (!std::isfinite(least)) return of_stopped(method, results);
+  if (!method.has_refinement && least <= reference.floor_m) return fmt::format("{} has no step to choose: its error is at the floor of the reference solution.", method.name);
+  if (!method.has_refinement) return fmt::format("{} has no step to choose: its error is {:.1e} m.", method.name, least);
+  const std::optional<FittedOrder> fit = order_of(method, results, reference);
+  if (!fit && method.controlled) return fmt::format("{} gets to {:.1e} m.", method.name, least);
+  if (!fit && least <= kWrongLimit * reference.floor_m) return of_exact(method, least, reference);
+  if (!method.controlled && stays(results) && least > kWrongLimit * reference.floor_m && least < kStaysBelow * reference.scale_m) return of_wrong_limit(method, least);
+  if (!fit && least > kNoMotion * reference.scale_m) return fmt::format("{} does not find the motion: its error is still {:.1e} m at the finest {}, where bodies move {:.1e} m. Either a law is wrong, or the steps are far too long.", method.name, least, method.controlled ? "tolerance" : "step", reference.scale_m);
+  if (!fit) return fmt::format("{} shows no order yet: its error is still {:.1e} m where bodies move {:.1e} m.", method.name, least, reference.scale_m);
+  if (method.controlled && (fit->order < kLeastSlope || fit->order > kMostSlope)) return fmt::format("{} gets to {:.1e} m.", method.name, least);
+  if (method.controlled) return fmt::format("{} gets to {:.1e} m; ten times the evaluations divide its error by 10^{:.1f}.", method.name, least, fit->order);
+  if (fit->order < kNoOrder && least <= kWrongLimit * reference.floor_m) return of_exact(method, least, reference);
+  if (fit->pairs < 2) return fmt::format("{} gets to {:.1e} m; too few resolutions to show an order.", method.name, least);
+  if (fit->order < kNoOrder && least > kWrongLimit * reference.floor_m)
+    return of_wrong_limit(method, least);
+  if (fit->spread > kSettled) return fmt::format("{} gets to {:.1e} m; its order has not settled ({:.1f}, slopes {:.1f} apart).", method.name, least, fit->order, fit->spread);
+  return of_order(method, *fit, smooth);
 }
 
 }  // namespace tumble::engines

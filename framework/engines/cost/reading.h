@@ -1,4 +1,4 @@
-/// What a ladder says, in a sentence.
+/// The result of a refinement in one sentence.
 #pragma once
 
 #include <optional>
@@ -10,14 +10,17 @@
 
 namespace tumble::engines {
 
-/// The order that a ladder shows: against the step, or against 1 / evaluations where the method chooses its own steps.
-std::optional<FittedOrder> order_of(const CostWay& way, const std::vector<CostRung>& rungs, const CostTruth& truth);
+/// The observed order: against the step, or against 1 / evaluations where the method chooses its
+/// own steps.
+std::optional<FittedOrder> order_of(const CostMethod& method, const std::vector<CostResult>& results, const CostReference& reference);
 
-/// Whether a ladder does what its method promises: it shows the order, or a better one, or there is nothing left to show.
-bool keeps_promise(const CostWay& way, const std::vector<CostRung>& rungs, const CostTruth& truth);
+/// Whether a refinement has at least the order of its method, or errors too small to show one.
+bool keeps_promise(const CostMethod& method, const std::vector<CostResult>& results, const CostReference& reference);
 
-/// A sentence that reads the ladder: whether it converges, as fast as it should, and what to look for where it does not.
-/// @param smooth  nothing meets anything and no rods or joints are there: the method alone sets the order
-std::string read_ladder(const CostWay& way, const std::vector<CostRung>& rungs, const CostTruth& truth, bool smooth);
+/// A sentence on a refinement: whether it converges, with which order, and the likely error where
+/// it does not.
+/// @param smooth  without impacts, contacts, rods and joints, so that the method alone determines
+///   the order
+std::string read_refinement(const CostMethod& method, const std::vector<CostResult>& results, const CostReference& reference, bool smooth);
 
 }  // namespace tumble::engines

@@ -1,4 +1,4 @@
-// Sentences that read what a scheduler pays. They name a cause only where the counts show it.
+// Sentences about the work of a scheduler. They name a cause only where the counts show it.
 #include <cmath>
 #include <optional>
 
@@ -11,11 +11,11 @@ namespace {
 
 using Kind = SchedulerReading::Kind;
 
-constexpr double kAlike = 1.25;       // times the reference: another right order of work differs by less
-constexpr double kOfOne = 2.5;        // bodies sent back an impact: two take part in one, and now and then another had met them
-constexpr double kWorthAWord = 1e-3;  // of the events: less is not spoken of
+constexpr double kAlike = 1.25;       // times the reference: the variation of correct orders of execution
+constexpr double kOfOne = 2.5;        // bodies rolled back per impact: two take part in one, and sometimes another impact had affected them
+constexpr double kWorthAWord = 1e-3;  // of the events: smaller fractions are not reported
 
-/// Counts over the runs that are right, here and in the reference.
+/// Counts over the runs that are right, both of the scheduler and of the reference.
 struct Sum {
   double events = 0.0, integrations = 0.0, undone = 0.0, rollbacks = 0.0, impacts = 0.0, checks = 0.0, states = 0.0, processes = 0.0;
   void add(const SchedulerRun& run) {
@@ -36,8 +36,8 @@ std::string in_words(const SchedulerRun& run) {
 }
 
 const SchedulerRun* same_run(const SchedulerRun& run, const SchedulerCurve& reference) {
-  for (const auto* ladder : {&reference.by_step, &reference.by_size})
-    for (const SchedulerRun& other : *ladder)
+  for (const auto* refinement : {&reference.by_step, &reference.by_size})
+    for (const SchedulerRun& other : *refinement)
       if (other.n == run.n && other.step_s == run.step_s && other.due == run.due) return &other;
   return nullptr;
 }
@@ -46,7 +46,7 @@ double ratio(double a, double b) { return b > 0.0 ? a / b : a > 0.0 ? std::numer
 
 std::string times(double ratio) { return ratio < 9.95 ? fmt::format("{:.1f} times", ratio) : fmt::format("{:.0f} times", ratio); }
 
-/// Why more is undone than need be.
+/// The cause of unnecessary rollbacks.
 std::string why_undone(const Sum& own, const Sum& right) {
   std::string why;
   const double sent = own.rollbacks / own.impacts, sent_right = right.rollbacks / right.impacts;
@@ -82,12 +82,12 @@ std::vector<SchedulerReading> alone(const Sum& own) {
   return {{fmt::format("{} For each impact that it works at it sends back {:.1f} bodies; two take part in one.", pays, sent), Kind::kRight}};
 }
 
-/// What came out, over all runs.
+/// The result over all runs.
 SchedulerReading of_trace(const SchedulerCurve& curve) {
   const SchedulerRun* wrong = nullptr;
   std::size_t right = 0, runs = 0, events = 0;
-  for (const auto* ladder : {&curve.by_step, &curve.by_size})
-    for (const SchedulerRun& run : *ladder) {
+  for (const auto* refinement : {&curve.by_step, &curve.by_size})
+    for (const SchedulerRun& run : *refinement) {
       ++runs;
       right += run.is_right() ? 1 : 0;
       events += run.committed;
@@ -108,8 +108,8 @@ SchedulerReading of_trace(const SchedulerCurve& curve) {
 std::vector<SchedulerReading> read_scheduler(const SchedulerCurve& curve, const SchedulerCurve* reference) {
   std::vector<SchedulerReading> readings{of_trace(curve)};
   Sum own, right;
-  for (const auto* ladder : {&curve.by_step, &curve.by_size})
-    for (const SchedulerRun& run : *ladder) {
+  for (const auto* refinement : {&curve.by_step, &curve.by_size})
+    for (const SchedulerRun& run : *refinement) {
       const SchedulerRun* other = reference == nullptr ? nullptr : same_run(run, *reference);
       if (!run.is_right() || run.impacts == 0 || (reference != nullptr && (other == nullptr || !other->is_right()))) continue;
       own.add(run);

@@ -14,11 +14,11 @@ namespace tumble::engines {
 namespace {
 
 constexpr double kLeast = 1e-6;       // s: of any run
-constexpr double kFrames = 12.0;      // of a run: a frame brings every process to its time, so few of them leave the scheduler alone
+constexpr double kFrames = 12.0;      // of a run: a frame brings every process to its time, so few of them leave the scheduler undisturbed
 constexpr double kCoarsestWork = 8.0;     // of the scene's own step
 constexpr int kSteps = 7;             // halvings
 
-RunOptions options_of(const SchedulerTrial& trial, const scene::Scene& scene) {
+RunOptions options_of(const SchedulerRunOptions& trial, const scene::Scene& scene) {
   RunOptions options;
   options.engine = trial.engine;
   options.timewarp = trial.timewarp;
@@ -28,7 +28,7 @@ RunOptions options_of(const SchedulerTrial& trial, const scene::Scene& scene) {
   return options;
 }
 
-/// Stops a run that works for ever at less and less: the questions are where it can be stopped.
+/// Stops a run that would never end: at a decision of the scheduler.
 void stop_when_too_long(double most_s, Laws& laws) {
   if (!laws.scheduling || !std::isfinite(most_s)) return;
   laws.scheduling.on_collision_check = [inner = laws.scheduling.on_collision_check, until = cpu_seconds() + most_s, most_s](const ScheduledEvent& event, const CheckFinding& finding, double step) {
@@ -37,7 +37,7 @@ void stop_when_too_long(double most_s, Laws& laws) {
   };
 }
 
-/// The run, and the time that it took.
+/// A run and its CPU time.
 class Clocked final : public TrajectorySink {
  public:
   void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override {
@@ -73,7 +73,7 @@ void count(const Trajectory& recorded, SchedulerRun& run) {
   run.states_kept = of("states_kept");
 }
 
-Clocked ordered_run(const scene::Scene& scene, const Laws& laws, const SchedulerTrial& trial) {
+Clocked ordered_run(const scene::Scene& scene, const Laws& laws, const SchedulerRunOptions& trial) {
   RunOptions options = options_of(trial, scene);
   options.engine = "ordered";
   Clocked clocked;
@@ -83,9 +83,9 @@ Clocked ordered_run(const scene::Scene& scene, const Laws& laws, const Scheduler
 
 }  // namespace
 
-std::size_t events_due(const scene::Scene& scene, const Laws& laws, const SchedulerTrial& trial) { return ordered_run(scene, laws, trial).recorder.trajectory().events.size(); }
+std::size_t events_due(const scene::Scene& scene, const Laws& laws, const SchedulerRunOptions& trial) { return ordered_run(scene, laws, trial).recorder.trajectory().events.size(); }
 
-SchedulerRun run_scheduler(const scene::Scene& scene, const Laws& laws, const SchedulerTrial& trial, std::size_t due) {
+SchedulerRun run_scheduler(const scene::Scene& scene, const Laws& laws, const SchedulerRunOptions& trial, std::size_t due) {
   SchedulerRun run;
   run.n = trial.n;
   run.step_s = std::isnan(trial.step_s) ? scene.step_s : trial.step_s;
@@ -108,7 +108,7 @@ SchedulerRun run_scheduler(const scene::Scene& scene, const Laws& laws, const Sc
     if (!run.stopped_by.empty()) break;
     if (laws.scheduling) reference_s = std::min(reference_s, ordered_run(scene, laws, trial).cpu_s);
   }
-  if (std::isfinite(reference_s)) run.cpu_s = std::max(kLeast, run.cpu_s - reference_s);   // the run holds one of the reference, to be compared with
+  if (std::isfinite(reference_s)) run.cpu_s = std::max(kLeast, run.cpu_s - reference_s);   // the run contains one of the reference, for the comparison
   return run;
 }
 

@@ -1,16 +1,17 @@
-/// Where an assignment shows what accuracy costs.
+/// The scene in which an assignment shows error against cost.
 #pragma once
 
 #include <string>
 
 namespace tumble::engines {
 
-/// Of a module, noted in its registration (Registry::set_note): a scene for so long that an order shows, and so short that a method of the first does too.
+/// Noted in the registration of a module (Registry::set_note): a scene long enough that the order
+/// of a method shows, and short enough that a first-order method shows it too.
 struct CostShowcase {
-  std::string scene;                       // a bare name; empty: nobody said
+  std::string scene;                       // a bare name; empty: none
   double duration_s = 0.0;
-  bool is_graded = false;                  // a part of each graded report: where the module decides how errors shrink with the step, whether they do, or what is paid
-  std::string sized_scene = {};            // of a scheduler: the scene that is run at growing size; empty: none
+  bool is_graded = false;                  // part of each graded report: where the module determines how errors fall with the step, or the cost
+  std::string sized_scene = {};            // of a scheduler: the scene of growing size; empty: none
 };
 
 }  // namespace tumble::engines

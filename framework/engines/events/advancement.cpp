@@ -14,19 +14,20 @@
 namespace tumble::engines {
 namespace {
 
-// A pair whose gap would be bridged by a bound this part of the step or less is searched for its impact: creeping on would
-// move all bodies once a bound, and a bound gains a fixed part of what is left.
+// A pair whose bound gains at most this part of the step is searched for its impact instead: every
+// bound advances all bodies, and gains only a fixed part of the remaining distance.
 constexpr double kWorthCreeping = 0.1;
 
-constexpr std::uint32_t kAnyFlight = std::numeric_limits<std::uint32_t>::max();   // a callback finds its bodies on whatever flight they are
+constexpr std::uint32_t kAnyFlight = std::numeric_limits<std::uint32_t>::max();   // a callback is valid for every flight of its bodies
 
 struct Bound {
-  EventKey key;                     // when it falls due; of an impact where it is exact
+  EventStamp key;                     // its due time; an exact bound has the impact's stamp
   bool is_exact;
-  std::uint32_t serial_a, serial_b; // of the flights that it is about
+  std::uint32_t version_a, version_b; // of the flights that it was computed for
 };
 struct Later {
-  // Impacts at one instant in their order; a bound that is not exact first, for its impact may be at that very instant.
+  // Impacts of one instant in their order; bounds that are not exact before them, because their
+  // impact may be at that very instant.
   bool operator()(const Bound& x, const Bound& y) const {
     if (x.key.time == y.key.time && x.is_exact != y.is_exact) return x.is_exact;
     return y.key < x.key;
@@ -44,7 +45,7 @@ class AdvancementRun {
     std::string stopped_by;
     try {
       do step();
-      while (!(end_ > run_.duration()));   // the last instant belongs to the run
+      while (!(end_ > run_.duration()));   // the last instant is part of the run
       draw_before(kInfinity);
     } catch (const StoppedRun& stop) {
       stopped_by = stop.what();
@@ -53,10 +54,10 @@ class AdvancementRun {
   }
 
  private:
-  // From now to the end of the largest step, or as far as the duration.
+  // Advances to the end of the largest step, at most to the end of the run.
   void step() {
     ++run_.counters.steps;
-    if (run_.world().processes()) run_.world().processes()->passages().forget_before(time_);
+    if (run_.world().processes()) run_.world().processes()->segments().forget_before(time_);
     end_ = run_.impacts().window_end(time_);
     queue_ = {};
     boxes_.clear();
@@ -68,7 +69,7 @@ class AdvancementRun {
       const Bound bound = queue_.top();
       queue_.pop();
       const int a = bound.key.body_a, b = bound.key.body_b;
-      if (bound.serial_a != kAnyFlight && (flights_[a].serial != bound.serial_a || (b >= 0 && flights_[b].serial != bound.serial_b))) continue;
+      if (bound.version_a != kAnyFlight && (flights_[a].version != bound.version_a || (b >= 0 && flights_[b].version != bound.version_b))) continue;
       advance_all(bound.key.time);
       if (bound.is_exact) work_at(bound.key);
       else look_ahead(a, b);
@@ -77,7 +78,7 @@ class AdvancementRun {
     if (end_ > run_.duration()) time_ = run_.duration();
   }
 
-  // The world stands at one time: every body is taken there.
+  // Advances every body to t.
   void advance_all(double t) {
     if (t == time_) return;
     draw_before(t);
@@ -87,7 +88,7 @@ class AdvancementRun {
     time_ = t;
   }
 
-  // A new lower bound on the pair's impact, if it lies within the step.
+  // Computes a new lower bound on the pair's impact, if it lies within the step.
   void look_ahead(int a, int b) {
     const FlightWorld& world = run_.world();
     if (!world.may_collide(a, b) || world.is_internal(a, flights_[a], b, flights_[b])) return;
@@ -100,7 +101,7 @@ class AdvancementRun {
       ++run_.cost.pair_checks;
       ++run_.cost.narrow.gap_evaluations;
       const auto motion = [&](int i) { return world.motion_at(i, flights_[i], time_); };
-      // A bound holds as far as the two motions are of one piece.
+      // A bound holds for as long as both motions are smooth.
       const double left = world.smooth_until(flights_[a], time_, world.smooth_until(flights_[b], time_, end_)) - time_;
       if (!(left > 0)) return;
       const auto bound = collision::bound_time_apart(world.shape(a), motion(a), world.bounds(a, flights_[a], time_), world.shape(b), motion(b), world.bounds(b, flights_[b], time_), left);
@@ -109,40 +110,40 @@ class AdvancementRun {
       due = is_exact ? run_.impacts().first_impact(a, flights_[a], b, flights_[b], time_, end_, run_.cost) : time_ + (1 - kNegligible) * bound.duration;
     }
     if (!(due < end_)) return;
-    EventKey key = key_of_impact(a, flights_[a], b, flights_[b], due);
-    queue_.push({key, is_exact, flights_[key.body_a].serial, flights_[key.body_b].serial});
+    EventStamp key = key_of_impact(a, flights_[a], b, flights_[b], due);
+    queue_.push({key, is_exact, flights_[key.body_a].version, flights_[key.body_b].version});
   }
 
   void look_for_own_end(int body) {
-    if (const auto key = run_.own_end(body, flights_[body], end_)) queue_.push({*key, true, flights_[body].serial, 0});
+    if (const auto key = run_.own_end(body, flights_[body], end_)) queue_.push({*key, true, flights_[body].version, 0});
   }
 
-  Meeting outcome_of(const EventKey& key) {
-    if (key.kind == EventClass::kProcess) return run_.end_of_passage(key, flights_[key.body_a]);
-    if (key.kind == EventClass::kCollision) return run_.meet(key, flights_[key.body_a], flights_[key.body_b]);
+  Discontinuity outcome_of(const EventStamp& key) {
+    if (key.kind == StampKind::kProcess) return run_.end_of_segment(key, flights_[key.body_a]);
+    if (key.kind == StampKind::kCollision) return run_.resolve_impact(key, flights_[key.body_a], flights_[key.body_b]);
     ++called_;
     return run_.call(key, [this](int body) -> const Flight& { return flights_[body]; });
   }
 
-  void work_at(const EventKey& key) {
+  void work_at(const EventStamp& key) {
     const int a = key.body_a, b = key.body_b;
-    Meeting meeting = outcome_of(key);
-    run_.commit(meeting);
+    Discontinuity discontinuity = outcome_of(key);
+    run_.commit(discontinuity);
     std::vector<int> changed;
-    if (meeting.begun.empty()) {
-      for (const auto& [body, flight] : {std::pair{a, &meeting.a}, std::pair{b, &meeting.b}})
-        if (run_.world().can_move(body)) meeting.begun.push_back({body, *flight});
+    if (discontinuity.begun.empty()) {
+      for (const auto& [body, flight] : {std::pair{a, &discontinuity.a}, std::pair{b, &discontinuity.b}})
+        if (run_.world().can_move(body)) discontinuity.begun.push_back({body, *flight});
     } else {
-      for (const BegunFlight& begun : meeting.begun) run_.world().release(flights_[begun.body]);
+      for (const BegunFlight& begun : discontinuity.begun) run_.world().release(flights_[begun.body]);
     }
-    for (BegunFlight& begun : meeting.begun) {
-      begun.flight.serial = ++serial_;
+    for (BegunFlight& begun : discontinuity.begun) {
+      begun.flight.version = ++version_;
       flights_[begun.body] = begun.flight;
       boxes_[begun.body] = box_of(begun.body);
       changed.push_back(begun.body);
     }
-    if (key.kind == EventClass::kCollision) look_ahead(a, b);
-    const auto pair_at_hand = [&](int body, int other) { return key.kind == EventClass::kCollision && std::minmax(body, other) == std::minmax(a, b); };
+    if (key.kind == StampKind::kCollision) look_ahead(a, b);
+    const auto pair_at_hand = [&](int body, int other) { return key.kind == StampKind::kCollision && std::minmax(body, other) == std::minmax(a, b); };
     for (const int body : changed) {
       look_for_own_end(body);
       for (int other = 0; other < run_.world().size(); ++other)
@@ -150,14 +151,15 @@ class AdvancementRun {
     }
   }
 
-  // What the body sweeps until the step's end: a parabola leaves the box of its ends by at most a s^2 / 8.
+  // The volume that the body sweeps until the step's end: a parabola deviates from the box of its
+  // end points by at most a s^2 / 8.
   collision::SweptBox box_of(int body) const {
     const FlightWorld& world = run_.world();
     const Flight& flight = flights_[body];
     const bool moves = world.can_move(body) || !world.is_still(body);
-    if (flight.passage >= 0) {
+    if (flight.segment >= 0) {
       collision::SweptBox box{Vector3d::Constant(kInfinity), Vector3d::Constant(-kInfinity), true};
-      world.take_in_way(body, flight, time_, end_, box.low, box.high);
+      world.extend_by_path(body, flight, time_, end_, box.low, box.high);
       const Vector3d margin = Vector3d::Constant(world.radius(body) * (1 + kNegligible)) + kCoordinateRounding * (box.low.cwiseAbs() + box.high.cwiseAbs());
       return {box.low - margin, box.high + margin, true};
     }
@@ -179,11 +181,11 @@ class AdvancementRun {
 
   FlightRun run_;
   std::vector<Flight> flights_;                        // by body
-  std::vector<collision::MotionState> now_;            // by body: where the world stands
+  std::vector<collision::MotionState> now_;            // by body: state at time_
   std::vector<collision::SweptBox> boxes_;             // by body, until the step's end
   std::priority_queue<Bound, std::vector<Bound>, Later> queue_;
   double time_ = 0.0, end_ = 0.0;                      // [s]
-  std::uint32_t serial_ = 0;
+  std::uint32_t version_ = 0;
   std::size_t called_ = 0;                             // callbacks
 };
 

@@ -1,4 +1,5 @@
-/// How one body moves between two discontinuities, in closed form, and the order in which discontinuities happen.
+/// The motion of one body between two discontinuities, in closed form, and the order of
+/// discontinuities.
 #pragma once
 
 #include <cstdint>
@@ -8,55 +9,61 @@
 
 namespace tumble::engines {
 
-/// What happens at one instant, in the order in which it does when the generation is the same.
-enum class EventClass : std::uint8_t {
-  kLookAgain = 0,    // a process that was taken back goes on, before anything of its instant: it may find what comes first; never committed
-  kCallback = 1,     // a callback changes bodies; body_a is the first of them, body_b -1, the generation its place in the list
+/// Kinds of events, in the order in which events of one instant and one microstep are committed.
+enum class StampKind : std::uint8_t {
+  kRecheck = 0,    // a process continues after a rollback, before any other event of the instant, because it may find the earliest one; never committed
+  kCallback = 1,     // a callback changes bodies; body_a is the first of them, body_b -1, the microstep its index in the list
   kCollision = 2,
-  kProcess = 3,      // a process's own: an impact within it, a contact that begins or opens; body_a is its first body, body_b -1
-  kAdvance = 255     // a process goes on; never committed
+  kProcess = 3,      // internal event of a process: an impact within it, a contact that begins or opens; body_a is its first body, body_b -1
+  kAdvance = 255     // forward execution of a process; never committed
 };
 
-/// The total order of what is committed: time, generation, kind, bodies. Two events of a run never have the same key, so that no result
-/// depends on the order in which events were found or worked at.
+/// The total order of committed events: time, microstep, kind, bodies. Two events of a run never
+/// have the same stamp, so no result depends on the order in which events are found or executed.
 ///
-/// The generation tells cause from effect where no time passes between them (A hits B at t, and B, which touches C, hits C at t): an
-/// event has a generation above those of the events at its own instant that began the flights it looks at. It stands before the bodies,
-/// because an effect must not sort before its cause.
-struct EventKey {
+/// The microstep (superdense time) orders cause and effect at one instant (A hits B at t, and B,
+/// which touches C, hits C at t): the microstep of an event is above those of the events at the
+/// same instant that began its flights. It is compared before the bodies, because an effect must
+/// not precede its cause.
+///
+/// `Stamp` (dynamics/scheduling.h) is the part of it that the schedulers of assignment a4 see.
+struct EventStamp {
   double time;                  // [s]
-  std::uint32_t generation;
-  EventClass kind;
-  std::int32_t body_a, body_b;  // body_a < body_b, where there are two
+  std::uint32_t microstep;
+  StampKind kind;
+  std::int32_t body_a, body_b;  // body_a < body_b for two bodies
 
-  std::tuple<double, std::uint32_t, EventClass, std::int32_t, std::int32_t> as_tuple() const { return {time, generation, kind, body_a, body_b}; }
+  std::tuple<double, std::uint32_t, StampKind, std::int32_t, std::int32_t> as_tuple() const { return {time, microstep, kind, body_a, body_b}; }
 };
-inline bool operator==(const EventKey& x, const EventKey& y) { return x.as_tuple() == y.as_tuple(); }
-inline bool operator<(const EventKey& x, const EventKey& y) {
-  // Times nearly always differ.
+inline bool operator==(const EventStamp& x, const EventStamp& y) { return x.as_tuple() == y.as_tuple(); }
+inline bool operator<(const EventStamp& x, const EventStamp& y) {
+  // Times are different in nearly all comparisons.
   if (x.time != y.time) return x.time < y.time;
   return x.as_tuple() < y.as_tuple();
 }
 
-/// The motion of a body from one discontinuity to its next, whenever that is: the centre of mass on a parabola, the turning free.
-/// This is the state that a process of timewarp keeps: a body's history is a row of flights. Bodies that move together (linked, pushed, in
-/// lasting contact) share a passage (passages.h), which says where they are; their flights name it and begin and end together.
+/// A free-flight (ballistic) segment: the motion of a body from one discontinuity to the next,
+/// whenever that is. The centre of mass follows a parabola; the rotation is free.
+/// A flight is the state that a logical process of timewarp saves: the history of a body is a
+/// sequence of flights. Bodies that move as one island (linked, driven by forces, in persistent
+/// contact) share an island segment (island_segments.h), which gives their motion; their flights
+/// name it, and begin and end together.
 struct Flight {
   double begin = 0.0;                                   // [s]
   Vector3d com_world = Vector3d::Zero();                // at `begin` [m]
   Vector3d velocity_world = Vector3d::Zero();           // at `begin` [m/s]
   Quaterniond world_from_body = Quaterniond::Identity();   // at `begin`
   Vector3d omega_body = Vector3d::Zero();               // at `begin` [rad/s]
-  std::int32_t partner = -1;                            // whom it hit to begin it; -1: the run's start
-  std::uint32_t partner_serial = 0;                     // the partner's flight that began with the same event
-  std::uint32_t generation = 0;                         // of that event
-  std::uint32_t serial = 0;                             // no two flights of a body that ever were have the same
-  std::int32_t passage = -1;                            // of the process that the body is part of; -1: it flies freely
-  std::int32_t change = -1;                             // the scheduler's own: what it knows of the event that began it
-  bool is_resting = false;                              // on an immovable support: keeps its place
+  std::int32_t partner = -1;                            // the body that it hit at `begin`; -1: the run's start
+  std::uint32_t partner_version = 0;                     // version of the partner's flight that began with the same event
+  std::uint32_t microstep = 0;                         // of that event
+  std::uint32_t version = 0;                             // version number: no two flights of a body in a run have the same
+  std::int32_t segment = -1;                            // index of the island segment of the body's process; -1: the body flies freely
+  std::int32_t change = -1;                             // used by the scheduler only: its record of the event that began the flight
+  bool is_resting = false;                              // on an immovable support: the position is constant
 };
 
-/// A flight that an event has begun.
+/// A flight that begins with an event.
 struct BegunFlight {
   int body;
   Flight flight;

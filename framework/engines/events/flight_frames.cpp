@@ -12,8 +12,8 @@
 namespace tumble::engines {
 namespace {
 
-constexpr std::size_t kFew = 200;      // movers: pairs of so few are all looked at
-constexpr double kFirstReach = 0.05;   // of the largest mover's radius: how far boxes reach at first where there are many
+constexpr std::size_t kFew = 200;      // movable bodies: up to this number every pair is checked
+constexpr double kFirstReach = 0.05;   // of the largest movable body's radius: the first margin of boxes where there are many
 
 double smaller_gap(const FlightWorld& world, const std::vector<RigidBodyState>& states, int i, int j, double smallest) {
   if (!world.may_collide(i, j)) return smallest;
@@ -23,7 +23,8 @@ double smaller_gap(const FlightWorld& world, const std::vector<RigidBodyState>& 
   return std::min(smallest, collision::gap_distance(world.shape(i), pose(i), world.shape(j), pose(j)));
 }
 
-// Balls around bodies that are no farther apart than `reach` have boxes that overlap, each drawn out by half of it.
+// Bounding balls whose gap is at most `reach` have boxes that overlap when each is extended by half
+// of it.
 double gap_of_many(const FlightWorld& world, const std::vector<RigidBodyState>& states) {
   double largest = 0.0;
   for (const int i : world.movers()) largest = std::max(largest, world.radius(i));
@@ -54,15 +55,15 @@ Frame frame_of(const FlightWorld& world, double t, const FlightOf& flight_of, st
   Frame frame;
   frame.time = t;
   states.clear();
-  std::map<int, std::vector<RigidBodyState>> shown;   // by passage: its members
+  std::map<int, std::vector<RigidBodyState>> shown;   // by segment: the states of its members
   for (int i = 0; i < world.size(); ++i) {
     const Flight& flight = flight_of(i);
-    if (flight.passage >= 0) {   // its path may go a way that no velocity stands for (SmoothPath::Momenta): what the state says counts
+    if (flight.segment >= 0) {   // position correction moves its path without a velocity (SmoothPath::Momenta): the momentum of the state counts
       const Inertia& inertia = world.world().bodies[i].inertia;
-      Passages& passages = world.all_processes().passages();
-      const auto [members, is_new] = shown.try_emplace(flight.passage);
-      if (is_new) members->second = passages.shown_at(flight.passage, t);
-      states.push_back(members->second[passages.place(flight.passage, i)]);
+      IslandSegments& segments = world.all_processes().segments();
+      const auto [members, is_new] = shown.try_emplace(flight.segment);
+      if (is_new) members->second = segments.shown_at(flight.segment, t);
+      states.push_back(members->second[segments.place(flight.segment, i)]);
       const RigidBodyState& state = states.back();
       frame.poses.push_back({state.com_world, state.world_from_body, inertia.inverse_mass * state.momentum_world, omega_of(state, inertia)});
       continue;

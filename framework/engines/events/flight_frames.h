@@ -1,4 +1,5 @@
-/// Frames of a run whose bodies are on flights; the smallest gap among all of them, without looking at every pair where there are many.
+/// Frames of a run whose bodies are on flights; the smallest gap of all pairs, without a query of
+/// every pair where there are many.
 #pragma once
 
 #include <functional>
@@ -8,7 +9,7 @@
 
 namespace tumble::engines {
 
-/// The flight that a body is on at the frame's time.
+/// The flight of a body at the frame's time.
 using FlightOf = std::function<const Flight&(int body)>;
 
 /// @param states  by body, at that time

@@ -19,7 +19,7 @@ FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptio
     : laws_(guarded(laws)), step_(options.step_s.value_or(scene.step_s)), duration_(options.duration_s.value_or(scene.duration_s)), rate_(options.frame_rate_hz),
       world_(scene, options.engine, laws_, {step_, scene.rest_speed_m_s}), impacts_(world_, laws_.find_impact_time, step_),
       meetings_(world_, laws_, {scene.rest_speed_m_s, kMicroInterval * step_}), sink_(sink), on_membership_(options.on_membership), callbacks_(options.callbacks), energy_watch_(scene.rest_speed_m_s, step_, false) {
-  for (std::size_t k = 0; k < callbacks_.size(); ++k) callback_keys_.push_back({callbacks_[k].time, static_cast<std::uint32_t>(k), EventClass::kCallback, callbacks_[k].bodies.front(), -1});
+  for (std::size_t k = 0; k < callbacks_.size(); ++k) callback_keys_.push_back({callbacks_[k].time, static_cast<std::uint32_t>(k), StampKind::kCallback, callbacks_[k].bodies.front(), -1});
   if (!world_.processes()) return;
   refuse_unstable_steps(world_.world(), laws_, {step_, duration_}, scene.file.empty() ? scene.name : scene.file.string(), counters.notices);
   if (const auto step = report_unstable_links(world_.world(), LinkForces(world_.world()), laws_, {step_, duration_}, counters.notices)) counters.watch.name_step(*step);
@@ -28,17 +28,17 @@ FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptio
   for (const Event& event : world_.start_events()) sink_.event(event);
 }
 
-Meeting FlightRun::meet(const EventKey& key, const Flight& f, const Flight& g, RunCounters& counters) const {
-  if (f.passage >= 0 || g.passage >= 0 || (world_.processes() && world_.processes()->holds_contacts())) return meet_as_processes(key, f, g, counters);
+Discontinuity FlightRun::resolve_impact(const EventStamp& key, const Flight& f, const Flight& g, RunCounters& counters) const {
+  if (f.segment >= 0 || g.segment >= 0 || (world_.processes() && world_.processes()->holds_contacts())) return resolve_process_impact(key, f, g, counters);
   const auto subject = [&] { return fmt::format("bodies {} and {}", name(key.body_a), name(key.body_b)); };
-  if (key.generation > most_generations(world_.size()))
-    throw StoppedRun(fmt::format("at t = {:.6f} s, {}: time stands still, impacts cause each other without end; a lasting contact is needed there, or a larger \"rest_speed_m_s\"", key.time, subject()));
+  if (key.microstep > most_microsteps(world_.size()))
+    throw StoppedRun(fmt::format("at t = {:.6f} s, {}: time stands still, impacts cause each other without end; a persistent contact is needed there, or a larger \"rest_speed_m_s\"", key.time, subject()));
   try {
     ++counters.impacts;
-    Meeting meeting = meetings_.meet(key, f, g);
-    counters.impulses += meeting.impulse > 0 ? 1 + meeting.more.size() : 0;
+    Discontinuity discontinuity = meetings_.resolve_impact(key, f, g);
+    counters.impulses += discontinuity.impulse > 0 ? 1 + discontinuity.more.size() : 0;
     counters.integrations += (world_.can_move(key.body_a) ? 1 : 0) + (world_.can_move(key.body_b) ? 1 : 0);
-    return meeting;
+    return discontinuity;
   } catch (const OutOfTime&) {
     throw;
   } catch (const StoppedRun& stop) {
@@ -48,64 +48,64 @@ Meeting FlightRun::meet(const EventKey& key, const Flight& f, const Flight& g, R
 
 namespace {
 
-// All flights that an event begins.
-Meeting finished(const EventKey& key, std::vector<BegunFlight> begun, const std::vector<Event>& events) {
-  Meeting meeting;
-  meeting.key = key;
-  meeting.begun = std::move(begun);
-  meeting.is_silent = events.empty();
+// Builds the discontinuity with all flights that an event begins.
+Discontinuity finished(const EventStamp& key, std::vector<BegunFlight> begun, const std::vector<Event>& events) {
+  Discontinuity discontinuity;
+  discontinuity.key = key;
+  discontinuity.begun = std::move(begun);
+  discontinuity.is_silent = events.empty();
   if (!events.empty()) {
-    meeting.first = events.front();
-    meeting.more.assign(events.begin() + 1, events.end());
+    discontinuity.first = events.front();
+    discontinuity.more.assign(events.begin() + 1, events.end());
   }
-  for (BegunFlight& flight : meeting.begun) {
-    flight.flight.generation = key.generation;
+  for (BegunFlight& flight : discontinuity.begun) {
+    flight.flight.microstep = key.microstep;
     flight.flight.partner = flight.body == key.body_a ? key.body_b : flight.body == key.body_b ? key.body_a : -1;
   }
-  for (const Event& event : events) meeting.impulse += event.impulse;
-  return meeting;
+  for (const Event& event : events) discontinuity.impulse += event.impulse;
+  return discontinuity;
 }
 
 }  // namespace
 
-Meeting FlightRun::meet_as_processes(const EventKey& key, const Flight& f, const Flight& g, RunCounters& counters) const {
+Discontinuity FlightRun::resolve_process_impact(const EventStamp& key, const Flight& f, const Flight& g, RunCounters& counters) const {
   const int a = key.body_a, b = key.body_b;
-  if (key.generation > most_generations(world_.size()))
+  if (key.microstep > most_microsteps(world_.size()))
     throw StoppedRun(fmt::format("at t = {:.6f} s, bodies {} and {}: time stands still, impacts cause each other without end; a larger \"rest_speed_m_s\" is needed", key.time, name(a), name(b)));
-  Processes& processes = *world_.processes();
+  LogicalProcesses& processes = *world_.processes();
   ++counters.impacts;
-  const auto state_of = [&](int body, const Flight& flight) { return processes.state_of(body, flight, flight.passage < 0 ? world_.state(body, flight, key.time) : RigidBodyState{}, key.time); };
-  const bool one = f.passage >= 0 && f.passage == g.passage;
-  const ProcessState state = !world_.can_move(a) ? state_of(b, g) : !world_.can_move(b) || one ? state_of(a, f) : Processes::together(state_of(a, f), state_of(b, g));
+  const auto state_of = [&](int body, const Flight& flight) { return processes.state_of(body, flight, flight.segment < 0 ? world_.state(body, flight, key.time) : RigidBodyState{}, key.time); };
+  const bool one = f.segment >= 0 && f.segment == g.segment;
+  const ProcessState state = !world_.can_move(a) ? state_of(b, g) : !world_.can_move(b) || one ? state_of(a, f) : LogicalProcesses::together(state_of(a, f), state_of(b, g));
   const int still = processes.holds_contacts() ? -1 : !world_.can_move(a) ? a : !world_.can_move(b) ? b : -1;
-  const ProcessWorld::Change change = naming(fmt::format("at t = {:.6f} s, bodies {} and {}", key.time, name(a), name(b)), [&] { return processes.passages().world_of(state.members, still).collide({a, b}, state); });
+  const ProcessWorld::Change change = naming(fmt::format("at t = {:.6f} s, bodies {} and {}", key.time, name(a), name(b)), [&] { return processes.segments().world_of(state.members, still).collide({a, b}, state); });
   return finished(key, processes.sort(change.after), change.events);
 }
 
-std::optional<EventKey> FlightRun::own_end(int body, const Flight& flight, double to) const {
-  if (flight.passage < 0 || !world_.processes()->holds_contacts() || world_.first_member(body, flight) != body) return std::nullopt;
-  const PassageEnd* end = world_.processes()->passages().end_by(flight.passage, to);
+std::optional<EventStamp> FlightRun::own_end(int body, const Flight& flight, double to) const {
+  if (flight.segment < 0 || !world_.processes()->holds_contacts() || world_.first_member(body, flight) != body) return std::nullopt;
+  const SegmentEnd* end = world_.processes()->segments().end_by(flight.segment, to);
   if (!end) return std::nullopt;
-  return EventKey{end->time, end->time == flight.begin ? flight.generation + 1 : 0, EventClass::kProcess, body, -1};
+  return EventStamp{end->time, end->time == flight.begin ? flight.microstep + 1 : 0, StampKind::kProcess, body, -1};
 }
 
-Meeting FlightRun::end_of_passage(const EventKey& key, const Flight& flight) const {
-  if (key.generation > most_generations(world_.size())) throw StoppedRun(fmt::format("at t = {:.6f} s, body {}: time stands still among the bodies that touch it", key.time, name(key.body_a)));
-  const PassageEnd* end = world_.processes()->passages().end_by(flight.passage, key.time);
-  require(end != nullptr, "a passage ends where own_end said");
+Discontinuity FlightRun::end_of_segment(const EventStamp& key, const Flight& flight) const {
+  if (key.microstep > most_microsteps(world_.size())) throw StoppedRun(fmt::format("at t = {:.6f} s, body {}: time stands still among the bodies that touch it", key.time, name(key.body_a)));
+  const SegmentEnd* end = world_.processes()->segments().end_by(flight.segment, key.time);
+  require(end != nullptr, "a segment ends where own_end said");
   return finished(key, world_.processes()->sort(end->after), end->events);
 }
 
-Meeting FlightRun::call(const EventKey& key, const FlightOf& flight_of) try {
-  const Callback& callback = callbacks_[key.generation];
+Discontinuity FlightRun::call(const EventStamp& key, const FlightOf& flight_of) try {
+  const Callback& callback = callbacks_[key.microstep];
   ++counters.callback_calls;
-  Processes& processes = world_.all_processes();
+  LogicalProcesses& processes = world_.all_processes();
   std::vector<BegunFlight> begun;
   std::vector<Event> events;
   for (const int body : callback.bodies) {
-    if (std::any_of(begun.begin(), begun.end(), [&](const BegunFlight& known) { return known.body == body; })) continue;   // with one before it
+    if (std::any_of(begun.begin(), begun.end(), [&](const BegunFlight& known) { return known.body == body; })) continue;   // already begun by an earlier body of its process
     const Flight& flight = flight_of(body);
-    ProcessState state = processes.state_of(body, flight, flight.passage < 0 ? world_.state(body, flight, key.time) : RigidBodyState{}, key.time);
+    ProcessState state = processes.state_of(body, flight, flight.segment < 0 ? world_.state(body, flight, key.time) : RigidBodyState{}, key.time);
     for (std::size_t k = 0; k < state.members.size(); ++k)
       if (std::binary_search(callback.bodies.begin(), callback.bodies.end(), state.members[k])) callback.act(state.members[k], state.states[k]);
     for (BegunFlight& next : processes.sort(processes.on_constraints(std::move(state)))) begun.push_back(std::move(next));
@@ -119,24 +119,25 @@ Meeting FlightRun::call(const EventKey& key, const FlightOf& flight_of) try {
   throw StoppedRun(fmt::format("at t = {:.6f} s, {}", key.time, stop.what()));
 }
 
-// Forces are switched at times that stand fast: what is said of it has its place among what is committed, whoever runs.
+// The times at which forces switch are known in advance, so their events are committed in time
+// order by every engine.
 void FlightRun::commit_switches(double until) {
   for (; switched_ < switches_.size() && switches_[switched_].time < until; ++switched_) sink_.event(switches_[switched_]);
 }
 
-void FlightRun::commit(const Meeting& meeting) {
-  if (!meeting.is_silent) return commit(meeting.key, meeting.first, meeting.more);
-  pass(meeting.key);
+void FlightRun::commit(const Discontinuity& discontinuity) {
+  if (!discontinuity.is_silent) return commit(discontinuity.key, discontinuity.first, discontinuity.more);
+  pass(discontinuity.key);
 }
 
-void FlightRun::pass(const EventKey& key) {
+void FlightRun::pass(const EventStamp& key) {
   if (!(last_ < key))
-    throw PreconditionError(fmt::format("events are committed in their order: {} and {} at {:.17g} s ({}) after {} and {} at {:.17g} s ({})", name(key.body_a), name(key.body_b), key.time, key.generation,
-                                        name(last_.body_a), name(last_.body_b), last_.time, last_.generation));
+    throw PreconditionError(fmt::format("events are committed in their order: {} and {} at {:.17g} s ({}) after {} and {} at {:.17g} s ({})", name(key.body_a), name(key.body_b), key.time, key.microstep,
+                                        name(last_.body_a), name(last_.body_b), last_.time, last_.microstep));
   last_ = key;
 }
 
-void FlightRun::commit(const EventKey& key, const Event& first, const std::vector<Event>& more) {
+void FlightRun::commit(const EventStamp& key, const Event& first, const std::vector<Event>& more) {
   pass(key);
   commit_switches(std::nextafter(key.time, 2 * key.time + 1));
   require_progress(key, first);
@@ -148,8 +149,8 @@ void FlightRun::commit(const EventKey& key, const Event& first, const std::vecto
   }
 }
 
-// Impacts that come ever sooner after each other would go on for hours.
-void FlightRun::require_progress(const EventKey& key, const Event& event) {
+// Stops a run whose impacts accumulate: it would take hours.
+void FlightRun::require_progress(const EventStamp& key, const Event& event) {
   if (event.kind != EventKind::kCollision) return;
   const double step = std::floor(key.time / step_);
   impacts_in_step_ = step == step_of_impacts_ ? impacts_in_step_ + 1 : 0;
@@ -164,18 +165,18 @@ void FlightRun::commit_frame(const FlightOf& flight_of) {
   Frame frame = frame_of(world_, next_frame(), flight_of, states_);
   if (links_) links_->measure(frame, flight_of);
   sink_.frame(frame);
-  if (on_membership_) tell_membership(frame.time, flight_of);
+  if (on_membership_) report_membership(frame.time, flight_of);
   ++next_;
-  if (!callbacks_.empty()) return;   // they bring energy in
+  if (!callbacks_.empty()) return;   // callbacks may add energy
   if (const auto runaway = energy_watch_.look(frame.time, world_.world(), states_))
     throw StoppedRun(runaway_message(frame.time, world_.world(), *runaway, {states_, recorded_forces(world_.world(), frame), frame.contacts}, laws_));
 }
 
-void FlightRun::tell_membership(double t, const FlightOf& flight_of) const {
+void FlightRun::report_membership(double t, const FlightOf& flight_of) const {
   Membership membership{t, {}, {}};
   for (int i = 0; i < world_.size(); ++i) {
     const Flight& flight = flight_of(i);
-    membership.passages.push_back(flight.passage);
+    membership.segments.push_back(flight.segment);
     membership.first_members.push_back(world_.first_member(i, flight));
   }
   on_membership_(membership);
@@ -183,7 +184,7 @@ void FlightRun::tell_membership(double t, const FlightOf& flight_of) const {
 
 void FlightRun::end(const std::string& stopped_by) {
   if (stopped_by.empty()) commit_switches(std::nextafter(duration_, 2 * duration_ + 1));
-  world_.all_processes().passages().add_counts_to(counters);
+  world_.all_processes().segments().add_counts_to(counters);
   counters.pair_checks += cost.pair_checks;
   counters.collision.gap_evaluations += cost.narrow.gap_evaluations;
   counters.collision.root_findings += cost.narrow.root_findings;

@@ -1,11 +1,11 @@
-/// What every event-ordered engine shares: the world on flights, the check of an interval, what an impact does, and the one place
-/// where events and frames are committed, in order.
+/// The base of all event-driven engines: the world on flights, the search of an interval for
+/// impacts, the response to an impact, and the only place that commits events and frames, in order.
 #pragma once
 
 #include "framework/engines/events/flight_frames.h"
-#include "framework/engines/events/impacts_of_flights.h"
+#include "framework/engines/events/flight_impact_detection.h"
 #include "framework/engines/events/link_measures.h"
-#include "framework/engines/events/meeting_of_flights.h"
+#include "framework/engines/events/flight_impact_response.h"
 #include "framework/engines/base/run_options.h"
 #include "framework/engines/base/run_counters.h"
 #include "framework/engines/stepping/stability.h"
@@ -14,41 +14,46 @@ namespace tumble::engines {
 
 class FlightRun {
  public:
-  /// @throws UserError where the scene has what no flight follows
+  /// @throws UserError where the scene has an effect that flights do not model
   FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink);
   FlightRun(const FlightRun&) = delete;
   FlightRun& operator=(const FlightRun&) = delete;
 
   const FlightWorld& world() const { return world_; }
-  const ImpactsOfFlights& impacts() const { return impacts_; }
-  /// From now on several threads ask about flights, and what impacts do to them, or one alone again.
+  const FlightImpactDetection& impacts() const { return impacts_; }
+  /// true: several threads query flights and impact responses from now on; false: one thread again.
   void share(bool shared) { world_.share(shared); }
   double duration() const { return duration_; }
-  /// The engine's largest step: how far a scheduler looks ahead at most where it has no reason of its own. [s]
+  /// The engine's largest step: the largest lookahead of a scheduler that has no other reason for
+  /// one. [s]
   double step() const { return step_; }
 
-  /// What the impact of two flights does. Stops the run (StoppedRun, with time and names) where the laws fail.
-  /// @post where processes took part (`begun` is not empty) all their members' flights end here
-  /// @param counters  of the thread that asks
-  Meeting meet(const EventKey& key, const Flight& f, const Flight& g, RunCounters& counters) const;
-  Meeting meet(const EventKey& key, const Flight& f, const Flight& g) { return meet(key, f, g, counters); }
-  /// When a body's flight ends by itself, if that is at `to` or before; nothing otherwise, and for all but a process's first member.
-  std::optional<EventKey> own_end(int body, const Flight& flight, double to) const;
-  /// What that does.
-  Meeting end_of_passage(const EventKey& key, const Flight& flight) const;
+  /// The response to the impact of two flights. Stops the run (StoppedRun, with time and names)
+  /// where the laws fail.
+  /// @post with processes among the bodies (`begun` is not empty), the flights of all their members
+  ///   end here
+  /// @param counters  of the calling thread
+  Discontinuity resolve_impact(const EventStamp& key, const Flight& f, const Flight& g, RunCounters& counters) const;
+  Discontinuity resolve_impact(const EventStamp& key, const Flight& f, const Flight& g) { return resolve_impact(key, f, g, counters); }
+  /// The time at which a body's flight ends by itself, if that is at `to` or before; nothing
+  /// otherwise, and nothing for members of a process other than the first.
+  std::optional<EventStamp> own_end(int body, const Flight& flight, double to) const;
+  /// The discontinuity at that time.
+  Discontinuity end_of_segment(const EventStamp& key, const Flight& flight) const;
 
-  /// Callbacks of the run, by their keys, in order.
-  const std::vector<EventKey>& callbacks() const { return callback_keys_; }
-  const std::vector<int>& receivers(const EventKey& callback) const { return callbacks_[callback.generation].bodies; }
-  /// What a callback does. @param flight_of  the flights that its bodies are on when it acts
-  Meeting call(const EventKey& callback, const FlightOf& flight_of);
-  /// @throws StoppedRun naming body, time and callback where it fails or leaves no numbers
+  /// Callbacks of the run by their stamps, in order.
+  const std::vector<EventStamp>& callbacks() const { return callback_keys_; }
+  const std::vector<int>& receivers(const EventStamp& callback) const { return callbacks_[callback.microstep].bodies; }
+  /// Executes a callback. @param flight_of  the flights of its bodies at its time
+  /// @throws StoppedRun with body, time and callback where it fails or leaves numbers that are not
+  ///   finite
+  Discontinuity call(const EventStamp& callback, const FlightOf& flight_of);
 
   /// Commits an impact. @pre keys come in order
-  void commit(const EventKey& key, const Event& first, const std::vector<Event>& more);
-  void commit(const Meeting& meeting);
-  /// Commits a change of membership that nothing is said of. @pre keys come in order
-  void pass(const EventKey& key);
+  void commit(const EventStamp& key, const Event& first, const std::vector<Event>& more);
+  void commit(const Discontinuity& discontinuity);
+  /// Commits a change of islands without an event. @pre keys come in order
+  void pass(const EventStamp& key);
   /// The next frame that is not committed yet; infinite when there is none. [s]
   double next_frame() const { return frame_time(next_) <= duration_ ? frame_time(next_) : std::numeric_limits<double>::infinity(); }
   /// Commits the frame at next_frame(). @pre every event before it is committed, none after it
@@ -62,8 +67,8 @@ class FlightRun {
   RunCounters counters;
 
  private:
-  Meeting meet_as_processes(const EventKey& key, const Flight& f, const Flight& g, RunCounters& counters) const;
-  void require_progress(const EventKey& key, const Event& event);
+  Discontinuity resolve_process_impact(const EventStamp& key, const Flight& f, const Flight& g, RunCounters& counters) const;
+  void require_progress(const EventStamp& key, const Event& event);
   void commit_switches(double until);
   double frame_time(long k) const { return static_cast<double>(k) / rate_; }
   std::string name(int body) const { return body < 0 ? "itself" : "'" + world_.world().bodies[body].name + "'"; }
@@ -73,20 +78,20 @@ class FlightRun {
   double step_of_impacts_ = -1.0;   // of the grid: the one that the last impact fell into
   long impacts_in_step_ = 0;
   FlightWorld world_;
-  ImpactsOfFlights impacts_;
-  MeetingOfFlights meetings_;
+  FlightImpactDetection impacts_;
+  FlightImpactResponse meetings_;
   TrajectorySink& sink_;
-  EventKey last_{-1.0, 0, EventClass::kCollision, -1, -1};
+  EventStamp last_{-1.0, 0, StampKind::kCollision, -1, -1};
   long next_ = 0;
   std::vector<Event> switches_;    // of point forces, in order of time; known from the start
   std::size_t switched_ = 0;
   std::unique_ptr<LinkMeasures> links_;
   std::vector<RigidBodyState> states_;   // of the frame that was committed last
-  void tell_membership(double t, const FlightOf& flight_of) const;
+  void report_membership(double t, const FlightOf& flight_of) const;
 
   std::function<void(const Membership&)> on_membership_;
   std::vector<Callback> callbacks_;
-  std::vector<EventKey> callback_keys_;
+  std::vector<EventStamp> callback_keys_;
   EnergyWatch energy_watch_;
 };
 

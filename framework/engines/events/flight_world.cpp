@@ -18,9 +18,10 @@
 namespace tumble::engines {
 namespace {
 
-constexpr int kMostNudges = 20;       // a few roundings are taken back in as many rounds
+constexpr int kMostNudges = 20;       // iterations that remove overlaps of a few roundings
 
-// Shapes that many bodies share are prepared once: equal balls, boxes, and models of the same file at the same scale.
+// Shapes that many bodies share are built once: equal balls, boxes, and models of the same file at
+// the same scale.
 std::string recipe_of(const scene::BodySpec& body, int index) {
   if (const auto* sphere = std::get_if<scene::SphereSpec>(&body.shape)) return fmt::format("sphere {:a}", sphere->radius_m);
   if (const auto* box = std::get_if<scene::BoxSpec>(&body.shape))
@@ -41,7 +42,7 @@ std::string unfollowed_entry(const scene::Scene& scene) {
 FlightWorld::FlightWorld(const scene::Scene& scene, const std::string& engine, const Laws& laws, ProcessRules rules) {
   const std::string where = scene.file.empty() ? scene.name : scene.file.string();
   if (const std::string entry = unfollowed_entry(scene); !entry.empty())
-    throw UserError(where, fmt::format("{} is not followed by --engine {}: groups of bodies keep their own time there", entry, engine), "leave it out, or use --engine rd");
+    throw UserError(where, fmt::format("{} is not supported by --engine {}: islands have their own local virtual time there", entry, engine), "leave it out, or use --engine rd");
   world_ = build_world(scene);
   if (world_.gravity_world) gravity_world_ = *world_.gravity_world;
   std::map<std::string, int> known;
@@ -67,11 +68,11 @@ FlightWorld::FlightWorld(const scene::Scene& scene, const std::string& engine, c
   }
   turning_.resize(first_.size());
   refuse_overlap(scene);
-  processes_ = std::make_unique<Processes>(world_, [this](int body) { return &shape(body); }, laws, rules);
+  processes_ = std::make_unique<LogicalProcesses>(world_, [this](int body) { return &shape(body); }, laws, rules);
   if (processes_->holds_any()) start_processes();
 }
 
-// Bodies that are linked, pushed, or in contact from the start.
+// Begins the processes of bodies that are linked, driven by forces, or in contact at the start.
 void FlightWorld::start_processes() {
   std::vector<RigidBodyState> states;
   for (int i = 0; i < size(); ++i) {
@@ -84,7 +85,7 @@ void FlightWorld::start_processes() {
     const auto pose = [&](int k) { return collision::Pose{first_[k].com_world, first_[k].world_from_body}; };
     if (collision::gap_distance(shape(a), pose(a), shape(b), pose(b)) <= kNegligible * std::min(radius(a), radius(b))) touching.emplace_back(a, b);
   }
-  Processes::Start start = processes_->start(states, touching);
+  LogicalProcesses::Start start = processes_->start(states, touching);
   for (BegunFlight& begun : start.flights) first_[begun.body] = begun.flight;
   start_events_ = std::move(start.events);
   std::sort(start_events_.begin(), start_events_.end(), [](const Event& a, const Event& b) { return std::pair(a.body_a, a.body_b) < std::pair(b.body_a, b.body_b); });
@@ -96,7 +97,7 @@ bool FlightWorld::may_collide(int a, int b) const {
   return world_.apart.empty() || !std::binary_search(world_.apart.begin(), world_.apart.end(), std::pair(std::min(a, b), std::max(a, b)));
 }
 
-// Bodies that overlap by more than roundings are refused; by roundings, they are drawn apart.
+// Refuses bodies that overlap by more than rounding; separates those that overlap by rounding.
 void FlightWorld::refuse_overlap(const scene::Scene& scene) {
   std::vector<collision::SweptBox> boxes;
   for (int i = 0; i < size(); ++i) {
@@ -110,7 +111,7 @@ void FlightWorld::refuse_overlap(const scene::Scene& scene) {
   std::vector<StartPair> near;
   for (const auto& [a, b] : pairs) look_at_start(a, b, shape(a), pose(a), shape(b), pose(b), kRoundOff * collision::gap_scale(shape(a), pose(a), shape(b), pose(b)), near);
   refuse_overlaps(scene.file.empty() ? scene.name : scene.file.string(), scene, near);
-  for (int round = 0; round < kMostNudges && !scene.contact; ++round) {   // processes draw their members apart themselves
+  for (int round = 0; round < kMostNudges && !scene.contact; ++round) {   // with persistent contacts, processes separate their members themselves
     bool clean = true;
     for (const auto& [a, b] : pairs) {
       const collision::Gap gap = collision::compute_gap(shape(a), pose(a), shape(b), pose(b));
@@ -143,9 +144,10 @@ class FlightWorld::HeldTurning {
 };
 
 Spin FlightWorld::spin(int body, const Flight& flight, double t) const {
-  // Most balls do not turn at all, and what rests turns evenly (it is a ball, or it does not turn).
-  if (flight.passage >= 0) {
-    const RigidBodyState now = processes_->passages().body_state(flight.passage, body, t);
+  // Most balls do not rotate, and a resting body rotates uniformly (it is a ball, or it does not
+  // rotate).
+  if (flight.segment >= 0) {
+    const RigidBodyState now = processes_->segments().body_state(flight.segment, body, t);
     return {now.world_from_body, inertia(body).inverse_inertia_body * (now.world_from_body.conjugate() * now.angular_momentum_world)};
   }
   if (!facts_[body].can_move || t == flight.begin || flight.omega_body.isZero(0.0)) return {flight.world_from_body, flight.omega_body};
@@ -155,7 +157,7 @@ Spin FlightWorld::spin(int body, const Flight& flight, double t) const {
   Turning& now = held.turning;
   const std::int64_t k = static_cast<std::int64_t>((t - flight.begin) / now.reach);
   const auto begin_of = [&](std::int64_t part) { return static_cast<double>(part) * now.reach; };
-  if (k <= now.newest - static_cast<std::int64_t>(now.series.size())) now.newest = -1;   // gone: from the start
+  if (k <= now.newest - static_cast<std::int64_t>(now.series.size())) now.newest = -1;   // no longer cached: start again
   while (now.newest < k) {
     const Spin next = now.newest < 0 ? start : now.series[static_cast<std::size_t>(now.newest) % now.series.size()].at(now.reach);
     ++now.newest;
@@ -166,9 +168,9 @@ Spin FlightWorld::spin(int body, const Flight& flight, double t) const {
 
 void FlightWorld::share(bool shared) {
   is_shared_ = shared;
-  processes_->passages().share(shared);
+  processes_->segments().share(shared);
   if (!shared) return;
-  for (const int body : movers_)   // none is made while several might make it
+  for (const int body : movers_)   // create all while one thread runs: none is created while several do
     if (!is_ball(body) && !turning_[body]) turning_[body] = std::make_unique<Turning>();
 }
 
@@ -185,18 +187,18 @@ void FlightWorld::turn_to(int body, const Flight& flight, Turning& now) const {
   now.newest = -1;
   RigidBodyState state{Vector3d::Zero(), flight.world_from_body, Vector3d::Zero(), Vector3d::Zero()};
   state.angular_momentum_world = flight.world_from_body * (world_.bodies[body].inertia.inertia_body * flight.omega_body);
-  now.bounds = bound_rotation(state, world_.bodies[body].inertia, {0.0});   // undisturbed: for all time
+  now.bounds = bound_rotation(state, world_.bodies[body].inertia, {0.0});   // torque-free: valid for all times
   now.reach = SpinSeries::reach(rotations_[body].moments(), now.bounds.angular_speed);
 }
 
 collision::MotionState FlightWorld::motion_at(int body, const Flight& flight, double t) const {
-  if (flight.passage >= 0) return processes_->passages().motion_at(flight.passage, body, t);
+  if (flight.segment >= 0) return processes_->segments().motion_at(flight.segment, body, t);
   const Spin now = spin(body, flight, t);
   return {{position(body, flight, t), now.world_from_body}, velocity(body, flight, t), now.world_from_body * now.omega_body};
 }
 
 collision::MotionBounds FlightWorld::bounds(int body, const Flight& flight, double t) const {
-  if (flight.passage >= 0) return processes_->passages().motion_in_step(flight.passage, body, t).bounds;
+  if (flight.segment >= 0) return processes_->segments().motion_in_step(flight.segment, body, t).bounds;
   collision::MotionBounds bounds;
   bounds.acceleration_world = acceleration(body, flight);
   if (!facts_[body].can_move) {
@@ -204,7 +206,7 @@ collision::MotionBounds FlightWorld::bounds(int body, const Flight& flight, doub
     bounds.acceleration_deviation = m.amplitude_m.norm() * m.angular_frequency_rad_s * m.angular_frequency_rad_s;
     return bounds;
   }
-  if (is_ball(body) || flight.omega_body.isZero(0.0)) return bounds;   // however it turns, it looks the same
+  if (is_ball(body) || flight.omega_body.isZero(0.0)) return bounds;   // its rotation has no effect on collisions
   const RotationBounds turns = turning(body, flight).turning.bounds;
   bounds.angular_speed = turns.angular_speed;
   bounds.angular_acceleration = turns.angular_acceleration;
@@ -212,26 +214,27 @@ collision::MotionBounds FlightWorld::bounds(int body, const Flight& flight, doub
 }
 
 collision::Motion FlightWorld::motion_from(int body, const Flight& flight, double low) const {
-  if (flight.passage >= 0) return processes_->passages().motion_in_step(flight.passage, body, low);
+  if (flight.segment >= 0) return processes_->segments().motion_in_step(flight.segment, body, low);
   return {[this, body, at = &flight](double t) { return motion_at(body, *at, t); }, bounds(body, flight, low)};
 }
 
-// A path whose second derivative is at most a leaves the box of its ends by at most a s^2 / 8.
-void FlightWorld::take_in_way(int body, const Flight& flight, double from, double to, Vector3d& low, Vector3d& high) const {
+// A path whose second derivative is at most a deviates from the box of its end points by at most a
+// s^2 / 8.
+void FlightWorld::extend_by_path(int body, const Flight& flight, double from, double to, Vector3d& low, Vector3d& high) const {
   const auto take = [&](const Vector3d& first, const Vector3d& last, const Vector3d& acceleration, double s) {
     const Vector3d bulge = acceleration * (s * s / 8);
     low = low.cwiseMin(first.cwiseMin(last) - bulge);
     high = high.cwiseMax(first.cwiseMax(last) + bulge);
   };
-  if (flight.passage < 0) return take(position(body, flight, from), position(body, flight, to), acceleration(body, flight).cwiseAbs(), to - from);
-  processes_->passages().for_each_step(flight.passage, body, from, to, [&](const ProcessStep& step, std::size_t member, double begin, double end) {
+  if (flight.segment < 0) return take(position(body, flight, from), position(body, flight, to), acceleration(body, flight).cwiseAbs(), to - from);
+  processes_->segments().for_each_step(flight.segment, body, from, to, [&](const ProcessStep& step, std::size_t member, double begin, double end) {
     const collision::MotionBounds bounds = step.paths.empty() ? collision::MotionBounds{} : step.paths[member].bounds();
     take(step.state_at(member, begin).com_world, step.state_at(member, end).com_world, bounds.acceleration_world.cwiseAbs() + Vector3d::Constant(bounds.acceleration_deviation), end - begin);
   });
 }
 
 RigidBodyState FlightWorld::state(int body, const Flight& flight, double t) const {
-  if (flight.passage >= 0) return processes_->passages().body_state(flight.passage, body, t);
+  if (flight.segment >= 0) return processes_->segments().body_state(flight.segment, body, t);
   const Spin now = spin(body, flight, t);
   RigidBodyState state{position(body, flight, t), now.world_from_body, Vector3d::Zero(), Vector3d::Zero()};
   if (!facts_[body].can_move) return state;

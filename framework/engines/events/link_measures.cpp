@@ -24,12 +24,12 @@ void LinkMeasures::measure(Frame& frame, const FlightOf& flight_of) {
   for (int i = 0; i < world_.size(); ++i) states.push_back(world_.state(i, flight_of(i), frame.time));
   for (const int body : world_.movers()) {
     const Flight& flight = flight_of(body);
-    if (flight.passage < 0 || world_.first_member(body, flight) != body) continue;
-    const std::vector<ContactPoint>& contacts = world_.processes()->passages().step_at(flight.passage, frame.time).forces;
+    if (flight.segment < 0 || world_.first_member(body, flight) != body) continue;
+    const std::vector<ContactPoint>& contacts = world_.processes()->segments().step_at(flight.segment, frame.time).forces;
     frame.contacts.insert(frame.contacts.end(), contacts.begin(), contacts.end());
   }
   for (LinkedBodies& group : groups_) {
-    const ProcessState& from = world_.processes()->passages().step_at(flight_of(group.bodies().front()).passage, frame.time).from;
+    const ProcessState& from = world_.processes()->segments().step_at(flight_of(group.bodies().front()).segment, frame.time).from;
     group.remember(from.remembered);
     for (const auto& [effect, forces] : forces_) {
       const auto memory = from.remembered.find(effect);

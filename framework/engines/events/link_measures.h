@@ -1,4 +1,4 @@
-/// What springs, rods, joints and lasting contacts pull and push with in a frame of an event-ordered run.
+/// Forces of springs, rods, joints and persistent contacts in a frame of an event-driven run.
 #pragma once
 
 #include <vector>
@@ -21,12 +21,12 @@ class LinkMeasures {
   Wrench wrench_on(int body, const RigidBodyState& state) const;
 
   const FlightWorld& world_;
-  RunCounters uncounted_;                  // measuring is no part of the run
+  RunCounters uncounted_;                  // measuring does not count as work of the run
   std::vector<LinkedBodies> groups_;
-  std::map<int, std::unique_ptr<effects::SteadyForces>> forces_;   // by place in effects::all(), as they act on the group that is measured
+  std::map<int, std::unique_ptr<effects::SteadyForces>> forces_;   // by index in effects::all(): steady forces on the island that is measured
 };
 
-/// When forces are switched, up to a time: events in order.
+/// Times at which forces switch, up to `until`: events in order.
 std::vector<Event> force_switches(const World& world, double until);
 
 }  // namespace tumble::engines

@@ -10,7 +10,7 @@
 namespace tumble::engines {
 namespace {
 
-constexpr EventKey kNeverKey{kInfinity, 0, EventClass::kCollision, -1, -1};
+constexpr EventStamp kNeverKey{kInfinity, 0, StampKind::kCollision, -1, -1};
 
 class OrderedRun {
  public:
@@ -22,7 +22,7 @@ class OrderedRun {
   void run() {
     std::string stopped_by;
     try {
-      for (double begin = 0.0; begin <= run_.duration(); begin = end_) look_through_window(begin);   // the last instant belongs to the run
+      for (double begin = 0.0; begin <= run_.duration(); begin = end_) look_through_window(begin);   // the last instant is part of the run
       draw_before(kInfinity);
     } catch (const StoppedRun& stop) {
       stopped_by = stop.what();
@@ -32,12 +32,12 @@ class OrderedRun {
 
  private:
   void look_through_window(double begin) {
-    if (run_.world().processes()) run_.world().processes()->passages().forget_before(std::min(begin, run_.next_frame()));
+    if (run_.world().processes()) run_.world().processes()->segments().forget_before(std::min(begin, run_.next_frame()));
     end_ = run_.impacts().window_end(begin);
     begin_ = begin;
     for (const int a : run_.world().movers()) first_of_[a] = first_among_all(a);
     for (;;) {
-      EventKey next = kNeverKey;
+      EventStamp next = kNeverKey;
       for (const int a : run_.world().movers())
         if (first_of_[a] < next) next = first_of_[a];
       if (built::kCallback && called_ < run_.callbacks().size()) next = std::min(next, run_.callbacks()[called_]);
@@ -47,16 +47,16 @@ class OrderedRun {
     }
   }
 
-  void process(const EventKey& key) {
-    const Meeting meeting = outcome_of(key);
-    run_.commit(meeting);
+  void process(const EventStamp& key) {
+    const Discontinuity discontinuity = outcome_of(key);
+    run_.commit(discontinuity);
     std::vector<int> changed;
-    if (meeting.begun.empty()) {
+    if (discontinuity.begun.empty()) {
       changed = {key.body_a, key.body_b};
-      if (run_.world().can_move(key.body_a)) flights_[key.body_a] = meeting.a;
-      if (run_.world().can_move(key.body_b)) flights_[key.body_b] = meeting.b;
+      if (run_.world().can_move(key.body_a)) flights_[key.body_a] = discontinuity.a;
+      if (run_.world().can_move(key.body_b)) flights_[key.body_b] = discontinuity.b;
     }
-    for (const BegunFlight& begun : meeting.begun) {
+    for (const BegunFlight& begun : discontinuity.begun) {
       run_.world().release(flights_[begun.body]);
       flights_[begun.body] = begun.flight;
       changed.push_back(begun.body);
@@ -70,21 +70,21 @@ class OrderedRun {
     }
   }
 
-  Meeting outcome_of(const EventKey& key) {
-    if (key.kind == EventClass::kProcess) return run_.end_of_passage(key, flights_[key.body_a]);
-    if (key.kind == EventClass::kCollision) return run_.meet(key, flights_[key.body_a], flights_[key.body_b]);
+  Discontinuity outcome_of(const EventStamp& key) {
+    if (key.kind == StampKind::kProcess) return run_.end_of_segment(key, flights_[key.body_a]);
+    if (key.kind == StampKind::kCollision) return run_.resolve_impact(key, flights_[key.body_a], flights_[key.body_b]);
     ++called_;
     return run_.call(key, [this](int body) -> const Flight& { return flights_[body]; });
   }
 
-  EventKey impact_of(int a, int b) {
+  EventStamp impact_of(int a, int b) {
     if (a == b || !run_.world().may_collide(a, b)) return kNeverKey;
     const double time = run_.impacts().first_impact(a, flights_[a], b, flights_[b], begin_, end_, run_.cost);
     return time < kInfinity ? key_of_impact(a, flights_[a], b, flights_[b], time) : kNeverKey;
   }
 
-  EventKey first_among_all(int a) {
-    EventKey first = run_.own_end(a, flights_[a], end_).value_or(kNeverKey);
+  EventStamp first_among_all(int a) {
+    EventStamp first = run_.own_end(a, flights_[a], end_).value_or(kNeverKey);
     for (int b = 0; b < run_.world().size(); ++b) first = std::min(first, impact_of(a, b));
     return first;
   }
@@ -95,9 +95,9 @@ class OrderedRun {
 
   FlightRun run_;
   std::vector<Flight> flights_;       // by body
-  std::vector<EventKey> first_of_;    // by body: the first impact it takes part in, in this window
+  std::vector<EventStamp> first_of_;    // by body: the first impact that involves it in this window
   std::size_t called_ = 0;            // callbacks
-  double begin_ = 0.0, end_ = 0.0;    // what is looked through [s]
+  double begin_ = 0.0, end_ = 0.0;    // the current window [s]
 };
 
 }  // namespace

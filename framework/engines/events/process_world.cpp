@@ -37,7 +37,7 @@ ProcessWorld::ProcessWorld(const World& whole, const EntriesByBody& entries, con
 
 int ProcessWorld::local(int body) const { return static_cast<int>(std::lower_bound(part_.bodies.begin(), part_.bodies.end(), body) - part_.bodies.begin()); }
 
-// ---- A state in, a state out ---------------------------------------------------------------------------------------------
+// ---- Load and save a state -------------------------------------------------------------------
 
 void ProcessWorld::load(const ProcessState& from, std::optional<ContactMemory> memory) {
   std::vector<RigidBodyState> states = moving_.states();
@@ -55,12 +55,12 @@ void ProcessWorld::load(const ProcessState& from, std::optional<ContactMemory> m
   if (memory) return world_step_.contacts().recall(std::move(*memory));
   world_step_.contacts().recall({});
   const std::uint64_t begun = counters_.contacts_begun;
-  for (const BodyPair& pair : from.lasting) world_step_.contacts().begin(local(pair), {});   // it has begun before: what is said of it is not new
+  for (const BodyPair& pair : from.lasting) world_step_.contacts().begin(local(pair), {});   // it has begun before: no event
   counters_.contacts_begun = begun;
   collector_.events.clear();
 }
 
-// Entries of the part by their indices in the whole, or the other way round.
+// Effect memory by the part's indices, from the whole world's, or the reverse.
 std::map<int, effects::Memory> ProcessWorld::renamed(const std::map<int, effects::Memory>& memory, bool to_whole) const {
   std::map<int, effects::Memory> renamed;
   for (const auto& [effect, entries] : memory) {
@@ -74,10 +74,10 @@ std::map<int, effects::Memory> ProcessWorld::renamed(const std::map<int, effects
   return renamed;
 }
 
-// @return when the next steady force is switched [s]
+// @return the time of the next switch of a steady force [s]
 double ProcessWorld::load_forces(const ProcessState& from) { return moving_.load_forces(renamed(from.remembered, false)); }
 
-// What contacts remember goes with the state: the next load brings its own.
+// Moves the contact memory into the state: the next load brings its own.
 ProcessState ProcessWorld::save() {
   ProcessState state;
   state.time = moving_.time();
@@ -93,8 +93,8 @@ ProcessState ProcessWorld::save() {
   return state;
 }
 
-// Where blows are dealt with in the step, bodies that come together again at once are no other group meanwhile: they would meet again and
-// again, each time as if for the first.
+// Bodies about to touch again in the step stay in one island: splitting them would start every
+// contact without its history.
 void ProcessWorld::note_near(ProcessState& state) const {
   const auto speed = [&](int body) {
     const Body now = moving_.body_at_impact(body);
@@ -135,7 +135,7 @@ ProcessState ProcessWorld::on_constraints(const ProcessState& state) {
     group.project_velocities(all, state.time);
     moving_.stand_at(state.time, all);
   }
-  ProcessState after = state;   // and all else as it was
+  ProcessState after = state;   // all else is unchanged
   after.states.clear();
   for (const int member : part_.members) after.states.push_back(moving_.state(member));
   return after;
@@ -161,9 +161,9 @@ std::vector<Event> ProcessWorld::take_events() {
   return events;
 }
 
-// ---- A step ----------------------------------------------------------------------------------------------------------------
+// ---- A step ----------------------------------------------------------------------------------
 
-// Every member goes along a smooth path, so that whoever asks where it is asks one thing.
+// Every member follows a smooth path, so that every query of its motion reads the path.
 void ProcessWorld::begin_step(double target) {
   moving_.begin_step(target);
   for (const int member : part_.members) {
@@ -215,7 +215,7 @@ std::vector<ContactPoint> ProcessWorld::forces() const {
   return forces;
 }
 
-// ---- Impacts ---------------------------------------------------------------------------------------------------------------
+// ---- Impacts ---------------------------------------------------------------------------------
 
 std::vector<BodyPair> ProcessWorld::near_pairs(std::optional<BodyPair> trigger) const {
   std::vector<BodyPair> pairs;
@@ -248,15 +248,16 @@ ProcessWorld::Change ProcessWorld::collide(BodyPair pair, const ProcessState& st
   const BodyPair trigger = local(pair);
   const std::vector<BodyPair> pairs = near_pairs(trigger);
   world_step_.impact_detection().separate(pairs);
-  // A blow that is dealt with in the step it falls into is dealt with in the one that begins here, by all that the two then touch, friction
-  // among it: so a world of all bodies does it, and of a blow struck alone and without friction something else would come.
+  // An impact that is resolved within its step is resolved in the step that begins here, together
+  // with all contacts of the two bodies and friction, as in a world of all bodies. Resolved alone
+  // and without friction it would have another result.
   if (has_contacts() && world_step_.contacts().deals_in_step(trigger)) world_step_.contacts().begin(trigger, world_step_.impact_detection().gap(trigger));
   else {
     Stages stages(*this);
     world_step_.respond(pairs, trigger, false, stages);
   }
   world_step_.require_numbers();
-  if (collector_.events.empty()) {   // they met without coming nearer
+  if (collector_.events.empty()) {   // they touched without approach
     const collision::Gap gap = world_step_.impact_detection().gap(trigger);
     collector_.event({moving_.time(), EventKind::kCollision, trigger.first, trigger.second, 0.5 * (gap.point_a_world + gap.point_b_world), gap.normal_b_to_a_world, 0.0, 0.0, 0.0});
   }

@@ -1,8 +1,8 @@
-/// The small world of one process: bodies that links, forces or lasting contacts keep from flying freely, moved by the world's own stages
-/// (contact/world_step.h), and by nothing else.
+/// The world of one process: bodies that cannot fly freely because of links, forces or persistent
+/// contacts. They move by the same stages as in a world of all bodies (contact/world_step.h).
 ///
-/// It keeps no time of its own: every question brings the state to start from, and the answer depends on that alone. So processes go on,
-/// are rolled back and begin again in any order.
+/// It has no time of its own: every query brings the state to start from, and the answer depends on
+/// that state alone. So processes advance, are rolled back and start again in any order.
 #pragma once
 
 #include <map>
@@ -18,36 +18,36 @@ namespace tumble::engines {
 
 using BodyPair = std::pair<int, int>;   // first < second
 
-/// Everything that a process goes on from. Indices are those of the whole world.
+/// The state from which a process continues. Indices are those of the whole world.
 struct ProcessState {
   double time = 0.0;                            // [s]
   std::vector<int> members;                     // movable bodies, ascending
   std::vector<RigidBodyState> states;           // by member
-  std::map<int, effects::Memory> remembered;               // what entries remember, by place of the effect in effects::all()
-  std::map<BodyPair, double> met;               // when pairs met last [s]
-  std::set<BodyPair> lasting;                   // pairs in lasting contact
-  std::set<BodyPair> near;                      // pairs without restitution that meet within a step or two: they stay together (in_step)
-  std::optional<ContactMemory> contacts;        // what contacts remember; bodies are those of the process world that made this state
+  std::map<int, effects::Memory> remembered;               // internal state of effects, by index in effects::all()
+  std::map<BodyPair, double> met;               // the time of each pair's last impact [s]
+  std::set<BodyPair> lasting;                   // pairs in persistent contact
+  std::set<BodyPair> near;                      // pairs without restitution that meet again within a step or two: they stay in one island (in_step)
+  std::optional<ContactMemory> contacts;        // memory of contacts; bodies are those of the process world that computed this state
 
   const RigidBodyState& state_of(int body) const;
-  /// A copy that goes on as if contacts had been asked for the first time; much the cheaper one.
+  /// A copy without contact memory, as for a first contact step; much cheaper to copy.
   ProcessState without_memory() const;
 };
 
-/// What the pages of a scene say about steps and impacts.
+/// The scene's numbers for impacts and steps.
 struct ProcessRules {
   double step, restitution_threshold;                      // [s], [m/s]
 };
 
-/// Solids of the whole world, by body.
+/// Shapes of the whole world, by body.
 using ShapeOf = std::function<const collision::CollisionShape*(int body)>;
 
-/// A process's way from one of its states to the next.
+/// One step of a process, from one of its states to the next.
 struct ProcessStep {
-  ProcessState from;                            // with what motors hold and forces take hold of during the step
-  double end;                                   // [s]; from.time where a discontinuity stands at the very start
+  ProcessState from;                            // with the targets of motors and the forces that act during the step
+  double end;                                   // [s]; from.time for a discontinuity at the very start
   std::vector<SmoothPath> paths;                // by member; empty for a step without length
-  std::vector<ContactPoint> forces;             // in lasting contacts
+  std::vector<ContactPoint> forces;             // in persistent contacts
 
   collision::MotionState motion_at(std::size_t member, double t, const Inertia& inertia) const;
   RigidBodyState state_at(std::size_t member, double t) const;
@@ -62,22 +62,23 @@ class ProcessWorld {
 
   const std::vector<int>& members() const { return members_; }
 
-  /// States at the start of the run, on their constraints.
+  /// States at the start of the run, projected onto their constraints.
   ProcessState at_start(const std::vector<RigidBodyState>& states);
 
-  /// A state with the velocities that rods and joints allow.
+  /// A state with velocities that rods and joints allow.
   ProcessState on_constraints(const ProcessState& state);
 
-  /// A state within a step, for a picture: contacts keep members apart at a step's ends, and links hold there; on the path between them a body that turns
-  /// dips in by what is of second order in the step, and links open by its fourth power. Here that is taken back.
+  /// A state within a step, for a picture. At the ends of a step contacts are without overlap and
+  /// links are closed. On the path between them a rotating body penetrates by a distance of second
+  /// order in the step, and links open by one of fourth order. This function removes both.
   ProcessState shown(const ProcessState& state);
 
-  /// What happens at one instant.
+  /// The discontinuity of a process at one instant.
   struct Change {
     ProcessState after;
     std::vector<Event> events;
   };
-  /// Begins lasting contacts where members touch each other or what is still, slowly.
+  /// Begins persistent contacts where members touch each other or immovable bodies slowly.
   Change begin_contacts(const ProcessState& state);
 
   struct Outcome {
@@ -85,8 +86,10 @@ class ProcessWorld {
     ProcessState after;
     std::vector<Event> events;                  // not empty: the process has a discontinuity of its own there
   };
-  /// One step, or less: to `due`, to a motor's look, a force's switching, or the first discontinuity among the members.
-  /// @param start  what its contacts remember is taken out of it: nobody goes on from a state twice
+  /// One step, or less: to `due`, to a motor's next sample, to a switching force, or to the first
+  /// discontinuity among the members.
+  /// @param start  its contact memory is moved out, because a process continues only once from a
+  ///   state
   Outcome step(ProcessState& start, double due);
 
   /// The impact of a pair, of which one or both are members.

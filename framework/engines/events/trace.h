@@ -1,5 +1,5 @@
-/// The committed trace of a run: what two runs of a scene must share to the last bit, whatever engine made them and in whatever order it
-/// worked. And the judge that says where a run first leaves the reference.
+/// The committed trace of a run: two runs of a scene must agree in it to the last bit, whatever the
+/// engine and its order of execution. The comparison gives the first difference from the reference.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +10,15 @@
 
 namespace tumble::engines {
 
-/// Time, kind, bodies and impulse of every committed event, in order, as one number (FNV-1a over the bits).
+/// Time, kind, bodies and impulse of every committed event, in order, as one number (FNV-1a over
+/// the bits).
 std::uint64_t trace_hash(const Trajectory& run);
 
-/// Where two traces part.
+/// The first difference of two traces.
 struct TraceDifference {
   std::size_t index;          // of the first event that differs
   double time;                // [s], of the earlier of the two
-  std::string story;          // what the reference has there, what the run has there, with names
+  std::string story;          // the reference's event and the run's, with names
 };
 
 /// @return nothing where the traces are equal, bit for bit

@@ -12,7 +12,7 @@ int place_of(const std::vector<int>& bodies, int body) {
   return found != bodies.end() && *found == body ? static_cast<int>(found - bodies.begin()) : -1;
 }
 
-// Without its solid, which may be large.
+// Without its shape, which may be large.
 WorldBody body_of(const WorldBody& whole) {
   WorldBody body{whole.name, whole.inertia, Sphere{0.0}, whole.restitution, whole.friction, whole.collides, whole.passes_movable, whole.state, whole.motion, whole.com_at_0_world};
   return body;
@@ -24,7 +24,7 @@ void note(std::vector<std::vector<int>>& places, int body, std::size_t index) {
   if (its.empty() || its.back() != static_cast<int>(index)) its.push_back(static_cast<int>(index));
 }
 
-// Of all members together, ascending: as the whole has them.
+// The union over all members, ascending, in the order of the whole world.
 std::vector<int> of_members(const std::vector<std::vector<int>>& places, const std::vector<int>& members) {
   std::vector<int> indices;
   for (const int body : members) indices.insert(indices.end(), places[static_cast<std::size_t>(body)].begin(), places[static_cast<std::size_t>(body)].end());
@@ -73,7 +73,7 @@ struct PartMaker {
   }
 
  private:
-  // The members, what is still, and what an entry of a member names besides it.
+  // Adds the members, the immovable bodies, and the bodies that entries of members name.
   void take_bodies(const std::vector<int>& still, WorldPart& part) const {
     part.bodies = members;
     part.bodies.insert(part.bodies.end(), still.begin(), still.end());

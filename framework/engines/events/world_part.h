@@ -1,4 +1,5 @@
-/// A part of a world: the bodies of one process, what acts on them, and the immovable ones they have to do with.
+/// A part of a world: the bodies of one process, the effects on them, and the immovable bodies that
+/// these name or touch.
 #pragma once
 
 #include <vector>
@@ -7,7 +8,8 @@
 
 namespace tumble::engines {
 
-/// Which entries of a world name a body: found once, so that each part costs what it holds and not what the world does.
+/// The entries of a world by the bodies that they name. Computed once, so that a part costs by its
+/// own size and not by that of the world.
 class EntriesByBody {
  public:
   explicit EntriesByBody(const World& whole);
@@ -15,22 +17,23 @@ class EntriesByBody {
  private:
   friend struct PartMaker;
   using Places = std::vector<std::vector<int>>;   // by body: indices, ascending
-  std::vector<Places> effects_;                   // by place in effects::all(); empty of those that do not act in this world
+  std::vector<Places> effects_;                   // by index in effects::all(); empty for effects that do not act in this world
   Places apart_;
 };
 
 struct WorldPart {
   World world;
-  std::vector<int> bodies;          // by body of the part: its index in the whole, ascending
-  std::vector<int> members;         // by member (in the order they were asked for): its index in the part
-  std::vector<std::vector<int>> entries;   // by place in effects::all() and by entry of the part: its index in the whole
+  std::vector<int> bodies;          // by body of the part: its index in the whole world, ascending
+  std::vector<int> members;         // by member, in the order of the argument: its index in the part
+  std::vector<std::vector<int>> entries;   // by index in effects::all() and by entry of the part: its index in the whole world
 };
 
-/// @param entries  of this very world
-/// @param members  movable bodies, ascending, with everything that an effect ties to them
-/// @param still    immovable bodies to take in besides those that entries of members name
-/// @post of the pairs that do not collide those with a member are there: two that are immovable never do
-/// @post solids of the part are points: whoever moves it has the whole's solids
+/// @param entries  of this world
+/// @param members  movable bodies, ascending, with all bodies that an effect couples to them
+/// @param still    immovable bodies to include besides those that entries of members name
+/// @post pairs that do not collide are included where one body is a member: two immovable bodies
+///   never collide
+/// @post shapes of the part are points: the caller has the shapes of the whole world
 WorldPart part_of(const World& whole, const EntriesByBody& entries, const std::vector<int>& members, const std::vector<int>& still);
 
 }  // namespace tumble::engines

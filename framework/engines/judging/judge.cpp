@@ -25,34 +25,36 @@ namespace {
 
 double total_energy(const Frame& frame) { return frame.kinetic_energy + frame.potential_energy; }
 
-/// What energies are compared with: the kinetic energy at the beginning, and what the forces had to give from there, which is
-/// the deepest fall of the potential energy. (That of the highest moment would not do: a run that makes energy from nothing
-/// would widen its own pass mark by it. It rises, or moves faster; neither counts here.)
+/// The scale of energies: the kinetic energy at the beginning plus the deepest fall of the
+/// potential energy from there, which is what the forces could give. The potential energy of the
+/// highest frame would not do: a run that creates energy would widen its own tolerance by rising.
+/// Neither rising nor moving faster counts here.
 double energy_scale(const Frame& first, const Trajectory& run) {
   double fall = 0.0;
   for (const Frame& frame : run.frames)
     if (frame.time >= first.time) fall = std::max(fall, first.potential_energy - frame.potential_energy);
   const double scale = first.kinetic_energy + fall;
-  return scale == 0.0 ? 1.0 : scale;   // a NaN stays one, and fails the check
+  return scale == 0.0 ? 1.0 : scale;   // a NaN stays NaN, and fails the check
 }
 
 /// What rounding may leave of the energy of a frame. [J]
-/// Energy is a sum of terms, m v^2 / 2, w I w / 2, -m g.x, k s^2 / 2, each rounded by eps of itself where it is formed, and moved by as
-/// much where a step rounds the place or the velocity that it comes from. A step's roundings are independent of the last one's: after N
-/// steps they have added up to eps sqrt(N) of the terms, of which kDeviations cover every run that anybody makes. A stack at rest a
-/// hundred metres above the origin has terms of megajoules and nothing else to compare its energy with.
+/// Energy is a sum of terms, m v^2 / 2, w I w / 2, -m g.x, k s^2 / 2. Each is rounded by eps of
+/// itself, and changed by as much where a step rounds its position or velocity. The roundings of
+/// steps are independent: after N steps they add up to eps sqrt(N) of the terms; kDeviations of it
+/// cover every practical run. A stack at rest a hundred metres above the origin has terms of
+/// megajoules and no other energy to compare with.
 class EnergyRounding {
  public:
   EnergyRounding(const Scene& scene, const Trajectory& run) : world_(build_world(scene)), step_s_(run.info.step_s > 0 ? run.info.step_s : scene.step_s) {}
 
   double operator()(const Frame& frame) const {
-    double terms = frame.kinetic_energy;   // all positive
+    double terms = frame.kinetic_energy;   // all terms are positive
     for (const effects::Effect* effect : effects::all()) effect->add_energy_terms(world_, states_of(frame), terms);
     return kDeviations * std::numeric_limits<double>::epsilon() * (1.0 + std::sqrt(frame.time / step_s_)) * terms + lift(frame);
   }
 
  private:
-  /// Places alone.
+  /// Positions only.
   static std::vector<RigidBodyState> states_of(const Frame& frame) {
     std::vector<RigidBodyState> states;
     for (const BodyPose& pose : frame.poses) states.push_back({pose.com_world, pose.world_from_body, Vector3d::Zero(), Vector3d::Zero()});
@@ -80,7 +82,7 @@ Finding energy(const CheckSpec& check, const Scene& scene, const Trajectory& run
   Finding finding;
   const Frame* first = nullptr;
   double scale = kUnset;
-  std::optional<EnergyRounding> rounding;   // asked for where something would be wrong without it: models have to be read for it
+  std::optional<EnergyRounding> rounding;   // computed only for a run that would fail without it, because it has to read the models
   for (const Frame& frame : run.frames) {
     if (frame.time < check.at_s) continue;
     if (first == nullptr) {
@@ -117,7 +119,7 @@ Finding energy_not_rising(const CheckSpec& check, const Scene& scene, const Traj
   return finding;
 }
 
-/// Constancy from at_s on, or the true value at the end.
+/// Constancy from at_s on, or the expected value at the end.
 Finding conserved(const CheckSpec& check, const Trajectory& run, Vector3d Frame::*quantity) {
   Finding finding;
   if (!check.expected.empty()) {
@@ -137,7 +139,8 @@ Finding conserved(const CheckSpec& check, const Trajectory& run, Vector3d Frame:
 Finding momentum(const CheckSpec& check, const Scene&, const Trajectory& run) { return conserved(check, run, &Frame::momentum_world); }
 Finding angular_momentum(const CheckSpec& check, const Scene&, const Trajectory& run) { return conserved(check, run, &Frame::angular_momentum_world); }
 
-/// By how much the gap of two bodies that touch may come out below 0: a few roundings of their sizes and of their places (gap.h). [m]
+/// By how much the gap of two touching bodies may be below 0: a few roundings of their sizes and
+/// positions (gap.h). [m]
 double rounding_of_gaps(const Scene& scene, const Trajectory& run) {
   double scale = 0.0;
   for (const WorldBody& body : build_world(scene).bodies)
@@ -169,7 +172,7 @@ Finding vector_at(const CheckSpec& check, const Trajectory& run, Vector3d BodyPo
 Finding final_position(const CheckSpec& check, const Scene&, const Trajectory& run) { return vector_at(check, run, &BodyPose::com_world); }
 Finding final_velocity(const CheckSpec& check, const Scene&, const Trajectory& run) { return vector_at(check, run, &BodyPose::velocity_world); }
 
-/// Collisions of the bodies that the check names; of all where it names none.
+/// Collisions of the bodies that the check names; all collisions where it names none.
 std::vector<const Event*> collisions(const CheckSpec& check, const Trajectory& run) {
   const int body = check.body.empty() ? -1 : index_of(check.body, run);
   const int other = check.other.empty() ? -1 : index_of(check.other, run);
@@ -197,14 +200,14 @@ Finding event_count(const CheckSpec& check, const Scene&, const Trajectory& run)
 
 Finding restitution_law(const CheckSpec& check, const Scene& scene, const Trajectory& run) {
   auto events = collisions(check, run);
-  // Two that met without coming nearer got no impulse: the law has nothing to say of them.
+  // A pair that met without approach got no impulse: the law says nothing about it.
   std::erase_if(events, [](const Event* event) { return event->impulse == 0.0 && event->normal_velocity_before == 0.0; });
   if (events.empty()) return {kInfinity, "no collision: there is nothing to judge"};
   Finding finding{0.0, fmt::format("all {} collisions", events.size())};
   for (const Event* event : events) {
     const double e = std::min(scene.bodies[static_cast<std::size_t>(event->body_a)].restitution, scene.bodies[static_cast<std::size_t>(event->body_b)].restitution);
     const double before = event->normal_velocity_before;
-    const double wanted = -e * before;   // whatever comes after it: a rest begins with the next event
+    const double wanted = -e * before;   // also before a transition to rest, which begins with the next event
     finding.worst(std::abs(event->normal_velocity_after - wanted) / std::abs(before),
                   fmt::format("{}: {:.6g} m/s before, {:.6g} m/s after, e = {:.6g}", at_time(event->time), before, event->normal_velocity_after, e));
   }
@@ -231,7 +234,8 @@ Finding flips(const CheckSpec& check, const Scene&, const Trajectory& run) {
   std::string times;
   for (const Frame& frame : run.frames) {
     const double cosine = first.dot(frame.poses[body].world_from_body * *check.axis);
-    // Turned over when it has passed 120 degrees, back when it has passed 60: trembling about 90 is no flip.
+    // A body counts as flipped beyond 120 degrees, and as back below 60: oscillation about 90
+    // degrees is no flip.
     if (is_over ? cosine > 0.5 : cosine < -0.5) {
       is_over = !is_over;
       ++count;
@@ -304,13 +308,13 @@ CheckResult judge(const CheckSpec& check, const Scene& scene, const Trajectory& 
   result.at_least = kind.right != Right::kAtMost;
   result.threshold = kind.right == Right::kAtLeastMinus ? 0.0 - check.tolerance - finding.rounding : check.tolerance;
   result.unit = check.unit.empty() ? kind.unit : check.unit;
-  result.passed = result.at_least ? result.value >= result.threshold : result.value <= result.threshold;   // never true of NaN
+  result.passed = result.at_least ? result.value >= result.threshold : result.value <= result.threshold;   // false for NaN
   result.why = check.why;
   result.detail = finding.detail;
   return result;
 }
 
-// What the run's own watch has found stands beside what the scene asks for.
+// Faults that the run's own watch found are added to the scene's checks.
 CheckResult judge(const RunFault& fault) {
   CheckResult result;
   result.kind = fault.kind;
@@ -332,7 +336,7 @@ void refuse_other_units(const Scene& scene) {
     const auto kind = kinds().find(check.kind);
     if (check.unit.empty() || kind == kinds().end()) continue;
     const std::string own = kind->second.unit;
-    // A force that should be 0 is compared with 0, any other as a part of itself.
+    // An expected force of 0 is compared absolutely, any other relative to itself.
     const bool is_zero = std::all_of(check.expected.begin(), check.expected.end(), [](double expected) { return expected == 0.0; });
     const bool is_force = check.unit == "N" && is_zero && (check.kind == "reaction" || check.kind == "link_force");
     if (check.unit == own || is_force) continue;
@@ -343,8 +347,8 @@ void refuse_other_units(const Scene& scene) {
 
 namespace {
 
-/// Of the kinetic energy before, right laws change what they should to roundings of velocities, links in long chains to some 1e-12.
-/// Every impact of every run is looked at; nothing is said where all are right.
+/// Right laws leave roundings of velocities, relative to the kinetic energy before; in long chains of
+/// links some 1e-12. Checks every impact of every run; no result where all are right.
 std::optional<CheckResult> judge_impacts(const Trajectory& run) {
   const Event* worst = nullptr;
   long wrong = 0;

@@ -29,22 +29,26 @@
 /// | falls            | the same; the smallest [rad]                                          | >= tolerance               |
 /// | order_of_falls   | how many of `bodies` lean by expected [rad] before the one before them, or never [-] | <= tolerance |
 ///
-/// What the run's own watch found while it went (engines/base/run_watch.h) follows, as checks that failed whatever the scene asks for:
+/// The faults that the run's watch found (engines/base/run_watch.h) follow, as failed checks
+/// whatever the scene asks:
 /// | link_open        | how far a rod or joint came apart, over its size [-], or at an angle [rad] | never                 |
 /// | projection_open  | what a correction onto rods and joints left of their errors, over the group's size [-] | never     |
 /// | contact_unsolved | what impulses of contacts left of approach and slip, over the group's speed [-]        | never     |
 /// | turn_unresolved  | how far a body turned in a step of a method that samples [rad]            | never                 |
 /// | energy_rises     | rise of E above its least value so far, without what point forces and motors bring in, over what there was to begin with [-] | never |
 ///
-/// Besides, whatever the scene asks: `impact_energy`, the kinetic energy of all that an impact changed, measured against what restitution and
-/// friction say (`Event::energy_excess`), over the kinetic energy before; seen from what is driven. It is reported where it is wrong only.
+/// In addition, for every scene: `impact_energy`, the change of kinetic energy in an impact
+/// relative to what restitution and friction give (`Event::energy_excess`), over the kinetic energy
+/// before it; in the frame of driven bodies. It is reported only where it is wrong.
 ///
-/// Energies are compared with the kinetic energy at `at_s` plus the deepest fall of the potential energy below its value there:
-/// what a run makes from nothing is not in it, so that it cannot widen its own pass mark.
-/// What rounding leaves of a sum is not held against a run: of an energy eps of its terms, times the root of the number of steps; of a gap
-/// a few eps of sizes and places.
-/// For energy, momentum, angular momentum, drift and tilt `at_s` is the instant from which on the quantity must stay (a push has ended by
-/// then); elsewhere the instant that is looked at; 0 is the beginning or the end.
+/// Energies are compared with the kinetic energy at `at_s` plus the deepest fall of the potential
+/// energy below its value there: energy that a run creates is not in this scale, so it cannot widen
+/// its own tolerance.
+/// Rounding is not held against a run: for an energy eps of its terms, times the root of the number
+/// of steps; for a gap a few eps of sizes and positions.
+/// For energy, momentum, angular momentum, drift and tilt `at_s` is the time from which on the
+/// quantity must stay constant (a push has ended by then); elsewhere the time of the value; 0 is
+/// the beginning or the end.
 #pragma once
 
 #include <string>
@@ -58,20 +62,23 @@ namespace tumble::engines {
 struct CheckResult {
   std::string kind;        // as in the scene
   std::string subject;     // the body, or "all"
-  double value;            // what was reached: an error, a drift, a smallest gap; infinite where what was asked never happened
-  double threshold;        // what was allowed
+  double value;            // the value: an error, a drift, a smallest gap; infinite where the event never happened
+  double threshold;        // the tolerance
   std::string unit;
   bool passed;
-  std::string why;         // the threshold's reason
-  bool at_least = false;   // right when value >= threshold instead of <=
-  std::string detail;      // where and when the worst was found
+  std::string why;         // the reason of the threshold
+  bool at_least = false;   // passes when value >= threshold instead of <=
+  std::string detail;      // place and time of the worst value
 };
 
-/// A check's unit is a word for people: a number in another unit would be compared with metres all the same.
-/// @throws UserError at the first check that names a unit which is not its kind's
+/// A check's unit is a label for people: a number in another unit would be compared as if it were
+/// in metres.
+/// @throws UserError at the first check with a unit that is not its kind's
 void refuse_other_units(const scene::Scene& scene);
 
-/// One result a check, in the scene's order, then one for each of the run's faults and one where an impact changed the energy by what no law allows. @throws UserError for a kind of check that is not known.
+/// One result per check, in the scene's order, then one for each of the run's faults, and one where
+/// an impact changed the energy by more than any law allows. @throws UserError for an unknown kind
+/// of check.
 std::vector<CheckResult> judge_run(const scene::Scene& scene, const Trajectory& run);
 
 }  // namespace tumble::engines

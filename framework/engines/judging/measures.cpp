@@ -16,7 +16,8 @@ int index_of(const std::string& name, const Trajectory& run) {
 
 const Frame* frame_at(double time, const Trajectory& run) {
   if (time == 0.0) return &run.frames.back();
-  // Frames are recorded at multiples of the frame time, which rounding shifts by far less than a microsecond.
+  // Frames are recorded at multiples of the frame time; rounding shifts them by far less than a
+  // microsecond.
   constexpr double kSameInstant = 1e-6;   // s
   for (const Frame& frame : run.frames)
     if (std::abs(frame.time - time) <= kSameInstant) return &frame;

@@ -1,4 +1,5 @@
-/// What the kinds of checks measure on a recorded run (judge.h says what each is). For judge.cpp and the measures' own files only.
+/// The measures of the kinds of checks on a recorded run (defined in judge.h). For judge.cpp and
+/// the measures' own files only.
 #pragma once
 
 #include <cmath>
@@ -16,13 +17,13 @@ using scene::CheckSpec;
 using scene::Scene;
 
 
-/// The worst that a check found.
+/// The worst value of a check.
 struct Finding {
   double value = 0.0;
   std::string detail;
-  double rounding = 0.0;   // what a value that should not be below a bound may be below it by, where it is
+  double rounding = 0.0;   // the rounding error of a value that is compared with a bound
 
-  /// Keeps the larger; NaN is worse than anything.
+  /// Keeps the larger value; NaN is worse than anything.
   void worst(double candidate, const std::string& where) {
     if (std::isnan(value) || candidate <= value) return;
     value = candidate;
@@ -42,12 +43,13 @@ int index_of(const std::string& name, const Trajectory& run);
 const Frame* frame_at(double time, const Trajectory& run);
 
 // Links and contacts (measures_links.cpp)
-/// The worst error of the links that the check means, in every frame: of a kind that the effect brings with it (Effect::link_checks).
+/// The worst error of the links that the check names, over all frames: of the kind that the effect
+/// declares (Effect::link_checks).
 Finding link_error(const effects::Effect& effect, const CheckSpec&, const Scene&, const Trajectory&);
 Finding link_force(const CheckSpec&, const Scene&, const Trajectory&);
 Finding reaction(const CheckSpec&, const Scene&, const Trajectory&);
 
-// What stays, what slides, what falls (measures_rest.cpp)
+// Bodies at rest, sliding bodies, falling bodies (measures_rest.cpp)
 Finding drift(const CheckSpec&, const Scene&, const Trajectory&);
 Finding tilt(const CheckSpec&, const Scene&, const Trajectory&);
 Finding at_rest(const CheckSpec&, const Scene&, const Trajectory&);

@@ -1,5 +1,5 @@
-// Measures of springs, rods, joints and contacts. Lengths and gaps are taken from the places of the bodies alone, so that an engine
-// cannot be judged by what it says of itself.
+// Measures of springs, rods, joints and contacts. Lengths and gaps are computed from the positions
+// of the bodies alone, so that an engine is not judged by its own claims.
 #include <algorithm>
 
 #include <fmt/format.h>
@@ -11,7 +11,7 @@
 namespace tumble::engines {
 namespace {
 
-/// How far off a truth, as a part of it; where the truth is 0, in its own unit.
+/// The error relative to the expected value; absolute where that is 0.
 double relative_error(double found, double expected) { return std::abs(found - expected) / (expected == 0.0 ? 1.0 : std::abs(expected)); }
 
 template <class Link>
@@ -34,7 +34,7 @@ Finding link_error(const effects::Effect& effect, const CheckSpec& check, const 
       finding.worst(error, found + " " + at_time(frame.time));
     }
   }
-  if (finding.value == -kInfinity) finding.value = kInfinity;   // nothing to judge is not right
+  if (finding.value == -kInfinity) finding.value = kInfinity;   // without anything to judge the check fails
   return finding;
 }
 

@@ -1,4 +1,4 @@
-// Measures of what stays where it is, what slides and turns, and what falls. From places and velocities alone.
+// Measures of bodies at rest, sliding, rotating and falling. From positions and velocities alone.
 #include <algorithm>
 
 #include <Eigen/Geometry>
@@ -12,10 +12,10 @@
 namespace tumble::engines {
 namespace {
 
-/// Where a check found nothing to judge, it is not right.
+/// A check without a body to judge fails.
 const char* const kNobody = "no body can move";
 
-/// The bodies that a check is about, by index: its list, its one body, or all that can move.
+/// The bodies of a check, by index: its list, its one body, or all movable bodies.
 std::vector<std::size_t> bodies_of(const CheckSpec& check, const Trajectory& run) {
   std::vector<std::size_t> indices;
   for (const std::string& name : check.bodies) indices.push_back(static_cast<std::size_t>(index_of(name, run)));
@@ -31,13 +31,14 @@ double turn_between(const Quaterniond& from, const Quaterniond& to) {
   return 2.0 * std::atan2(turn.vec().norm(), std::abs(turn.w()));
 }
 
-/// How far the body's own axis has leaned from where it pointed first. [rad]
+/// The angle between the body's own axis and its first direction. [rad]
 double lean(const CheckSpec& check, const Trajectory& run, const Frame& frame, std::size_t body) {
   const Vector3d first = run.frames.front().poses[body].world_from_body * *check.axis, now = frame.poses[body].world_from_body * *check.axis;
   return std::atan2(first.cross(now).norm(), first.dot(now));
 }
 
-/// The largest of what `of_pose` says of each body against its pose in the first frame from at_s on.
+/// The largest value of `of_pose` over the bodies, relative to their poses in the first frame from
+/// at_s on.
 template <class OfPose>
 Finding worst_since(const CheckSpec& check, const Trajectory& run, const OfPose& of_pose) {
   Finding finding;
@@ -119,7 +120,7 @@ Finding angle_at(const CheckSpec& check, const Scene&, const Trajectory& run) {
   const Frame* end = frame_at(check.at_s, run);
   if (end == nullptr) return no_frame(check.at_s);
   const auto body = static_cast<std::size_t>(index_of(check.body, run));
-  double angle = 0.0;   // whole turns included: added up from frame to frame, each less than half a turn
+  double angle = 0.0;   // with whole turns: summed from frame to frame, each less than half a turn
   for (const Frame* frame = &run.frames.front(); frame != end; ++frame) {
     Quaterniond turn = frame[1].poses[body].world_from_body * frame->poses[body].world_from_body.conjugate();
     if (turn.w() < 0) turn.coeffs() *= -1.0;
@@ -143,7 +144,7 @@ Finding falls(const CheckSpec& check, const Scene&, const Trajectory& run) {
   const Frame* frame = frame_at(check.at_s, run);
   if (frame == nullptr) return {-kInfinity, no_frame(check.at_s).detail};
   if (bodies_of(check, run).empty()) return {-kInfinity, kNobody};
-  Finding finding{-kInfinity, ""};   // of the negative: the least leaning is the worst
+  Finding finding{-kInfinity, ""};   // of the negative: the least lean is the worst
   for (const std::size_t i : bodies_of(check, run)) finding.worst(-lean(check, run, *frame, i), "least of all " + run.bodies[i].name + ", " + at_time(frame->time));
   finding.value = -finding.value;
   return finding;

@@ -12,8 +12,8 @@ const std::vector<StackSamples::Part>& time_parts() {
       {"contacts", {"tumble::solve_contacts", "tumble::contacts::", "tumble::engines::PersistentContacts::", "tumble::engines::ContactModes::"}},
       {"links and forces", {"tumble::engines::LinkedBodies::", "tumble::a3::"}},
       {"motion", {"tumble::engines::MovingWorld::", "tumble::FreeRotation::", "tumble::SpinSeries::", "tumble::engines::SmoothPath::", "tumble::a2::"}},
-      {"impacts", {"tumble::engines::SequentialImpacts::", "tumble::engines::MeetingOfFlights::", "tumble::a1::"}},
-      {"search for impacts", {"tumble::collision::", "tumble::engines::find_impact", "tumble::engines::ImpactsOfFlights::", "tumble::engines::ImpactDetection::"}},
+      {"impacts", {"tumble::engines::SequentialImpacts::", "tumble::engines::FlightImpactResponse::", "tumble::a1::"}},
+      {"search for impacts", {"tumble::collision::", "tumble::engines::find_impact", "tumble::engines::FlightImpactDetection::", "tumble::engines::ImpactDetection::"}},
       {"who may meet", {"tumble::collision::overlapping_pairs", "tumble::engines::ActivePairs::", "tumble::engines::ImpactDetection::candidates"}},
   };
   return parts;

@@ -44,7 +44,8 @@ ActivePairs::SmallBox ActivePairs::small_of(const Box& box) {
   return small;
 }
 
-// Two cells of a box may share a bucket: a body stands in each bucket once. One that stands there already gets its new box.
+// Two cells of a box may share a bucket: a body is in each bucket once. One that is there already
+// gets its new box.
 void ActivePairs::enter(int body, const SmallBox& box, std::size_t bucket) {
   std::size_t at = bucket;
   for (;; at = static_cast<std::size_t>(buckets_[at].next)) {
@@ -70,7 +71,7 @@ void ActivePairs::enter(int body, const SmallBox& box, std::size_t bucket) {
   buckets_[at].slots[static_cast<std::size_t>(buckets_[at].count++)] = {body, box};
 }
 
-// The last of the chain takes the place that becomes free.
+// The last slot of the chain moves into the free place.
 void ActivePairs::leave(int body, std::size_t bucket) {
   std::size_t at = bucket, before = bucket;
   std::int32_t place = 0;
@@ -78,7 +79,7 @@ void ActivePairs::leave(int body, std::size_t bucket) {
     const Bucket& b = buckets_[at];
     for (place = 0; place < b.count && b.slots[static_cast<std::size_t>(place)].body != body; ++place) {}
     if (place < b.count) break;
-    if (b.next < 0) return;   // gone with another cell
+    if (b.next < 0) return;   // already removed with another cell of its box
   }
   std::size_t last = at;
   while (buckets_[last].next >= 0) {
@@ -103,7 +104,7 @@ void ActivePairs::take_out(int body) {
   its.is_wide = false;
 }
 
-// A box of very many cells, or of cells that 32 bits do not count, is wide.
+// A box of very many cells, or of cell numbers beyond 32 bits, is wide.
 ActivePairs::Entry ActivePairs::entry_of(const Box& box) const {
   Entry entry;
   entry.box = box;

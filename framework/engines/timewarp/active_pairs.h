@@ -1,7 +1,9 @@
-/// Which bodies can meet: boxes around what each sweeps from global virtual time to its local virtual time, in a hashed grid.
+/// Pairs of bodies that can meet: boxes that bodies sweep from global virtual time to their local
+/// virtual times, in a hashed grid.
 ///
-/// A box is entered in every cell that it touches; two boxes that overlap share a cell, and the pair is told in the lowest of those they
-/// share, so once. A box that touches very many cells stands in a list of its own instead, which is tried with every other.
+/// A box is entered in every cell that it intersects. Two boxes that overlap share a cell; the pair
+/// is reported once, in the lowest of its shared cells. A box that intersects very many cells is
+/// kept in a list of its own instead, which is tested against every box.
 #pragma once
 
 #include <algorithm>
@@ -26,13 +28,14 @@ struct Box {
     high = high.cwiseMax(other.high);
   }
   bool overlaps(const Box& other) const {
-    // All six without a branch: which of them tells two boxes apart cannot be foreseen.
+    // All six comparisons without a branch: which one separates two boxes is unpredictable.
     return (low.x() <= other.high.x()) & (other.low.x() <= high.x()) & (low.y() <= other.high.y()) & (other.low.y() <= high.y()) & (low.z() <= other.high.z()) &
            (other.low.z() <= high.z());
   }
 };
 
-/// Around a solid that is turned like this, about its centre of mass; infinite for a half-space.
+/// Box around a shape in this orientation, relative to its centre of mass; infinite for a
+/// half-space.
 Box box_around(const collision::CollisionShape& shape, const Quaterniond& world_from_body);
 
 class ActivePairs {
@@ -40,7 +43,7 @@ class ActivePairs {
   struct Entry {
     Box box;
     std::array<std::int32_t, 3> low{0, 0, 0}, high{-1, -1, -1};   // cells
-    std::int16_t grid = -1;   // that holds it; -1: none
+    std::int16_t grid = -1;   // the grid that holds it; -1: none
     bool is_wide = false;
   };
   using Entries = std::vector<Entry, LargePages<Entry>>;
@@ -48,22 +51,25 @@ class ActivePairs {
   /// @param bodies  indices in use are below this
   /// @param cell    edge of a cell [m], > 0: about the size of most boxes
   ActivePairs(int bodies, double cell);
-  /// One of several grids that share bodies among them: each body is in one of them at most, and no grid looks at another's.
+  /// One of several grids that divide the bodies among them: each body is in at most one of them,
+  /// and no grid reads another's entries.
   /// @param entries  by body; outlives the grid
-  /// @param number   of this grid, >= 0 and its own
-  /// @param held     about as many bodies will be in it
+  /// @param number   of this grid, >= 0, unique
+  /// @param held     expected number of bodies in it
   ActivePairs(Entries& entries, int number, int held, double cell);
   ActivePairs(const ActivePairs&) = delete;
   ActivePairs& operator=(const ActivePairs&) = delete;
   ActivePairs(ActivePairs&&) = default;
 
-  /// Enters a body's box, in place of the one it had.
+  /// Enters a body's box, in place of its previous one.
   void set_box(int body, const Box& box);
-  /// Takes a body out, if it is in.
+  /// Removes a body, if it is in this grid.
   void remove(int body) { take_out(body); }
   bool holds(int body) const { return entry(body).grid == number_; }
-  /// The grid as it stands, whatever order it was entered in: by body its box and cells, by bucket who is in it with which box.
-  /// @param row  is called with each (what, place, body, numbers), bodies ascending, then buckets with their bodies in no order
+  /// The contents of the grid, independent of the order of entries: the box and cells of each body,
+  /// then the bodies and boxes of each bucket.
+  /// @param row  is called with each (kind, bucket, body, numbers): bodies ascending, then buckets
+  ///   with their bodies in any order
   template <class Row>
   void for_each_row(const Row& row) const {
     for (std::size_t body = 0; body < entries_->size(); ++body) {
@@ -81,7 +87,7 @@ class ActivePairs {
   }
   const Box& box(int body) const { return entry(body).box; }
 
-  /// Begins to bring what is known of a body from memory.
+  /// Prefetches the entry of a body.
   void fetch(int body) const {
     __builtin_prefetch(&entry(body));
     __builtin_prefetch(reinterpret_cast<const char*>(&entry(body)) + 64);
@@ -93,17 +99,19 @@ class ActivePairs {
     for_each_overlapping(entry(body), body, found);
   }
 
-  /// Calls `found(other)` once for each body whose box overlaps this one, which need not be anybody's here.
+  /// Calls `found(other)` once for each body whose box overlaps this box, which need not be in the
+  /// grid.
   template <class Found>
   void for_each_in(const Box& box, const Found& found) const {
     for_each_overlapping(entry_of(box), -1, found);
   }
 
  private:
-  static constexpr std::int32_t kInABucket = 4;   // two lines of the cache
-  static constexpr double kMostCells = 1000;   // of a box in the grid
+  static constexpr std::int32_t kInABucket = 4;   // two cache lines
+  static constexpr double kMostCells = 1000;   // of a box in the grid; a box of more cells is wide
 
-  // A box in single precision, never smaller: most that share a cell do not overlap, and are told apart without looking further.
+  // A box in single precision, rounded outwards: it separates most boxes that share a cell without
+  // further memory access.
   struct SmallBox {
     float low[3], high[3];
     bool overlaps(const SmallBox& other) const {
@@ -131,7 +139,7 @@ class ActivePairs {
   void for_each_overlapping(const Entry& own, int body, const Found& found) const {
     for (const int other : wide_)
       if (other != body && own.box.overlaps(entry(other).box)) found(other);
-    if (own.is_wide) {   // everybody in cells, once: where its lowest cell is. From the buckets, for entries of others are another thread's affair
+    if (own.is_wide) {   // every body in cells, once: at its lowest cell. Reads the buckets, because entries of other grids belong to other threads
       for (std::size_t head = 0; head <= mask_; ++head)
         for (std::int32_t at = static_cast<std::int32_t>(head); at >= 0; at = buckets_[static_cast<std::size_t>(at)].next)
           for (std::int32_t place = 0; place < buckets_[static_cast<std::size_t>(at)].count; ++place) {
@@ -151,7 +159,7 @@ class ActivePairs {
               const Slot& slot = bucket.slots[static_cast<std::size_t>(place)];
               if (!small.overlaps(slot.box) || slot.body == body) continue;
               const Entry& other = entry(slot.body);
-              // The lowest cell that both touch: also tells apart cells that share a bucket.
+              // The lowest cell that both intersect; this also separates cells that share a bucket.
               const bool here = (i == std::max(own.low[0], other.low[0])) & (j == std::max(own.low[1], other.low[1])) & (k == std::max(own.low[2], other.low[2]));
               if (here && own.box.overlaps(other.box)) found(slot.body);
             }
@@ -171,9 +179,9 @@ class ActivePairs {
 
   double cell_;
   std::uint32_t mask_;
-  std::vector<Bucket, LargePages<Bucket>> buckets_;             // the first mask_ + 1 are heads, the others continue one
-  std::vector<std::int32_t> free_;          // continuations not in use
-  std::unique_ptr<Entries> own_entries_;    // of a grid that shares with nobody
+  std::vector<Bucket, LargePages<Bucket>> buckets_;             // the first mask_ + 1 are heads of chains, the others continue a chain
+  std::vector<std::int32_t> free_;          // unused continuations
+  std::unique_ptr<Entries> own_entries_;    // of a grid that has all bodies
   Entries* entries_;                        // by body
   std::int16_t number_;
   std::vector<int> wide_;                   // ascending

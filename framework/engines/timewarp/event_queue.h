@@ -1,7 +1,9 @@
-/// A queue of events in order of their keys, whose stale items their owner recognises when they come to the front.
+/// A queue of events in order of their keys. The caller recognises stale items when they are at the
+/// front.
 ///
-/// Events lie in bins of time, in no order; only those of the bin that the front is in stand in a heap (four children a node). So most
-/// events are written once and read once, and the heap stays small enough for the nearest memory, however many events wait.
+/// Events are stored in bins of time, unordered; only the events of the front's bin are in a heap
+/// (four children per node). So most events are written once and read once, and the heap stays in
+/// the L1 cache for any number of events.
 /// Source: R. Brown, "Calendar queues", Communications of the ACM 31, 1988.
 #pragma once
 
@@ -18,7 +20,8 @@ namespace tumble::engines {
 template <class Item>
 class EventQueue {
  public:
-  /// @param width  of a bin [s], > 0: some hundred events should fall into one; infinite: one heap for all
+  /// @param width  of a bin [s], > 0: about a hundred events should fall into one; infinite: one
+  ///   heap for all
   explicit EventQueue(double width = std::numeric_limits<double>::infinity()) : per_second_(1.0 / width), bins_(per_second_ > 0 ? kBins : 0) {}
 
   bool empty() const { return size_ == 0; }
@@ -34,7 +37,7 @@ class EventQueue {
     if (heap_.empty()) go_on();
   }
 
-  /// Takes all that waits, in no order. @param work  is called with each
+  /// Removes all items, in any order. @param work  is called with each
   template <class Work>
   void drain(const Work& work) {
     std::vector<Item> all;
@@ -49,7 +52,7 @@ class EventQueue {
     for (const Item& item : all) work(item);
   }
 
-  /// Looks at all that waits, in no order. @param work  is called with each
+  /// Visits all items, in any order. @param work  is called with each
   template <class Work>
   void for_each(const Work& work) const {
     for (const Item& item : heap_) work(item);
@@ -58,7 +61,7 @@ class EventQueue {
       for (const Item& item : bin) work(item);
   }
 
-  /// Places for items that memory is held for.
+  /// Items for which memory is reserved.
   std::size_t held() const {
     std::size_t held = heap_.capacity() + far_.capacity();
     for (const auto* some : {&bins_, &spare_})
@@ -75,13 +78,13 @@ class EventQueue {
   }
 
  private:
-  static constexpr std::size_t kChildren = 4;       // flatter than a binary heap: fewer misses of the cache a pop
+  static constexpr std::size_t kChildren = 4;       // flatter than a binary heap: fewer cache misses per pop
   static constexpr std::int64_t kBins = 4096;
 
-  // Never decreases with time, rounding included: whoever stands in a later bin is later.
+  // Never decreases with time, rounding included: an item in a later bin is later.
   std::int64_t bin_of(double time) const { return static_cast<std::int64_t>(std::min(std::floor(time * per_second_), 4e18)); }
 
-  // To the next bin that holds something.
+  // Advances to the next bin that is not empty.
   void go_on() {
     while (heap_.empty()) {
       if (waiting_near() == 0) current_ = nearest_far() - 1;
@@ -96,7 +99,8 @@ class EventQueue {
     bin.clear();
     if (bin.capacity() > 0) spare_.push_back(std::move(bin));
   }
-  // Bins that are empty hold no memory: the next to hold something has it. Else it would grow for a whole turn of the bins, which may be an hour.
+  // Empty bins hold no memory; the next bin that needs some reuses it. Otherwise memory would grow
+  // for a whole cycle of the bins, which may be an hour of simulated time.
   void put(std::int64_t at, const Item& item) {
     std::vector<Item>& bin = bins_[static_cast<std::size_t>(at % kBins)];
     if (bin.capacity() == 0 && !spare_.empty()) {
@@ -111,7 +115,7 @@ class EventQueue {
     for (const Item& item : far_) nearest = std::min(nearest, bin_of(item.key.time));
     return nearest;
   }
-  // What was too far ahead when it came, twice a turn of the bins; before the first of it could fall due.
+  // Sorts items beyond the cycle into bins, twice per cycle, before the first of them can be due.
   void take_in_far() {
     turn_ = current_ + kBins / 2;
     std::vector<Item> still_far;
@@ -152,11 +156,11 @@ class EventQueue {
   }
 
   double per_second_;
-  std::vector<std::vector<Item>> bins_;   // by bin modulo kBins: (current_, current_ + kBins)
+  std::vector<std::vector<Item>> bins_;   // by bin modulo kBins: the bins in (current_, current_ + kBins)
   std::vector<std::vector<Item>> spare_;  // memory of bins that are empty now
   std::vector<Item> heap_;                // bins up to current_
   std::vector<Item> far_;                 // beyond
-  std::int64_t current_ = 0, turn_ = 0;   // turn_: the bin at which far_ is looked through again
+  std::int64_t current_ = 0, turn_ = 0;   // turn_: the bin at which far_ is scanned again
   std::size_t size_ = 0;
 };
 

@@ -5,7 +5,7 @@
 namespace tumble::engines {
 namespace {
 
-// Around a body whose centre of mass stays between `low` and `high`, up to `bulge` beyond.
+// Box of a body whose centre of mass stays between `low` and `high`, up to `bulge` beyond.
 Box with_margin(double radius, const Vector3d& bulge, const Vector3d& way, const Vector3d& first, const Vector3d& last, const Vector3d& low, const Vector3d& high) {
   const Vector3d margin = bulge + Vector3d::Constant(radius * (1 + kNegligible)) + kNegligible * way + kCoordinateRounding * (first.cwiseAbs() + last.cwiseAbs());
   return {low - margin, high + margin};
@@ -13,11 +13,12 @@ Box with_margin(double radius, const Vector3d& bulge, const Vector3d& way, const
 
 }  // namespace
 
-// A parabola leaves the box of its ends by at most a s^2 / 8; a body that turns stays in the ball around it.
+// A parabola deviates from the box of its end points by at most a s^2 / 8; a rotating body stays in
+// its bounding ball.
 Box swept_box(const FlightWorld& world, int body, const Flight& flight, double from, double to) {
-  if (flight.passage >= 0) {
+  if (flight.segment >= 0) {
     Box way;
-    world.take_in_way(body, flight, from, to, way.low, way.high);
+    world.extend_by_path(body, flight, from, to, way.low, way.high);
     return with_margin(world.radius(body), Vector3d::Zero(), way.high - way.low, way.low, way.high, way.low, way.high);
   }
   const double s = to - from;

@@ -1,4 +1,5 @@
-/// The state queues of timewarp: of every body the flights from global virtual time on, oldest first, in ring buffers.
+/// The state queues of timewarp: the flights of every body from global virtual time on, oldest
+/// first, in ring buffers.
 #pragma once
 
 #include <algorithm>
@@ -11,21 +12,22 @@
 
 namespace tumble::engines {
 
-/// One body's flights. The first is the one that global virtual time lies in, the last the one that its local virtual time lies in.
+/// The flights of one body. The first contains global virtual time, the last its local virtual
+/// time.
 class FlightHistory {
  public:
   std::size_t size() const { return count_; }
-  /// Flights that memory is held for.
+  /// Flights for which memory is reserved.
   std::size_t held() const { return mask_ + 1; }
   const Flight& operator[](std::size_t k) const { return slots_[(first_ + k) & mask_]; }
   const Flight& back() const { return (*this)[count_ - 1]; }
-  /// Place of the flight with this serial; size() where it is gone.
-  std::size_t find(std::uint32_t serial) const {
+  /// Index of the flight with this version; size() where it has been dropped.
+  std::size_t find(std::uint32_t version) const {
     for (std::size_t k = count_; k-- > 0;)
-      if ((*this)[k].serial == serial) return k;
+      if ((*this)[k].version == version) return k;
     return count_;
   }
-  /// Place of the flight that the body is on at time t. @pre the first flight began at t or before
+  /// Index of the flight at time t. @pre the first flight began at t or before
   std::size_t at(double t) const {
     std::size_t k = count_ - 1;
     while (k > 0 && (*this)[k].begin > t) --k;
@@ -38,7 +40,7 @@ class FlightHistory {
   std::size_t first_ = 0, count_ = 0, mask_ = 0;
 };
 
-/// Two bodies' flights may be pushed and dropped by two threads.
+/// Two threads may push and drop the flights of two bodies concurrently.
 class FlightHistories {
  public:
   explicit FlightHistories(std::size_t bodies) : histories_(bodies), grown_(bodies), slab_(bodies * kFirstSlots) {
@@ -50,7 +52,7 @@ class FlightHistories {
 
   const FlightHistory& operator[](int body) const { return histories_[static_cast<std::size_t>(body)]; }
 
-  /// Begins to bring a body's flights from memory.
+  /// Prefetches the flights of a body.
   void fetch(int body) const {
     __builtin_prefetch(&histories_[static_cast<std::size_t>(body)]);
     const char* slots = reinterpret_cast<const char*>(&slab_[static_cast<std::size_t>(body) * kFirstSlots]);
@@ -64,11 +66,12 @@ class FlightHistories {
   }
   /// Drops the last flight: a rollback.
   void pop(int body) { --histories_[static_cast<std::size_t>(body)].count_; }
-  /// Drops flights that ended before t: nothing before global virtual time is asked for again.
+  /// Drops flights that ended before t (fossil collection): nothing before global virtual time is
+  /// queried again.
   void purge(int body, double t) {
     purge(body, t, [](const Flight&) {});
   }
-  /// Calls `purged(flight)` of each.
+  /// Calls `purged(flight)` for each.
   template <class Purged>
   void purge(int body, double t, const Purged& purged) {
     FlightHistory& history = histories_[static_cast<std::size_t>(body)];
@@ -77,7 +80,8 @@ class FlightHistories {
       history.first_ = (history.first_ + 1) & history.mask_;
       --history.count_;
     }
-    // A quarter full: who once flew much in a short time need not hold the memory for good.
+    // At a quarter of its capacity the buffer is halved: a burst of events does not reserve memory
+    // for the rest of the run.
     if (history.mask_ + 1 > kFirstSlots && 4 * history.count_ <= history.mask_ + 1) resize(static_cast<std::size_t>(body), std::max(kFirstSlots, (history.mask_ + 1) / 2));
   }
 

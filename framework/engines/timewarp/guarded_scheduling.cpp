@@ -11,7 +11,7 @@
 namespace tumble::engines {
 namespace {
 
-// Calls a decision; `problem_of` says what is wrong with its answer, empty where it can be followed.
+// Calls a decision; `problem_of` describes what makes its answer unusable, empty for a usable one.
 template <class Function, class ProblemOf>
 void guard(Function& function, const char* name, const std::string& source, const ProblemOf& problem_of) {
   function = [inner = function, name, source, problem_of](const auto&... arguments) {

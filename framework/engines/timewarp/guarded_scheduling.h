@@ -1,4 +1,4 @@
-/// A scheduler's decisions that stop a run, with words, where an answer cannot be followed at all.
+/// A scheduler's decisions with checks that stop a run, with a message, at an unusable answer.
 #pragma once
 
 #include <string>
@@ -7,9 +7,9 @@
 
 namespace tumble::engines {
 
-/// The same decisions; each throws StoppedRun where it fails, or answers what is no time and no body. What is merely wrong passes: it
-/// shows in what is committed.
-/// @param source  who wrote them, for the words
+/// The same decisions; each throws StoppedRun where it fails or answers with an invalid time or
+/// body. An answer that is only wrong passes: it shows in the committed trace.
+/// @param source  the author, for messages
 Scheduling guarded(const Scheduling& scheduling, const std::string& source);
 
 }  // namespace tumble::engines

@@ -1,8 +1,8 @@
-// What a tree without solutions links: no scheduler but the one that a student writes.
+// For a tree without solutions: the only scheduler is a student's.
 #include "framework/engines/timewarp/fast_timewarp.h"
 
 namespace tumble::engines {
 
-Engine fast_timewarp(VirtualTimes*, const RollbackWatch*) { return {}; }
+Engine fast_timewarp(VirtualTimes*, const RollbackCheck*) { return {}; }
 
 }  // namespace tumble::engines

@@ -13,17 +13,17 @@ constexpr std::int32_t kSomeWall = -1;
 }  // namespace
 
 GroupFinding look_at_group(const FlightRun& run, int body, const Flight& flight, double safe_time, double to) {
-  Processes& processes = *run.world().processes();
+  LogicalProcesses& processes = *run.world().processes();
   GroupFinding finding;
-  const std::vector<BodyPair> ties = processes.ties_of(processes.passages().start(flight.passage));
+  const std::vector<BodyPair> ties = processes.ties_of(processes.segments().start(flight.segment));
   finding.end = run.own_end(body, flight, to);
-  if (finding.end && finding.end->time < safe_time) finding.end.reset();   // somebody did not want to know
+  if (finding.end && finding.end->time < safe_time) finding.end.reset();   // the scheduler skipped this interval
   if (!finding.end) {
     for (const auto& [a, b] : ties) finding.contacts.push_back({a, b, kInfinity});
     return finding;
   }
-  // What holds from then on, and what held only until then.
-  const PassageEnd& end = *processes.passages().end_by(flight.passage, to);
+  // The contacts from then on, and the contacts until then.
+  const SegmentEnd& end = *processes.segments().end_by(flight.segment, to);
   const std::vector<BodyPair> stays = processes.ties_of(end.after);
   for (const auto& [a, b] : stays) finding.contacts.push_back({a, b, kInfinity});
   for (const BodyPair& tie : ties)
@@ -36,21 +36,21 @@ std::vector<GroupContact> contacts_of(const FlightWorld& world, const std::vecto
   std::vector<GroupContact> contacts;
   std::vector<int> seen;
   for (const BegunFlight& flight : begun) {
-    const int passage = flight.flight.passage;
-    if (passage < 0 || std::find(seen.begin(), seen.end(), passage) != seen.end()) continue;
-    seen.push_back(passage);
-    for (const auto& [a, b] : world.processes()->ties_of(world.processes()->passages().start(passage))) contacts.push_back({a, b, kInfinity});
+    const int segment = flight.flight.segment;
+    if (segment < 0 || std::find(seen.begin(), seen.end(), segment) != seen.end()) continue;
+    seen.push_back(segment);
+    for (const auto& [a, b] : world.processes()->ties_of(world.processes()->segments().start(segment))) contacts.push_back({a, b, kInfinity});
   }
   return contacts;
 }
 
 Groups groups_of(const std::vector<BegunFlight>& begun) {
-  std::map<int, std::vector<std::int32_t>> members;   // by passage
+  std::map<int, std::vector<std::int32_t>> members;   // by segment
   Groups groups;
   for (const BegunFlight& flight : begun)
-    if (flight.flight.passage >= 0) members[flight.flight.passage].push_back(flight.body);
+    if (flight.flight.segment >= 0) members[flight.flight.segment].push_back(flight.body);
     else groups.push_back({flight.body});
-  for (auto& [passage, bodies] : members) {
+  for (auto& [segment, bodies] : members) {
     std::sort(bodies.begin(), bodies.end());
     groups.push_back(std::move(bodies));
   }
@@ -58,7 +58,7 @@ Groups groups_of(const std::vector<BegunFlight>& begun) {
   return groups;
 }
 
-std::string told(const FlightWorld& world, const Groups& groups) {
+std::string in_words(const FlightWorld& world, const Groups& groups) {
   std::string text;
   for (const std::vector<std::int32_t>& group : groups) {
     text += text.empty() ? "{" : " {";

@@ -1,4 +1,5 @@
-/// What the teaching timewarp tells a scheduler of contact groups: what holds the members together, when that ends, what they become.
+/// Contact groups as the teaching timewarp shows them to a scheduler: what holds the members
+/// together, when that ends, and the resulting groups.
 #pragma once
 
 #include <optional>
@@ -11,24 +12,25 @@ namespace tumble::engines {
 
 using Groups = std::vector<std::vector<std::int32_t>>;
 
-/// What was found for a group check.
+/// Result of the search for a group check.
 struct GroupFinding {
   std::vector<GroupContact> contacts;
-  std::optional<EventKey> end;    // the first thing that happens within the group; nothing: all stays as it is
+  std::optional<EventStamp> end;    // the first event within the group; nothing: no change
 };
 
-/// Looks at [safe_time, to] for the group of a flight on a passage, whose first member is `body`. Links and touches are contacts alike: a
-/// link never opens. What happens within the group without anybody parting (members or a wall meet, touch, or let go of a wall) opens
-/// a contact with a wall, -1 where there is none: the group goes on, from there, as it was.
+/// Searches [safe_time, to] for changes in the group of a flight on a segment, whose first member
+/// is `body`. Links and contacts both count as contacts; a link never opens. An event within the
+/// group that separates no body (members or a wall collide, touch, or lose contact with a wall)
+/// opens a contact with a wall, -1 where there is none: the group continues from there unchanged.
 GroupFinding look_at_group(const FlightRun& run, int body, const Flight& flight, double safe_time, double to);
 
-/// The contacts that hold what these flights begin together, none of which opens.
+/// The contacts that hold together what these flights begin; none of them opens.
 std::vector<GroupContact> contacts_of(const FlightWorld& world, const std::vector<BegunFlight>& begun);
 
-/// The groups that these flights make of their bodies: by lowest member, each ascending.
+/// The groups of bodies of these flights: by lowest member, each ascending.
 Groups groups_of(const std::vector<BegunFlight>& begun);
 
 /// "{1, 2} {3}", with names.
-std::string told(const FlightWorld& world, const Groups& groups);
+std::string in_words(const FlightWorld& world, const Groups& groups);
 
 }  // namespace tumble::engines

@@ -1,4 +1,4 @@
-/// The event queue of the teaching timewarp: in the order that a scheduler says, whatever order that is.
+/// The event queue of the teaching timewarp: in the scheduler's order, whatever that is.
 #pragma once
 
 #include <algorithm>
@@ -11,18 +11,19 @@
 
 namespace tumble::engines {
 
-/// Events by number. One that is in the queue waits for its turn; one that is parked or has been popped is kept, and waits for nothing.
+/// Events by index. A queued event waits for its turn; a parked or popped event is kept, and does
+/// not wait.
 class TaughtQueue {
  public:
   explicit TaughtQueue(std::function<bool(const Stamp&, const Stamp&)> comes_before) : comes_before_(std::move(comes_before)) {}
 
-  /// @return its number
+  /// @return its index
   int add(const ScheduledEvent& event) {
     const int id = next_id_++;
     put(id, event);
     return id;
   }
-  /// Puts an event in, with new times, or where it was: what stood for it in the heap is stale then.
+  /// Queues an event with new times, or again: its earlier item in the heap becomes stale.
   void put(int id, const ScheduledEvent& event) {
     Entry& entry = entries_[id];
     entry.event = event;
@@ -32,14 +33,14 @@ class TaughtQueue {
   void park(int id) { ++entries_.at(id).version; }
   void remove(int id) { entries_.erase(id); }
   const ScheduledEvent& event(int id) const { return entries_.at(id).event; }
-  /// Of all events, popped and parked ones too; ascending.
+  /// Of all events, with popped and parked ones; ascending.
   std::vector<int> ids() const {
     std::vector<int> ids;
     for (const auto& [id, entry] : entries_) ids.push_back(id);
     return ids;
   }
 
-  /// The front, which is not in the queue any more, but kept; nothing where the queue is empty.
+  /// Removes the front from the queue but keeps the event; nothing where the queue is empty.
   std::optional<int> pop() {
     while (!heap_.empty()) {
       std::pop_heap(heap_.begin(), heap_.end(), later());
@@ -61,7 +62,8 @@ class TaughtQueue {
     int id;
     unsigned version;
   };
-  // The standard heap keeps the largest in front. An order that is none makes it pop in a wrong order, and nothing worse.
+  // The standard heap has the largest item in front. With an order that is not a strict weak order
+  // it only pops in a wrong order.
   std::function<bool(const Item&, const Item&)> later() const {
     return [this](const Item& x, const Item& y) { return comes_before_(y.stamp, x.stamp); };
   }

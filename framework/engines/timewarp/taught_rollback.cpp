@@ -1,4 +1,4 @@
-// What is taken back, and what is committed. Part of TaughtTimewarp.
+// Rollback and commit. Part of TaughtTimewarp.
 #include "framework/engines/timewarp/taught_run.h"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace tumble::engines {
 namespace {
 
-constexpr std::size_t kWorthPurging = 6;          // states of a body: fewer are not worth the question
+constexpr std::size_t kWorthPurging = 6;          // states of a body: with fewer the scheduler is not called
 
 }  // namespace
 
@@ -18,18 +18,18 @@ void TaughtTimewarp::roll_back(const std::vector<Rollback>& first, const std::st
   std::vector<Effect> effects;
   for (const Executed& executed : executed_) effects.push_back(executed.effect);
   const std::vector<Rollback> plan = decide_.plan_rollback(effects, first);
-  // A process goes back once: a longer plan would take its length times the queue's to follow.
+  // A process is rolled back once: a longer plan would cost its length times the queue's.
   if (plan.size() > first.size() + static_cast<std::size_t>(world().size()))
-    throw StoppedRun(fmt::format("{}, and plan_rollback sends back {} processes of {}", why, plan.size(), world().size()));
+    throw StoppedRun(fmt::format("{}, and plan_rollback rolls back {} processes of {}", why, plan.size(), world().size()));
   for (const Rollback& rollback : plan) {
     if (rollback.body < 0 || rollback.body >= world().size() || !world().can_move(rollback.body))
-      throw StoppedRun(fmt::format("{}, and plan_rollback sends back {}, which is no process", why, name(rollback.body)));
+      throw StoppedRun(fmt::format("{}, and plan_rollback rolls back {}, which is no process", why, name(rollback.body)));
     roll_back_one(rollback, why);
   }
   std::erase_if(executed_, [&](const Executed& executed) {
-    const bool is_gone = executed.taken_back.size() == executed.effect.processes.size();
+    const bool is_gone = executed.rolled_back.size() == executed.effect.processes.size();
     if (is_gone && executed.effect.processes.size() > 1) ++run_.counters.anti_messages;
-    if (is_gone && executed.key.kind == EventClass::kCallback) expect_callback(executed.key);
+    if (is_gone && executed.key.kind == StampKind::kCallback) expect_callback(executed.key);
     return is_gone;
   });
   for (const int id : queue_.ids()) {
@@ -47,11 +47,11 @@ void TaughtTimewarp::roll_back(const std::vector<Rollback>& first, const std::st
 }
 
 void TaughtTimewarp::roll_back_one(const Rollback& rollback, const std::string& why) {
-  TaughtProcess& back = process(rollback.body);
+  TaughtLogicalProcess& back = process(rollback.body);
   const double from = back.local_time(), to = rollback.stamp.time;
-  if (to > from) return;   // it has not come so far
+  if (to > from) return;   // it has not advanced to that time
   if (to < committed_.time)
-    throw StoppedRun(fmt::format("{}: {} has to go back to t = {:.9g} s, and what happened up to {:.9g} s is committed. Likely: global virtual time is too late, or may_commit lets through what is not certain", why, name(rollback.body), to, committed_.time));
+    throw StoppedRun(fmt::format("{}: {} must be rolled back to t = {:.9g} s, but everything up to {:.9g} s is committed. Likely: global virtual time is too late, or may_commit accepts what is not certain", why, name(rollback.body), to, committed_.time));
   const auto is_undone = [&](const KeptState& state) {
     if (state.time > to) return true;
     const bool is_from_the_start = state.began.body_a < 0;
@@ -60,7 +60,7 @@ void TaughtTimewarp::roll_back_one(const Rollback& rollback, const std::string& 
   std::size_t dropped = 0;
   while (!back.states().empty() && is_undone(back.states().back())) {
     if (back.states().size() == 1)
-      throw StoppedRun(fmt::format("{}: {} has to go back to t = {:.9g} s, and no state from before is left: the earliest is that of {:.9g} s, with global virtual time at {:.9g} s. Likely: too many were purged (states_to_purge), or global virtual time is "
+      throw StoppedRun(fmt::format("{}: {} must be rolled back to t = {:.9g} s, but no earlier state is left: the earliest is that of {:.9g} s, with global virtual time at {:.9g} s. Likely: too many were purged (states_to_purge), or global virtual time is "
                                    "too late",
                                    why, name(rollback.body), to, back.states().front().time, gvt_));
     back.drop_latest();
@@ -69,7 +69,7 @@ void TaughtTimewarp::roll_back_one(const Rollback& rollback, const std::string& 
   if (back.local_time() < to) back.integrate_to(to);
   for (Executed& executed : executed_) {
     const auto& processes = executed.effect.processes;
-    if (std::find(processes.begin(), processes.end(), rollback.body) != processes.end() && !decide_.comes_before(executed.effect.stamp, rollback.stamp)) executed.taken_back.insert(rollback.body);
+    if (std::find(processes.begin(), processes.end(), rollback.body) != processes.end() && !decide_.comes_before(executed.effect.stamp, rollback.stamp)) executed.rolled_back.insert(rollback.body);
   }
   if (dropped == 0) return;
   ++run_.counters.rollbacks;
@@ -84,7 +84,7 @@ void TaughtTimewarp::look_at_gvt(bool is_over) {
   std::vector<ScheduledEvent> events;
   for (const int id : queue_.ids()) events.push_back(queue_.event(id));
   const double gvt = is_over ? kInfinity : decide_.global_virtual_time(local_times(), events);
-  if (gvt < gvt_) throw StoppedRun(fmt::format("global virtual time falls from {:.9g} to {:.9g} s: what is certain stays certain. Likely: it had been too late, for want of a local time or a safe time", gvt_, gvt));
+  if (gvt < gvt_) throw StoppedRun(fmt::format("global virtual time falls from {:.9g} to {:.9g} s: it must never fall. Likely: it was too late before, because a local time or a safe time was left out", gvt_, gvt));
   if (!(gvt > gvt_)) return;
   gvt_ = gvt;
   since_gvt_ = 0;
@@ -92,15 +92,16 @@ void TaughtTimewarp::look_at_gvt(bool is_over) {
   commit();
   if (!is_over) return purge();
   const double left = run_.next_frame();
-  if (!executed_.empty() || left <= run_.duration()) throw StoppedRun(fmt::format("the run is over, and may_commit refuses {} for good", executed_.empty() ? fmt::format("the frame at t = {:.9g} s", left) : name(executed_.front().key)));
+  if (!executed_.empty() || left <= run_.duration()) throw StoppedRun(fmt::format("the run is over, but may_commit still refuses {}", executed_.empty() ? fmt::format("the frame at t = {:.9g} s", left) : name(executed_.front().key)));
 }
 
 void TaughtTimewarp::commit() {
-  // Insertion: bears an order that is none, and asks little where things came in order.
+  // Insertion sort: it tolerates an order that is not a strict weak order, and is fast where events
+  // are almost sorted.
   for (std::size_t k = 1; k < executed_.size(); ++k)
     for (std::size_t i = k; i > 0 && decide_.comes_before(executed_[i].effect.stamp, executed_[i - 1].effect.stamp); --i) std::swap(executed_[i], executed_[i - 1]);
   for (;;) {
-    const Stamp frame{run_.next_frame(), kLastGeneration, WorkKind::kRedraw, -1, -1};
+    const Stamp frame{run_.next_frame(), kLastMicrostep, WorkKind::kRedraw, -1, -1};
     const bool has_frame = frame.time <= drawn_until_, has_impact = !executed_.empty();
     if (!has_frame && !has_impact) return;
     const bool is_frame = has_frame && (!has_impact || decide_.comes_before(frame, executed_.front().effect.stamp));
@@ -116,11 +117,11 @@ void TaughtTimewarp::commit() {
 
 void TaughtTimewarp::commit_event() {
   const Executed executed = executed_.front();
-  const EventKey& key = executed.key;
-  if (!executed.taken_back.empty()) throw StoppedRun(fmt::format("{} was about to be committed, and not all that took part in it were sent back over it: the anti-message to the others is missing", name(key)));
+  const EventStamp& key = executed.key;
+  if (!executed.rolled_back.empty()) throw StoppedRun(fmt::format("{} was about to be committed, but only some of its processes were rolled back past it: the anti-message to the others is missing", name(key)));
   const bool is_later = committed_.time < key.time || (committed_.time == key.time && committed_.kind != WorkKind::kRedraw && committed_key_ < key);
   if (!is_later)
-    throw StoppedRun(fmt::format("{} was to be committed after something at {:.9g} s: comes_before has them out of their order, or it came too late, because global virtual time or may_commit had let through what was not certain", name(key), committed_.time));
+    throw StoppedRun(fmt::format("{} was about to be committed after an event at {:.9g} s: comes_before orders them wrongly, or it came too late because global virtual time or may_commit accepted what was not certain", name(key), committed_.time));
   if (executed.is_silent) run_.pass(key);
   else run_.commit(key, executed.first, executed.more);
   committed_key_ = key;
@@ -130,7 +131,7 @@ void TaughtTimewarp::commit_event() {
 void TaughtTimewarp::commit_frame() {
   const double t = run_.next_frame();
   for (const int body : world().movers())
-    if (process(body).at(t) == nullptr) throw StoppedRun(fmt::format("the frame at t = {:.9g} s cannot be drawn: {} has no state from so early any more. Likely: too many were purged (states_to_purge), or may_commit refused the frame too long", t, name(body)));
+    if (process(body).at(t) == nullptr) throw StoppedRun(fmt::format("the frame at t = {:.9g} s cannot be drawn: {} has no state that early. Likely: too many were purged (states_to_purge), or may_commit refused the frame too long", t, name(body)));
   run_.commit_frame([&](int body) -> const Flight& { return world().can_move(body) ? process(body).at(t)->flight : world().first_flight(body); });
 }
 
@@ -141,12 +142,12 @@ void TaughtTimewarp::purge() {
     kept += count;
     if (count < kWorthPurging) continue;
     const std::size_t purged = decide_.states_to_purge(process(body).times(), gvt_);
-    if (purged >= count) throw StoppedRun(fmt::format("states_to_purge gives away {} of the {} states of {}: none is left to go on from", purged, count, name(body)));
+    if (purged >= count) throw StoppedRun(fmt::format("states_to_purge discards {} of the {} states of {}: none is left to continue from", purged, count, name(body)));
     if (purged == 0) continue;
     process(body).drop_oldest(purged);
     drop_pairs_of(body);
   }
-  if (world().processes()) world().processes()->passages().forget_before(gvt_);
+  if (world().processes()) world().processes()->segments().forget_before(gvt_);
   run_.counters.states_kept = std::max(run_.counters.states_kept, kept);
 }
 

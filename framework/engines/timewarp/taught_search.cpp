@@ -12,9 +12,9 @@ namespace {
 
 }  // namespace
 
-Stamp stamp_of(const EventKey& key) {
-  const WorkKind kind = key.kind == EventClass::kCallback ? WorkKind::kCallback : key.kind == EventClass::kProcess ? WorkKind::kGroup : WorkKind::kCollision;
-  return {key.time, key.generation, kind, key.body_a, key.body_b};
+Stamp stamp_of(const EventStamp& key) {
+  const WorkKind kind = key.kind == StampKind::kCallback ? WorkKind::kCallback : key.kind == StampKind::kProcess ? WorkKind::kGroup : WorkKind::kCollision;
+  return {key.time, key.microstep, kind, key.body_a, key.body_b};
 }
 
 std::vector<std::int32_t> bodies_that_move_with(const FlightWorld& world, const std::vector<BegunFlight>& flights) {
@@ -27,21 +27,21 @@ std::vector<std::int32_t> bodies_that_move_with(const FlightWorld& world, const 
   return bodies;
 }
 
-std::optional<FoundImpact> find_impact(FlightRun& run, const TaughtProcess& of_a, const TaughtProcess& of_b, double from, double to) {
+std::optional<FoundImpact> find_impact(FlightRun& run, const TaughtLogicalProcess& of_a, const TaughtLogicalProcess& of_b, double from, double to) {
   const FlightWorld& world = run.world();
   const int a = of_a.body(), b = of_b.body();
-  // The flights of a body: states of the same serial are one.
+  // The flights of a body: states of one version belong to one flight.
   struct Part {
     Flight flight;
     double end;                        // [s]
-    std::optional<EventKey> end_key;   // of what ended it
+    std::optional<EventStamp> end_key;   // the event that ended it
   };
-  const auto parts_of = [&](const TaughtProcess& process) {
+  const auto parts_of = [&](const TaughtLogicalProcess& process) {
     const int body = process.body();
     std::vector<Part> parts;
     if (!world.can_move(body)) return std::vector<Part>{{world.first_flight(body), kInfinity, std::nullopt}};
     for (const KeptState& state : process.states()) {
-      if (!parts.empty() && parts.back().flight.serial == state.flight.serial) continue;
+      if (!parts.empty() && parts.back().flight.version == state.flight.version) continue;
       if (!parts.empty()) {
         parts.back().end = state.flight.begin;
         parts.back().end_key = state.began;
@@ -57,10 +57,10 @@ std::optional<FoundImpact> find_impact(FlightRun& run, const TaughtProcess& of_a
       if (low > high) continue;
       const double time = run.impacts().first_impact(a, f.flight, b, g.flight, low, high, run.cost);
       if (!(time >= low && time <= high)) continue;
-      const EventKey key = key_of_impact(a, f.flight, b, g.flight, time);
-      // One of them had been hit before, or this very impact was worked at.
+      const EventStamp key = key_of_impact(a, f.flight, b, g.flight, time);
+      // One of them was hit earlier, or this very impact has been executed.
       if ((f.end_key && !(key < *f.end_key)) || (g.end_key && !(key < *g.end_key))) continue;
-      if (!first || key < first->key) first = FoundImpact{key, f.flight.serial, g.flight.serial, bodies_that_move_with(world, {{a, f.flight}, {b, g.flight}})};
+      if (!first || key < first->key) first = FoundImpact{key, f.flight.version, g.flight.version, bodies_that_move_with(world, {{a, f.flight}, {b, g.flight}})};
     }
   return first;
 }
@@ -71,7 +71,7 @@ CheckFinding closeness(const FlightWorld& world, int a, const Flight& f, int b, 
   const collision::MotionState x = world.motion_at(a, f, at_a), y = world.motion_at(b, g, at_b);
   const collision::MotionBounds of_a = world.bounds(a, f, at_a), of_b = world.bounds(b, g, at_b);
   finding.gap = std::max(0.0, collision::compute_gap(world.shape(a), x.pose, world.shape(b), y.pose).distance);
-  const auto turning = [&](int body, double rate) { return rate > 0 ? rate * world.radius(body) : 0.0; };   // a half-space has no radius, and does not turn
+  const auto turning = [&](int body, double rate) { return rate > 0 ? rate * world.radius(body) : 0.0; };   // a half-space has no radius and does not rotate
   finding.closing_speed = (x.velocity_world - y.velocity_world).norm() + turning(a, of_a.angular_speed) + turning(b, of_b.angular_speed);
   finding.closing_acceleration = (of_a.acceleration_world - of_b.acceleration_world).norm() + of_a.acceleration_deviation + of_b.acceleration_deviation +
                                  turning(a, of_a.angular_speed * of_a.angular_speed + of_a.angular_acceleration) + turning(b, of_b.angular_speed * of_b.angular_speed + of_b.angular_acceleration);

@@ -1,30 +1,32 @@
-/// What the teaching timewarp finds out for a collision check, before a scheduler decides on it.
+/// The search of the teaching timewarp for a collision check, before a scheduler decides on it.
 #pragma once
 
 #include <optional>
 
 #include "framework/dynamics/scheduling.h"
 #include "framework/engines/events/flight_run.h"
-#include "framework/engines/timewarp/taught_process.h"
+#include "framework/engines/timewarp/taught_logical_process.h"
 
 namespace tumble::engines {
 
 struct FoundImpact {
-  EventKey key;
-  std::uint32_t serial_a, serial_b;   // of the flights that meet
-  std::vector<std::int32_t> processes;   // bodies that move with either then, ascending; walls are none
+  EventStamp key;
+  std::uint32_t version_a, version_b;   // of the flights that meet
+  std::vector<std::int32_t> processes;   // bodies of both islands at that time, ascending; without walls
 };
 
-/// The earliest impact of a pair in [from, to], on the flights that both have now, that nobody has worked at.
-std::optional<FoundImpact> find_impact(FlightRun& run, const TaughtProcess& of_a, const TaughtProcess& of_b, double from, double to);
+/// The earliest impact of a pair in [from, to], on the current flights of both, that has not been
+/// executed.
+std::optional<FoundImpact> find_impact(FlightRun& run, const TaughtLogicalProcess& of_a, const TaughtLogicalProcess& of_b, double from, double to);
 
-/// How far two bodies are apart at t, and bounds on how fast that changes; `contact` is left empty.
+/// The gap of two bodies at t, and bounds on its rate; `contact` is left empty.
 CheckFinding closeness(const FlightWorld& world, int a, const Flight& f, int b, const Flight& g, double t);
 
-/// These bodies and those that move with them on these flights, ascending, each once; walls are none.
+/// These bodies and the members of their islands on these flights, ascending, each once; without
+/// walls.
 std::vector<std::int32_t> bodies_that_move_with(const FlightWorld& world, const std::vector<BegunFlight>& flights);
 
-/// An event as schedulers know it.
-Stamp stamp_of(const EventKey& key);
+/// The stamp of an event as schedulers see it.
+Stamp stamp_of(const EventStamp& key);
 
 }  // namespace tumble::engines

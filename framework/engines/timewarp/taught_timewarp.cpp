@@ -11,8 +11,8 @@
 namespace tumble::engines {
 namespace {
 
-constexpr std::size_t kFewProcesses = 4;          // so few, and global virtual time is asked for after every event; else once an event and process
-constexpr std::size_t kMostEventsAtOneGvt = 20000;   // before a run is stopped in which nothing becomes certain
+constexpr std::size_t kFewProcesses = 4;          // with at most this number global virtual time is computed after every event; with more, once per as many events as processes
+constexpr std::size_t kMostEventsAtOneGvt = 20000;   // after which a run in which nothing becomes certain is stopped
 
 }  // namespace
 
@@ -44,16 +44,16 @@ void TaughtTimewarp::run() {
 
 void TaughtTimewarp::loop() {
   keep_group_checks();
-  for (const EventKey& callback : run_.callbacks()) expect_callback(callback);
-  queue_.add({{0.0, kLastGeneration, WorkKind::kRedraw, -1, -1}, kInfinity, {}});
+  for (const EventStamp& callback : run_.callbacks()) expect_callback(callback);
+  queue_.add({{0.0, kLastMicrostep, WorkKind::kRedraw, -1, -1}, kInfinity, {}});
   while (const std::optional<int> id = queue_.pop()) {
     if (queue_.event(*id).stamp.time > run_.duration()) {
-      queue_.park(*id);   // a rollback may bring it back
+      queue_.park(*id);   // a rollback may restore it
       continue;
     }
     work_at(*id);
     if (++since_gvt_ > kMostEventsAtOneGvt)
-      throw StoppedRun(fmt::format("{} events were worked at and global virtual time still stands at {:.9g} s. Likely: it is not the least of all local times and safe times, or a check comes back at a time at which it was", kMostEventsAtOneGvt, gvt_));
+      throw StoppedRun(fmt::format("{} events were executed and global virtual time still stands at {:.9g} s. Likely: it is not the least of all local times and safe times, or a check returns to the queue at a time at which it was already", kMostEventsAtOneGvt, gvt_));
     if (++since_asked_ >= (world().movers().size() <= kFewProcesses ? 1 : world().movers().size())) look_at_gvt(false);
   }
   look_at_gvt(true);
@@ -71,24 +71,25 @@ void TaughtTimewarp::work_at(int id) {
   check(id);
 }
 
-// Positions are copied when the frame is committed; here everybody has come to its time. The last redraw, at the end, shows nothing of its own.
+// Positions are copied when the frame is committed; here every process has reached its time. The
+// last redraw, at the end, is not a frame.
 void TaughtTimewarp::redraw(int id) {
   const double t = queue_.event(id).stamp.time;
   drawn_until_ = std::max(drawn_until_, t);
   queue_.remove(id);
   if (t >= run_.duration()) return;
   const double next = static_cast<double>(++next_redraw_) / rate_;
-  queue_.add({{std::min(next, run_.duration()), kLastGeneration, WorkKind::kRedraw, -1, -1}, kInfinity, {}});
+  queue_.add({{std::min(next, run_.duration()), kLastMicrostep, WorkKind::kRedraw, -1, -1}, kInfinity, {}});
 }
 
 const KeptState& TaughtTimewarp::state_at(int body, double t) {
   if (const KeptState* state = process(body).at(t)) return *state;
-  throw StoppedRun(fmt::format("{} is asked for at t = {:.9g} s, and its earliest state is that of {:.9g} s, with global virtual time at {:.9g} s. Likely: too many were purged (states_to_purge), a check is due at a time long gone, or global virtual time is too late",
+  throw StoppedRun(fmt::format("{} is needed at t = {:.9g} s, but its earliest state is that of {:.9g} s, with global virtual time at {:.9g} s. Likely: too many were purged (states_to_purge), a check is due at a time before it, or global virtual time is too late",
                                name(body), t, process(body).states().front().time, gvt_));
 }
 
-// Every passage has been let go of with the last state that named it, or is let go of now; and every group check is of a passage that
-// somebody is on.
+// Every segment has been released with the last state that named it, or is released now; and every
+// group check belongs to a current segment.
 void TaughtTimewarp::check_nothing_leaked() {
   keep_group_checks();
   const auto checks = [&] {
@@ -98,7 +99,7 @@ void TaughtTimewarp::check_nothing_leaked() {
   require(checks() == groups_.size(), "no group check outlives its group");
   if (!world().processes()) return;
   for (const int body : world().movers()) process(body).drop_oldest(process(body).states().size());
-  require(world().processes()->passages().alive() == 0, "no passage outlives its states");
+  require(world().processes()->segments().alive() == 0, "no segment outlives its states");
 }
 
 // ---- A collision check -------------------------------------------------------------------------------------------------
@@ -106,7 +107,7 @@ void TaughtTimewarp::check_nothing_leaked() {
 void TaughtTimewarp::check(int id) {
   ScheduledEvent event = queue_.event(id);
   const int a = event.stamp.body_a, b = event.stamp.body_b;
-  for (const int body : event.receivers) state_at(body, std::min(event.safe_time, event.stamp.time));   // or the run stops here
+  for (const int body : event.receivers) state_at(body, std::min(event.safe_time, event.stamp.time));   // stops the run where a state is missing
   ++run_.counters.pair_checks;
   const double t = event.stamp.time;
   const std::optional<FoundImpact> found = find_impact(run_, process(a), process(b), event.safe_time, t);
@@ -117,10 +118,10 @@ void TaughtTimewarp::check(int id) {
     event.receivers = found->processes;
   }
   const CheckDecision decision = decide_.on_collision_check(event, finding, run_.step());
-  if (decision.collides && !found) throw StoppedRun(fmt::format("on_collision_check says that {} and {} collide, and nothing was found in [{:.9g}, {:.9g}] s", name(a), name(b), event.safe_time, event.stamp.time));
+  if (decision.collides && !found) throw StoppedRun(fmt::format("on_collision_check says that {} and {} collide, but no impact was found in [{:.9g}, {:.9g}] s", name(a), name(b), event.safe_time, event.stamp.time));
   if (decision.collides) collide(id, *found, decision);
   const auto pair = pairs_.find({a, b});
-  if (pair == pairs_.end() || pair->second != id) return;   // their boxes parted meanwhile
+  if (pair == pairs_.end() || pair->second != id) return;   // their boxes have separated
   event.safe_time = decision.next.safe_time;
   event.stamp.time = decision.next.stamp.time;
   event.receivers = bodies_that_move_with(world(), {{a, flight_of(a)}, {b, flight_of(b)}});
@@ -138,7 +139,8 @@ void TaughtTimewarp::step_to(int body, double to) {
   find_pairs(body, from);
 }
 
-// A pair whose boxes begin to overlap gets a check. Before the step that made them overlap, and beyond what the other has swept, nothing is known.
+// A pair whose boxes begin to overlap gets a check. It starts at the step that made them overlap:
+// nothing is known from there, and beyond the other's swept box.
 void TaughtTimewarp::find_pairs(int body, double from) {
   const Box own = box(body);
   for (int other = 0; other < world().size(); ++other) {

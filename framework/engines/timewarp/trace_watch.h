@@ -1,4 +1,5 @@
-/// The judge of a scheduler: what it commits, compared with the ordered reference as it is committed, to the last bit.
+/// The judge of a scheduler: compares what it commits with the ordered reference at each commit, to
+/// the last bit.
 #pragma once
 
 #include <string>
@@ -7,11 +8,12 @@
 
 namespace tumble::engines {
 
-/// Passes a run on, and stops it (StoppedRun) at the first event or frame that is not the reference's: expected, found, and what that
-/// points to.
+/// Passes a run on, and stops it (StoppedRun) at the first event or frame that differs from the
+/// reference's, with expected, found, and the likely error.
 class TraceWatch final : public TrajectorySink {
  public:
-  /// @param reference  the ordered run of the scene; what it did not reach is not judged. Must outlive this
+  /// @param reference  the ordered run of the scene; times that it did not reach are not judged.
+  ///   Must outlive this
   TraceWatch(TrajectorySink& sink, const Trajectory& reference) : sink_(sink), reference_(reference) {}
 
   void begin(const TrajectoryInfo& info, const std::vector<TrajectoryBody>& bodies) override { sink_.begin(info, bodies); }
@@ -20,12 +22,13 @@ class TraceWatch final : public TrajectorySink {
   void end(const Counters& counters, const std::string& stopped_by) override { sink_.end(counters, stopped_by); }
   void virtual_times(const VirtualTimes& times) override { sink_.virtual_times(times); }
 
-  /// Why the run is not over yet though it ended: an event of the reference that never came. Empty: all came.
+  /// Why the run is incomplete although it ended: an event of the reference is missing. Empty: none
+  /// is.
   std::string missing() const;
   std::size_t events() const { return events_; }
 
  private:
-  std::string told(const Event& event) const;
+  std::string in_words(const Event& event) const;
   std::string likely(const Event& expected, const Event& found) const;
 
   TrajectorySink& sink_;

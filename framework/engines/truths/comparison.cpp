@@ -8,9 +8,9 @@
 
 namespace tumble::truths {
 
-void Comparison::check(const std::string& output, double error, double floor, double pass_mark, const std::string& note) {
-  const Verdict verdict = error <= pass_mark ? Verdict::kRight : Verdict::kWrong;  // false for NaN
-  lines_.push_back({output, error, floor, pass_mark, verdict, note});
+void Comparison::check(const std::string& output, double error, double floor, double tolerance, const std::string& note) {
+  const Verdict verdict = error <= tolerance ? Verdict::kRight : Verdict::kWrong;  // false for NaN
+  lines_.push_back({output, error, floor, tolerance, verdict, note});
 }
 
 void Comparison::closed_form(const Case& truth, const std::string& output, double found) {
@@ -36,7 +36,7 @@ void Comparison::attempt(const std::string& outputs, const std::function<void()>
   } catch (const NotImplemented& missing) {
     stopped(Verdict::kNotAttempted, missing.what());
   } catch (const UserError&) {
-    throw;  // the truth file or the command is at fault, not the module
+    throw;  // the file or the command is wrong, not the module
   } catch (const std::exception& error) {
     stopped(Verdict::kWrong, std::string("threw an exception: ") + error.what());
   }
@@ -55,13 +55,13 @@ double quaternion_difference(const Quaterniond& found, const VectorXd& expected)
 
 namespace {
 
-// How bad a line is: failures first, then stubs, then how much of its mark it used up.
+// Rank of a line: failures first, then stubs, then the error relative to its tolerance.
 double badness(const Line& line) {
   switch (line.verdict) {
     case Verdict::kWrong: return 1e300;
     case Verdict::kNotAttempted: return 1e200;
     case Verdict::kNotCompared: return -1.0;
-    case Verdict::kRight: return line.pass_mark > 0.0 ? line.error / line.pass_mark : 0.0;
+    case Verdict::kRight: return line.tolerance > 0.0 ? line.error / line.tolerance : 0.0;
   }
   return 0.0;
 }

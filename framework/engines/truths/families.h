@@ -1,5 +1,5 @@
-/// The families of truths that the framework computes by itself, with the laws of whatever modules are chosen.
-/// Families that are about a module's own functions are registered by its assignment (modules/registry.h).
+/// The families of cases that the framework computes itself, with the laws of the chosen modules.
+/// Families about a module's own functions are registered by its assignment (modules/registry.h).
 #pragma once
 
 #include <map>
@@ -17,7 +17,7 @@ using FrameworkFamily = void (*)(const Case& truth, const Laws& laws, Comparison
 /// By name of the family.
 const std::map<std::string, FrameworkFamily>& framework_families();
 
-// One a family; each compares every output of the case, or says why one is not compared.
+// One per family; each compares every output of the case, or gives the reason for no comparison.
 void compare_mass_properties(const Case& truth, const Laws& laws, Comparison& comparison);
 void compare_free_top(const Case& truth, const Laws& laws, Comparison& comparison);
 void compare_times_of_impact(const Case& truth, const Laws& laws, Comparison& comparison);

@@ -1,4 +1,5 @@
-// bouncing_ball, ball_moving_floor, ball_shaken_floor: a ball (a point mass) on a floor, run by the engine with the laws chosen.
+// bouncing_ball, ball_moving_floor, ball_shaken_floor: a ball (a point mass) on a floor, run by the
+// engine with the chosen laws.
 #include <algorithm>
 #include <cmath>
 
@@ -9,9 +10,9 @@
 namespace tumble::truths {
 namespace {
 
-constexpr double kMass = 1.0;        // kg: without effect
-constexpr double kRestBelow = 0.5;   // of the slowest impact that the file lists: rest comes after the last of them
-constexpr double kRestSpeed = 1e-5;  // m/s: nor faster than this; its bounce of 5e-12 m still stands far above the rounding of heights
+constexpr double kMass = 1.0;        // kg: has no effect
+constexpr double kRestBelow = 0.5;   // of the slowest impact in the file: the transition to rest comes after the last of them
+constexpr double kRestSpeed = 1e-5;  // m/s: upper limit; the height of its bounce, 5e-12 m, is still far above the rounding of heights
 
 struct BallOnFloor {
   double g, e;
@@ -22,7 +23,7 @@ struct BallOnFloor {
 BallOnFloor ball_on_floor(const Case& truth, double duration, double slowest_impact) {
   BallOnFloor world{truth.input("g").number(), truth.input("e").number(), empty_scene(truth.id, duration, std::min(kRestSpeed, kRestBelow * slowest_impact))};
   scene::EntryWriter{world.scene}("gravity_m_s2", Vector3d(0, 0, -world.g));
-  // Some cases state the start apart from the height that the other outputs are about.
+  // Some cases give the start separately from the height of the other outputs.
   const double z0 = truth.inputs.find("z0") ? truth.input("z0").number() : truth.input("h").number();
   const double v0 = truth.inputs.find("v0") ? truth.input("v0").number() : 0.0;
   world.scene.bodies.push_back(ball("ball", kMass, 0.0, Vector3d(0, 0, z0), Vector3d(0, 0, v0), world.e));
@@ -30,7 +31,8 @@ BallOnFloor ball_on_floor(const Case& truth, double duration, double slowest_imp
   return world;
 }
 
-/// The first n of a quantity of the impacts; shorter where there were fewer, which no comparison passes.
+/// The first n values of a quantity of the impacts; shorter where there were fewer, which fails
+/// every comparison.
 template <class Quantity>
 VectorXd column(const std::vector<Event>& impacts, std::size_t n, const Quantity& quantity) {
   VectorXd values(static_cast<Eigen::Index>(std::min(n, impacts.size())));
@@ -39,7 +41,7 @@ VectorXd column(const std::vector<Event>& impacts, std::size_t n, const Quantity
 }
 
 double time_of(const Event& impact) { return impact.time; }
-/// Relative speed just after, along the normal: the impulse does it all.
+/// Relative speed just after, along the normal: only the impulse changes it.
 double speed_after(const Event& impact) { return impact.normal_velocity_before + impact.impulse / kMass; }
 
 // ---- bouncing_ball ---------------------------------------------------------------------------------------------------
@@ -50,22 +52,23 @@ void compare_rest(const Case& truth, const BallOnFloor& world, const Trajectory&
     comparison.agree("zeno_time", false, "the ball never came to rest");
     return;
   }
-  // What is left of the infinitely many impacts below the rest speed v takes 2 v / (g (1 - e)) at most.
+  // The infinitely many impacts below the restitution threshold v take at most 2 v / (g (1 - e)).
   const double floor = truth.floor("zeno_time"), left = 2.0 * world.scene.rest_speed_m_s / (world.g * (1.0 - world.e));
   comparison.check("zeno_time", std::abs(rest->time - truth.output("zeno_time").number()), floor, kClosedFormFactor * floor + left,
-                   "mark: with the time that rest below 1e-5 m/s cuts off");
+                   "tolerance: includes the time that rest below 1e-5 m/s cuts off");
   const Vector3d &start = world.scene.bodies[0].position_m, &thrown = world.scene.bodies[0].velocity_m_s;
-  // Down from the start, and first up to the apex and back if thrown upwards.
+  // Down from the start; if thrown upwards, first up to the apex and back.
   double path = start.z() + (thrown.z() > 0.0 ? thrown.z() * thrown.z() / world.g : 0.0);
   for (const Event& impact : impacts_of(run)) path += speed_after(impact) * speed_after(impact) / world.g;
   const double path_left = std::pow(world.scene.rest_speed_m_s, 2) / (world.g * (1.0 - world.e * world.e));
   const double path_floor = truth.floor("path_length_total");
   comparison.check("path_length_total", std::abs(path - truth.output("path_length_total").number()), path_floor, kClosedFormFactor * path_floor + path_left,
-                   "mark: with the path of the bounces that rest cuts off");
+                   "tolerance: includes the path of the bounces that rest cuts off");
 }
 
 void compare_listed_times(const Case& truth, const BallOnFloor& world, const Laws& laws, Comparison& comparison) {
-  // Once at rest the ball may lack the bounces that rest cuts off, and the files' floor of 0 leaves no room: their height.
+  // A ball at rest lacks the bounces that the transition to rest cuts off, and the file's floor of
+  // 0 leaves no room: their height is added.
   const double v_rest = world.scene.rest_speed_m_s;
   for (const Value& time : truth.input("times").list()) {
     const std::string z = "z_t" + time.text(), v = "v_t" + time.text();
@@ -75,7 +78,7 @@ void compare_listed_times(const Case& truth, const BallOnFloor& world, const Law
     const bool rests = frame.poses[0].velocity_world.isZero(0.0);
     const auto check = [&](const std::string& output, double error, double left) {
       const double mark = kClosedFormFactor * truth.floor(output);
-      comparison.check(output, error, truth.floor(output), rests ? mark + left : mark, rests ? "mark: at rest, with what rest cuts off" : "");
+      comparison.check(output, error, truth.floor(output), rests ? mark + left : mark, rests ? "tolerance: at rest, includes the bounces that rest cuts off" : "");
     };
     check(z, z_error, v_rest * v_rest / (2.0 * world.g));
     check(v, v_error, v_rest);
@@ -135,7 +138,7 @@ void compare_moving_floor(const Case& truth, const Laws& laws, Comparison& compa
   const auto rest = std::find_if(run.events.begin(), run.events.end(), [](const Event& event) { return event.kind == EventKind::kRest; });
   const double left = 2.0 * world.scene.rest_speed_m_s / (world.g * (1.0 - world.e)), floor_of_zeno = truth.floor("zeno_time");
   if (rest == run.events.end()) comparison.agree("zeno_time", false, "the ball never came to rest on the floor");
-  else comparison.check("zeno_time", std::abs(rest->time - zeno), floor_of_zeno, kClosedFormFactor * floor_of_zeno + left, "mark: with the time that rest cuts off");
+  else comparison.check("zeno_time", std::abs(rest->time - zeno), floor_of_zeno, kClosedFormFactor * floor_of_zeno + left, "tolerance: includes the time that rest cuts off");
 }
 
 // ---- ball_shaken_floor -----------------------------------------------------------------------------------------------

@@ -1,6 +1,7 @@
-// free_top_*: a body that nothing turns, by the framework's exact rotation and by the laws' integrator.
+// free_top_*: a torque-free body, by the framework's exact rotation and by the laws' integrator.
 //
-// The files name outputs by time: q_t10 is the orientation at t = 10 s. Frames: omega in the body frame, q and R body to world.
+// The files name outputs by time: q_t10 is the orientation at t = 10 s. Frames: omega in the body
+// frame, q and R body to world.
 #include <algorithm>
 #include <cmath>
 
@@ -13,7 +14,7 @@ namespace {
 struct Top {
   Vector3d moments;
   Spin start;
-  std::vector<std::pair<std::string, double>> times;  // as in the outputs' names, and as a number [s]
+  std::vector<std::pair<std::string, double>> times;  // time as in the outputs' names, and as a number [s]
 
   explicit Top(const Case& truth) : moments(truth.input("I_principal").vector3()) {
     const VectorXd q = truth.input("q0").vector();
@@ -33,7 +34,7 @@ void compare_constants(const Case& truth, const Top& top, const FreeRotation& ro
   comparison.closed_form(truth, "L_norm", L.norm());
   if (truth.has_output("jacobi_modulus_m")) comparison.closed_form(truth, "jacobi_modulus_m", rotation.tumbling(w).modulus_m);
   if (truth.has_output("polhode_period")) comparison.closed_form(truth, "polhode_period", rotation.tumbling(w).period);
-  // Symmetric tops of the files have their axis along body z.
+  // The axis of symmetric tops in the files is body z.
   const double transverse = top.moments.x(), axial = top.moments.z();
   if (truth.has_output("precession_rate")) comparison.closed_form(truth, "precession_rate", L.norm() / transverse);
   if (truth.has_output("body_cone_rate")) comparison.closed_form(truth, "body_cone_rate", w.z() * (axial - transverse) / transverse);
@@ -57,10 +58,10 @@ void compare_exact(const Case& truth, const Top& top, Comparison& comparison) {
 
 // ---- The laws' integrator --------------------------------------------------------------------------------------------
 
-constexpr double kMostSteps = 4e6;         // of all runs of one time together: about a second
-constexpr double kLargestAngle = 0.05;     // rad: w h beyond which RK4 is not in its asymptotic range
+constexpr double kMostSteps = 4e6;         // of all runs to one time together: about a second
+constexpr double kLargestAngle = 0.05;     // rad: for larger w h RK4 is not in its asymptotic range
 constexpr double kAsymptoticError = 1e-3;  // rad: predicted error of the coarsest run, small enough for its order to show
-constexpr double kAboveRoundOff = 100.0;   // a change this many roundings large is known to 1 %, its log2 to 0.02
+constexpr double kAboveRoundOff = 100.0;   // a change of this many roundings is known to 1 %, its log2 to 0.02
 
 /// Orientation after `steps` equal steps of the laws, renormalised after each as engines do.
 Quaterniond march(const Laws& laws, const Top& top, double t, long steps) {
@@ -76,11 +77,13 @@ Quaterniond march(const Laws& laws, const Top& top, double t, long steps) {
   return state.world_from_body;
 }
 
-/// By how much an error of the orientation grows over t: it is an error of |L| / I_min of the spin (a needle's drawback in the
-/// world frame, where a state holds L), which turns on for the rest.
+/// Growth of an error of the orientation over t: it causes an error |L| / I_min of the angular
+/// velocity (large for a needle in the world frame, where a state holds L), which adds rotation
+/// until the end.
 double amplification(const Top& top, double t) { return 1.0 + top.angular_momentum_world().norm() / top.moments.minCoeff() * t; }
 
-/// Steps from which on the error of RK4 is small enough to show its order. Each step errs by (w h)^5 / 120 rad.
+/// Number of steps from which on the error of RK4 is small enough to show its order. Each step has
+/// the error (w h)^5 / 120 rad.
 long first_steps(const Top& top, double t) {
   const FreeRotation rotation(top.moments.asDiagonal());
   double w = 0.0;
@@ -91,19 +94,20 @@ long first_steps(const Top& top, double t) {
 
 VectorXd components(const Quaterniond& q) { return Eigen::Vector4d(q.w(), q.x(), q.y(), q.z()); }
 
-/// What a state (q, L) in doubles loses by itself over a run: a rounding a step, as a random walk, each grown as every error is.
+/// Rounding error of a state (q, L) in doubles over a run: one rounding per step, as a random walk,
+/// each growing like any error.
 double round_off(const Top& top, double t, long steps) { return 0x1p-53 * amplification(top, t) * std::sqrt(static_cast<double>(steps)); }
 
-/// Runs on ever finer steps, each half the last.
+/// Runs with successively halved steps.
 struct Refinement {
   long steps = 0;           // of the finest run
   Quaterniond finest;
   double change = kUnset;   // by the last halving
-  double order = kUnset;    // log2 of how much the change shrank
-  bool hidden = false;      // round-off came before the order had settled
+  double order = kUnset;    // log2 of the ratio of successive changes
+  bool hidden = false;      // round-off was reached before the order had settled
 };
 
-/// Halves the step until the order has settled, round-off shows, or time is up.
+/// Halves the step until the order has settled, round-off shows, or the limit of steps is reached.
 Refinement refine(const Laws& laws, const Top& top, double t, long steps) {
   Refinement runs{steps, march(laws, top, t, steps)};
   double last_order = kUnset;
@@ -112,7 +116,7 @@ Refinement refine(const Laws& laws, const Top& top, double t, long steps) {
     const double change = quaternion_difference(runs.finest, components(finer));
     const double order = std::log2(runs.change / change);
     runs = {2 * runs.steps, finer, change, order, false};
-    runs.hidden = change <= kAboveRoundOff * round_off(top, t, runs.steps);  // false for NaN, which finer steps may cure
+    runs.hidden = change <= kAboveRoundOff * round_off(top, t, runs.steps);  // false for NaN, which smaller steps may cure
     if (runs.hidden || std::abs(order - last_order) <= kSettled) break;
     last_order = order;
   }
@@ -122,7 +126,7 @@ Refinement refine(const Laws& laws, const Top& top, double t, long steps) {
 void compare_integrated_at(const Case& truth, const Laws& laws, const Top& top, const std::string& name, double t, Comparison& comparison) {
   const long steps = first_steps(top, t);
   if (32.0 * static_cast<double>(steps) > kMostSteps) {
-    comparison.not_compared("rk4.q_" + name, "steps small enough to show the order would be millions, more than is spent here");
+    comparison.not_compared("rk4.q_" + name, "the order shows only with millions of steps, more than the limit here");
     return;
   }
   const double floor = truth.floor("q_" + name);
@@ -135,10 +139,11 @@ void compare_integrated_at(const Case& truth, const Laws& laws, const Top& top, 
                      "order " + std::to_string(runs.order).substr(0, 5) + " on halving the step to " + finest);
   }
 
-  // Of a method of order 4 the error that remains is 1/15 of the last change; 2: its next term. 10: roundings in a step.
+  // The remaining error of a method of order 4 is 1/15 of the last change; 2: its next term. 10:
+  // roundings per step.
   const double truncation = 2.0 * runs.change / 15.0, rounding = std::max(kClosedFormFactor * floor, 10.0 * round_off(top, t, runs.steps));
   comparison.check("rk4.q_" + name, quaternion_difference(runs.finest, truth.output("q_" + name).vector()), floor, std::max(rounding, truncation),
-                   truncation > rounding ? "mark: predicted truncation error of " + finest : "mark: rounding of (q, L) over " + finest);
+                   truncation > rounding ? "tolerance: predicted truncation error of " + finest : "tolerance: rounding of (q, L) over " + finest);
 }
 
 }  // namespace

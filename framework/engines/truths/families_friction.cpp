@@ -1,8 +1,10 @@
-// friction_incline, roll_incline, slip_to_roll: a block or a ball in lasting contact with a plane, run by the engine with the laws chosen.
+// friction_incline, roll_incline, slip_to_roll: a block or a ball in persistent contact with a
+// plane, run by the engine with the chosen laws.
 //
-// The forces are constant while a body slides, sticks or rolls, and the engine's motion is exact for constant forces: no step size enters.
-// What enters beside rounding is how exactly contact forces are solved for, their documented tolerance: a part of m g for forces, of g for
-// accelerations, of g t for speeds. x runs down the incline, y across it, z out of it.
+// The forces are constant while a body slides, sticks or rolls, and the engine's motion is exact
+// for constant forces: the step size has no effect. Besides rounding only the documented tolerance
+// of the contact solver has one: a fraction of m g for forces, of g for accelerations, of g t for
+// velocities. x points down the incline, y across it, z out of it.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -16,8 +18,8 @@
 namespace tumble::truths {
 namespace {
 
-constexpr long kSteps = 50;           // of a run at least; none of them is where a motion changes
-constexpr double kLongestStep = 0.1;  // s: contact forces come from what gravity does in a step, g h, and are rounded at its size
+constexpr long kSteps = 50;           // per run at least; the motion changes within a step, not at its end
+constexpr double kLongestStep = 0.1;  // s: contact forces follow from the impulse of gravity in a step, g h, and are rounded at its size
 
 struct Incline {
   double angle, mu, g, m;
@@ -46,7 +48,7 @@ scene::Scene Incline::scene(const std::string& name, double duration, scene::Bod
   return scene;
 }
 
-/// Frames on every step.
+/// A run with a frame at every step.
 Trajectory run_by_steps(const scene::Scene& scene, const Laws& laws) {
   const long steps = std::max(kSteps, static_cast<long>(scene.duration_s / kLongestStep));
   return run_in_steps(scene, laws, scene.duration_s, steps, steps);
@@ -56,7 +58,7 @@ struct Push {
   double normal = 0.0;
   Vector3d friction = Vector3d::Zero();
 };
-/// Of the incline on the body (the first one), over all points of contact.
+/// Contact force of the incline on the first body, over all contact points.
 Push push_in(const Frame& frame) {
   Push push;
   for (const ContactPoint& contact : frame.contacts) {
@@ -68,7 +70,8 @@ Push push_in(const Frame& frame) {
   return push;
 }
 
-/// What friction has taken on the way. Heights count along the incline: that bodies are kept a hair off it is no work of friction.
+/// Energy dissipated by friction. Heights are measured along the incline: the contact margin
+/// between body and plane does no work.
 double energy_lost(const Incline& incline, const Frame& from, const Frame& to) {
   const double way = incline.down().dot(to.poses[0].com_world - from.poses[0].com_world);
   return from.kinetic_energy - to.kinetic_energy + incline.m * incline.g * std::sin(incline.angle) * way;
@@ -86,22 +89,22 @@ scene::Scene block_on(const Incline& incline, const std::string& name, double du
   return incline.scene(name, duration, block, half_height);
 }
 
-/// The larger of 100 floors and what the solver's tolerance makes of `size`.
+/// The tolerance is the larger of 100 floors and the solver's tolerance of `size`.
 void check_solved(const Case& truth, const std::string& output, double found, double size, Comparison& comparison) {
   const double floor = truth.floor(output), solver = ContactOptions{}.tolerance * size, rounding = kClosedFormFactor * floor;
-  comparison.check(output, std::abs(found - truth.output(output).number()), floor, std::max(rounding, solver), solver > rounding ? "mark: the contact solver's tolerance" : "");
+  comparison.check(output, std::abs(found - truth.output(output).number()), floor, std::max(rounding, solver), solver > rounding ? "tolerance: that of the contact solver" : "");
 }
 
 double speed_down(const Incline& incline, const Frame& frame) { return incline.down().dot(frame.poses[0].velocity_world); }
 
-/// Whether a block on an incline of this friction that is let go stays where it is.
+/// Whether a block on an incline with this friction stays at rest after release.
 bool holds(Incline incline, double mu, const Laws& laws) {
   incline.mu = mu;
   const Trajectory run = run_by_steps(block_on(incline, "let go", 1.0, 0.0), laws);
   return run.frames.back().poses[0].velocity_world.norm() <= engines::kNegligible;
 }
 
-/// The last frame in which a speed is still there. @pre it is in the first
+/// The last frame with this speed above 0. @pre the first frame has it
 template <class Speed>
 const Frame& last_sliding(const Trajectory& run, const Speed& speed) {
   const double least = engines::kNegligible * std::abs(speed(run.frames.front()));
@@ -120,7 +123,7 @@ void compare_friction_incline(const Case& truth, const Laws& laws, Comparison& c
   if (critical > 0.0) {
     comparison.attempt("critical_mu in runs", [&] {
       comparison.agree("critical_mu in runs", holds(incline, critical * (1.0 + engines::kSixDigits), laws) && !holds(incline, critical * (1.0 - engines::kSixDigits), laws),
-                       "a block let go stays at a friction 1e-6 above it and slides at one 1e-6 below");
+                       "a released block stays at a friction 1e-6 above it and slides at one 1e-6 below");
     });
   }
 
@@ -140,7 +143,7 @@ void compare_friction_incline(const Case& truth, const Laws& laws, Comparison& c
       comparison.agree("stop_time", !stops && truth.output("stop_time").is_null() && &sliding == &end, "never stops");
       return;
     }
-    // t = v0 / a and d = v0^2 / (2 a) change by as large a part as a does.
+    // t = v0 / a and d = v0^2 / (2 a) have the relative error of a.
     const double time = sliding.time + speed(sliding) / deceleration, way = incline.down().dot(end.poses[0].com_world - first.poses[0].com_world);
     check_solved(truth, "stop_time", time, time * g / braking, comparison);
     check_solved(truth, "stop_distance", way, std::abs(way) * g / braking, comparison);
@@ -154,7 +157,7 @@ void compare_friction_incline(const Case& truth, const Laws& laws, Comparison& c
 
 namespace {
 
-/// A ball with I = beta m R^2: what rolls straight, be it a cylinder or a hoop, moves like it.
+/// A ball with I = beta m R^2: every body that rolls straight, cylinder or hoop, moves like it.
 scene::BodySpec round_body(double m, double R, double beta, const Vector3d& velocity, const Vector3d& omega) {
   scene::BodySpec body = ball("round", m, R, Vector3d::Zero(), velocity, 0.0);
   body.inertia_body_kg_m2 = beta * m * R * R * Matrix3d::Identity();
@@ -175,7 +178,7 @@ void compare_roll_incline(const Case& truth, const Laws& laws, Comparison& compa
     const auto speed = [&](const Frame& frame) { return speed_down(incline, frame); };
     const auto spin = [](const Frame& frame) { return frame.poses[0].omega_world.y(); };
     const bool rolls = std::abs(speed(end) - R * spin(end)) <= engines::kNegligible * std::abs(speed(end));
-    comparison.agree("rolls_without_slip", rolls == truth.output("rolls_without_slip").truth(), rolls ? "it rolls" : "it slides");
+    comparison.agree("rolls_without_slip", rolls == truth.output("rolls_without_slip").boolean(), rolls ? "it rolls" : "it slides");
     const double time = end.time - middle.time;
     const double g = incline.g;
     check_solved(truth, "acceleration", (speed(end) - speed(middle)) / time, g, comparison);
@@ -191,7 +194,7 @@ void compare_slip_to_roll(const Case& truth, const Laws& laws, Comparison& compa
   const Incline level(truth, 0.0);
   const double R = truth.input("R").number(), beta = truth.input("beta").number(), v0 = truth.input("v0").number(), w0 = truth.input("omega0_forward").number();
   comparison.attempt("run", [&] {
-    // Long enough to roll, if friction makes it.
+    // Long enough to roll, if friction makes it roll.
     const double braking = level.mu * level.g * (1.0 + 1.0 / beta), slip0 = std::abs(v0 - R * w0);
     const double duration = braking > 0.0 && slip0 > 0.0 ? 1.3 * slip0 / braking : 1.0;
     const Trajectory run = run_by_steps(level.scene(truth.id, duration, round_body(level.m, R, beta, Vector3d(v0, 0, 0), Vector3d(0, w0, 0)), R), laws);
@@ -202,7 +205,7 @@ void compare_slip_to_roll(const Case& truth, const Laws& laws, Comparison& compa
       comparison.agree("roll_time", !rolls && truth.output("roll_time").is_null(), rolls ? "it rolls" : "it never rolls");
       return;
     }
-    // While it slides the slip goes down evenly.
+    // The slip decreases linearly while it slides.
     const double change = std::abs(slip(first) - slip(sliding)), roll_time = change > 0.0 ? sliding.time * std::abs(slip(first)) / change : 0.0;
     const double speed = end.poses[0].velocity_world.x(), gained = level.g * duration;
     check_solved(truth, "roll_time", roll_time, duration / level.mu, comparison);

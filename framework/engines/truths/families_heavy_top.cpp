@@ -1,4 +1,5 @@
-// heavy_top: a symmetric top on a fixed point (Lagrange's), a body on a ball joint run by the engine with the laws chosen.
+// heavy_top: Lagrange's symmetric top on a fixed point, a body on a ball joint run by the engine
+// with the chosen laws.
 //
 // Gravity along -z, fixed point at the world's origin, body z the axis, centre of mass at l on it; tilted by theta0 about world x.
 #include <algorithm>
@@ -45,7 +46,8 @@ scene::Scene HeavyTop::scene(const std::string& name) const {
 
 // ---- Closed forms ----------------------------------------------------------------------------------------------------
 
-/// Roots of c[0] + c[1] d + c[2] d^2 + c[3] d^3, all real, ascending. Each is polished in d itself, so that small ones have all their digits.
+/// Roots of c[0] + c[1] d + c[2] d^2 + c[3] d^3, all real, ascending. Each is refined in d itself,
+/// so that small roots have full relative precision.
 Vector3d roots_of_cubic(const double (&c)[4]) {
   // Depressed: d = y - c2 / (3 c3), y^3 + p y + q = 0, y = 2 sqrt(-p / 3) cos(...).
   const double shift = c[2] / (3.0 * c[3]), p = c[1] / c[3] - 3.0 * shift * shift, q = 2.0 * std::pow(shift, 3) - shift * c[1] / c[3] + c[0] / c[3];
@@ -64,8 +66,9 @@ Vector3d roots_of_cubic(const double (&c)[4]) {
   return roots;
 }
 
-/// Nutation: u = cos(theta) moves between two roots of f(u) = (1 - u^2)(alpha - beta u) - (b - a u)^2. In d = u0 - u, small where the top
-/// hardly nods, nothing cancels:  f = (s^2 + 2 u0 d - d^2)(w1^2 + w2^2 + beta d) - (w2 s + a d)^2,   s = sin(theta0).
+/// Nutation: u = cos(theta) moves between two roots of f(u) = (1 - u^2)(alpha - beta u) - (b - a
+/// u)^2. In d = u0 - u, which is small for small nutation, there is no cancellation:
+///   f = (s^2 + 2 u0 d - d^2)(w1^2 + w2^2 + beta d) - (w2 s + a d)^2,   s = sin(theta0).
 Vector3d drops_of_nutation(const HeavyTop& top) {
   const double u0 = std::cos(top.tilt), s = std::sin(top.tilt), beta = 2.0 * top.m * top.g * top.l / top.It, a = top.I3 * top.spin() / top.It;
   const Vector3d w = top.omega_body();
@@ -74,7 +77,7 @@ Vector3d drops_of_nutation(const HeavyTop& top) {
   return roots_of_cubic(c);
 }
 
-/// theta at u = u0 - d, by sin^2(theta / 2) = (1 - u) / 2, which keeps the digits of small angles.
+/// theta at u = u0 - d, by sin^2(theta / 2) = (1 - u) / 2, which is accurate for small angles.
 double angle_after_drop(const HeavyTop& top, double d) {
   const double half = std::sin(0.5 * top.tilt), sine2 = half * half + 0.5 * d;
   return 2.0 * std::atan2(std::sqrt(std::max(0.0, sine2)), std::sqrt(std::max(0.0, 1.0 - sine2)));
@@ -87,7 +90,8 @@ void compare_closed_forms(const Case& truth, const HeavyTop& top, Comparison& co
   comparison.closed_form(truth, "nutation_theta_min", angle_after_drop(top, drops[1]));
   comparison.closed_form(truth, "nutation_theta_max", angle_after_drop(top, drops[2]));
   comparison.closed_form(truth, "sleeping_stability_w3_critical", 2.0 * std::sqrt(moment * top.It) / top.I3);
-  // It cos(theta) W^2 - I3 w3 W + m g l = 0, without cancellation: the larger root by the formula, the other by their product.
+  // It cos(theta) W^2 - I3 w3 W + m g l = 0, without cancellation: the larger root by the formula,
+  // the other by their product.
   const double A = top.It * u0, discriminant = L3 * L3 - 4.0 * A * moment;
   if (truth.has_output("steady_precession_rates_at_theta0") && discriminant >= 0.0 && !truth.output("steady_precession_rates_at_theta0").is_null()) {
     const double larger = 0.5 * (L3 + std::copysign(std::sqrt(discriminant), L3)), fast = larger / A, slow = moment / larger;

@@ -40,7 +40,7 @@ void compare_mass_properties(const Case& truth, const Laws&, Comparison& compari
   matrix("inertia_about_com", found.inertia_com_mesh);
   comparison.closed_form(truth, "principal_moments_com", VectorXd(found.principal_moments));
   if (truth.has_output("naive_binary64_errors"))
-    comparison.not_compared("naive_binary64_errors", "what a textbook sum about the world's origin would lose: for reading");
+    comparison.not_compared("naive_binary64_errors", "errors of a textbook sum about the world's origin, for information");
 }
 
 }  // namespace tumble::truths

@@ -1,4 +1,5 @@
-// chain, double_pendulum, compound_pendulum: rods and hinges, run by the engine with the laws chosen.
+// chain, double_pendulum, compound_pendulum: rods and hinges, run by the engine with the chosen
+// laws.
 //
 // Planar cases: gravity along -y, angles from the downward vertical, positive towards +x. Their plane is the world's x-y plane.
 #include <algorithm>
@@ -14,7 +15,7 @@ namespace tumble::truths {
 namespace {
 
 
-/// Of the direction at an angle, and its derivative by the angle.
+/// The unit vector at an angle, and its derivative by the angle.
 Vector3d along(double angle) { return {std::sin(angle), -std::cos(angle), 0.0}; }
 Vector3d across(double angle) { return {std::cos(angle), std::sin(angle), 0.0}; }
 
@@ -37,7 +38,7 @@ scene::Scene Chain::scene(const std::string& name) const {
   scene::EntryWriter{scene}("gravity_m_s2", Vector3d(0, -g, 0));
   scene.stabilisation = scene::StabilisationSpec{};
   Vector3d place = Vector3d::Zero(), velocity = Vector3d::Zero();
-  std::string above;   // the first rod hangs on the world
+  std::string above;   // the first rod is attached to the world
   for (Eigen::Index i = 0; i < size(); ++i) {
     place += lengths[i] * along(angles[i]);
     velocity += lengths[i] * rates[i] * across(angles[i]);
@@ -49,18 +50,19 @@ scene::Scene Chain::scene(const std::string& name) const {
   return scene;
 }
 
-// Small swings of the shortest rod below all the weight that hangs on it; or as fast as it can fall, or turns at the start.
+// The fastest of: small swings of the shortest rod with all the weight below it, free fall, and the
+// rates at the start.
 double Chain::fastest_rate() const {
   const double whole = lengths.sum(), shortest = lengths.minCoeff();
   return std::max({std::sqrt(g * masses.sum() / (shortest * masses.minCoeff())), std::sqrt(g * whole) / shortest, rates.cwiseAbs().maxCoeff()});
 }
 
-/// From bob i - 1 (the pivot for 0) to bob i, of places or velocities.
+/// From bob i - 1 (the pivot for 0) to bob i, of positions or velocities.
 Vector3d step_of(const Frame& frame, std::size_t i, Vector3d BodyPose::* what) {
   return i == 0 ? Vector3d(frame.poses[0].*what) : Vector3d(frame.poses[i].*what - frame.poses[i - 1].*what);
 }
 
-/// Angles at the end of a run, with all their turns: followed from frame to frame.
+/// Angles at the end of a run with whole turns, followed from frame to frame.
 VectorXd angles_at_end(const Chain& chain, const Trajectory& run) {
   VectorXd angles = chain.angles;
   for (const Frame& frame : run.frames) {
@@ -82,7 +84,7 @@ VectorXd rates_of(const Chain& chain, const Frame& frame) {
   return rates;
 }
 
-/// x and y of all bobs in a row, of places or velocities.
+/// x and y of all bobs in sequence, of positions or velocities.
 VectorXd in_plane(const Frame& frame, Vector3d BodyPose::* what) {
   VectorXd all(2 * static_cast<Eigen::Index>(frame.poses.size()));
   for (std::size_t i = 0; i < frame.poses.size(); ++i) all.segment<2>(2 * static_cast<Eigen::Index>(i)) = (frame.poses[i].*what).head<2>();
@@ -100,14 +102,15 @@ VectorXd tensions_of(const Frame& frame) {
   return Eigen::Map<const VectorXd>(frame.rod_tensions.data(), static_cast<Eigen::Index>(frame.rod_tensions.size()));
 }
 
-// Tensions solve J M^-1 J^T: where a light bob stands between, its condition is four times the ratio of masses, and rounding of its entries moves them
-// by so much; 25 for the few dozen roundings on the way.
+// Tensions solve a system with the matrix J M^-1 J^T: with a light bob in the chain its condition
+// is four times the ratio of masses, and rounding of its entries changes them by that factor; 25
+// for a few dozen roundings.
 void compare_tensions_at_start(const Case& truth, const Chain& chain, const VectorXd& found, Comparison& comparison) {
   constexpr double kFewDozen = 25.0, kRounding = 0x1p-53;
   const VectorXd expected = truth.output("rod_tensions_t0").vector();
   const double floor = truth.floor("rod_tensions_t0"), condition = 4.0 * chain.masses.maxCoeff() / chain.masses.minCoeff();
   const double solved = kFewDozen * kRounding * condition * expected.cwiseAbs().maxCoeff(), rounding = kClosedFormFactor * floor;
-  comparison.check("rod_tensions_t0", largest_difference(found, expected), floor, std::max(rounding, solved), solved > rounding ? "mark: rounding times the condition of the rods' matrix" : "");
+  comparison.check("rod_tensions_t0", largest_difference(found, expected), floor, std::max(rounding, solved), solved > rounding ? "tolerance: rounding times the condition of the rods' matrix" : "");
 }
 
 std::vector<Quantity> quantities_of_chain(const Case& truth, const Chain& chain, const std::string& t) {
@@ -157,7 +160,7 @@ scene::Scene CompoundPendulum::scene(const std::string& name) const {
   scene::BodySpec body = point_mass("body", m, d * along(angle), Vector3d::Zero());
   body.world_from_body = Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitZ()));   // body -y points from the pivot to the centre of mass
   const double I_com = I_pivot - m * d * d;
-  constexpr double kPoint = 1e-12;   // of I_pivot: less is the rounding of the difference, and all the mass is in one point
+  constexpr double kPoint = 1e-12;   // of I_pivot: a smaller difference is rounding, and all the mass is in one point
   const bool is_point = !(I_com > kPoint * I_pivot);
   if (!is_point) body.inertia_body_kg_m2 = I_com * Matrix3d::Identity();
   scene.bodies.push_back(body);
@@ -171,7 +174,7 @@ scene::Scene CompoundPendulum::scene(const std::string& name) const {
 
 double pivot_force(const Frame& frame) { return frame.joint_forces.empty() ? std::abs(frame.rod_tensions[0]) : frame.joint_forces[0]; }
 
-/// At the end of a run, with all its turns.
+/// At the end of a run, with whole turns.
 double angle_at_end(const CompoundPendulum& pendulum, const Trajectory& run) {
   double angle = pendulum.angle;
   for (const Frame& frame : run.frames) {
@@ -186,16 +189,19 @@ double rate_of(const Frame& frame) {
   return x.cross(v).z() / x.squaredNorm();
 }
 
-/// How the angle, its rate and the pivot's force at an instant answer to a relative rounding of angle and rate made on the way there: roots
-/// of the mean squares over the way (Quantity::growth). Angles are roundings of places of size d, so of 1 rad.
+/// Change of the angle, its rate and the pivot's force at an instant by a relative rounding of
+/// angle and rate during the run: root mean squares over the run (Quantity::growth). Angles are
+/// roundings of positions of size d, so of 1 rad.
 struct Growth {
   double angle = 0.0, rate = 0.0, force = 0.0;
 };
 
-/// The swing with its variations, theta'' = -w0^2 sin theta and Phi' = (0 1; -w0^2 cos theta 0) Phi: what a rounding at s becomes at t is
-/// Phi(t) Phi(s)^-1. Near the top it grows as e^(w0 (t - s)); a rounding of the energy at the bottom is worth 1/sin(theta0) of it at the turn.
+/// The swing with its variations, theta'' = -w0^2 sin theta and Phi' = (0 1; -w0^2 cos theta 0)
+/// Phi: a rounding at s becomes Phi(t) Phi(s)^-1 times itself at t. Near the top it grows as e^(w0
+/// (t - s)); a rounding of the energy at the bottom is amplified by 1/sin(theta0) at the turning
+/// point.
 Growth growth_to(const CompoundPendulum& pendulum, double t) {
-  constexpr int kSteps = 4000;   // growth to a few per cent: more than a mark needs
+  constexpr int kSteps = 4000;   // growth to a few per cent, which suffices for a tolerance
   const double h = t / kSteps, w2 = pendulum.rate() * pendulum.rate();
   using State = Eigen::Matrix<double, 2, 3>;   // (theta, rate) and Phi
   const auto slope = [&](const State& y) -> State {
@@ -232,11 +238,11 @@ Growth growth_to(const CompoundPendulum& pendulum, double t) {
   return {mean(squares.angle), mean(squares.rate), mean(squares.force)};
 }
 
-/// @param instant  as outputs call it: "t1", "at_0.25T"
+/// @param instant  as in the outputs' names: "t1", "at_0.25T"
 void compare_pendulum_at(const Case& truth, const CompoundPendulum& pendulum, const std::string& instant, double t, const Laws& laws, Comparison& comparison) {
   comparison.attempt("run to " + instant, [&] {
     const std::string force = "pivot_force_" + instant;
-    // What the hinge measures is the size of the force.
+    // The hinge reports the size of the force.
     Quantity size{"|" + force + "|", of_last_frame(pivot_force), VectorXd::Constant(1, truth.output(force).vector().norm()), truth.floor(force), false};
     Quantity rate = quantity(truth, "thetadot_" + instant, of_last_frame(rate_of));
     Quantity angle = quantity(truth, "theta_" + instant, [pendulum](const Trajectory& run) { return VectorXd::Constant(1, angle_at_end(pendulum, run)); });
@@ -244,7 +250,8 @@ void compare_pendulum_at(const Case& truth, const CompoundPendulum& pendulum, co
     angle.growth = growth.angle;
     rate.growth = growth.rate;
     size.growth = growth.force;
-    // Half the scene's gravity beside it: a stage's swing is faster than small swings only by its own speed.
+    // Half the scene's gravity as well: a swing of large amplitude is faster than small ones only
+    // by its own speed.
     compare_refined({pendulum.scene(truth.id), t, instant, 2.0 * pendulum.rate(), true}, laws, {angle, rate, size}, comparison);
   });
 }
@@ -266,7 +273,8 @@ void compare_compound_pendulum(const Case& truth, const Laws& laws, Comparison& 
     const double t = instant.rfind("at_", 0) == 0 ? std::stod(instant.substr(3)) * T : std::stod(instant.substr(1));
     compare_pendulum_at(truth, pendulum, instant, t, laws, comparison);
   }
-  // It goes through the lowest point at T / 4 and 3 T / 4: from where it is and how fast near them, when.
+  // It passes the lowest point at T / 4 and 3 T / 4: the times follow from position and velocity
+  // near them.
   comparison.attempt("period", [&] {
     const auto passage = [&](const Trajectory& run) { return run.frames.back().time - std::remainder(angle_at_end(pendulum, run), 2.0 * std::numbers::pi) / rate_of(run.frames.back()); };
     Quantity period = quantity(truth, "period", [=](const Trajectory& run) { return VectorXd::Constant(1, 4.0 * passage(run)); });

@@ -1,4 +1,5 @@
-// newtons_cradle, hard_spheres, and the bullet of toi_tunnel: runs of the engine with the laws chosen.
+// newtons_cradle, hard_spheres, and the bullet of toi_tunnel: runs of the engine with the chosen
+// laws.
 #include <algorithm>
 #include <cmath>
 
@@ -15,7 +16,7 @@ namespace {
 
 /// Equal balls in a row along x that just touch, the first k of them moving.
 scene::Scene cradle(const Case& truth) {
-  constexpr double kRadius = 0.5;  // m: places at whole metres are exact
+  constexpr double kRadius = 0.5;  // m: positions at whole metres are exact
   const int n = truth.input("N").integer(), moving = truth.input("k_moving").integer();
   scene::Scene scene = empty_scene(truth.id, 0.1, engines::kNegligibleSpeed);
   for (int i = 0; i < n; ++i) {
@@ -52,7 +53,8 @@ Spheres spheres_in_box(const Case& truth, double duration) {
   return spheres;
 }
 
-/// Positions and velocities just after impact number `index`, from a frame halfway to the next one: free flight back is exact.
+/// Positions and velocities just after impact number `index`, from a frame halfway to the next one:
+/// back-propagation of free flight is exact.
 struct Flight {
   VectorXd positions, velocities;
 };
@@ -102,7 +104,7 @@ void compare_cradle(const Case& truth, const Laws& laws, Comparison& comparison)
     else if (name == "momentum") comparison.closed_form(truth, name, after.momentum_world.x());
     else if (name == "kinetic_energy_before") comparison.closed_form(truth, name, before.kinetic_energy);
     else if (name == "kinetic_energy_sequential") comparison.closed_form(truth, name, after.kinetic_energy);
-    else comparison.not_compared(name, "not this law: pairs collide one after the other here, not all at once");
+    else comparison.not_compared(name, "another law: here pairs collide one after the other, not all at once");
   }
 }
 
@@ -129,15 +131,15 @@ void compare_hard_spheres(const Case& truth, const Laws& laws, Comparison& compa
   const bool all_met = row == rows.size() || rows[row].at("k").integer() >= beyond;
   if (!all_met) comparison.agree("collisions", false, "only " + std::to_string(row) + " collisions of pairs were found");
   if (row < rows.size() && all_met)
-    comparison.not_compared("collisions " + std::to_string(beyond) + " and later", "the rounding of the inputs alone moves them by more than a percent");
+    comparison.not_compared("collisions " + std::to_string(beyond) + " and later", "rounding of the inputs alone changes them by more than a percent");
 
-  // Energy is kept to the end: by a few roundings an impact (goal: 1e-12).
+  // Energy is conserved to the end, up to a few roundings per impact (goal: 1e-12).
   const Frame end = frame_at(spheres.scene, laws, duration);
   comparison.check("kinetic_energy", std::abs(end.kinetic_energy - truth.output("kinetic_energy").number()), truth.floor("kinetic_energy"),
                    std::max(kClosedFormFactor * truth.floor("kinetic_energy"), 1e-12 * spheres.kinetic_energy),
                    "after " + std::to_string(impacts.size()) + " impacts");
   for (const std::string name : {"lyapunov_per_pair_collision", "lyapunov_per_second"})
-    if (truth.has_output(name)) comparison.not_compared(name, "an estimate of the growth of errors, of which the floors are made");
+    if (truth.has_output(name)) comparison.not_compared(name, "an estimate of the growth of errors, from which the floors follow");
 }
 
 void compare_tunnel_run(const Case& truth, const Laws& laws, Comparison& comparison) {

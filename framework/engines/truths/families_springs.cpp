@@ -1,4 +1,5 @@
-// spring_mass, elastic_pendulum, two_body_spring: bodies on springs, run by the engine with the laws chosen.
+// spring_mass, elastic_pendulum, two_body_spring: bodies on springs, run by the engine with the
+// chosen laws.
 #include <algorithm>
 #include <cmath>
 #include <complex>
@@ -16,7 +17,7 @@ void add_spring(scene::Scene& scene, const scene::AnchorSpec& a, const scene::An
   scene::EntryWriter{scene}("springs", {{"name", "spring"}, {"a", a}, {"b", b}, {"stiffness_n_m", spring.stiffness}, {"damping_n_s_m", spring.damping}, {"rest_length_m", spring.rest_length}});
 }
 
-const Vector3d kAxis = Vector3d::UnitX();   // along which a spring-mass moves
+const Vector3d kAxis = Vector3d::UnitX();   // axis of the spring-mass motion
 
 
 // ---- spring_mass -----------------------------------------------------------------------------------------------------
@@ -27,9 +28,9 @@ struct SpringMass {
   explicit SpringMass(const Case& truth)
       : m(truth.input("m").number()), k(truth.input("k").number()), c(truth.input("c").number()), x0(truth.input("x0").number()), v0(truth.input("v0").number()) {}
   double omega() const { return std::sqrt(k / m); }
-  /// Of |x|, which only falls from the energy at the start.
+  /// Bound of |x|, from the energy at the start, which never grows.
   double largest_stretch() const { return std::hypot(x0, v0 / omega()); }
-  /// Largest root of m r^2 + c r + k = 0, by size: what a step must resolve.
+  /// Largest root of m r^2 + c r + k = 0 by size: a step must resolve it.
   double fastest_rate() const {
     const double damping = c / (2.0 * m);
     return damping > omega() ? damping + std::sqrt(damping * damping - omega() * omega()) : omega();
@@ -37,8 +38,9 @@ struct SpringMass {
   scene::Scene scene(const std::string& name) const;
 };
 
-// A spring of rest length 0, fixed at the place where it rests, pulls with -k x - c x' along the line: the equation itself, in which x has all
-// its digits however small it becomes. It has no direction at x = 0; a start there has a spring so long that it keeps its side.
+// A spring of rest length 0, attached at its point of rest, exerts -k x - c x' along the line: the
+// equation itself, in which x keeps its relative precision however small it is. It has no direction
+// at x = 0; a start there has a long spring that keeps its direction.
 scene::Scene SpringMass::scene(const std::string& name) const {
   scene::Scene scene = empty_scene(name, 1.0, 1e-9);
   scene.bodies.push_back(point_mass("mass", m, x0 * kAxis, v0 * kAxis));
@@ -47,15 +49,16 @@ scene::Scene SpringMass::scene(const std::string& name) const {
   return scene;
 }
 
-/// |y(h)| / |y(0)| of the laws' method on y' = i w y with w h = z: above 1 the method is unstable there.
+/// |y(h)| / |y(0)| of the laws' method on y' = i w y with w h = z: above 1 the method is unstable
+/// there.
 double amplification(const Laws& laws, double z) {
   const OdeFunction turn = [](double, const VectorXd& y) -> VectorXd { return Eigen::Vector2d(-y[1], y[0]); };
   return laws.integrate_step(turn, 0.0, Eigen::Vector2d(1.0, 0.0), z).norm();
 }
 
-/// The z at which the amplification leaves 1 for good, between where it damps and where it grows.
+/// The z beyond which the amplification stays above 1, between a damped and a growing point.
 double stability_limit(const Laws& laws) {
-  // RK4 damps everywhere in (0, 2.83) and most at 2.4, clear of rounding.
+  // RK4 is damped on (0, 2.83), most at 2.4, well away from rounding.
   double stable = 2.4, unstable = 4.0;
   if (!(amplification(laws, stable) < 1.0) || !(amplification(laws, unstable) > 1.0)) return kUnset;
   for (double middle = 3.2; middle > stable && middle < unstable; middle = 0.5 * (stable + unstable))
@@ -63,7 +66,8 @@ double stability_limit(const Laws& laws) {
   return stable;
 }
 
-/// The same for the semi-implicit method v += h a(x), x += h v: its matrix has determinant 1 and trace 2 - z^2, stable while |trace| <= 2.
+/// The same for the semi-implicit method v += h a(x), x += h v: its matrix has determinant 1 and
+/// trace 2 - z^2, stable while |trace| <= 2.
 double symplectic_euler_limit(double omega) { return 2.0 / omega; }
 
 void compare_constants_of_spring(const Case& truth, const SpringMass& spring, const Laws& laws, Comparison& comparison) {
@@ -104,7 +108,7 @@ void compare_elastic_pendulum(const Case& truth, const Laws& laws, Comparison& c
   const Frame start = start_of(scene, laws);
   comparison.closed_form(truth, "energy", energy_of(start));
   comparison.closed_form(truth, "Lz", (start.poses[0].com_world.cross(m * start.poses[0].velocity_world)).z());
-  // The bob swings, and goes through the lowest point as fast as its energy lets it.
+  // The bob swings, and passes the lowest point at the speed that its energy gives.
   const double rate = std::sqrt(k / m) + std::sqrt(truth.input("g").number() / truth.input("L0").number());
   for (const Value& time : truth.input("times").list()) {
     const std::string t = "t" + time.text();
@@ -131,7 +135,7 @@ scene::BodySpec joined_body(const Case& truth, const std::string& name) {
   return body;
 }
 
-/// Everything about body 'A' (0) or 'B' (1) at an instant.
+/// All quantities of body 'A' (0) or 'B' (1) at an instant.
 void add_body(const Case& truth, std::size_t index, const std::string& t, std::vector<Quantity>& quantities) {
   const std::string end = (index == 0 ? "A_" : "B_") + t;
   const auto pose = [index](const Frame& frame) { return frame.poses[index]; };
@@ -161,7 +165,7 @@ void compare_two_body_spring(const Case& truth, const Laws& laws, Comparison& co
   comparison.closed_form(truth, "angular_momentum_world_about_origin", VectorXd(start.angular_momentum_world));
   comparison.closed_form(truth, "spring_length_t0", length(start));
 
-  // Both ends give way: by masses, and by turning at most |a|^2 / I.
+  // Compliance of both ends: by their masses, and by rotation at most |a|^2 / I.
   double give = 0.0, spin = 0.0;
   for (const scene::BodySpec& body : scene.bodies) {
     const Vector3d& arm = body.name == "A" ? a : b;

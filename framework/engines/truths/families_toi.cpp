@@ -1,5 +1,6 @@
-// toi_*: times of impact of bodies on given motions, by the framework's collision finding with the laws' root finder.
-// World frame, z up. `exp(t [w])` is a turn about the constant world axis w.
+// toi_*: times of impact of bodies on given motions, by the framework's collision detection with
+// the laws' root finder.
+// World frame, z up. `exp(t [w])` is a rotation about the constant world axis w.
 #include <cmath>
 
 #include "framework/collision/first_impact.h"
@@ -12,7 +13,7 @@ namespace {
 
 using namespace collision;
 
-constexpr double kFirstHorizon = 1.0;   // s: searched in windows, each as long as all before, so that no case needs its own
+constexpr double kFirstHorizon = 1.0;   // s: searched in windows, each as long as all before, so that no case needs its own horizon
 constexpr double kLastHorizon = 1024.0; // s
 
 /// x = x0 + v t + a t^2 / 2,   R = exp(t [w]) R0
@@ -63,7 +64,7 @@ Solid plane(const Vector3d& normal_world, double d) {
 
 Vector3d gravity(const Case& truth) { return {0.0, 0.0, -truth.input("g").number()}; }
 
-/// Compares the time; false, with a wrong line, where no impact was found.
+/// Compares the time; false, with a failed line, where no impact was found.
 bool compare_toi(const Case& truth, const std::optional<Impact>& impact, Comparison& comparison) {
   if (!impact) comparison.agree("toi", false, "no impact was found");
   else comparison.closed_form(truth, "toi", impact->time);
@@ -94,13 +95,13 @@ void compare_sphere_plane(const Case& truth, const Laws& laws, Comparison& compa
 // ---- toi_rod_plane ---------------------------------------------------------------------------------------------------
 
 Solid rod_of(const Case& truth) {
-  constexpr double kThickness = 1e-25;  // of the length: nothing, and yet a box
+  constexpr double kThickness = 1e-25;  // of the length: negligible, and yet a box
   const double half = 0.5 * truth.input("L").number(), phi0 = truth.input("phi0").number(), omega = truth.input("omega").number();
   Solid rod{CollisionShape(Box{Vector3d(half, kThickness * half, kThickness * half)}), {}};
   rod.motion.com0_world = {0.0, 0.0, truth.input("h").number()};
   rod.motion.velocity_world = {0.0, 0.0, truth.input("v_up").number()};
   rod.motion.acceleration_world = gravity(truth);
-  // The angle grows from x towards z: a turn about -y.
+  // The angle grows from x towards z: a rotation about -y.
   rod.motion.world_from_body_0 = Eigen::AngleAxisd(phi0, -Vector3d::UnitY());
   rod.motion.omega_world = {0.0, -omega, 0.0};
   return rod;
@@ -123,9 +124,10 @@ void compare_rod_plane(const Case& truth, const Laws& laws, Comparison& comparis
 
 // ---- toi_boxes -------------------------------------------------------------------------------------------------------
 
-/// Which features meet, in the files' words, from the separating axis: a face's normal, or the cross product of two edges.
+/// The colliding features, in the files' words, from the separating axis: a face's normal, or the
+/// cross product of two edges.
 std::string feature_pair(const Pose& a, const Pose& b, const Vector3d& normal_world) {
-  constexpr double kParallel = 1e-6;  // of unit vectors; the files' cases stay clear of edges parallel to faces
+  constexpr double kParallel = 1e-6;  // of unit vectors; no case of the files has edges nearly parallel to faces
   const Matrix3d A = a.world_from_body.toRotationMatrix(), B = b.world_from_body.toRotationMatrix();
   for (int i = 0; i < 3; ++i) {
     const std::string axis = std::to_string(i);
@@ -164,7 +166,8 @@ void compare_boxes(const Case& truth, const Laws& laws, Comparison& comparison) 
 
 // ---- toi_grazing -----------------------------------------------------------------------------------------------------
 
-/// The two bodies of one row, and how fast the normal speed grows as they close in [m/s^2].
+/// The two bodies of one row, and the rate at which the normal speed grows as they approach
+/// [m/s^2].
 struct Graze {
   Solid a, b;
   double closing_rate;
@@ -189,12 +192,12 @@ Graze passing_spheres(const Case& truth, const Value& row) {
 void compare_graze(const Graze& graze, const Value& row, const std::string& name, const Laws& laws, Comparison& comparison) {
   const double closest = row.at("time_of_closest").number(), floor = row.at("toi_tolerance_floor").number();
   const auto impact = find_impact(graze.a, graze.b, laws, 2.0 * closest);
-  // A touching pair would be found again and again: nothing here may be NaN, and the pair may not overlap.
+  // A touching pair must not be found repeatedly: no NaN, and no overlap.
   const bool sane = !impact || (std::isfinite(impact->time) && impact->gap.distance >= 0.0);
   comparison.agree(name + ".sane", sane, "a finite time and no overlap, or no impact");
   const bool should_hit = row.at("verdict").text() != "miss";
-  if (!row.at("decidable_in_binary64").truth()) {
-    comparison.not_compared(name + ".verdict", std::string("within rounding of a touch, either answer is right; found ") + (impact ? "an impact" : "a miss"));
+  if (!row.at("decidable_in_binary64").boolean()) {
+    comparison.not_compared(name + ".verdict", std::string("within rounding of a grazing contact, either answer is right; found ") + (impact ? "an impact" : "a miss"));
   } else {
     comparison.agree(name + ".verdict", impact.has_value() == should_hit, row.at("verdict").text());
   }
@@ -213,7 +216,7 @@ void compare_grazing(const Case& truth, const Laws& laws, Comparison& comparison
     const std::string name = "rows[" + std::to_string(index++) + "]";
     if (kind == "ceiling") compare_graze(ceiling(truth, row), row, name, laws, comparison);
     else if (kind == "spheres") compare_graze(passing_spheres(truth, row), row, name, laws, comparison);
-    else comparison.not_compared(name, "a kind that is not known here: " + kind);
+    else comparison.not_compared(name, "an unknown kind: " + kind);
   }
 }
 
@@ -233,7 +236,7 @@ void compare_tunnel(const Case& truth, const Laws& laws, Comparison& comparison)
   for (int k = 0; k * dt <= truth.input("T").number(); ++k) {
     seen = seen || compute_gap(bullet.shape, bullet.motion.at(k * dt).pose, wall.shape, wall.motion.at(0.0).pose).distance < 0.0;
   }
-  comparison.agree("discrete_sampling_sees_overlap", seen == truth.output("discrete_sampling_sees_overlap").truth(), seen ? "seen" : "not seen");
+  comparison.agree("discrete_sampling_sees_overlap", seen == truth.output("discrete_sampling_sees_overlap").boolean(), seen ? "seen" : "not seen");
   compare_tunnel_run(truth, laws, comparison);
 }
 
@@ -271,7 +274,7 @@ std::optional<ImpactProblem> impact_problem(const Case& truth, double window_s) 
   }
   if (truth.family == "toi_rod_plane") return problem_between(truth, rod_of(truth), plane(Vector3d::UnitZ(), 0.0), window_s);
   if (truth.family == "toi_boxes") return problem_between(truth, box_of(truth, "A"), box_of(truth, "B"), window_s);
-  return std::nullopt;   // a graze is a double root, and a bullet is through the wall at the end of a step: no bracket
+  return std::nullopt;   // a grazing impact is a double root, and a bullet has passed the wall at the end of a step: no bracket
 }
 
 void compare_times_of_impact(const Case& truth, const Laws& laws, Comparison& comparison) {

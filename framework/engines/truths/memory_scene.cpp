@@ -30,7 +30,7 @@ scene::BodySpec ball(const std::string& name, double mass, double radius, const 
 }
 
 scene::BodySpec point_mass(const std::string& name, double mass, const Vector3d& position, const Vector3d& velocity) {
-  constexpr double kRadius = 0.01;   // m: seen by nothing
+  constexpr double kRadius = 0.01;   // m: has no effect
   scene::BodySpec body = ball(name, mass, kRadius, position, velocity, 1.0);
   body.collides = false;
   return body;
@@ -71,7 +71,8 @@ Trajectory run_in_memory(const scene::Scene& scene, const Laws& laws, double fra
 }
 
 SteppedScene in_equal_steps(const scene::Scene& scene, double t, long steps, long frames) {
-  // The last frame falls on the rounded frames / rate. There the last step ends too, and not a rounding before.
+  // The last frame is at the rounded frames / rate. The last step must end there, not a rounding
+  // earlier.
   const double rate = static_cast<double>(frames) / t, end = static_cast<double>(frames) / rate;
   SteppedScene stepped{scene, rate};
   stepped.scene.duration_s = end;
@@ -88,13 +89,13 @@ Trajectory run_in_steps(const scene::Scene& scene, const Laws& laws, double t, l
 Frame frame_at(const scene::Scene& scene, const Laws& laws, double t) {
   scene::Scene shorter = scene;
   const double rate = 1.0 / t;
-  shorter.duration_s = std::max(t, 1.0 / rate);  // the frame falls on the rounded 1 / rate
+  shorter.duration_s = std::max(t, 1.0 / rate);  // the frame is at the rounded 1 / rate
   return run_in_memory(shorter, laws, rate).frames.back();
 }
 
 Frame start_of(const scene::Scene& scene, const Laws& laws) {
   scene::Scene shorter = scene;
-  shorter.step_s = shorter.duration_s = 1e-9;   // s: one step, which is not looked at
+  shorter.step_s = shorter.duration_s = 1e-9;   // s: one step, whose end is not used
   return run_in_memory(shorter, laws, 1.0).frames.front();
 }
 

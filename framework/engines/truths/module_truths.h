@@ -1,4 +1,4 @@
-/// Truths whose values a module's own functions give directly, noted in its registration.
+/// Cases whose outputs a module's own functions give directly, noted in its registration.
 #pragma once
 
 #include <functional>
@@ -13,11 +13,11 @@
 namespace tumble::truths {
 
 struct ModuleTruths {
-  /// By family: computes a case with the module and compares every output of it.
+  /// By family: computes a case with the module and compares all its outputs.
   std::map<std::string, std::function<void(const modules::AnyModule&, const Case&, Comparison&)>> families;
 };
 
-/// @param compare  as above, of the module's own type
+/// @param compare  as above, for the module's own type
 template <class Module>
 std::function<void(const modules::AnyModule&, const Case&, Comparison&)> for_module(void (*compare)(const Module&, const Case&, Comparison&)) {
   return [compare](const modules::AnyModule& module, const Case& truth, Comparison& comparison) {

@@ -9,20 +9,22 @@
 namespace tumble::truths {
 namespace {
 
-constexpr double kFirstAngle = 0.2;                     // rad: what the fastest motion turns in the first run's step, at most
-constexpr double kFirstError = 1e-2;                    // rad: nor does an oscillation lag behind more than this in the first run, by (w h)^4 / 120 w t
+constexpr double kFirstAngle = 0.2;                     // rad: largest angle of the fastest motion in the first run's step
+constexpr double kFirstError = 1e-2;                    // rad: largest phase error of an oscillation in the first run, (w h)^4 / 120 w t
 constexpr long kFewestSteps = 16;
-constexpr double kMostSteps = 8e4;                      // of all runs of one instant together, beyond the first three: seconds
-constexpr double kNextTerm = 2.0;                       // what terms after C h^4 may add to a prediction
-constexpr double kUnsettled = 0.5;                      // off the order of a first glance by less: nothing is said
-// Changes in floors. Thousands of steps, each with tens of roundings, may add up to a thousand floors or a few.
-constexpr double kFine = 1e6;                           // small enough: about 1e-10 of what is compared
-constexpr double kAboveRoundOff = 1e5;                  // known to a few per cent, its log2 to less than what the order may be off
-constexpr double kChance = 3.0;                         // of two runs' round-off: one may be as much larger than their difference
-// Roundings of a step of RK4 in each number of the state: four stages, their sum, the projection onto rods and joints; half an eps each, alike
-// in sign or not, and three deviations of their sum over the steps.
+constexpr double kMostSteps = 8e4;                      // of all runs to one time together, beyond the first three: seconds
+constexpr double kNextTerm = 2.0;                       // allowance for the terms after C h^4 in a prediction
+constexpr double kUnsettled = 0.5;                      // a smaller deviation from the order of the first runs is not reported
+// Changes in floors. Thousands of steps, each with tens of roundings, may add up to some thousand
+// floors.
+constexpr double kFine = 1e6;                           // small enough: about 1e-10 of the compared value
+constexpr double kAboveRoundOff = 1e5;                  // known to a few per cent, its log2 to less than the order's tolerance
+constexpr double kChance = 3.0;                         // of two runs' round-off: one may be larger than their difference by this factor
+// Roundings per step of RK4 in each number of the state: four stages, their sum, the projection
+// onto rods and joints; half an eps each, of equal or different sign, and three standard deviations
+// of their sum over the steps.
 constexpr double kRoundingsAStep = 8.0;
-constexpr double kTellsNothing = 1e-3;                  // of a quantity's size: a predicted error as large would pass what is wrong
+constexpr double kTellsNothing = 1e-3;                  // of a quantity's size: with a larger predicted error a wrong value would pass
 
 using Readings = std::vector<VectorXd>;
 
@@ -38,7 +40,7 @@ struct Level {
   long steps = 0;
   Readings readings;
   std::vector<double> changes;   // by the last halving
-  double state_change = kUnset;  // of all that is state, in floors: root of the sum of squares
+  double state_change = kUnset;  // of all quantities of the state, in floors: root of the sum of squares
 };
 
 /// 0 where a floor of 0 says that the value is exact.
@@ -49,21 +51,22 @@ Level next_level(const Level& last, Readings readings, const std::vector<Quantit
   double squares = 0.0;
   for (std::size_t i = 0; i < quantities.size(); ++i) {
     level.changes.push_back(quantities[i].difference(level.readings[i], last.readings[i]));
-    if (quantities[i].is_state) squares += std::pow(in_floors(level.changes[i], quantities[i].floor), 2);
+    if (quantities[i].is_state) squares += std::pow(in_floors(level.changes[i], quantities[i].error_floor), 2);
   }
   level.state_change = std::sqrt(squares);
   return level;
 }
 
-/// Error that is left in quantity i of the finest level: a fifteenth of the last change, or 1 / (2^p - 1) of it where changes still shrink as
-/// with order p < 4. The change before last, by as much smaller, speaks where the last one happens to cross zero.
+/// Remaining error of quantity i at the finest level: a fifteenth of the last change, or 1 / (2^p -
+/// 1) of it where changes still decrease with order p < 4. Where the last change happens to cross
+/// zero, the change before it is used, reduced by the same factor.
 double truncation(const std::vector<Level>& levels, std::size_t i) {
   const Level &last = levels.back(), &before = levels[levels.size() - 2];
   const double shrinks = last.state_change > kAboveRoundOff ? std::clamp(before.state_change / last.state_change, 2.0, 16.0) : 16.0;
   return kNextTerm * std::max(last.changes[i], before.changes[i] / shrinks) / (shrinks - 1.0);
 }
 
-/// The order that the finest change clear of round-off shows, and whether the one before agrees.
+/// The order of the finest change above round-off, and whether the one before agrees.
 struct Order {
   double value = kUnset;
   long steps = 0;
@@ -80,19 +83,19 @@ Order order_of(const std::vector<Level>& levels) {
   return {};
 }
 
-/// What round-off does to the states of the finest runs, in floors: seen by a run of slightly shorter steps. Only asked for where halving the
-/// step changed so little, or so oddly, that round-off may be part of it (near a saddle it grows beyond what the floors, which move the
-/// start, tell).
+/// Round-off of the states of the finest runs, in floors, from a run with slightly shorter steps.
+/// Computed only where halving the step changed so little, or so irregularly, that round-off may be
+/// part of it (near a saddle it grows beyond the floors, which only vary the start).
 double round_off(const RefinedRun& run, const Laws& laws, const std::vector<Quantity>& quantities, const std::vector<Level>& levels, long frames) {
   const Level& finest = levels.back();
   const Order order = order_of(levels);
-  const bool agrees = levels.size() <= 3 || order.settled;   // after many halvings an order of 4 alone may be what round-off happens to show
+  const bool agrees = levels.size() <= 3 || order.settled;   // after many halvings round-off alone may show an order of 4 by chance
   const bool is_clear = finest.state_change > kAboveRoundOff && std::abs(order.value - kOrder) <= kOrderTolerance && agrees;
   if (is_clear || !std::isfinite(finest.state_change)) return 0.0;
   const Readings shifted = read(run, laws, quantities, frames, finest.steps + frames);
   double squares = 0.0;
   for (std::size_t i = 0; i < quantities.size(); ++i)
-    if (quantities[i].is_state) squares += std::pow(in_floors(quantities[i].difference(shifted[i], finest.readings[i]), quantities[i].floor), 2);
+    if (quantities[i].is_state) squares += std::pow(in_floors(quantities[i].difference(shifted[i], finest.readings[i]), quantities[i].error_floor), 2);
   return kChance * std::sqrt(squares);
 }
 
@@ -168,17 +171,17 @@ void compare_refined(const RefinedRun& run, const Laws& laws, const std::vector<
     const Quantity& q = quantities[i];
     const double error = q.difference(levels.back().readings[i], q.expected), predicted = truncation(levels, i), 
                  on_the_way = kRoundingsAStep * std::numeric_limits<double>::epsilon() * std::sqrt(static_cast<double>(levels.back().steps)) * q.growth,
-                 rounding = std::max(std::max(kClosedFormFactor, round_off) * q.floor, on_the_way);
+                 rounding = std::max(std::max(kClosedFormFactor, round_off) * q.error_floor, on_the_way);
     std::string note = fmt::format("predicted truncation error {:.1e} of {} steps", predicted, levels.back().steps);
-    if (on_the_way >= rounding) note += fmt::format(", roundings of all steps grow to {:.1e}", on_the_way);
+    if (on_the_way >= rounding) note += fmt::format(", rounding of all steps grows to {:.1e}", on_the_way);
     else if (round_off > kClosedFormFactor) note += fmt::format(", round-off {:.1e}", rounding);
     double size = q.expected.size() > 0 ? q.expected.cwiseAbs().maxCoeff() : 0.0;
     for (const Level& level : levels) size = std::max(size, level.readings[i].size() > 0 ? level.readings[i].cwiseAbs().maxCoeff() : 0.0);
     if (predicted > rounding && predicted > kTellsNothing * size) {
-      comparison.check(q.output, kUnset, q.floor, rounding, note + ": too much to tell right from wrong");
+      comparison.check(q.output, kUnset, q.error_floor, rounding, note + ": too large to tell right from wrong");
       continue;
     }
-    comparison.check(q.output, error, q.floor, std::max(rounding, predicted), note);
+    comparison.check(q.output, error, q.error_floor, std::max(rounding, predicted), note);
   }
 }
 

@@ -19,7 +19,7 @@ std::string found_in(const Value::Content& content) {
 
 }  // namespace
 
-bool Value::truth() const {
+bool Value::boolean() const {
   if (const bool* b = std::get_if<bool>(&content_)) return *b;
   not_a(*this, "true or false" + found_in(content_));
 }

@@ -1,8 +1,10 @@
-/// One truth file as plain data: reference values computed elsewhere, at high precision, for one case of a family.
+/// One file of reference values as plain data: computed elsewhere, at high precision, for one case
+/// of a family.
 ///
-/// A case has inputs (what the scene is, in SI units) and outputs (what must come out, each with `tolerance_floor`: the
-/// error that double precision itself forces on it). Numbers are decimal strings, read with correct rounding. Who reads the
-/// file (JSON) fills these; whoever computes a family reads every parameter from `inputs` and assumes no number of rows.
+/// A case has inputs (the problem, in SI units) and outputs (the expected values, each with
+/// `tolerance_floor`: the error that double precision itself forces). Numbers are decimal strings,
+/// read with correct rounding. The JSON reader fills these types; the code of a family reads every
+/// parameter from `inputs` and assumes no number of rows.
 #pragma once
 
 #include <string>
@@ -14,7 +16,8 @@
 
 namespace tumble::truths {
 
-/// A value in a truth file, and where it stands, so that a missing or odd one is reported with its place.
+/// A value in such a file with its position, so that a missing or wrong one is reported with its
+/// position.
 class Value {
  public:
   using List = std::vector<Value>;
@@ -22,15 +25,16 @@ class Value {
   using Content = std::variant<std::monostate, bool, std::string, List, Members>;
 
   Value() = default;
-  /// @param place  for messages, file and JSON pointer: "tests/truths/impulse_random__random20.json: /outputs/rows/value/3"
+  /// @param place  for messages, file and JSON pointer:
+  ///   "tests/truths/impulse_random__random20.json: /outputs/rows/value/3"
   Value(std::string place, Content content) : place_(std::move(place)), content_(std::move(content)) {}
 
   const std::string& place() const { return place_; }
   bool is_null() const { return std::holds_alternative<std::monostate>(content_); }
   bool is_list() const { return std::holds_alternative<List>(content_); }
 
-  // Each throws UserError with the place when the value is of another kind.
-  bool truth() const;
+  // Each throws UserError with the position when the value is of another kind.
+  bool boolean() const;
   const std::string& text() const;
   double number() const;                   // decimal string, correctly rounded; finite
   int integer() const;
@@ -62,7 +66,7 @@ struct Case {
   const Value& input(const std::string& name) const { return inputs.at(name).at("value"); }
   const Value& output(const std::string& name) const { return outputs.at(name).at("value"); }
   bool has_output(const std::string& name) const { return outputs.find(name) != nullptr; }
-  /// Floor of a whole output. @throws UserError when it is given a row at a time
+  /// Floor of a whole output. @throws UserError when the file gives it per row
   double floor(const std::string& name) const { return outputs.at(name).at("tolerance_floor").number(); }
 };
 

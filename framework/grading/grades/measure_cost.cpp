@@ -19,9 +19,9 @@ namespace tumble::grading {
 namespace {
 
 namespace fs = std::filesystem;
-using engines::CostRung;
-using engines::CostTruth;
-using engines::CostWay;
+using engines::CostResult;
+using engines::CostReference;
+using engines::CostMethod;
 using modules::AnyModule;
 using modules::ModuleKind;
 
@@ -29,49 +29,49 @@ constexpr double kCoarsest = 1.0 / 8.0;   // s: the largest step
 constexpr int kResolutions = 8;                 // halvings down to 1/1024 s
 
 struct Measured {
-  CostWay way;
-  std::vector<CostRung> rungs;
+  CostMethod method;
+  std::vector<CostResult> results;
   std::string story;                      // what ended it; empty: it is complete
   bool is_reference = false;
 };
 
 /// The module's own methods, then all its laws together: methods alone do not test the derivative
 /// and the renormalisation.
-std::vector<CostWay> ways_of(const ModuleKind& kind, const AnyModule& module, const Laws& right, const Laws& whole, const std::string& whose) {
-  std::vector<CostWay> ways;
+std::vector<CostMethod> methods_of(const ModuleKind& kind, const AnyModule& module, const Laws& right, const Laws& whole, const std::string& whose) {
+  std::vector<CostMethod> methods;
   for (const modules::NamedMethod& named : kind.methods) {
-    CostWay way;
-    way.name = whose + " " + named.name;
-    way.method = [step = named.step(module)](double) { return step; };
-    way.order = named.order;
-    way.laws = right;
-    ways.push_back(std::move(way));
+    CostMethod method;
+    method.name = whose + " " + named.name;
+    method.step_function = [step = named.step(module)](double) { return step; };
+    method.order = named.order;
+    method.laws = right;
+    methods.push_back(std::move(method));
   }
-  CostWay all;
+  CostMethod all;
   all.name = fmt::format("{} {} as a whole", whose, kind.id);
   all.laws = whole;
   if (!kind.methods.empty()) all.order = kind.methods.back().order;
   if (kind.methods.empty()) {   // its laws, with the library's classical method
-    all.method = [](double) { return step_of(method_named("rk4"), kUnset); };
+    all.step_function = [](double) { return step_of(method_named("rk4"), kUnset); };
     all.order = method_named("rk4").order;
   }
-  ways.push_back(std::move(all));
-  return ways;
+  methods.push_back(std::move(all));
+  return methods;
 }
 
-std::vector<Measured> measure(const scene::Scene& scene, std::vector<CostWay> ways, const CostTruth& truth, const std::function<void()>& between) {
+std::vector<Measured> measure(const scene::Scene& scene, std::vector<CostMethod> methods, const CostReference& reference, const std::function<void()>& between) {
   engines::CostOptions options;
   options.runs = 1;
   std::vector<double> steps;
   for (int k = 0; k < kResolutions; ++k) steps.push_back(kCoarsest * std::pow(0.5, k));
   std::vector<Measured> all;
-  for (CostWay& way : ways) {
-    Measured measured{std::move(way), {}, "", false};
+  for (CostMethod& method : methods) {
+    Measured measured{std::move(method), {}, "", false};
     between();
     try {
-      engines::run_ladder(scene, measured.way, truth, 0.0, options, steps, {}, [&](const CostRung& rung) {
-        measured.rungs.push_back(rung);
-        if (call_log().noted && !rung.not_attempted) throw std::runtime_error(call_log().story);   // it hangs or crashes, and would do so again
+      engines::run_refinement(scene, measured.method, reference, 0.0, options, steps, {}, [&](const CostResult& result) {
+        measured.results.push_back(result);
+        if (call_log().noted && !result.not_attempted) throw std::runtime_error(call_log().story);   // it hangs or crashes, and would do so again
       });
     } catch (const std::exception& error) {
       measured.story = error.what();
@@ -81,31 +81,31 @@ std::vector<Measured> measure(const scene::Scene& scene, std::vector<CostWay> wa
   return all;
 }
 
-CostLine line_of(const Measured& measured, const CostTruth& truth) {
+CostLine line_of(const Measured& measured, const CostReference& reference) {
   CostLine line;
-  line.is_attempted = measured.rungs.empty() || !measured.rungs.back().not_attempted;
-  if (!measured.story.empty()) line.reading = fmt::format("{}: the refinement sequence ended early. {}", measured.way.name, plain_text(measured.story));
-  else line.reading = plain_text(engines::read_ladder(measured.way, measured.rungs, truth, true));
-  line.is_right = measured.story.empty() && line.is_attempted && engines::keeps_promise(measured.way, measured.rungs, truth);
+  line.is_attempted = measured.results.empty() || !measured.results.back().not_attempted;
+  if (!measured.story.empty()) line.reading = fmt::format("{}: the refinement sequence ended early. {}", measured.method.name, plain_text(measured.story));
+  else line.reading = plain_text(engines::read_refinement(measured.method, measured.results, reference, true));
+  line.is_right = measured.story.empty() && line.is_attempted && engines::keeps_promise(measured.method, measured.results, reference);
   line.reading[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(line.reading[0])));
   return line;
 }
 
-report::Plot plot_of(const std::vector<Measured>& all, const CostTruth& truth, report::Axis across, const std::string& title, double (*x)(const CostRung&), const std::string& caption) {
+report::Plot plot_of(const std::vector<Measured>& all, const CostReference& reference, report::Axis across, const std::string& title, double (*x)(const CostResult&), const std::string& caption) {
   report::Plot plot{title, std::move(across), {"error of places", "m", report::Scale::kLog}, {}, {}, caption};
   for (const Measured& measured : all) {
     if (measured.is_reference) plot.curves.resize(std::max(plot.curves.size(), report::kReferenceStyles));   // the submission's colours with hollow marks
-    const auto fit = engines::order_of(measured.way, measured.rungs, truth);
-    report::Curve curve{fit ? fmt::format("{}, order {:.2f}", measured.way.name, fit->order) : measured.way.name, {}, {}, true};
-    for (const CostRung& rung : measured.rungs) {
-      if (!rung.stopped_by.empty() || !(rung.error_m < truth.scale_m) || !(x(rung) > 0)) continue;
-      curve.x.push_back(x(rung));
-      curve.y.push_back(std::max(rung.error_m, truth.floor_m));
+    const auto fit = engines::order_of(measured.method, measured.results, reference);
+    report::Curve curve{fit ? fmt::format("{}, order {:.2f}", measured.method.name, fit->order) : measured.method.name, {}, {}, true};
+    for (const CostResult& result : measured.results) {
+      if (!result.stopped_by.empty() || !(result.error_m < reference.scale_m) || !(x(result) > 0)) continue;
+      curve.x.push_back(x(result));
+      curve.y.push_back(std::max(result.error_m, reference.floor_m));
     }
     if (curve.x.empty()) curve.name.clear();
     plot.curves.push_back(std::move(curve));
   }
-  plot.limits.push_back({truth.floor_m, "error of the reference solution"});
+  plot.limits.push_back({reference.floor_m, "error of the reference solution"});
   return plot;
 }
 
@@ -122,7 +122,7 @@ CostSection measure_cost(const Course& course, const std::string& id, const fs::
   const Laws right = laws_around(course, kind, kind.methods.empty() ? reference : nullptr, "reference", scene);
   engines::CostOptions looking;
   looking.duration_s = kind.note<engines::CostShowcase>().duration_s;
-  const CostTruth truth = engines::find_truth(scene, right, looking);
+  const CostReference reference = engines::find_reference(scene, right, looking);
 
   WorkerOptions worker;
   worker.id = kind.id;
@@ -134,25 +134,25 @@ CostSection measure_cost(const Course& course, const std::string& id, const fs::
   call_log() = CallLog{};
   WorkerConnection connection(worker);
   const AnyModule proxy = kind.make_proxy(connection);
-  std::vector<Measured> all = measure(scene, ways_of(kind, proxy, right, laws_around(course, kind, proxy, "submission", scene), "your"), truth, [&] {
+  std::vector<Measured> all = measure(scene, methods_of(kind, proxy, right, laws_around(course, kind, proxy, "submission", scene), "your"), reference, [&] {
     connection.reset();
     call_log() = CallLog{};   // each curve is independent
   });
 
   CostSection section;
   section.scene = scene.title;
-  section.truth = fmt::format("Errors are against {}: {:.1e} m; the error is the distance of a body's centre of mass from its reference position, plus the angle between its orientations times its radius of gyration.", truth.what, truth.floor_m);
-  for (const Measured& measured : all) section.lines.push_back(line_of(measured, truth));
+  section.reference = fmt::format("Errors are against {}: {:.1e} m; the error is the distance of a body's centre of mass from its reference position, plus the angle between its orientations times its radius of gyration.", reference.what, reference.floor_m);
+  for (const Measured& measured : all) section.lines.push_back(line_of(measured, reference));
   if (reference) {
     const Laws whole = laws_around(course, kind, reference, "reference", scene);
-    for (Measured& measured : measure(scene, ways_of(kind, reference, right, whole, "reference"), truth, [] {})) {
+    for (Measured& measured : measure(scene, methods_of(kind, reference, right, whole, "reference"), reference, [] {})) {
       measured.is_reference = true;
       all.push_back(std::move(measured));
     }
   }
-  section.plots.push_back(plot_of(all, truth, {"step", "s", report::Scale::kLog}, "Error against the step", [](const CostRung& rung) { return rung.step_s; },
+  section.plots.push_back(plot_of(all, reference, {"step", "s", report::Scale::kLog}, "Error against the step", [](const CostResult& result) { return result.step_s; },
                                   "The slope is the order: halving the step divides the error of a method of order p by 2^p."));
-  section.plots.push_back(plot_of(all, truth, {"derivatives asked for", "-", report::Scale::kLog}, "Error against force evaluations", [](const CostRung& rung) { return static_cast<double>(rung.evaluations); },
+  section.plots.push_back(plot_of(all, reference, {"derivatives asked for", "-", report::Scale::kLog}, "Error against force evaluations", [](const CostResult& result) { return static_cast<double>(result.evaluations); },
                                   "The cost of accuracy in counts that are the same on any machine: left is cheaper, down is more accurate."));
   return section;
 }

@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 using engines::SchedulerCurve;
 using engines::SchedulerReading;
 using engines::SchedulerRun;
-using engines::SchedulerTrial;
+using engines::SchedulerRunOptions;
 using modules::AnyModule;
 using modules::ModuleKind;
 
@@ -85,7 +85,7 @@ class RunSequence {
     const fs::path file = course_.root / "assignments" / kind_.folder / "scenes" / (kind_.note<engines::CostShowcase>().scene + ".json");
     const scene::Scene scene = scene::load_scene(file);
     for (const double step : engines::scheduler_steps(scene)) {
-      SchedulerTrial trial;
+      SchedulerRunOptions trial;
       trial.step_s = step;
       trial.duration_s = kind_.note<engines::CostShowcase>().duration_s;
       between();
@@ -93,7 +93,7 @@ class RunSequence {
     }
     if (kind_.note<engines::CostShowcase>().sized_scene.empty()) return;
     for (const int n : kSizes) {
-      SchedulerTrial trial;
+      SchedulerRunOptions trial;
       trial.n = n;
       trial.duration_s = kSizedDuration;
       between();
@@ -102,7 +102,7 @@ class RunSequence {
   }
 
  private:
-  bool one(const scene::Scene& scene, const AnyModule& module, const std::string& source, const SchedulerTrial& trial, std::vector<SchedulerRun>& runs) const {
+  bool one(const scene::Scene& scene, const AnyModule& module, const std::string& source, const SchedulerRunOptions& trial, std::vector<SchedulerRun>& runs) const {
     const std::size_t due = engines::events_due(scene, laws_around(course_, kind_, nullptr, "", scene), trial);
     runs.push_back(engines::run_scheduler(scene, laws_around(course_, kind_, module, source, scene), trial, due));
     return !call_log().noted;   // a hang, a crash or a stub would repeat

@@ -13,7 +13,7 @@ namespace tumble::a4 {
 namespace {
 
 std::array<double, 5> key(const Stamp& stamp) {
-  return {stamp.time, static_cast<double>(stamp.generation), static_cast<double>(stamp.kind), static_cast<double>(stamp.body_a), static_cast<double>(stamp.body_b)};
+  return {stamp.time, static_cast<double>(stamp.microstep), static_cast<double>(stamp.kind), static_cast<double>(stamp.body_a), static_cast<double>(stamp.body_b)};
 }
 
 bool is_among(std::int32_t body, const std::vector<std::int32_t>& list) {

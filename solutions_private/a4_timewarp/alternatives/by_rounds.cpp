@@ -12,7 +12,7 @@ namespace tumble::a4 {
 
 bool comes_before(const Stamp& x, const Stamp& y) {
   if (x.time != y.time) return x.time < y.time;
-  if (x.generation != y.generation) return x.generation < y.generation;
+  if (x.microstep != y.microstep) return x.microstep < y.microstep;
   if (x.kind != y.kind) return static_cast<int>(x.kind) < static_cast<int>(y.kind);
   if (x.body_a != y.body_a) return x.body_a < y.body_a;
   return x.body_b < y.body_b;

@@ -19,7 +19,7 @@ constexpr double kNever = std::numeric_limits<double>::infinity();
 int compare(const Stamp& x, const Stamp& y) {
   const auto sign = [](auto p, auto q) { return p < q ? -1 : p > q ? 1 : 0; };
   if (const int by_time = sign(x.time, y.time)) return by_time;
-  if (const int by_generation = sign(x.generation, y.generation)) return by_generation;
+  if (const int by_generation = sign(x.microstep, y.microstep)) return by_generation;
   if (const int by_kind = sign(static_cast<int>(x.kind), static_cast<int>(y.kind))) return by_kind;
   if (const int by_a = sign(x.body_a, y.body_a)) return by_a;
   return sign(x.body_b, y.body_b);

@@ -1,27 +1,27 @@
-// What is committed, and when. Part of Conductor.
+// Commit of events and frames. Part of Coordinator.
 #include <algorithm>
 
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
-#include "solutions_private/a4_timewarp/fast/conductor.h"
+#include "solutions_private/a4_timewarp/fast/coordinator.h"
 
 namespace tumble::a4 {
 
-bool Conductor::still_stands(int body, std::uint32_t serial) const {
-  return body < 0 || !all_.world().can_move(body) || all_.histories[body].find(serial) < all_.histories[body].size();
+bool Coordinator::is_current(int body, std::uint32_t version) const {
+  return body < 0 || !all_.world().can_move(body) || all_.histories[body].find(version) < all_.histories[body].size();
 }
 
-// What is committed stays: it lies before all that is still to come, and global virtual time never falls.
-void Conductor::require_certain(const EventKey& key) const {
+// A commit is final: it lies before all pending events, and global virtual time never falls.
+void Coordinator::require_certain(const EventStamp& key) const {
   if (key.time < all_.committed) throw PreconditionError(fmt::format("timewarp: global virtual time fell from {:.17g} s to {:.17g} s", all_.committed, key.time));
   for (const Domain& domain : all_.domains)
     if (!domain.queue.empty() && domain.queue.front().key.time <= all_.run.duration() && domain.queue.front().key < key)
-      throw PreconditionError(fmt::format("timewarp: what lies before {:.17g} s is to be committed while an event at {:.17g} s is still to come", key.time, domain.queue.front().key.time));
+      throw PreconditionError(fmt::format("timewarp: events before {:.17g} s are to be committed while an event at {:.17g} s is pending", key.time, domain.queue.front().key.time));
 }
 
-// Everything before `key`, in order, and frames among it.
-void Conductor::commit_before(const EventKey& key) {
+// Commits everything before `key` in order, with the frames between.
+void Coordinator::commit_before(const EventStamp& key) {
   require_certain(key);
   std::vector<Executed>& executed = alone().executed;
   for (std::size_t k = 1; k < workers_.size(); ++k) {
@@ -39,7 +39,7 @@ void Conductor::commit_before(const EventKey& key) {
   std::size_t done = 0;
   for (; done < executed.size() && executed[done].key < key; ++done) {
     const Executed& event = executed[done];
-    if (!still_stands(event.key.body_a, event.serial_a) || !still_stands(event.key.body_b, event.serial_b)) continue;   // taken back
+    if (!is_current(event.key.body_a, event.version_a) || !is_current(event.key.body_b, event.version_b)) continue;   // rolled back
     draw_before(event.key.time);
     if (event.is_silent) all_.run.pass(event.key);
     else all_.run.commit(event.key, event.first, event.more);
@@ -48,14 +48,14 @@ void Conductor::commit_before(const EventKey& key) {
   draw_before(key.time);
   note_kept();
   all_.committed = std::min(key.time, all_.run.duration());
-  if (all_.world().processes()) all_.world().processes()->passages().forget_before(all_.committed);
+  if (all_.world().processes()) all_.world().processes()->segments().forget_before(all_.committed);
 }
 
-void Conductor::note_kept() {
+void Coordinator::note_kept() {
   std::int64_t kept = 0;
   for (const auto& worker : workers_) kept += worker->kept;
   if (workers_.size() == 1) kept = alone().most_kept;
-  most_kept_ = std::max(most_kept_, kept + static_cast<std::int64_t>(all_.world().all_processes().passages().kept()));
+  most_kept_ = std::max(most_kept_, kept + static_cast<std::int64_t>(all_.world().all_processes().segments().kept()));
 }
 
 }  // namespace tumble::a4

@@ -1,28 +1,33 @@
-/// Timewarp, made to be fast: every body a process with a local virtual time of its own.
+/// The fast timewarp: every body is a logical process with its own local virtual time. This folder
+/// is an engine, not a solution of the assignment: it must not be handed out.
 ///
-/// A process goes on optimistically: its flight is checked against whoever it may meet up to a horizon of its own, its local virtual
-/// time, and it says so to nobody. What is true at any moment: of every two bodies all impacts up to the lesser of their two local
-/// virtual times are known. So whichever process comes later to a place and a time finds there what the other was doing, and where an
-/// impact with it is found in its past, the other is rolled back. Safe times therefore need no bookkeeping a pair: the safe time of a
+/// A process advances optimistically: its flight is checked against all bodies that it may meet up
+/// to its horizon, which is its local virtual time, without a message to them. Invariant: for every
+/// two bodies, all impacts up to the lesser of their local virtual times are known. A process that
+/// reaches a place and time later finds there the other's motion; where it finds an impact in the
+/// other's past, the other is rolled back. Safe times need no storage per pair: the safe time of a
 /// pair is the lesser of its local virtual times.
 ///
-/// What a body did to another stands in its flights: with whom the flight began, and which flight of the other began with it. Dropping
-/// a flight therefore names its anti-message. Events that speak of dropped flights are recognised by serial numbers when their turn comes.
+/// The effect of a body on another is stored in its flights: the partner of the event that began
+/// the flight, and the version of the partner's flight that began with it. A dropped flight
+/// therefore names its anti-message. Events on dropped flights are recognised by their versions
+/// when their turn comes.
 ///
-/// Whatever order processes work in, the committed trace is the same: two flights determine their impact to the last bit, and of the
-/// impacts of any body the first in the total order is the only one that no other can take back.
+/// The committed trace does not depend on the order of execution: two flights determine their
+/// impact to the last bit, and of a body's impacts the first in the total order is the only one
+/// that no other impact can cancel.
 #pragma once
 
 #include "framework/engines/base/run_options.h"
-#include "framework/engines/timewarp/rollback_watch.h"
+#include "framework/engines/timewarp/rollback_check.h"
 #include "framework/trajectory/virtual_times.h"
 
 namespace tumble::a4 {
 
 /// @pre `laws` has every law that the scene needs
-/// @param record  where moves of local virtual times are written; null: nowhere
-/// @param watch   rolls everything back on trial; null: never
-/// @throws UserError where the scene has what no flight follows
-void run_fast_timewarp(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record = nullptr, const engines::RollbackWatch* watch = nullptr);
+/// @param record  receives changes of local virtual times; null: none
+/// @param watch   rolls everything back repeatedly; null: never
+/// @throws UserError where the scene has an effect that flights do not model
+void run_fast_timewarp(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record = nullptr, const engines::RollbackCheck* watch = nullptr);
 
 }  // namespace tumble::a4

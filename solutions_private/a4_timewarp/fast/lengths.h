@@ -1,5 +1,5 @@
-/// How far processes go at once, how large the cells of the grid are, how much time a bin of the queue holds: what speed depends on, and
-/// no result does.
+/// Lengths that determine the speed but no result: the distance that processes advance at once, the
+/// size of grid cells, the time in a bin of the queue.
 #pragma once
 
 #include "framework/engines/events/flight_world.h"
@@ -7,15 +7,16 @@
 namespace tumble::a4 {
 
 struct Lengths {
-  double way, cell;   // [m]
+  double advance, cell;   // [m]
 };
 
-/// Measured on gases of 10^2 to 10^5 balls; either may be off by half and costs a tenth.
+/// Measured on gases of 10^2 to 10^5 balls; an error of 50 % in either costs 10 % of the speed.
 Lengths lengths_for(const engines::FlightWorld& world);
 
-/// A bin of the queue should hold some hundred events; a process has one each time it goes on. [s]
-/// @param way       of lengths_for
+/// The width of a bin of the queue: about a hundred events should fall into one; a process has one
+/// event per advance. [s]
+/// @param advance   of lengths_for
 /// @param duration  of the run [s]
-double bin_for(const engines::FlightWorld& world, double way, double duration);
+double bin_for(const engines::FlightWorld& world, double advance, double duration);
 
 }  // namespace tumble::a4

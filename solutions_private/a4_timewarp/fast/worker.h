@@ -1,9 +1,10 @@
-/// One thread of the fast scheduler: takes processes on, does what happens to them, takes it back. Its parts: worker_advance.cpp and
-/// worker_events.cpp. Which thread works when is conductor.cpp's.
+/// One thread of the fast scheduler: it advances processes, executes their events, and rolls them
+/// back. Its parts: worker_advance.cpp and worker_events.cpp. The coordinator (coordinator.h)
+/// decides which worker runs when.
 ///
-/// A worker at home in a territory touches only bodies that are at home there, and looks at those of the border. Whatever else an event
-/// asks for it leaves: events, anti-messages, processes that would go beyond the territory. The worker of the border works alone, at
-/// whatever there is.
+/// The worker of a region changes only bodies that the region owns, and reads those of the
+/// boundary. It defers everything else that an event needs: events, anti-messages, processes that
+/// would leave the region. The worker of the boundary runs alone, on all bodies.
 #pragma once
 
 #include <exception>
@@ -18,72 +19,74 @@ namespace tumble::a4 {
 
 class alignas(64) Worker {
  public:
-  Worker(Shared& all, std::size_t home) : all_(all), home_(home), random_(all.trial.seed + home) {}
+  Worker(Shared& all, std::size_t owner) : all_(all), owner_(owner), random_(all.faults.seed + owner) {}
 
-  /// What happens before `end`, in order, in this worker's territory.
-  /// @return `end`; of one thread less where a body has done very much since: to there it has worked, and the round may end
+  /// Executes the events before `end`, in order, in this worker's region.
+  /// @return `end`; with one thread less where a body has had very many events: the time that was
+  ///   reached, where the epoch may end
   double work_before(double end);
-  /// One event, taken from a queue. @throws StoppedRun
+  /// Executes one event from a queue. @throws StoppedRun
   void work_at(const Due& due);
-  /// Whether nobody whom the event concerns would then have more states than are allowed.
+  /// Whether no body of the event would then exceed the limit of states.
   bool has_room(const Due& due);
-  /// Lets go of what they did before what is committed.
+  /// Discards its bodies' states before the committed time.
   void purge(const Due& due);
-  /// A process that goes on for the first time.
+  /// The first advance of a process.
   void begin(int body) { advance(body); }
-  void expect_callback(const EventKey& key);
-  /// Drops the flights of a body from that with this serial on, and what they did to others.
-  void take_back(int body, std::uint32_t serial);
-  /// Begins to bring what an event will look at from memory.
+  void expect_callback(const EventStamp& key);
+  /// Drops the flights of a body from this version on, and cancels their effects on others.
+  void roll_back_from(int body, std::uint32_t version);
+  /// Prefetches the data of an event.
   void fetch(const Due& due) const;
-  /// Whether an event in a queue is to come, and not stale.
+  /// Whether an event in a queue is current, and not stale.
   bool is_to_come(const Due& due);
-  /// A test's: rolls a body back by up to the trial's time.
+  /// For tests: rolls a body back by up to the injected fault's time.
   void disturb();
-  /// A test's: as if the body had never gone beyond t. @pre t is not before what is committed
-  void go_back(int body, double t);
-  /// Which event is next: a test's lot decides, among those that may be.
+  /// For tests: rolls a body back to t as if it had never advanced past it. @pre t is not before
+  /// the committed time
+  void roll_back_to(int body, double t);
+  /// For tests: a random choice of the next event, among those that may be executed.
   Due next_legal(double last);
 
-  /// What it could not do itself.
-  struct Left {
+  /// Work that belongs to another worker.
+  struct Deferred {
     std::vector<Due> due;
-    std::vector<std::pair<int, std::uint32_t>> anti_messages;   // body, and serial of its flight that must be dropped
-    std::vector<EventKey> recalls;                              // callbacks that must be called again
-    std::exception_ptr out_of_time;                             // it has stopped, and so must all
+    std::vector<std::pair<int, std::uint32_t>> anti_messages;   // body, and version of its flight that must be dropped
+    std::vector<EventStamp> cancelled_callbacks;                              // callbacks that must be executed again
+    std::exception_ptr out_of_time;                             // out of time: this worker has stopped, and all others must
   };
-  Left left;
+  Deferred deferred;
   std::vector<Executed> executed;
   std::vector<VirtualTimes::Move> moves;
   engines::RunCounters counters;
   engines::CheckCost cost;
-  std::size_t longest = 0;                // history of a body since work_before began: states
-  std::int64_t kept = 0, most_kept = 0;   // flights; of one worker the difference that it made
-  double burden = 0.0;                    // of all together, since territories were cut
-  double cpu_seconds = 0.0;               // of work_before
+  std::size_t longest = 0;                // largest number of states of a body since work_before began
+  std::int64_t kept = 0, most_kept = 0;   // flights; for one worker the change that it made
+  double work_load = 0.0;                    // of all its bodies, since the last partition
+  double cpu_seconds = 0.0;               // CPU time of work_before
   std::uint64_t worked_at = 0;            // events, in work_before
-  double now = kInfinity;                 // of the event that is worked at: it is in the queue no more, but not done [s]
+  double now = kInfinity;                 // time of the event in execution: it is not in the queue any more, but not finished [s]
 
  private:
-  bool is_alone() const { return home_ == kBorder; }
+  bool is_alone() const { return owner_ == kBoundary; }
   const FlightWorld& world() const { return all_.world(); }
-  Process& process(int body) { return all_.processes[static_cast<std::size_t>(body)]; }
+  LogicalProcess& process(int body) { return all_.processes[static_cast<std::size_t>(body)]; }
   const FlightHistory& history(int body) const { return all_.histories[body]; }
-  bool is_mine(int body) const { return is_alone() || all_.home[static_cast<std::size_t>(body)] == home_; }
+  bool is_mine(int body) const { return is_alone() || all_.owner[static_cast<std::size_t>(body)] == owner_; }
 
   void advance(int body);
-  void advance_or_leave(int body);
+  void advance_or_defer(int body);
   void advance_member(int body, const Flight& flight, double from, double to, const Box& box);
-  void push(const Due& due, std::size_t home);
+  void push(const Due& due, std::size_t owner);
   bool may_enter(const Box& box) const;
   bool has_only_flown(int body) const;
   void enter_box(int body, const Box& box);
   template <class Found>
   void for_each_partner(int body, const Box& box, const Found& found) const;
   template <class Found>
-  void for_each_in(std::size_t home, const Box& box, const Found& found) const;
+  void for_each_in(std::size_t owner, const Box& box, const Found& found) const;
   template <class Found>
-  void for_each_elsewhere(std::size_t home, const Box& box, const Found& found) const;
+  void for_each_elsewhere(std::size_t owner, const Box& box, const Found& found) const;
   bool meets_nobody(int body, const Flight& flight, double from, double to) const;
   void find_obstacles(int body, const Flight& flight, double from, double to);
   void check(int body, const Flight& flight, double from, double to, int other);
@@ -93,30 +96,30 @@ class alignas(64) Worker {
   void move(int body, double t);
   void set_horizon(int body, double t);
   void shrink_box(int body);
-  void schedule(int body, std::size_t home);
-  void schedule(int body) { schedule(body, all_.home[static_cast<std::size_t>(body)]); }
-  void look_again(int body, std::size_t home);
-  void look_again(int body) { look_again(body, all_.home[static_cast<std::size_t>(body)]); }
+  void schedule(int body, std::size_t owner);
+  void schedule(int body) { schedule(body, all_.owner[static_cast<std::size_t>(body)]); }
+  void schedule_recheck(int body, std::size_t owner);
+  void schedule_recheck(int body) { schedule_recheck(body, all_.owner[static_cast<std::size_t>(body)]); }
   double global_virtual_time() const;
 
   void collide(const Due& due);
-  void note_whose_territory(const Due& due);
+  void count_by_region(const Due& due);
   bool look_up(const Due& due, int side, std::size_t& place);
   void call(const Due& due);
-  void begin_flights(const Due& due, engines::Meeting meeting);
-  void begin_flight(int body, Flight flight, std::uint32_t serial);
+  void begin_flights(const Due& due, engines::Discontinuity discontinuity);
+  void begin_flight(int body, Flight flight, std::uint32_t version);
   void purge(int body);
   void forget(const Flight& flight);
   void roll_back(int body, std::size_t keep);
-  void unsend(int body, std::uint32_t serial);
-  void recall(const EventKey& key);
+  void cancel(int body, std::uint32_t version);
+  void cancel_callback(const EventStamp& key);
   void delay();
-  void leave(const Due& due);
+  void defer(const Due& due);
 
   Shared& all_;
-  const std::size_t home_;
+  const std::size_t owner_;
   Random random_;
-  std::vector<std::pair<int, std::size_t>> to_drop_;   // of roll_back, kept for its memory
+  std::vector<std::pair<int, std::size_t>> to_drop_;   // of roll_back, a member to keep its memory
   template <class Work>
   void for_each_member(const Due& due, const Work& work);
 

@@ -1,4 +1,4 @@
-// How far a process goes, and whom it may meet on the way. Part of Worker.
+// The advance of a process, and its partners on the way. Part of Worker.
 #include "framework/core/numbers.h"
 #include "solutions_private/a4_timewarp/fast/worker.h"
 
@@ -9,59 +9,61 @@
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/timewarp/flight_boxes.h"
-#include "solutions_private/a4_timewarp/fast/territories.h"
+#include "solutions_private/a4_timewarp/fast/partition.h"
 
 namespace tumble::a4 {
 namespace {
 
-// Of what going on costs: a gap of two solids in checks of two balls, a flight's and a passage's step beside their checks. Roughly: they
-// only balance territories.
+// Cost of an advance: a gap of two solids, a step of a flight and of a segment, in units of a check
+// of two balls. Rough values: they only balance regions.
 constexpr std::uint64_t kGapChecks = 4;
-constexpr double kStepChecks = 4, kPassageChecks = 300;
-// A passage that has gone undisturbed for so long is likely to go on for a part of that: several of its steps at once are worked out while all
-// that they need is in the nearest caches. A late impact then undoes at most that part of what it leaves standing.
+constexpr double kStepChecks = 4, kSegmentChecks = 300;
+// A segment that has lasted for long without an event is likely to last for a fraction of that
+// time: several of its steps are computed at once while its data is in the nearest caches. A late
+// impact then rolls back at most that fraction.
 constexpr double kTrust = 0.25;
 constexpr int kMostStepsAtOnce = 8;
 
 }  // namespace
 
-// ---- A process goes on -------------------------------------------------------------------------------------------------
+// ---- Advance ---------------------------------------------------------------------------------
 
-// Far enough that looking for partners pays, near enough that the box stays small: about the way to the next cell. Solids without closed
-// forms go from window to window, as their impacts are searched, while anybody may be met.
+// The new horizon: far enough that the search for partners is worth its cost, near enough that the
+// box stays small: about the distance to the next cell. Solids without closed forms advance from
+// window to window, as their impacts are searched, where they may meet a body.
 double Worker::horizon_after(int body, const Flight& flight, double t) const {
   const FlightWorld& world = all_.world();
-  if (flight.passage >= 0) {
+  if (flight.segment >= 0) {
     const double trusted = std::min(all_.run.duration(), t + kTrust * (t - flight.begin));
     double to = world.smooth_until(flight, t, kInfinity);
     for (int k = 1; k < kMostStepsAtOnce && to < trusted; ++k) {
       const double next = world.smooth_until(flight, to, kInfinity);
-      if (!(next > to)) break;   // it ends there
+      if (!(next > to)) break;   // the segment ends there
       to = next;
     }
     return std::min(all_.run.duration(), to);
   }
   if (flight.is_resting || !world.collides(body)) return all_.run.duration();
-  const double way = all_.lengths.way;
-  const double speed = world.velocity(body, flight, t).norm() + std::sqrt(0.5 * world.gravity_world().norm() * way);
-  const double far = std::min(all_.run.duration(), t + std::max(way / speed, 1e-9 * all_.run.step()));
+  const double advance = all_.lengths.advance;
+  const double speed = world.velocity(body, flight, t).norm() + std::sqrt(0.5 * world.gravity_world().norm() * advance);
+  const double far = std::min(all_.run.duration(), t + std::max(advance / speed, 1e-9 * all_.run.step()));
   if (world.is_ball(body)) return far;
   const double near = std::min(all_.run.duration(), all_.run.impacts().window_end(t));
   return far > near && meets_nobody(body, flight, t, far) ? far : near;
 }
 
-// However it turns: what may be there is looked up, not searched.
+// For any rotation: bounding balls are compared, nothing is searched.
 bool Worker::meets_nobody(int body, const Flight& flight, double from, double to) const {
   const Box box = swept_box(body, std::min(from, global_virtual_time()), to);
   if (!is_alone() && !may_enter(box)) return false;
   for (const int plane : all_.planes)
     if (world().may_collide(body, plane) && all_.run.impacts().may_meet(body, flight, plane, all_.immovable(plane), from, to)) return false;
   bool is_nobody = true;
-  for_each_in(all_.home[static_cast<std::size_t>(body)], box, [&](int other) { is_nobody = is_nobody && (other == body || !world().may_collide(body, other)); });
+  for_each_in(all_.owner[static_cast<std::size_t>(body)], box, [&](int other) { is_nobody = is_nobody && (other == body || !world().may_collide(body, other)); });
   return is_nobody;
 }
 
-// Around the body over [from, to], along all its flights there.
+// The box that the body sweeps over [from, to], along all its flights.
 Box Worker::swept_box(int body, double from, double to) const {
   const FlightHistory& flights = history(body);
   Box box;
@@ -71,136 +73,139 @@ Box Worker::swept_box(int body, double from, double to) const {
 }
 
 double Worker::global_virtual_time() const {
-  if (all_.territories > 1) return all_.global_virtual_time;
-  const engines::EventQueue<Due>& queue = all_.domains[kBorder].queue;
+  if (all_.regions > 1) return all_.global_virtual_time;
+  const engines::EventQueue<Due>& queue = all_.domains[kBoundary].queue;
   return queue.empty() ? now : std::min(queue.front().key.time, now);
 }
 
-// All members of a process go on together; `body` is the first of them. Nobody goes beyond the window, nor out of the territory.
+// All members of a process advance together; `body` is the first of them. None leaves the optimism
+// window or the region.
 void Worker::advance(int body) {
   const Flight flight = history(body).back();
   const double from = process(body).horizon, gvt = global_virtual_time();
   double to = horizon_after(body, flight, from);
-  // A ball's flight that one thread takes on is undone as a whole however short it is cut, and costs the same: the window is for others.
-  const bool is_bounded = flight.passage >= 0 || all_.threads > 1;
-  if (is_bounded && to > gvt + all_.window) to = std::max(from, gvt + all_.window);
+  // A rollback of a ball's flight costs the same for any horizon, so with one thread it needs no
+  // window.
+  const bool is_bounded = flight.segment >= 0 || all_.threads > 1;
+  if (is_bounded && to > gvt + all_.optimism_window) to = std::max(from, gvt + all_.optimism_window);
   const auto own_end = all_.run.own_end(body, flight, to);
   if (own_end) to = own_end->time;
   const double swept_from = std::min(from, gvt);
-  const auto members = flight.passage < 0 ? std::span<const int>(&body, 1) : std::span<const int>(world().all_processes().passages().members(flight.passage));
+  const auto members = flight.segment < 0 ? std::span<const int>(&body, 1) : std::span<const int>(world().all_processes().segments().members(flight.segment));
   boxes_.clear();
   for (const int member : members) {
     boxes_.push_back(swept_box(member, swept_from, to));
-    if (!is_alone() && !may_enter(boxes_.back())) return look_again(body, kBorder);
+    if (!is_alone() && !may_enter(boxes_.back())) return schedule_recheck(body, kBoundary);
   }
   found_.clear();
-  if (own_end && own_end->time >= from) found_.push_back({*own_end, flight.serial, 0});
+  if (own_end && own_end->time >= from) found_.push_back({*own_end, flight.version, 0});
   for (std::size_t k = 0; k < members.size(); ++k) advance_member(members[k], history(members[k]).back(), from, to, boxes_[k]);
-  // The process goes no farther than the first impact it knows of; what comes behind is looked for again if that one fails. Where that
-  // impact is another's affair, its going on is too.
+  // The process advances at most to its first known impact; later ones are searched again if that
+  // one is cancelled. Where another worker owns that impact, the advance is deferred too.
   for (const Due& due : found_) to = std::min(to, due.key.time);
   set_horizon(body, to);
-  std::size_t home = all_.home[static_cast<std::size_t>(body)];
+  std::size_t owner = all_.owner[static_cast<std::size_t>(body)];
   for (const Due& due : found_) {
     if (due.key.time > to) continue;
-    const std::size_t its_home = all_.territories > 1 ? all_.home_of(due.key) : kBorder;
-    if (its_home != home) home = kBorder;
-    push(due, its_home);
+    const std::size_t its_owner = all_.regions > 1 ? all_.owner_of(due.key) : kBoundary;
+    if (its_owner != owner) owner = kBoundary;
+    push(due, its_owner);
   }
-  schedule(body, home);
+  schedule(body, owner);
 }
 
-// On one's way back nothing may be lost: what cannot go on here is taken on by the worker of the border, who then says why it cannot.
-void Worker::advance_or_leave(int body) {
+// After a rollback nothing may be lost: an advance that is impossible here is deferred to the
+// worker of the boundary, which reports why it is impossible.
+void Worker::advance_or_defer(int body) {
   if (is_alone()) return advance(body);
   try {
     advance(body);
   } catch (const engines::OutOfTime&) {
     throw;
   } catch (...) {
-    look_again(body, kBorder);
+    schedule_recheck(body, kBoundary);
   }
 }
 
-void Worker::push(const Due& due, std::size_t home) {
-  if (is_alone() || home == home_) all_.domains[home].queue.push(due);
-  else left.due.push_back(due);
+void Worker::push(const Due& due, std::size_t owner) {
+  if (is_alone() || owner == owner_) all_.domains[owner].queue.push(due);
+  else deferred.due.push_back(due);
 }
 
 void Worker::advance_member(int body, const Flight& flight, double from, double to, const Box& box) {
   ++counters.steps;
   ++counters.integrations;
-  const std::uint64_t before = all_.burdens.empty() ? 0 : cost.pair_checks + kGapChecks * cost.narrow.gap_evaluations;
+  const std::uint64_t before = all_.work_loads.empty() ? 0 : cost.pair_checks + kGapChecks * cost.narrow.gap_evaluations;
   enter_box(body, box);
   find_obstacles(body, flight, from, to);
   for_each_partner(body, box, [&](int other) { check(body, flight, from, to, other); });
-  if (all_.burdens.empty()) return;
-  const double checks = static_cast<double>(cost.pair_checks + kGapChecks * cost.narrow.gap_evaluations - before) + (flight.passage < 0 ? kStepChecks : kPassageChecks);
-  all_.burdens[static_cast<std::size_t>(body)] += checks;
-  burden += checks;
+  if (all_.work_loads.empty()) return;
+  const double checks = static_cast<double>(cost.pair_checks + kGapChecks * cost.narrow.gap_evaluations - before) + (flight.segment < 0 ? kStepChecks : kSegmentChecks);
+  all_.work_loads[static_cast<std::size_t>(body)] += checks;
+  work_load += checks;
 }
 
-// ---- Whose the way is --------------------------------------------------------------------------------------------------------
+// ---- Ownership -------------------------------------------------------------------------------
 
-// While others work: only within the territory, and where what is seen of the border stands still. Passages do not: to ask for one works it
-// out.
+// While other threads run: only within the region, and where the visible part of the boundary does
+// not change. Segments change: a query computes their steps.
 bool Worker::may_enter(const Box& box) const {
-  if (!holds(all_.domains[home_].territory, box)) return false;
+  if (!holds(all_.domains[owner_].region, box)) return false;
   if (!world().processes()) return true;
   bool stands_still = true;
-  all_.domains[kBorder].pairs.for_each_in(box, [&](int other) { stands_still = stands_still && (!world().can_move(other) || has_only_flown(other)); });
+  all_.domains[kBoundary].pairs.for_each_in(box, [&](int other) { stands_still = stands_still && (!world().can_move(other) || has_only_flown(other)); });
   return stands_still;
 }
 
 bool Worker::has_only_flown(int body) const {
   const FlightHistory& flights = history(body);
   for (std::size_t k = 0; k < flights.size(); ++k)
-    if (flights[k].passage >= 0) return false;
+    if (flights[k].segment >= 0) return false;
   return true;
 }
 
 void Worker::enter_box(int body, const Box& box) {
-  std::uint8_t& home = all_.home[static_cast<std::size_t>(body)];
-  if (is_alone() && home != kBorder && !holds(all_.domains[home].territory, box)) {
-    all_.domains[home].pairs.remove(body);
-    home = kBorder;
+  std::uint8_t& owner = all_.owner[static_cast<std::size_t>(body)];
+  if (is_alone() && owner != kBoundary && !holds(all_.domains[owner].region, box)) {
+    all_.domains[owner].pairs.remove(body);
+    owner = kBoundary;
   }
-  all_.domains[home].pairs.set_box(body, box);
+  all_.domains[owner].pairs.set_box(body, box);
 }
 
-// What a body swept beyond where it has been sent back to is nobody's concern any more.
+// After a rollback, what a body swept beyond that time concerns no other body.
 void Worker::shrink_box(int body) {
   const double to = process(body).horizon;
   Box box = swept_box(body, std::min(to, global_virtual_time()), to);
-  if (!is_alone()) {   // not out of the territory, whatever rounding does: the box that it had holds all that it sweeps
-    const Box& had = all_.domains[home_].pairs.box(body);
+  if (!is_alone()) {   // not out of the region, whatever rounding does: the previous box contains all that it sweeps
+    const Box& had = all_.domains[owner_].pairs.box(body);
     box = {box.low.cwiseMax(had.low), box.high.cwiseMin(had.high)};
   }
   enter_box(body, box);
 }
 
-// The border's bodies may be met everywhere, a territory's in it and by the border's.
+// Bodies of the boundary may be met everywhere, those of a region within it and by the boundary's.
 template <class Found>
 void Worker::for_each_partner(int body, const Box& box, const Found& found) const {
-  const std::size_t home = all_.home[static_cast<std::size_t>(body)];
-  all_.domains[home].pairs.for_each_partner(body, found);
-  for_each_elsewhere(home, box, found);
+  const std::size_t owner = all_.owner[static_cast<std::size_t>(body)];
+  all_.domains[owner].pairs.for_each_partner(body, found);
+  for_each_elsewhere(owner, box, found);
 }
 
 template <class Found>
-void Worker::for_each_in(std::size_t home, const Box& box, const Found& found) const {
-  all_.domains[home].pairs.for_each_in(box, found);
-  for_each_elsewhere(home, box, found);
+void Worker::for_each_in(std::size_t owner, const Box& box, const Found& found) const {
+  all_.domains[owner].pairs.for_each_in(box, found);
+  for_each_elsewhere(owner, box, found);
 }
 
 template <class Found>
-void Worker::for_each_elsewhere(std::size_t home, const Box& box, const Found& found) const {
-  if (home != kBorder) return all_.domains[kBorder].pairs.for_each_in(box, found);
+void Worker::for_each_elsewhere(std::size_t owner, const Box& box, const Found& found) const {
+  if (owner != kBoundary) return all_.domains[kBoundary].pairs.for_each_in(box, found);
   for (std::size_t k = 1; k < all_.domains.size(); ++k)
-    if (all_.domains[k].territory.overlaps(box)) all_.domains[k].pairs.for_each_in(box, found);
+    if (all_.domains[k].region.overlaps(box)) all_.domains[k].pairs.for_each_in(box, found);
 }
 
-// A body's local virtual time goes on, or back.
+// A body's local virtual time rises or falls.
 void Worker::move(int body, double t) {
   double& horizon = process(body).horizon;
   if (all_.is_recorded && t != horizon && moves.size() < engines::kMostMoves) {
@@ -214,25 +219,25 @@ void Worker::move(int body, double t) {
 void Worker::set_horizon(int body, double t) {
   const Flight& flight = history(body).back();
   move(body, t);
-  if (flight.passage >= 0)
+  if (flight.segment >= 0)
     for (const int member : world().members(body, flight)) move(member, t);
 }
 
 void Worker::find_obstacles(int body, const Flight& flight, double from, double to) {
-  Process& mine = process(body);
+  LogicalProcess& mine = process(body);
   if (all_.planes.empty() || flight.is_resting) return;
-  if (!world().is_ball(body) || flight.passage >= 0) {
+  if (!world().is_ball(body) || flight.segment >= 0) {
     for (const int plane : all_.planes) check(body, flight, from, to, plane);
     return;
   }
-  // Of a ball's whole flight the first is known at once.
-  if (mine.obstacle_serial != flight.serial) {
-    mine.obstacle_serial = flight.serial;
+  // For a ball the first impact of the whole flight is found at once.
+  if (mine.obstacle_version != flight.version) {
+    mine.obstacle_version = flight.version;
     mine.obstacle_time = kInfinity;
     for (const int plane : all_.planes) {
       if (!world().may_collide(body, plane)) continue;
       if (!all_.run.impacts().has_closed_form(body, flight, plane, all_.immovable(plane))) {
-        mine.obstacle_serial = kAfterAll;   // a moving plane: to be asked again
+        mine.obstacle_version = kAfterAll;   // a moving plane: query again
         check(body, flight, from, to, plane);
         continue;
       }
@@ -246,7 +251,8 @@ void Worker::find_obstacles(int body, const Flight& flight, double from, double 
   if (mine.obstacle_time >= from && mine.obstacle_time <= to) offer(body, flight, mine.obstacle, all_.immovable(mine.obstacle), mine.obstacle_time, nullptr);
 }
 
-// Of every two bodies all impacts up to the lesser of their horizons are known: this makes it true for the later one.
+// Establishes the invariant for the later body: of every two bodies all impacts up to the lesser of
+// their horizons are known.
 void Worker::check(int body, const Flight& flight, double from, double to, int other) {
   if (!world().may_collide(body, other)) return;
   if (!world().can_move(other)) {
@@ -254,7 +260,7 @@ void Worker::check(int body, const Flight& flight, double from, double to, int o
     if (time >= from && time <= to) offer(body, flight, other, all_.immovable(other), time, nullptr);
     return;
   }
-  if (flight.passage >= 0 && history(other).back().passage == flight.passage) {   // two of one process: asked about once
+  if (flight.segment >= 0 && history(other).back().segment == flight.segment) {   // two members of one process: checked once
     if (other < body) return;
     const Flight& its = history(other).back();
     const double time = all_.run.impacts().first_impact(body, flight, other, its, from, to, cost);
@@ -262,15 +268,17 @@ void Worker::check(int body, const Flight& flight, double from, double to, int o
     return;
   }
   const double until = std::min(to, process(other).horizon);
-  // The other will find what comes later. What comes at this very instant is found now: the other goes on only after all of its instant,
-  // and this may have to come before some of that.
+  // The other body finds later impacts. Impacts at this very instant are found now: the other
+  // advances only after all events of its instant, and this impact may have to precede some of
+  // them.
   if (until < from) return;
   const FlightHistory& flights = history(other);
   std::size_t first = flights.at(from);
-  while (first > 0 && flights[first].begin == from) --first;   // all that it flew at this instant: an earlier blow may have to come before a later one
+  while (first > 0 && flights[first].begin == from) --first;   // all flights at this instant: an earlier impact may have to precede a later one
   for (std::size_t k = first; k < flights.size() && flights[k].begin <= until; ++k) {
     const Flight& its = flights[k];
-    // A flight that ended at this instant is no motion beyond it: it would lead into what stopped it, where searching is dear.
+    // A flight that ended at this instant is not continued beyond it: it would penetrate the body
+    // that stopped it, where a search is costly.
     const double last = k + 1 < flights.size() && flights[k + 1].begin == from ? from : until;
     const double time = all_.run.impacts().first_impact(body, flight, other, its, std::max(from, its.begin), last, cost);
     if (time >= from && time <= last) offer(body, flight, other, its, time, k + 1 < flights.size() ? &flights[k + 1] : nullptr);
@@ -278,21 +286,22 @@ void Worker::check(int body, const Flight& flight, double from, double to, int o
 }
 
 void Worker::offer(int body, const Flight& flight, int other, const Flight& its, double time, const Flight* its_next) {
-  const EventKey key = engines::key_of_impact(body, flight, other, its, time);
-  if (its_next != nullptr && !(key < all_.begin_of(other, *its_next))) return;   // the other had been hit before
+  const EventStamp key = engines::key_of_impact(body, flight, other, its, time);
+  if (its_next != nullptr && !(key < all_.begin_of(other, *its_next))) return;   // the other was hit earlier
   const bool is_a = key.body_a == body;
-  found_.push_back({key, is_a ? flight.serial : its.serial, is_a ? its.serial : flight.serial});
+  found_.push_back({key, is_a ? flight.version : its.version, is_a ? its.version : flight.version});
 }
 
-void Worker::schedule(int body, std::size_t home) {
-  Process& going = process(body);
-  push({{going.horizon, kAfterAll, EventClass::kAdvance, body, -1}, ++going.ticket, 0}, home);
+void Worker::schedule(int body, std::size_t owner) {
+  LogicalProcess& going = process(body);
+  push({{going.horizon, kAfterAll, StampKind::kAdvance, body, -1}, ++going.version, 0}, owner);
 }
 
-// Of what was taken back the impacts are forgotten, those of the very instant, too: one of them may come before all that is known of it.
-void Worker::look_again(int body, std::size_t home) {
-  Process& going = process(body);
-  push({{going.horizon, 0, EventClass::kLookAgain, body, -1}, ++going.ticket, 0}, home);
+// After a rollback the impacts of that time are forgotten, those of the very instant, too: one of
+// them may precede all that is known of the body.
+void Worker::schedule_recheck(int body, std::size_t owner) {
+  LogicalProcess& going = process(body);
+  push({{going.horizon, 0, StampKind::kRecheck, body, -1}, ++going.version, 0}, owner);
 }
 
 }  // namespace tumble::a4

@@ -1,4 +1,4 @@
-// What happens, and what of it is taken back. Part of Worker.
+// Execution of events, and rollback. Part of Worker.
 #include "framework/core/numbers.h"
 #include "solutions_private/a4_timewarp/fast/worker.h"
 
@@ -14,42 +14,43 @@
 namespace tumble::a4 {
 namespace {
 
-constexpr std::size_t kMostOfABody = 256;   // states: looking back over a round costs as many each time, and they are kept to its end
+constexpr std::size_t kMostOfABody = 256;   // states: a search back over an epoch visits all of them each time, and they are kept to its end
 
 }  // namespace
 
-// ---- An impact ---------------------------------------------------------------------------------------------------------
+// ---- Impact ----------------------------------------------------------------------------------
 
-// Whether the flight that an event speaks of is there and the event still to come on it.
+// Whether the flight that an event names exists and the event is still to come on it.
 bool Worker::look_up(const Due& due, int side, std::size_t& place) {
   const int body = side == 0 ? due.key.body_a : due.key.body_b;
   if (body < 0 || !world().can_move(body)) return true;
-  // Rolled back since the event was found: on the way there something else may come first. It will be found again.
+  // Rolled back since the event was found: an earlier event may now come first. The search finds it
+  // again.
   if (process(body).horizon < due.key.time) return false;
   const FlightHistory& flights = history(body);
-  place = flights.find(side == 0 ? due.serial_a : due.serial_b);
-  if (place == flights.size()) return false;   // taken back
+  place = flights.find(side == 0 ? due.version_a : due.version_b);
+  if (place == flights.size()) return false;   // rolled back
   if (place + 1 == flights.size()) return true;
-  return due.key < all_.begin_of(body, flights[place + 1]);   // else hit before, or known twice
+  return due.key < all_.begin_of(body, flights[place + 1]);   // otherwise hit earlier, or a duplicate
 }
 
 bool Worker::is_to_come(const Due& due) {
-  if (due.key.kind == EventClass::kCallback) return !all_.called[due.key.generation];
-  if (goes_on(due)) return process(due.key.body_a).ticket == due.serial_a && all_.first_member(due.key.body_a) == due.key.body_a;
+  if (due.key.kind == StampKind::kCallback) return !all_.called[due.key.microstep];
+  if (is_advance(due)) return process(due.key.body_a).version == due.version_a && all_.first_member(due.key.body_a) == due.key.body_a;
   std::size_t place = 0;
   return look_up(due, 0, place) && look_up(due, 1, place);
 }
 
-void Worker::note_whose_territory(const Due& due) {
+void Worker::count_by_region(const Due& due) {
   if (!is_alone()) ++counters.impacts_at_home;
   if (!world().can_move(due.key.body_a) || !world().can_move(due.key.body_b)) return;
-  const std::uint8_t a = all_.last_territory[static_cast<std::size_t>(due.key.body_a)], b = all_.last_territory[static_cast<std::size_t>(due.key.body_b)];
-  if (a != kBorder && b != kBorder && a != b) ++counters.impacts_across;
+  const std::uint8_t a = all_.last_region[static_cast<std::size_t>(due.key.body_a)], b = all_.last_region[static_cast<std::size_t>(due.key.body_b)];
+  if (a != kBoundary && b != kBoundary && a != b) ++counters.impacts_across;
 }
 
 void Worker::collide(const Due& due) {
   const int bodies[] = {due.key.body_a, due.key.body_b};
-  const std::uint32_t serials[] = {due.serial_a, due.serial_b};
+  const std::uint32_t versions[] = {due.version_a, due.version_b};
   std::size_t places[] = {0, 0};
   for (int side = 0; side < 2; ++side)
     if (!look_up(due, side, places[side])) return;
@@ -59,68 +60,69 @@ void Worker::collide(const Due& due) {
     if (places[side] + 1 < history(body).size()) roll_back(body, places[side] + 1);
     if (process(body).horizon > due.key.time) ++counters.undone_integrations;
   }
-  const auto flight_of = [&](int side) -> const Flight& { return world().can_move(bodies[side]) ? history(bodies[side])[history(bodies[side]).find(serials[side])] : all_.immovable(bodies[side]); };
-  if (due.key.kind == EventClass::kProcess) return begin_flights(due, all_.run.end_of_passage(due.key, flight_of(0)));
-  if (all_.threads > 1) note_whose_territory(due);
-  engines::Meeting meeting = all_.run.meet(due.key, flight_of(0), flight_of(1), counters);
-  if (!meeting.begun.empty()) return begin_flights(due, std::move(meeting));
-  const std::uint32_t serial_a = world().can_move(bodies[0]) ? process(bodies[0]).next_serial++ : 0;
-  const std::uint32_t serial_b = world().can_move(bodies[1]) ? process(bodies[1]).next_serial++ : 0;
-  meeting.a.partner_serial = serial_b;
-  meeting.b.partner_serial = serial_a;
-  if (world().can_move(bodies[0])) begin_flight(bodies[0], meeting.a, serial_a);
-  if (world().can_move(bodies[1])) begin_flight(bodies[1], meeting.b, serial_b);
-  executed.push_back({due.key, serial_a, serial_b, meeting.first, std::move(meeting.more)});
+  const auto flight_of = [&](int side) -> const Flight& { return world().can_move(bodies[side]) ? history(bodies[side])[history(bodies[side]).find(versions[side])] : all_.immovable(bodies[side]); };
+  if (due.key.kind == StampKind::kProcess) return begin_flights(due, all_.run.end_of_segment(due.key, flight_of(0)));
+  if (all_.threads > 1) count_by_region(due);
+  engines::Discontinuity discontinuity = all_.run.resolve_impact(due.key, flight_of(0), flight_of(1), counters);
+  if (!discontinuity.begun.empty()) return begin_flights(due, std::move(discontinuity));
+  const std::uint32_t version_a = world().can_move(bodies[0]) ? process(bodies[0]).next_version++ : 0;
+  const std::uint32_t version_b = world().can_move(bodies[1]) ? process(bodies[1]).next_version++ : 0;
+  discontinuity.a.partner_version = version_b;
+  discontinuity.b.partner_version = version_a;
+  if (world().can_move(bodies[0])) begin_flight(bodies[0], discontinuity.a, version_a);
+  if (world().can_move(bodies[1])) begin_flight(bodies[1], discontinuity.b, version_b);
+  executed.push_back({due.key, version_a, version_b, discontinuity.first, std::move(discontinuity.more)});
   for (const int body : bodies)
-    if (world().can_move(body)) advance_or_leave(body);
+    if (world().can_move(body)) advance_or_defer(body);
 }
 
-// ---- A callback --------------------------------------------------------------------------------------------------------
+// ---- Callback --------------------------------------------------------------------------------
 
-void Worker::expect_callback(const EventKey& key) {
-  all_.called[key.generation] = false;
-  push({key, 0, 0}, kBorder);
+void Worker::expect_callback(const EventStamp& key) {
+  all_.called[key.microstep] = false;
+  push({key, 0, 0}, kBoundary);
 }
 
-// Whatever its bodies have done beyond its time was done without it, and is taken back.
+// Everything that its bodies did after its time is rolled back.
 void Worker::call(const Due& due) {
-  if (all_.called[due.key.generation]) return;
+  if (all_.called[due.key.microstep]) return;
   bool is_early = false;
   for (const int body : all_.run.receivers(due.key))
-    if (process(body).horizon < due.key.time) {   // taken out of its order: its bodies first have to come as far
+    if (process(body).horizon < due.key.time) {   // executed out of order: its bodies first have to advance to its time
       advance(all_.first_member(body));
       is_early = true;
     }
-  if (is_early) return push(due, kBorder);
+  if (is_early) return push(due, kBoundary);
   for (const int body : all_.run.receivers(due.key)) {
     const FlightHistory& flights = history(body);
     std::size_t place = flights.size();
     while (place > 1 && due.key < all_.begin_of(body, flights[place - 1])) --place;
     if (place < flights.size()) roll_back(body, place);
   }
-  all_.called[due.key.generation] = true;
+  all_.called[due.key.microstep] = true;
   begin_flights(due, all_.run.call(due.key, [this](int body) -> const Flight& { return history(body).back(); }));
 }
 
-// What an event does to processes: all that it begins is noted as one change, so that all of it can be taken back.
-void Worker::begin_flights(const Due& due, engines::Meeting meeting) {
+// All flights that an event on processes begins are recorded as one change, so that a rollback
+// drops all of them.
+void Worker::begin_flights(const Due& due, engines::Discontinuity discontinuity) {
   const int change = all_.changes.add(due.key);
-  std::uint32_t serials[] = {0, 0};
-  for (engines::BegunFlight& begun : meeting.begun) {
-    const std::uint32_t serial = process(begun.body).next_serial++;
-    if (begun.body == due.key.body_a) serials[0] = serial;
-    if (begun.body == due.key.body_b) serials[1] = serial;
+  std::uint32_t versions[] = {0, 0};
+  for (engines::BegunFlight& begun : discontinuity.begun) {
+    const std::uint32_t version = process(begun.body).next_version++;
+    if (begun.body == due.key.body_a) versions[0] = version;
+    if (begun.body == due.key.body_b) versions[1] = version;
     begun.flight.change = change;
-    all_.changes.note(change, begun.body, serial);
-    begin_flight(begun.body, begun.flight, serial);
+    all_.changes.note(change, begun.body, version);
+    begin_flight(begun.body, begun.flight, version);
   }
-  executed.push_back({due.key, serials[0], serials[1], meeting.first, std::move(meeting.more), meeting.is_silent});
-  for (const engines::BegunFlight& begun : meeting.begun)
-    if (all_.first_member(begun.body) == begun.body) advance_or_leave(begun.body);
+  executed.push_back({due.key, versions[0], versions[1], discontinuity.first, std::move(discontinuity.more), discontinuity.is_silent});
+  for (const engines::BegunFlight& begun : discontinuity.begun)
+    if (all_.first_member(begun.body) == begun.body) advance_or_defer(begun.body);
 }
 
-void Worker::begin_flight(int body, Flight flight, std::uint32_t serial) {
-  flight.serial = serial;
+void Worker::begin_flight(int body, Flight flight, std::uint32_t version) {
+  flight.version = version;
   purge(body);
   all_.histories.push(body, flight);
   most_kept = std::max(most_kept, ++kept);
@@ -136,7 +138,7 @@ void Worker::purge(int body) {
   });
 }
 
-// ---- Not too many states ---------------------------------------------------------------------------------------------------
+// ---- Limit of states -------------------------------------------------------------------------
 
 template <class Work>
 void Worker::for_each_member(const Due& due, const Work& work) {
@@ -150,7 +152,7 @@ bool Worker::has_room(const Due& due) {
   bool has_room = true;
   for_each_member(due, [&](int body) {
     const Flight& last = history(body).back();
-    const std::size_t steps = last.passage < 0 ? 0 : world().all_processes().passages().kept(last.passage);
+    const std::size_t steps = last.segment < 0 ? 0 : world().all_processes().segments().kept(last.segment);
     has_room = has_room && std::max(history(body).size(), steps) < static_cast<std::size_t>(all_.most_states);
   });
   return has_room;
@@ -165,23 +167,24 @@ void Worker::forget(const Flight& flight) {
   if (flight.change >= 0) all_.changes.release(flight.change);
 }
 
-void Worker::take_back(int body, std::uint32_t serial) {
-  const std::size_t place = history(body).find(serial);
-  if (place == history(body).size()) return;   // taken back already
+void Worker::roll_back_from(int body, std::uint32_t version) {
+  const std::size_t place = history(body).find(version);
+  if (place == history(body).size()) return;   // already rolled back
   ++counters.anti_messages;
   roll_back(body, place);
 }
 
-// An anti-message: to a flight of one's own at once, to another's when its turn comes.
-void Worker::unsend(int body, std::uint32_t serial) {
-  if (!is_mine(body)) return left.anti_messages.push_back({body, serial});
-  const std::size_t effect = history(body).find(serial);
-  if (effect == history(body).size()) return;   // taken back already
+// Sends an anti-message: executed at once for a body of this worker, deferred for another's.
+void Worker::cancel(int body, std::uint32_t version) {
+  if (!is_mine(body)) return deferred.anti_messages.push_back({body, version});
+  const std::size_t effect = history(body).find(version);
+  if (effect == history(body).size()) return;   // already rolled back
   ++counters.anti_messages;
   to_drop_.emplace_back(body, effect);
 }
 
-// Drops the flights of a body from place `keep` on, and by anti-messages those of others that began with them, and so on.
+// Drops the flights of a body from index `keep` on, and by anti-messages the flights of others that
+// began with them, and so on.
 void Worker::roll_back(int body, std::size_t keep) {
   to_drop_.assign(1, {body, keep});
   while (!to_drop_.empty()) {
@@ -192,35 +195,35 @@ void Worker::roll_back(int body, std::size_t keep) {
     ++counters.rollbacks;
     while (flights.size() > place) {
       const Flight dropped = flights.back();
-      require(dropped.begin >= all_.committed, "timewarp: what is committed is to be taken back");
+      require(dropped.begin >= all_.committed, "timewarp: a committed flight is to be rolled back");
       all_.histories.pop(now_at);
       --kept;
       ++counters.undone_integrations;
       move(now_at, std::min(process(now_at).horizon, dropped.begin));
       if (dropped.change >= 0) {
-        if (all_.changes.key(dropped.change).kind == EventClass::kCallback) recall(all_.changes.key(dropped.change));
-        for (const auto& [other, serial] : all_.changes.began(dropped.change)) unsend(other, serial);
+        if (all_.changes.key(dropped.change).kind == StampKind::kCallback) cancel_callback(all_.changes.key(dropped.change));
+        for (const auto& [other, version] : all_.changes.began(dropped.change)) cancel(other, version);
         forget(dropped);
       } else if (world().can_move(dropped.partner)) {
-        unsend(dropped.partner, dropped.partner_serial);
+        cancel(dropped.partner, dropped.partner_version);
       }
     }
     shrink_box(now_at);
-    if (all_.first_member(now_at) == now_at) look_again(now_at);
+    if (all_.first_member(now_at) == now_at) schedule_recheck(now_at);
   }
 }
 
-void Worker::recall(const EventKey& key) {
-  if (!is_alone()) left.recalls.push_back(key);
-  else if (all_.called[key.generation]) expect_callback(key);
+void Worker::cancel_callback(const EventStamp& key) {
+  if (!is_alone()) deferred.cancelled_callbacks.push_back(key);
+  else if (all_.called[key.microstep]) expect_callback(key);
 }
 
-// ---- Going round ---------------------------------------------------------------------------------------------------------
+// ---- Event loop ------------------------------------------------------------------------------
 
 void Worker::work_at(const Due& due) {
   now = due.key.time;
-  if (due.key.kind == EventClass::kCallback) call(due);
-  else if (!goes_on(due)) collide(due);
+  if (due.key.kind == StampKind::kCallback) call(due);
+  else if (!is_advance(due)) collide(due);
   else if (is_to_come(due)) {
     if (process(due.key.body_a).horizon >= all_.run.duration()) set_horizon(due.key.body_a, kInfinity);   // nothing is left to find
     else advance(due.key.body_a);
@@ -228,33 +231,34 @@ void Worker::work_at(const Due& due) {
   now = kInfinity;
 }
 
-// What goes wrong here may be a consequence of what will be taken back: it is left, and goes wrong again if it stands. Time that is up is not.
+// An error here may be a consequence of something that will be rolled back: the event is deferred,
+// and fails again if it stands. Running out of time is no such error.
 double Worker::work_before(double end) {
   const double began = thread_seconds();
   const double last = all_.run.duration();
-  engines::EventQueue<Due>& queue = all_.domains[home_].queue;
+  engines::EventQueue<Due>& queue = all_.domains[owner_].queue;
   const auto is_to_do = [&] { return !queue.empty() && queue.front().key.time < end && queue.front().key.time <= last; };
   longest = 0;
   while (is_to_do()) {
     if (all_.threads == 1 && longest > kMostOfABody) break;
-    if (all_.trial.delay_s > 0) delay();
-    if (all_.trial.rollback_every > 0) disturb();
-    const Due due = all_.trial.disorder_s > 0 ? next_legal(std::min(last, std::nextafter(end, 0.0))) : queue.pop();
+    if (all_.faults.delay_s > 0) delay();
+    if (all_.faults.rollback_every > 0) disturb();
+    const Due due = all_.faults.disorder_s > 0 ? next_legal(std::min(last, std::nextafter(end, 0.0))) : queue.pop();
     if (!queue.empty()) fetch(queue.front());
-    if (all_.home_of(due.key) != home_) {
-      left.due.push_back(due);
+    if (all_.owner_of(due.key) != owner_) {
+      deferred.due.push_back(due);
     } else if (all_.most_states > 0 && !has_room(due)) {
       ++counters.held_back;
-      leave(due);
+      defer(due);
     } else {
       ++worked_at;
       try {
         work_at(due);
       } catch (const engines::OutOfTime&) {
-        left.out_of_time = std::current_exception();
+        deferred.out_of_time = std::current_exception();
         break;
       } catch (...) {
-        leave(due);
+        defer(due);
       }
     }
   }
@@ -263,30 +267,32 @@ double Worker::work_before(double end) {
   return is_to_do() ? queue.front().key.time : end;
 }
 
-// Who waits for an impact does not go on before it: it would find the same impact again and again.
-void Worker::leave(const Due& due) {
-  left.due.push_back(due);
-  if (goes_on(due)) return;
+// A body that waits for an impact does not advance before it: it would find the same impact again
+// and again.
+void Worker::defer(const Due& due) {
+  deferred.due.push_back(due);
+  if (is_advance(due)) return;
   for (const int body : {due.key.body_a, due.key.body_b})
-    if (body >= 0 && world().can_move(body)) schedule(all_.first_member(body), kBorder);
+    if (body >= 0 && world().can_move(body)) schedule(all_.first_member(body), kBoundary);
 }
 
-// What the next event will look at is on its way from memory while this one is worked at: in scenes of many bodies that is half the time.
+// Prefetches the data of the next event while this one is executed: in scenes of many bodies half
+// the time is memory latency.
 void Worker::fetch(const Due& due) const {
   for (const int body : {due.key.body_a, due.key.body_b}) {
     if (body < 0) continue;
     __builtin_prefetch(&all_.processes[static_cast<std::size_t>(body)]);
     all_.histories.fetch(body);
-    all_.domains[home_].pairs.fetch(body);
+    all_.domains[owner_].pairs.fetch(body);
   }
 }
 
-// ---- What tests do to it ---------------------------------------------------------------------------------------------------
+// ---- Fault injection -------------------------------------------------------------------------
 
-// Any event that is not too far ahead of global virtual time may be taken: which, is drawn by lot.
+// A random event that is not too far ahead of global virtual time.
 Due Worker::next_legal(double last) {
-  engines::EventQueue<Due>& queue = all_.domains[home_].queue;
-  const double latest = std::min(last, queue.front().key.time + std::min(all_.trial.disorder_s, all_.window));
+  engines::EventQueue<Due>& queue = all_.domains[owner_].queue;
+  const double latest = std::min(last, queue.front().key.time + std::min(all_.faults.disorder_s, all_.optimism_window));
   std::vector<Due> taken;
   const std::uint64_t most = 1 + random_.below(256);
   while (taken.size() < most && !queue.empty() && queue.front().key.time <= latest) taken.push_back(queue.pop());
@@ -297,28 +303,28 @@ Due Worker::next_legal(double last) {
 }
 
 void Worker::disturb() {
-  if (++since_disturbed_ % static_cast<std::uint64_t>(all_.trial.rollback_every) != 0) return;
+  if (++since_disturbed_ % static_cast<std::uint64_t>(all_.faults.rollback_every) != 0) return;
   const std::vector<int>& movers = world().movers();
   const int body = movers[random_.below(movers.size())];
-  const double back = random_.between(0.0, all_.trial.rollback_s);
+  const double back = random_.between(0.0, all_.faults.rollback_s);
   if (!is_mine(body)) return;
   const double back_to = std::max(global_virtual_time(), std::min(process(body).horizon, all_.run.duration()) - back);
-  if (back_to < process(body).horizon) go_back(body, back_to);
+  if (back_to < process(body).horizon) roll_back_to(body, back_to);
 }
 
-void Worker::go_back(int body, double t) {
+void Worker::roll_back_to(int body, double t) {
   roll_back(body, history(body).at(t) + 1);
   purge(body);
   if (t < process(body).horizon) {
     set_horizon(body, t);
-    look_again(all_.first_member(body));
+    schedule_recheck(all_.first_member(body));
   }
   for (const int member : world().members(body, history(body).back())) shrink_box(member);
 }
 
 void Worker::delay() {
   constexpr std::uint64_t kOneIn = 16;   // events
-  if (random_.below(kOneIn) == 0) std::this_thread::sleep_for(std::chrono::duration<double>(random_.between(0.0, all_.trial.delay_s)));
+  if (random_.below(kOneIn) == 0) std::this_thread::sleep_for(std::chrono::duration<double>(random_.between(0.0, all_.faults.delay_s)));
 }
 
 }  // namespace tumble::a4

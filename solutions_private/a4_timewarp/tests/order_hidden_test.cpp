@@ -13,7 +13,7 @@ Stamp random_stamp(Random& random) {
 
 // By digits of one number, most significant first.
 long rank_of(const Stamp& stamp) {
-  return ((((static_cast<long>(2 * stamp.time) * 3 + stamp.generation) * 5 + static_cast<long>(stamp.kind)) * 10 + stamp.body_a) * 10) + stamp.body_b;
+  return ((((static_cast<long>(2 * stamp.time) * 3 + stamp.microstep) * 5 + static_cast<long>(stamp.kind)) * 10 + stamp.body_a) * 10) + stamp.body_b;
 }
 
 TEST(ComesBefore, IsOneTotalOrder) {
@@ -22,7 +22,7 @@ TEST(ComesBefore, IsOneTotalOrder) {
     const Stamp x = random_stamp(random), y = random_stamp(random);
     const bool expected = rank_of(x) < rank_of(y);
     expect_true(a4_module().comes_before(x, y) == expected, expected ? "x before y" : "not x before y", expected ? "not x before y" : "x before y",
-                {.scene = "x: " + show(x) + "; y: " + show(y), .slip = "time, generation, kind, body_a, body_b: the first in which they differ decides, and nothing after it", .handout = equation(1)});
+                {.scene = "x: " + show(x) + "; y: " + show(y), .slip = "time, microstep, kind, body_a, body_b: the first in which they differ decides, and nothing after it", .handout = equation(1)});
   }
 }
 

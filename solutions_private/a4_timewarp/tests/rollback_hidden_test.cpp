@@ -10,7 +10,7 @@ namespace tumble::a4_testing {
 namespace {
 
 // The order of (A4.1), for expected values: no decision is judged by another of the same module.
-bool before(const Stamp& x, const Stamp& y) { return std::tie(x.time, x.generation, x.kind, x.body_a, x.body_b) < std::tie(y.time, y.generation, y.kind, y.body_a, y.body_b); }
+bool before(const Stamp& x, const Stamp& y) { return std::tie(x.time, x.microstep, x.kind, x.body_a, x.body_b) < std::tie(y.time, y.microstep, y.kind, y.body_a, y.body_b); }
 
 struct History {
   std::vector<Effect> effects;
@@ -24,14 +24,14 @@ History random_history(Random& random, std::int32_t bodies, int impacts) {
   for (int i = 0; i < impacts; ++i) {
     const double time = 0.125 * static_cast<double>(random.below(20));
     const std::int32_t a = static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(bodies))), b = static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(bodies)));
-    const std::uint32_t generation = static_cast<std::uint32_t>(random.below(2));
+    const std::uint32_t microstep = static_cast<std::uint32_t>(random.below(2));
     const std::uint64_t kind = random.below(8);
     if (kind < 2) {
       std::set<std::int32_t> processes{a, b};
       if (kind == 0) processes.insert(static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(bodies))));
-      history.effects.push_back({{time, generation, kind == 0 ? WorkKind::kGroup : WorkKind::kCallback, *processes.begin(), -1}, {processes.begin(), processes.end()}});
-    } else if (a == b) history.effects.push_back({impact(time, a, 99, generation), {a}});
-    else history.effects.push_back({impact(time, std::min(a, b), std::max(a, b), generation), {std::min(a, b), std::max(a, b)}});
+      history.effects.push_back({{time, microstep, kind == 0 ? WorkKind::kGroup : WorkKind::kCallback, *processes.begin(), -1}, {processes.begin(), processes.end()}});
+    } else if (a == b) history.effects.push_back({impact(time, a, 99, microstep), {a}});
+    else history.effects.push_back({impact(time, std::min(a, b), std::max(a, b), microstep), {std::min(a, b), std::max(a, b)}});
   }
   for (int i = 0; i < 2; ++i) {
     const std::int32_t body = static_cast<std::int32_t>(random.below(static_cast<std::uint64_t>(bodies)));

@@ -19,8 +19,8 @@ Trajectory run_on(int threads, const scene::Scene& scene, const Laws& laws, engi
   options.engine = "tw";
   options.timewarp = engines::fast_timewarp();
   options.threads = threads;
-  options.trial.delay_s = 20e-6;
-  options.trial.seed = static_cast<std::uint64_t>(threads);
+  options.faults.delay_s = 20e-6;
+  options.faults.seed = static_cast<std::uint64_t>(threads);
   engines::run_scene(scene, laws, options, recorder);
   return recorder.trajectory();
 }
@@ -44,7 +44,7 @@ TEST(ThreadsUnderSanitizer, ShareBallsWithoutARace) { expect_one_trace(sized("ga
 TEST(ThreadsUnderSanitizer, ShareManyTerritoriesWithoutARace) {
   const scene::Scene scene = sized("gas", 200, 0.8);
   engines::RunOptions many;
-  many.trial.territories = 7;
+  many.faults.regions = 7;
   EXPECT_EQ(difference(run_on(1, scene, test_laws(), {}), run_on(2, scene, test_laws(), many)), "");
 }
 
@@ -60,7 +60,7 @@ TEST(ThreadsUnderSanitizer, ShareArmsAndWhatTheyThrowWithoutARace) { expect_one_
 
 TEST(ThreadsUnderSanitizer, ShareRodsDragAndForcesWithoutARace) { expect_one_trace(pendula_and_balls(8, 0.6), reference_laws()); }
 
-// Of all balls at once, twice; and of processes: what they have done beyond is taken back across territories.
+// Of all balls at once, twice; and of processes: what they have done beyond is taken back across regions.
 TEST(ThreadsUnderSanitizer, AreCalledBackWithoutARace) {
   const scene::Scene gas = sized("gas", 150, 0.8);
   std::vector<int> all;
@@ -76,7 +76,7 @@ TEST(ThreadsUnderSanitizer, KeepACapOfStatesWithoutARace) {
   expect_one_trace(sized("avalanche", 24, 0.4), reference_laws(), {{}, 8});
 }
 
-// Rows that collide at one instant, cut by territories.
+// Rows that collide at one instant, cut by regions.
 TEST(ThreadsUnderSanitizer, ShareTiesWithoutARace) {
   std::vector<scene::BodySpec> bodies;
   for (int i = 0; i < 40; ++i)

@@ -1,4 +1,4 @@
-#include "framework/engines/timewarp/taught_process.h"
+#include "framework/engines/timewarp/taught_logical_process.h"
 
 #include <algorithm>
 
@@ -10,8 +10,8 @@ constexpr std::size_t kMostKept = 2, kFewKept = 16;   // of the boxes that are t
 }  // namespace
 
 double until_end(const FlightWorld& world, const Flight& flight, double t) {
-  if (flight.passage < 0) return t;
-  const PassageEnd* end = world.processes()->passages().end_by(flight.passage, t);
+  if (flight.segment < 0) return t;
+  const SegmentEnd* end = world.processes()->segments().end_by(flight.segment, t);
   return end ? std::min(t, end->time) : t;
 }
 
@@ -30,7 +30,8 @@ std::size_t SweptBox::kept() const {
   return most;
 }
 
-// Of what is there alone. So many have been added since the last time that it costs each of them no more than its own place did.
+// Rebuilds the heaps from the current boxes. Enough boxes were added since the last rebuild that
+// the amortised cost per box is constant.
 void SweptBox::rebuild() {
   for (std::size_t axis = 0; axis < kAxes; ++axis) {
     std::vector<Bound> lows, highs;
@@ -55,52 +56,52 @@ Box SweptBox::box() const {
   return box;
 }
 
-TaughtProcess::TaughtProcess(const FlightWorld& world, int body) : world_(world), body_(body) {
+TaughtLogicalProcess::TaughtLogicalProcess(const FlightWorld& world, int body) : world_(world), body_(body) {
   const Flight& first = world.first_flight(body);
-  push(first.begin, first, {first.begin, 0, EventClass::kCollision, -1, -1}, box_of(first, first.begin, first.begin));
+  push(first.begin, first, {first.begin, 0, StampKind::kCollision, -1, -1}, box_of(first, first.begin, first.begin));
 }
 
-const KeptState* TaughtProcess::at(double t) const {
+const KeptState* TaughtLogicalProcess::at(double t) const {
   const auto later = std::upper_bound(states_.begin(), states_.end(), t, [](double time, const KeptState& state) { return time < state.time; });
   return later == states_.begin() ? nullptr : &*std::prev(later);
 }
 
-std::vector<double> TaughtProcess::times() const {
+std::vector<double> TaughtLogicalProcess::times() const {
   std::vector<double> times;
   for (const KeptState& state : states_) times.push_back(state.time);
   return times;
 }
 
-void TaughtProcess::integrate_to(double t) {
+void TaughtLogicalProcess::integrate_to(double t) {
   const KeptState last = states_.back();
   push(t, last.flight, last.began, box_of(last.flight, last.time, t));
 }
 
-void TaughtProcess::begin(const Flight& flight, const EventKey& began) { push(flight.begin, flight, began, box_of(flight, flight.begin, flight.begin)); }
+void TaughtLogicalProcess::begin(const Flight& flight, const EventStamp& began) { push(flight.begin, flight, began, box_of(flight, flight.begin, flight.begin)); }
 
-// A passage is let go of with the last state that names it.
-void TaughtProcess::drop_latest() {
+// A segment is let go of with the last state that names it.
+void TaughtLogicalProcess::drop_latest() {
   const KeptState dropped = states_.back();
   swept_.remove(dropped.id);
   states_.pop_back();
-  if (states_.empty() || states_.back().flight.serial != dropped.flight.serial) world_.release(dropped.flight);
+  if (states_.empty() || states_.back().flight.version != dropped.flight.version) world_.release(dropped.flight);
 }
 
-void TaughtProcess::drop_oldest(std::size_t count) {
+void TaughtLogicalProcess::drop_oldest(std::size_t count) {
   const auto end = states_.begin() + static_cast<std::ptrdiff_t>(count);
   for (auto state = states_.begin(); state != end; ++state) {
     swept_.remove(state->id);
-    if (std::next(state) == states_.end() || std::next(state)->flight.serial != state->flight.serial) world_.release(state->flight);
+    if (std::next(state) == states_.end() || std::next(state)->flight.version != state->flight.version) world_.release(state->flight);
   }
   states_.erase(states_.begin(), end);
 }
 
-void TaughtProcess::push(double time, const Flight& flight, const EventKey& began, const Box& box) {
+void TaughtLogicalProcess::push(double time, const Flight& flight, const EventStamp& began, const Box& box) {
   states_.push_back({next_id_, time, flight, began});
   swept_.add(next_id_++, box);
 }
 
-Box TaughtProcess::box_of(const Flight& flight, double from, double to) const {
+Box TaughtLogicalProcess::box_of(const Flight& flight, double from, double to) const {
   return swept_box(world_, body_, flight, until_end(world_, flight, from), until_end(world_, flight, to));
 }
 

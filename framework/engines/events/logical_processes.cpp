@@ -1,4 +1,4 @@
-#include "framework/engines/events/processes.h"
+#include "framework/engines/events/logical_processes.h"
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@
 namespace tumble::engines {
 namespace {
 
-// Components of members, by the least of them, in order.
+// Connected components of members, by their lowest member, in order.
 class Components {
  public:
   explicit Components(const std::vector<int>& members) : members_(members), sets_(static_cast<int>(members.size())) {}
@@ -25,7 +25,7 @@ class Components {
  private:
   int place(int body) const { return static_cast<int>(std::lower_bound(members_.begin(), members_.end(), body) - members_.begin()); }
   const std::vector<int>& members_;
-  DisjointSets sets_;   // of places in members_
+  DisjointSets sets_;   // by index in members_
 };
 
 // Whether some effect may keep a body from flying freely.
@@ -35,19 +35,19 @@ bool holds_effects(const World& world) {
 
 }  // namespace
 
-Processes::Processes(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules)
-    : whole_(whole), passages_(whole, std::move(shape_of), laws, rules),
+LogicalProcesses::LogicalProcesses(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules)
+    : whole_(whole), segments_(whole, std::move(shape_of), laws, rules),
       holds_any_(holds_effects(whole) || whole.contact.has_value()), linked_(whole.bodies.size(), -1) {
   for (const LinkedGroup& group : groups_of_linked_bodies(whole))
     for (const int body : group.bodies) linked_[static_cast<std::size_t>(body)] = group.bodies.front();
-  passages_.ask([this](const ProcessState& state) { return components_of(state).size() > 1; });
+  segments_.ask([this](const ProcessState& state) { return components_of(state).size() > 1; });
 }
 
-bool Processes::is_pushed(int body, double t) const {
+bool LogicalProcesses::is_pushed(int body, double t) const {
   return std::any_of(effects::all().begin(), effects::all().end(), [&](const effects::Effect* effect) { return effect->pushes(whole_, body, t); });
 }
 
-Processes::Start Processes::start(const std::vector<RigidBodyState>& states, const std::vector<BodyPair>& touching) {
+LogicalProcesses::Start LogicalProcesses::start(const std::vector<RigidBodyState>& states, const std::vector<BodyPair>& touching) {
   std::vector<int> movers;
   for (int i = 0; i < static_cast<int>(whole_.bodies.size()); ++i)
     if (!whole_.bodies[static_cast<std::size_t>(i)].immovable()) movers.push_back(i);
@@ -65,7 +65,7 @@ Processes::Start Processes::start(const std::vector<RigidBodyState>& states, con
   Start start;
   for (const std::vector<int>& members : components.all()) {
     if (std::none_of(members.begin(), members.end(), [&](int body) { return held[static_cast<std::size_t>(body)]; })) continue;
-    ProcessWorld& world = passages_.world_of(members);
+    ProcessWorld& world = segments_.world_of(members);
     const ProcessState placed = world.at_start(states);
     if (!holds_contacts()) {
       for (BegunFlight& begun : sort(placed)) start.flights.push_back(std::move(begun));
@@ -78,10 +78,10 @@ Processes::Start Processes::start(const std::vector<RigidBodyState>& states, con
   return start;
 }
 
-ProcessState Processes::state_of(int body, const Flight& flight, const RigidBodyState& alone, double t) {
-  if (flight.passage >= 0) {
-    ProcessState state = passages_.state_at(flight.passage, t);
-    state.contacts.reset();   // of that passage's own world
+ProcessState LogicalProcesses::state_of(int body, const Flight& flight, const RigidBodyState& alone, double t) {
+  if (flight.segment >= 0) {
+    ProcessState state = segments_.state_at(flight.segment, t);
+    state.contacts.reset();   // bodies of that memory are those of the segment's own world
     return state;
   }
   ProcessState state;
@@ -91,7 +91,7 @@ ProcessState Processes::state_of(int body, const Flight& flight, const RigidBody
   return state;
 }
 
-ProcessState Processes::together(const ProcessState& a, const ProcessState& b) {
+ProcessState LogicalProcesses::together(const ProcessState& a, const ProcessState& b) {
   ProcessState both;
   both.time = a.time;
   std::merge(a.members.begin(), a.members.end(), b.members.begin(), b.members.end(), std::back_inserter(both.members));
@@ -104,12 +104,12 @@ ProcessState Processes::together(const ProcessState& a, const ProcessState& b) {
   return both;
 }
 
-ProcessState Processes::on_constraints(ProcessState state) {
+ProcessState LogicalProcesses::on_constraints(ProcessState state) {
   const bool is_linked = std::any_of(state.members.begin(), state.members.end(), [&](int body) { return linked_[static_cast<std::size_t>(body)] >= 0; });
-  return is_linked ? passages_.world_of(state.members).on_constraints(state) : state;
+  return is_linked ? segments_.world_of(state.members).on_constraints(state) : state;
 }
 
-std::vector<BodyPair> Processes::ties_of(const ProcessState& state) const {
+std::vector<BodyPair> LogicalProcesses::ties_of(const ProcessState& state) const {
   std::set<BodyPair> ties;
   for (const int body : state.members)
     if (const int first = linked_[static_cast<std::size_t>(body)]; first >= 0 && first != body) ties.emplace(first, body);
@@ -120,19 +120,19 @@ std::vector<BodyPair> Processes::ties_of(const ProcessState& state) const {
   return {ties.begin(), ties.end()};
 }
 
-std::vector<std::vector<int>> Processes::components_of(const ProcessState& state) const {
+std::vector<std::vector<int>> LogicalProcesses::components_of(const ProcessState& state) const {
   Components components(state.members);
   for (const auto& [a, b] : ties_of(state)) components.join(a, b);
   return components.all();
 }
 
-std::vector<BegunFlight> Processes::sort(const ProcessState& state) {
+std::vector<BegunFlight> LogicalProcesses::sort(const ProcessState& state) {
   std::vector<BegunFlight> flights;
   for (const std::vector<int>& members : components_of(state)) {
     const int first = members.front();
     const bool touches = std::any_of(state.lasting.begin(), state.lasting.end(), [&](const BodyPair& pair) { return pair.first == first || pair.second == first; });
     const bool flies = members.size() == 1 && linked_[static_cast<std::size_t>(first)] < 0 && !touches && !is_pushed(first, state.time);
-    const int passage = flies ? -1 : passages_.begin(members.size() == state.members.size() ? state : component(state, members));
+    const int segment = flies ? -1 : segments_.begin(members.size() == state.members.size() ? state : component(state, members));
     for (const int body : members) {
       const RigidBodyState& now = state.state_of(body);
       const Inertia& inertia = whole_.bodies[static_cast<std::size_t>(body)].inertia;
@@ -142,7 +142,7 @@ std::vector<BegunFlight> Processes::sort(const ProcessState& state) {
       flight.velocity_world = inertia.inverse_mass * now.momentum_world;
       flight.world_from_body = now.world_from_body;
       flight.omega_body = inertia.inverse_inertia_body * (now.world_from_body.conjugate() * now.angular_momentum_world);
-      flight.passage = passage;
+      flight.segment = segment;
       flights.push_back({body, flight});
     }
   }
@@ -150,7 +150,7 @@ std::vector<BegunFlight> Processes::sort(const ProcessState& state) {
   return flights;
 }
 
-ProcessState Processes::component(const ProcessState& state, const std::vector<int>& members) const {
+ProcessState LogicalProcesses::component(const ProcessState& state, const std::vector<int>& members) const {
   const auto ours = [&](int body) { return std::binary_search(members.begin(), members.end(), body); };
   ProcessState part;
   part.time = state.time;

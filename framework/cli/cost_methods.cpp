@@ -1,4 +1,4 @@
-#include "framework/cli/cost_ways.h"
+#include "framework/cli/cost_methods.h"
 
 #include <algorithm>
 #include <cctype>
@@ -21,105 +21,105 @@
 namespace tumble::cli {
 namespace {
 
-using engines::CostWay;
+using engines::CostMethod;
 
 }  // namespace
 
-CostWay way_by_method(const Method& method, const Laws& laws) {
-  CostWay way;
-  way.name = method.name;
-  way.word = method.word;
-  way.method = [method](double tolerance) { return step_of(method, tolerance); };
-  way.order = method.order;
-  way.controlled = method.controlled;
-  way.laws = laws;
-  way.laws.integrator_source = method.name + " of the library";
-  return way;
+CostMethod method_by_integrator(const Method& integrator, const Laws& laws) {
+  CostMethod method;
+  method.name = integrator.name;
+  method.word = integrator.word;
+  method.step_function = [integrator](double tolerance) { return step_of(integrator, tolerance); };
+  method.order = integrator.order;
+  method.controlled = integrator.controlled;
+  method.laws = laws;
+  method.laws.integrator_source = integrator.name + " of the library";
+  return method;
 }
 
-CostWay way_by_engine(const std::string& word, const Laws& laws, bool in_closed_form) {
-  CostWay way;
-  way.laws = laws;
-  if (!in_closed_form) way = way_by_method(method_named("rk4"), laws);
-  way.word = word;
+CostMethod method_by_engine(const std::string& word, const Laws& laws, bool in_closed_form) {
+  CostMethod method;
+  method.laws = laws;
+  if (!in_closed_form) method = method_by_integrator(method_named("rk4"), laws);
+  method.word = word;
   if (word == "auto") {
-    way.name = in_closed_form ? "rd, closed form" : "rd, closed form in flight";
-    way.propagator = "auto";
-    return way;
+    method.name = in_closed_form ? "rd, closed form" : "rd, closed form in flight";
+    method.propagator = "auto";
+    return method;
   }
-  way.engine = word;
-  way.has_ladder = !in_closed_form;
-  way.name.clear();
+  method.engine = word;
+  method.has_refinement = !in_closed_form;
+  method.name.clear();
   for (const auto& [known, meaning] : engines::engine_words())
-    if (known == word) way.name = word + ", " + meaning;
-  if (way.name.empty() || word == "rd") throw UserError("--engines " + word, "expected auto, ca, tw, ordered or none", "rd runs with every method of --methods.");
-  if (!in_closed_form) way.name = word + ", RK4";   // by which bodies move that do not fly freely
-  return way;
+    if (known == word) method.name = word + ", " + meaning;
+  if (method.name.empty() || word == "rd") throw UserError("--engines " + word, "expected auto, ca, tw, ordered or none", "rd runs with every method of --methods.");
+  if (!in_closed_form) method.name = word + ", RK4";   // for bodies that do not fly freely
+  return method;
 }
 
 namespace {
 
 bool is_none(const std::vector<std::string>& words) { return words.size() == 1 && words.front() == "none"; }
 
-CostWay by_stabilisation(const std::string& word, const scene::Scene& scene, const Laws& laws) {
+CostMethod by_stabilisation(const std::string& word, const scene::Scene& scene, const Laws& laws) {
   if (!scene.stabilisation) throw UserError("--stabilisations " + word, scene.name + " has no rods and no joints", "Leave the flag out, or take a scene such as double_pendulum.");
-  CostWay way = way_by_method(method_named("rk4"), laws);
-  way.stabilisation = *scene.stabilisation;
-  if (word == "none") way.stabilisation->kind = scene::StabilisationKind::kNone;
-  else if (word == "baumgarte") way.stabilisation->kind = scene::StabilisationKind::kBaumgarte;
-  else if (word == "projection") way.stabilisation->kind = scene::StabilisationKind::kProjection;
+  CostMethod method = method_by_integrator(method_named("rk4"), laws);
+  method.stabilisation = *scene.stabilisation;
+  if (word == "none") method.stabilisation->kind = scene::StabilisationKind::kNone;
+  else if (word == "baumgarte") method.stabilisation->kind = scene::StabilisationKind::kBaumgarte;
+  else if (word == "projection") method.stabilisation->kind = scene::StabilisationKind::kProjection;
   else throw UserError("--stabilisations " + word, "expected none, baumgarte or projection", "For example --stabilisations baumgarte,projection.");
-  way.name = word == "none" ? "RK4, no stabilisation" : word == "baumgarte" ? fmt::format("RK4, Baumgarte {:g} s", way.stabilisation->time_constant_s) : "RK4, projection";
-  way.word = word;
-  way.order = kUnset;   // the stabilisation may set it
-  return way;
+  method.name = word == "none" ? "RK4, no stabilisation" : word == "baumgarte" ? fmt::format("RK4, Baumgarte {:g} s", method.stabilisation->time_constant_s) : "RK4, projection";
+  method.word = word;
+  method.order = kUnset;   // the stabilisation may determine it
+  return method;
 }
 
-constexpr double kTightest = 1e-12;   // tolerance of what is not looked at, so that only the axis shows
+constexpr double kTightest = 1e-12;   // tolerance of everything except the varied part
 
-/// Where impacts come from another root finder. The framework goes on from its answer to the last digit, so that a tolerance changes what is
-/// paid and not what comes out; tumble cost toi shows the finders alone.
-CostWay by_impacts(const std::string& word, const scene::Scene& scene, const Laws& laws) {
+/// Impacts by another root finder. The framework refines its answer to the last digit, so that the
+/// tolerance changes the cost but not the result; tumble cost toi shows the root finders alone.
+CostMethod by_impacts(const std::string& word, const scene::Scene& scene, const Laws& laws) {
   const RootMethod& root = root_method_named(word);
-  CostWay way;
-  way.name = "impacts by " + root.name;
-  way.word = word;
-  way.controlled = true;
-  way.laws = laws;
-  way.counted = "gap_evaluations";
-  if (engines::goes_in_closed_form(scene)) way.propagator = "auto";
-  else way.method = [](double) { return step_of(method_named("fehlberg78"), kTightest); };
-  way.tuned = [find = root.find](double tolerance, Laws& tuned) {
+  CostMethod method;
+  method.name = "impacts by " + root.name;
+  method.word = word;
+  method.controlled = true;
+  method.laws = laws;
+  method.counted = "gap_evaluations";
+  if (engines::goes_in_closed_form(scene)) method.propagator = "auto";
+  else method.step_function = [](double) { return step_of(method_named("fehlberg78"), kTightest); };
+  method.tuned = [find = root.find](double tolerance, Laws& tuned) {
     tuned.find_impact_time = [find, tolerance](const ScalarFunction& gap, const ScalarFunction& rate, double low, double high, double) { return find(gap, rate, low, high, tolerance); };
   };
-  return way;
+  return method;
 }
 
-CostWay by_solver(const std::string& word, const scene::Scene& scene, const Laws& laws) {
+CostMethod by_solver(const std::string& word, const scene::Scene& scene, const Laws& laws) {
   const bool linked = scene::is_constrained(scene);
-  CostWay way = way_by_method(method_named("fehlberg78"), laws);
-  way.method = [](double) { return step_of(method_named("fehlberg78"), kTightest); };
-  way.word = word;
-  way.order = kUnset;
+  CostMethod method = method_by_integrator(method_named("fehlberg78"), laws);
+  method.step_function = [](double) { return step_of(method_named("fehlberg78"), kTightest); };
+  method.word = word;
+  method.order = kUnset;
   if (word == "gradients" && linked) {
-    way.name = "links by conjugate gradients";
-    way.tuned = solve_links_by_gradients;
+    method.name = "links by conjugate gradients";
+    method.tuned = solve_links_by_gradients;
   } else if (word == "sweeps" && scene.contact) {
-    way.name = "contacts by sweeps";
-    way.tuned = solve_contacts_by_sweeps;
-    way.counted = "contact_sweeps";
+    method.name = "contacts by sweeps";
+    method.tuned = solve_contacts_by_sweeps;
+    method.counted = "contact_sweeps";
   } else if (word == "newton" && scene.contact) {
-    way.name = "contacts by Newton's method";
-    way.tuned = solve_contacts_by_newton;
-    way.counted = "contact_sweeps";
+    method.name = "contacts by Newton's method";
+    method.tuned = solve_contacts_by_newton;
+    method.counted = "contact_sweeps";
   } else if (word == "gradients") {
     throw UserError("--solvers " + word, scene.name + " has no rods and no joints", "Take a scene such as chain_8.");
   } else if (word == "sweeps" || word == "newton") {
-    throw UserError("--solvers " + word, scene.name + " has no lasting contacts", "Take a scene such as stack_of_10.");
+    throw UserError("--solvers " + word, scene.name + " has no persistent contacts", "Take a scene such as stack_of_10.");
   } else {
-    throw UserError("--solvers " + word, "expected gradients (of rods and joints), sweeps or newton (of lasting contacts)", "For example --solvers sweeps,newton.");
+    throw UserError("--solvers " + word, "expected gradients (of rods and joints), sweeps or newton (of persistent contacts)", "For example --solvers sweeps,newton.");
   }
-  return way;
+  return method;
 }
 
 std::vector<std::string> methods_for(const scene::Scene& scene, const CostWords& words) {
@@ -129,13 +129,13 @@ std::vector<std::string> methods_for(const scene::Scene& scene, const CostWords&
   return chosen;
 }
 
-/// What suits the scene; what is left out is said in `not_run`.
+/// Engines that suit the scene; those left out are listed in `not_run`.
 std::vector<std::string> engines_for(const CostWords& words, CostSubject& subject) {
   if (!words.engines.empty()) return is_none(words.engines) ? std::vector<std::string>{} : words.engines;
   std::vector<std::string> chosen;
   const bool sleeps = subject.scene.contact && subject.scene.contact->sleep;
   for (const char* word : {"ca", "tw"}) {
-    if (sleeps) subject.not_run.push_back(fmt::format("{}: bodies that rest fall asleep in this scene, which rd alone follows", word));
+    if (sleeps) subject.not_run.push_back(fmt::format("{}: bodies at rest fall asleep in this scene, which only rd supports", word));
     else if (std::string(word) == "tw" && !engines::fast_timewarp()) subject.not_run.push_back("tw: this tree holds no timewarp of its own");
     else chosen.emplace_back(word);
   }
@@ -145,7 +145,7 @@ std::vector<std::string> engines_for(const CostWords& words, CostSubject& subjec
 
 void add_engines(const CostWords& words, const Laws& laws, CostSubject& subject) {
   const bool in_closed_form = engines::goes_in_closed_form(subject.scene);
-  for (const std::string& word : engines_for(words, subject)) subject.ways.push_back(way_by_engine(word, laws, in_closed_form));
+  for (const std::string& word : engines_for(words, subject)) subject.methods.push_back(method_by_engine(word, laws, in_closed_form));
 }
 
 /// A module's own methods of integration, each with these laws.
@@ -161,14 +161,14 @@ void add_methods(const Context& context, const modules::ModuleKind& kind, const 
     subject.connections.push_back(sandboxed.step.connection);
   }
   for (const modules::NamedMethod& named : kind.methods) {
-    CostWay way;
-    way.name = fmt::format("{} {}", whose, named.name);
-    way.word = named.name;
-    way.method = [step = named.step(module)](double) { return step; };
-    way.order = named.order;
-    way.laws = laws;
-    way.laws.integrator_source = fmt::format("{} ({})", named.name, word);
-    subject.ways.push_back(std::move(way));
+    CostMethod method;
+    method.name = fmt::format("{} {}", whose, named.name);
+    method.word = named.name;
+    method.step_function = [step = named.step(module)](double) { return step; };
+    method.order = named.order;
+    method.laws = laws;
+    method.laws.integrator_source = fmt::format("{} ({})", named.name, word);
+    subject.methods.push_back(std::move(method));
   }
 }
 
@@ -176,32 +176,33 @@ void add_methods(const Context& context, const modules::ModuleKind& kind, const 
 void add_module(const Context& context, const modules::ModuleKind& kind, const std::string& word, const std::string& whose, const Laws& laws, const scene::Scene& scene, CostSubject& subject) {
   if (kind.methods.empty()) {
     const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(kind.id + "=" + word, context.registry));
-    CostWay way = way_by_method(method_named("rk4"), chosen.laws);
-    way.name = fmt::format("{} {}", whose, kind.id);
-    subject.ways.push_back(std::move(way));
+    CostMethod method = method_by_integrator(method_named("rk4"), chosen.laws);
+    method.name = fmt::format("{} {}", whose, kind.id);
+    subject.methods.push_back(std::move(method));
     subject.connections.insert(subject.connections.end(), chosen.connections.begin(), chosen.connections.end());
     return;
   }
   add_methods(context, kind, word, whose, laws, subject);
-  // Steps alone leave the module's other laws of motion unseen: the derivative, the renormalisation.
+  // Steps alone do not test the module's other laws of motion: the derivative, the renormalisation.
   const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(kind.id + "=" + word, context.registry));
-  CostWay whole;
+  CostMethod whole;
   whole.name = fmt::format("{} whole {}", whose, kind.id);
   whole.word = kind.id;
   whole.order = kind.methods.back().order;
   whole.laws = chosen.laws;
-  subject.ways.push_back(std::move(whole));
+  subject.methods.push_back(std::move(whole));
   subject.connections.insert(subject.connections.end(), chosen.connections.begin(), chosen.connections.end());
 }
 
-/// Whose methods of integration a scene's words name; empty: nobody's. The reference's are the library's over again, unless they are asked for by name.
+/// The word of a chosen module that integrates; empty: none. The reference's methods equal the
+/// library's, so they are included only by name.
 std::string named_motion(const ModuleWords& words, const modules::ModuleKind& kind) {
   if (const auto own = words.find(kind.id); own != words.end()) return own->second == "library" ? "" : own->second;
   const auto all = words.find("");
   return all == words.end() || all->second == "library" || all->second == "reference" ? "" : all->second;
 }
 
-/// Where a module that integrates was chosen by word, what it integrates by is looked at too.
+/// Where a module that integrates was chosen by word, its methods are measured too.
 void add_named_methods(const Context& context, const CostWords& words, const Laws& laws, CostSubject& subject) {
   if (is_none(words.methods)) return;
   const ModuleWords named = parse_module_words(words.modules, context.registry);
@@ -219,16 +220,16 @@ CostSubject of_scene(const Context& context, const CostWords& words) {
   subject.title = subject.scene.title;
   subject.truth_laws = chosen.laws;
   subject.connections = chosen.connections;
-  // Closed forms first: they cost little, and stand where a budget ends early.
+  // Closed forms first: they cost little, and are complete where a budget ends early.
   const bool in_closed_form = engines::goes_in_closed_form(subject.scene);
   if (in_closed_form) add_engines(words, chosen.laws, subject);
   add_named_methods(context, words, chosen.laws, subject);
-  for (const std::string& word : methods_for(subject.scene, words)) subject.ways.push_back(way_by_method(method_named(word), chosen.laws));
+  for (const std::string& word : methods_for(subject.scene, words)) subject.methods.push_back(method_by_integrator(method_named(word), chosen.laws));
   if (!in_closed_form) add_engines(words, chosen.laws, subject);
-  for (const std::string& word : words.stabilisations) subject.ways.push_back(by_stabilisation(word, subject.scene, chosen.laws));
-  for (const std::string& word : words.impacts) subject.ways.push_back(by_impacts(word, subject.scene, chosen.laws));
-  for (const std::string& word : words.solvers) subject.ways.push_back(by_solver(word, subject.scene, chosen.laws));
-  if (subject.ways.empty()) throw UserError("tumble cost " + words.scene, "--methods, --engines and the other axes leave nothing to run", "Leave one of them out.");
+  for (const std::string& word : words.stabilisations) subject.methods.push_back(by_stabilisation(word, subject.scene, chosen.laws));
+  for (const std::string& word : words.impacts) subject.methods.push_back(by_impacts(word, subject.scene, chosen.laws));
+  for (const std::string& word : words.solvers) subject.methods.push_back(by_solver(word, subject.scene, chosen.laws));
+  if (subject.methods.empty()) throw UserError("tumble cost " + words.scene, "--methods, --engines and the other axes leave nothing to run", "Leave one of them out.");
   return subject;
 }
 
@@ -243,14 +244,15 @@ CostSubject of_assignment(const Context& context, const modules::ModuleKind& kin
   subject.connections = right.connections;
   const std::string word = words.modules.empty() ? "student" : words.modules;
   subject.title = fmt::format("{} ({}) on: {}", kind.id, word, subject.scene.title);
-  // The course's own modules stay with the instructor: then laws that no library has are the student's in the truth too.
+  // Without a reference in the tree, laws that the library lacks are the student's in the reference
+  // solution too.
   if (!has_reference && kind.methods.empty())
-    subject.note = "This tree holds no reference of " + kind.id + ": the truth is computed with your own laws, so what is judged here is how the motion is integrated, not whether they are right.";
+    subject.note = "This tree holds no reference of " + kind.id + ": the reference solution is computed with your own laws, so the integration of the motion is judged here, not the laws.";
   else if (word != "student" && word != "reference")
-    subject.note = "This module runs in the sandbox, where each call and each derivative asked for costs some microseconds more: compare its force evaluations, not its CPU time.";
+    subject.note = "This module runs in the sandbox, where each call and each derivative costs some microseconds more: compare its force evaluations, not its CPU time.";
   add_module(context, kind, word, "your", right.laws, subject.scene, subject);
   if (has_reference && word != "reference") add_module(context, kind, "reference", "reference", right.laws, subject.scene, subject);
-  if (!kind.methods.empty()) subject.ways.push_back(way_by_method(method_named("dopri5"), right.laws));
+  if (!kind.methods.empty()) subject.methods.push_back(method_by_integrator(method_named("dopri5"), right.laws));
   return subject;
 }
 

@@ -1,4 +1,4 @@
-#include "framework/engines/events/meeting_of_flights.h"
+#include "framework/engines/events/flight_impact_response.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kMostPairNudges = 20;
 
-// By how much a unit impulse at the point changes the velocity of the point along a direction. [1/kg]
+// Change of the point's velocity along a direction by a unit impulse at the point. [1/kg]
 double compliance(const Contact& contact, const Body& body) {
   if (body.inertia.inverse_mass == 0.0) return 0.0;
   const Vector3d turn_body = body.world_from_body.conjugate() * (contact.point_world - body.com_world).cross(contact.normal_b_to_a_world);
@@ -27,13 +27,13 @@ double compliance(const Contact& contact, const Body& body) {
 
 }  // namespace
 
-struct MeetingOfFlights::Work {
-  Meeting result;
+struct FlightImpactResponse::Work {
+  Discontinuity result;
   const Flight& f;
   const Flight& g;
   Body a, b;
   collision::Gap gap;
-  std::vector<Vector3d> points_world;   // the middle of where the two touch, then its corners if it is more than a point
+  std::vector<Vector3d> points_world;   // the centre of the region of contact, then its corners where it is more than a point
   double fastest = 0.0;                 // approach before the first impulse [m/s]
   bool any_event = false;
 
@@ -46,7 +46,7 @@ struct MeetingOfFlights::Work {
   TouchedRegion region() const { return {gap.normal_b_to_a_world, points_world}; }
 };
 
-void MeetingOfFlights::push(Work& work, const Contact& contact, double impulse) const {
+void FlightImpactResponse::push(Work& work, const Contact& contact, double impulse) const {
   for (const auto& [body, size] : {std::pair{&work.a, impulse}, std::pair{&work.b, -impulse}}) {
     if (body->inertia.inverse_mass == 0.0) continue;
     const Velocity after = laws_.apply_impulse(*body, size * contact.normal_b_to_a_world, contact.point_world);
@@ -55,7 +55,7 @@ void MeetingOfFlights::push(Work& work, const Contact& contact, double impulse) 
   }
 }
 
-void MeetingOfFlights::collide(Work& work) const {
+void FlightImpactResponse::collide(Work& work) const {
   const int a = work.result.key.body_a, b = work.result.key.body_b;
   const double restitution = std::min(world_.restitution(a), world_.restitution(b));
   ApproachThreshold threshold;
@@ -79,8 +79,9 @@ void MeetingOfFlights::collide(Work& work) const {
   }
 }
 
-// Without lasting contact a pair that gravity or turning presses together would meet infinitely often in no time: it is sent apart.
-void MeetingOfFlights::hop(Work& work) const {
+// Without persistent contacts a pair that gravity or rotation presses together would collide
+// infinitely often in finite time: it gets a separation impulse.
+void FlightImpactResponse::hop(Work& work) const {
   const auto send = [&](const Vector3d& point) {
     const Contact contact = work.contact_at(point);
     const double rate = normal_velocity(contact, work.a, work.b);
@@ -95,8 +96,8 @@ void MeetingOfFlights::hop(Work& work) const {
   }
 }
 
-// Rest on a support that does not move.
-bool MeetingOfFlights::settle(Work& work, int body, int support) const {
+// Rest on a fixed support.
+bool FlightImpactResponse::settle(Work& work, int body, int support) const {
   if (!world_.can_move(body) || !world_.is_still(support) || !world_.is_ball(body) || world_.gravity_world().isZero(0.0)) return false;
   const bool is_a = body == work.result.key.body_a;
   Body& mover = is_a ? work.a : work.b;
@@ -107,14 +108,14 @@ bool MeetingOfFlights::settle(Work& work, int body, int support) const {
     return false;
   mover.velocity_world.setZero();
   mover.com_world -= work.gap.distance * up;
-  const EventKey& key = work.result.key;
+  const EventStamp& key = work.result.key;
   work.record({key.time, EventKind::kRest, key.body_a, key.body_b, work.gap.point_b_world, work.gap.normal_b_to_a_world, 0.0, 0.0});
   (is_a ? work.result.a : work.result.b).is_resting = true;
   return true;
 }
 
-// What rounding leaves of an overlap is taken back by moving one body along the normal.
-void MeetingOfFlights::remove_overlaps(Work& work) const {
+// Removes the overlap that rounding has left by moving one body along the normal.
+void FlightImpactResponse::remove_overlaps(Work& work) const {
   const int a = work.result.key.body_a, b = work.result.key.body_b;
   for (int round = 0; round < kMostPairNudges; ++round) {
     const collision::Gap gap = collision::compute_gap(world_.shape(a), {work.a.com_world, work.a.world_from_body}, world_.shape(b), {work.b.com_world, work.b.world_from_body});
@@ -126,12 +127,12 @@ void MeetingOfFlights::remove_overlaps(Work& work) const {
   }
 }
 
-Flight MeetingOfFlights::flight_of(const Work& work, int body, const Flight& before, const Body& now) const {
+Flight FlightImpactResponse::flight_of(const Work& work, int body, const Flight& before, const Body& now) const {
   if (!world_.can_move(body)) return before;
-  const EventKey& key = work.result.key;
+  const EventStamp& key = work.result.key;
   Flight flight = body == key.body_a ? work.result.a : work.result.b;
   flight.begin = key.time;
-  flight.generation = key.generation;
+  flight.microstep = key.microstep;
   flight.partner = body == key.body_a ? key.body_b : key.body_a;
   flight.com_world = now.com_world;
   flight.velocity_world = now.velocity_world;
@@ -145,7 +146,7 @@ Flight MeetingOfFlights::flight_of(const Work& work, int body, const Flight& bef
   return flight;
 }
 
-Meeting MeetingOfFlights::meet(const EventKey& key, const Flight& f, const Flight& g) const {
+Discontinuity FlightImpactResponse::resolve_impact(const EventStamp& key, const Flight& f, const Flight& g) const {
   const int a = key.body_a, b = key.body_b;
   Work work{{key, {}, {}, {}, 0.0, {}, {}, false}, f, g, world_.body_at(a, f, key.time), world_.body_at(b, g, key.time), {}, {}, 0.0, false};
   const collision::Pose pose_a{work.a.com_world, work.a.world_from_body}, pose_b{work.b.com_world, work.b.world_from_body};

@@ -1,4 +1,4 @@
-#include "solutions_private/a4_timewarp/fast/standing.h"
+#include "solutions_private/a4_timewarp/fast/state_snapshot.h"
 
 #include <algorithm>
 #include <string>
@@ -7,7 +7,7 @@
 namespace tumble::a4 {
 namespace {
 
-/// Writes numbers and containers of them one behind the other, lengths included.
+/// Writes numbers and containers of numbers in sequence, with their lengths.
 class Bytes {
  public:
   template <class T>
@@ -23,7 +23,7 @@ class Bytes {
     return *this;
   }
   Bytes& operator<<(const RigidBodyState& s) { return *this << s.com_world << s.world_from_body << s.momentum_world << s.angular_momentum_world; }
-  Bytes& operator<<(const EventKey& key) { return *this << key.time << key.generation << key.kind << key.body_a << key.body_b; }
+  Bytes& operator<<(const EventStamp& key) { return *this << key.time << key.microstep << key.kind << key.body_a << key.body_b; }
   Bytes& operator<<(const Event& e) {
     return *this << e.time << e.kind << e.body_a << e.body_b << e.point_world << e.normal_b_to_a_world << e.impulse << e.normal_velocity_before << e.normal_velocity_after;
   }
@@ -32,7 +32,7 @@ class Bytes {
     return *this << s.time << s.members << s.states << s.remembered << s.met << s.lasting << s.near;
   }
   Bytes& operator<<(const Flight& f) {
-    return *this << f.begin << f.com_world << f.velocity_world << f.world_from_body << f.omega_body << f.partner << f.partner_serial << f.generation << f.serial << f.is_resting;
+    return *this << f.begin << f.com_world << f.velocity_world << f.world_from_body << f.omega_body << f.partner << f.partner_version << f.microstep << f.version << f.is_resting;
   }
   std::string take() { return std::move(text_); }
 
@@ -49,11 +49,12 @@ std::string states(const Shared& all) {
   return bytes.take();
 }
 
-// The steps of a passage between its ends tell where each member is: at the middle of each as well.
-void write_passage(Bytes& bytes, const Shared& all, int number, double t) {
-  engines::Passages& passages = all.world().all_processes().passages();
-  bytes << passages.start(number);
-  passages.for_each_step(number, all.committed, t, [&](const engines::ProcessStep& step) {
+// The steps of a segment determine the motion of its members: sampled at their ends and in the
+// middle.
+void write_segment(Bytes& bytes, const Shared& all, int number, double t) {
+  engines::IslandSegments& segments = all.world().all_processes().segments();
+  bytes << segments.start(number);
+  segments.for_each_step(number, all.committed, t, [&](const engines::ProcessStep& step) {
     bytes << step.from << step.end << step.forces;
     for (std::size_t member = 0; member < step.paths.size(); ++member) bytes << step.state_at(member, 0.5 * (step.from.time + step.end));
   });
@@ -69,9 +70,9 @@ std::string groups(const Shared& all, double t) {
         std::sort(began.begin(), began.end());
         bytes << all.changes.key(flight.change) << began;
       }
-      if (flight.passage >= 0) write_passage(bytes, all, flight.passage, t);
+      if (flight.segment >= 0) write_segment(bytes, all, flight.segment, t);
     }
-  bytes << std::uint64_t{all.world().all_processes().passages().alive()} << std::uint64_t{all.changes.alive()};   // no orphans
+  bytes << std::uint64_t{all.world().all_processes().segments().alive()} << std::uint64_t{all.changes.alive()};   // nothing leaked
   return bytes.take();
 }
 
@@ -85,20 +86,20 @@ std::string events(Shared& all, std::vector<std::unique_ptr<Worker>>& workers) {
   Bytes bytes;
   for (const Due& due : waiting) {
     bytes << due.key;
-    if (!goes_on(due)) bytes << due.serial_a << due.serial_b;   // else its ticket
+    if (!is_advance(due)) bytes << due.version_a << due.version_b;   // otherwise the version of an advance
   }
-  const auto stands = [&](int body, std::uint32_t serial) { return body < 0 || !all.world().can_move(body) || all.histories[body].find(serial) < all.histories[body].size(); };
+  const auto stands = [&](int body, std::uint32_t version) { return body < 0 || !all.world().can_move(body) || all.histories[body].find(version) < all.histories[body].size(); };
   std::vector<const Executed*> executed;
   for (const auto& worker : workers)
     for (const Executed& event : worker->executed)
-      if (stands(event.key.body_a, event.serial_a) && stands(event.key.body_b, event.serial_b)) executed.push_back(&event);
+      if (stands(event.key.body_a, event.version_a) && stands(event.key.body_b, event.version_b)) executed.push_back(&event);
   std::sort(executed.begin(), executed.end(), [](const Executed* x, const Executed* y) { return x->key < y->key; });
-  for (const Executed* event : executed) bytes << event->key << event->serial_a << event->serial_b << event->first << event->more << event->is_silent;
+  for (const Executed* event : executed) bytes << event->key << event->version_a << event->version_b << event->first << event->more << event->is_silent;
   for (const bool called : all.called) bytes << called;
   return bytes.take();
 }
 
-// Which thread looks after a body is no part of it.
+// Ownership is no part of the state.
 std::string cells(const Shared& all) {
   std::vector<std::string> rows;
   for (const Domain& domain : all.domains)
@@ -109,7 +110,7 @@ std::string cells(const Shared& all) {
     });
   for (const int body : all.world().movers())
     for (const Domain& domain : all.domains)
-      domain.pairs.for_each_in(all.domains[all.home[static_cast<std::size_t>(body)]].pairs.box(body), [&](int other) {
+      domain.pairs.for_each_in(all.domains[all.owner[static_cast<std::size_t>(body)]].pairs.box(body), [&](int other) {
         Bytes row;
         row << 'p' << body << other;
         rows.push_back(row.take());
@@ -122,6 +123,6 @@ std::string cells(const Shared& all) {
 
 }  // namespace
 
-engines::Standing standing_of(Shared& all, std::vector<std::unique_ptr<Worker>>& workers, double t) { return {states(all), groups(all, t), events(all, workers), cells(all)}; }
+engines::StateSnapshot snapshot_of(Shared& all, std::vector<std::unique_ptr<Worker>>& workers, double t) { return {states(all), groups(all, t), events(all, workers), cells(all)}; }
 
 }  // namespace tumble::a4

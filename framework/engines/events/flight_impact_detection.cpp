@@ -1,4 +1,4 @@
-#include "framework/engines/events/impacts_of_flights.h"
+#include "framework/engines/events/flight_impact_detection.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,8 +14,8 @@
 namespace tumble::engines {
 namespace {
 
-// A root in closed form is off by roundings: it is taken back until the gap is not negative, first by one spacing of the time, then
-// by twice as much each round.
+// Rounding may put a root in closed form after the impact: it is moved back until the gap is not
+// negative, first by one spacing of the time, then by twice as much in each iteration.
 template <class Gap>
 double last_instant_apart(double begin, double time, const Gap& gap) {
   double stride = std::nextafter(time, kInfinity) - time;
@@ -28,22 +28,22 @@ double last_instant_apart(double begin, double time, const Gap& gap) {
 
 }  // namespace
 
-EventKey key_of_impact(int a, const Flight& f, int b, const Flight& g, double time) {
-  std::uint32_t generation = 0;
-  if (time == f.begin) generation = f.generation + 1;
-  if (time == g.begin) generation = std::max(generation, g.generation + 1);
-  return {time, generation, EventClass::kCollision, std::min(a, b), std::max(a, b)};
+EventStamp key_of_impact(int a, const Flight& f, int b, const Flight& g, double time) {
+  std::uint32_t microstep = 0;
+  if (time == f.begin) microstep = f.microstep + 1;
+  if (time == g.begin) microstep = std::max(microstep, g.microstep + 1);
+  return {time, microstep, StampKind::kCollision, std::min(a, b), std::max(a, b)};
 }
 
-std::int64_t ImpactsOfFlights::window_of(double t) const {
-  std::int64_t k = static_cast<std::int64_t>(std::floor(t / window_));   // the division rounds: windows begin at k * window_
+std::int64_t FlightImpactDetection::window_of(double t) const {
+  std::int64_t k = static_cast<std::int64_t>(std::floor(t / window_));   // the division rounds; windows begin at k * window_
   while (window_begin(k + 1) <= t) ++k;
   while (window_begin(k) > t) --k;
   return k;
 }
 
-bool ImpactsOfFlights::has_closed_form(int a, const Flight& f, int b, const Flight& g) const {
-  if (f.passage >= 0 || g.passage >= 0) return false;
+bool FlightImpactDetection::has_closed_form(int a, const Flight& f, int b, const Flight& g) const {
+  if (f.segment >= 0 || g.segment >= 0) return false;
   if (world_.is_half_space(a) || world_.is_half_space(b)) {
     const int plane = world_.is_half_space(a) ? a : b, other = world_.is_half_space(a) ? b : a;
     return world_.is_ball(other) && world_.is_still(plane);
@@ -53,8 +53,8 @@ bool ImpactsOfFlights::has_closed_form(int a, const Flight& f, int b, const Flig
   return falls(a, f) == falls(b, g) || world_.gravity_world().isZero(0.0);
 }
 
-double ImpactsOfFlights::first_impact(int a, const Flight& f, int b, const Flight& g, double from, double to, CheckCost& cost) const {
-  // A resting ball and its support do not meet.
+double FlightImpactDetection::first_impact(int a, const Flight& f, int b, const Flight& g, double from, double to, CheckCost& cost) const {
+  // A resting ball never collides with its support.
   if ((f.is_resting && (g.is_resting || !world_.can_move(b))) || (g.is_resting && !world_.can_move(a))) return kInfinity;
   if (world_.is_internal(a, f, b, g)) return kInfinity;
   if (!has_closed_form(a, f, b, g)) return in_windows(a, f, b, g, from, to, cost);
@@ -64,8 +64,9 @@ double ImpactsOfFlights::first_impact(int a, const Flight& f, int b, const Fligh
   return of_balls(a, f, b, g);
 }
 
-// |d + u tau|^2 = R^2 with d.d - R^2 = c:   tau = c / (-d.u + sqrt((d.u)^2 - u.u c)), the first root, without cancellation.
-double ImpactsOfFlights::of_balls(int a, const Flight& f, int b, const Flight& g) const {
+// |d + u tau|^2 = R^2 with d.d - R^2 = c:   tau = c / (-d.u + sqrt((d.u)^2 - u.u c)), the first
+// root, without cancellation.
+double FlightImpactDetection::of_balls(int a, const Flight& f, int b, const Flight& g) const {
   const double begin = std::max(f.begin, g.begin), reach = world_.radius(a) + world_.radius(b);
   const Vector3d d = world_.position(a, f, begin) - world_.position(b, g, begin);
   const Vector3d u = world_.velocity(a, f, begin) - world_.velocity(b, g, begin);
@@ -80,8 +81,9 @@ double ImpactsOfFlights::of_balls(int a, const Flight& f, int b, const Flight& g
   return last_instant_apart(begin, time, [&](double t) { return (world_.position(a, f, t) - world_.position(b, g, t)).norm() - reach; });
 }
 
-// h + c tau + q tau^2 = 0 with the height h over the plane, its rate c, and half the gravity along the normal q.
-double ImpactsOfFlights::of_ball_and_plane(int ball, const Flight& f, const Flight& plane) const {
+// h + c tau + q tau^2 = 0 with the height h over the plane, its rate c, and half the gravity along
+// the normal q.
+double FlightImpactDetection::of_ball_and_plane(int ball, const Flight& f, const Flight& plane) const {
   if (f.is_resting) return kInfinity;
   const Vector3d normal = plane.world_from_body * Vector3d::UnitZ();
   const auto height = [&](double t) { return normal.dot(world_.position(ball, f, t) - plane.com_world) - world_.radius(ball); };
@@ -90,17 +92,17 @@ double ImpactsOfFlights::of_ball_and_plane(int ball, const Flight& f, const Flig
   if (h <= 0 && c == 0 && q < 0) return f.begin;
   double after;
   if (q == 0) after = c < 0 ? h / -c : kInfinity;
-  else if (h <= 0) after = q < 0 && c > 0 ? c / -q : kInfinity;   // it has just left the plane
+  else if (h <= 0) after = q < 0 && c > 0 ? c / -q : kInfinity;   // it separates from the plane right now
   else after = collision::first_root_of_quadratic(h, c, q);
   if (!(f.begin + after < kInfinity)) return kInfinity;
   return last_instant_apart(f.begin, f.begin + after, height);
 }
 
-// Their relative path leaves its chord by at most |a| s^2 / 8.
-bool ImpactsOfFlights::may_meet(int a, const Flight& f, int b, const Flight& g, double low, double high) const {
+// The relative path deviates from its chord by at most |a| s^2 / 8.
+bool FlightImpactDetection::may_meet(int a, const Flight& f, int b, const Flight& g, double low, double high) const {
   const auto driven = [&](int body) { return !world_.can_move(body) && !world_.is_still(body); };
   if (driven(a) || driven(b)) return true;
-  if (f.passage >= 0 || g.passage >= 0) return may_meet_on_passage(a, f, b, g, low, high);
+  if (f.segment >= 0 || g.segment >= 0) return may_meet_on_segment(a, f, b, g, low, high);
   const double s = high - low, bulge = (world_.acceleration(a, f) - world_.acceleration(b, g)).norm() * s * s / 8;
   if (world_.is_half_space(a) || world_.is_half_space(b)) {
     const bool a_is_plane = world_.is_half_space(a);
@@ -115,13 +117,13 @@ bool ImpactsOfFlights::may_meet(int a, const Flight& f, int b, const Flight& g, 
   return (from + part * way).norm() <= (world_.radius(a) + world_.radius(b)) * (1 + kNegligible) + bulge;
 }
 
-bool ImpactsOfFlights::may_meet_on_passage(int a, const Flight& f, int b, const Flight& g, double low, double high) const {
+bool FlightImpactDetection::may_meet_on_segment(int a, const Flight& f, int b, const Flight& g, double low, double high) const {
   struct Corners {
     Vector3d low = Vector3d::Constant(kInfinity), high = Vector3d::Constant(-kInfinity);
   };
   const auto way = [&](int body, const Flight& flight) {
     Corners box;
-    world_.take_in_way(body, flight, low, high, box.low, box.high);
+    world_.extend_by_path(body, flight, low, high, box.low, box.high);
     return box;
   };
   if (world_.is_half_space(a) || world_.is_half_space(b)) {
@@ -137,19 +139,20 @@ bool ImpactsOfFlights::may_meet_on_passage(int a, const Flight& f, int b, const 
   return apart.norm() <= (world_.radius(a) + world_.radius(b)) * (1 + kNegligible);
 }
 
-void ImpactsOfFlights::require_searchable(int body, const Flight& flight, double duration) const {
-  if (flight.passage >= 0 || world_.is_ball(body)) return;
+void FlightImpactDetection::require_searchable(int body, const Flight& flight, double duration) const {
+  if (flight.segment >= 0 || world_.is_ball(body)) return;
   const double turn = flight.omega_body.norm() * duration;
   if (!(turn > kMostTurning)) return;
   throw StoppedRun(fmt::format("body '{}' turns {:.3g} rad a step of {:.3g} s, too far to find its collisions: make the step (\"step_s\") shorter or the body slower", world_.world().bodies[static_cast<std::size_t>(body)].name, turn, duration));
 }
 
-// Windows stand fast; within one, what is of one piece is searched at once. All of it depends on the two flights alone.
-double ImpactsOfFlights::in_windows(int a, const Flight& f, int b, const Flight& g, double from, double to, CheckCost& cost) const {
-  if (a > b) return in_windows(b, g, a, f, from, to, cost);   // one order, so that the answer has one rounding
+// The limits of windows are fixed; within a window, each smooth part of the motion is searched at
+// once. So the result depends on the two flights alone.
+double FlightImpactDetection::in_windows(int a, const Flight& f, int b, const Flight& g, double from, double to, CheckCost& cost) const {
+  if (a > b) return in_windows(b, g, a, f, from, to, cost);   // one order of the bodies, so that the result has one rounding
   const double begin = std::max(f.begin, g.begin);
-  const bool of_pieces = f.passage >= 0 || g.passage >= 0;
-  // Two that do not come near each other in all the windows that are asked for need not be looked at in each.
+  const bool of_pieces = f.segment >= 0 || g.segment >= 0;
+  // A pair that stays apart in all requested windows is not searched in each of them.
   if (const std::int64_t first = window_of(std::max(from, begin)); !of_pieces && window_begin(first + 1) < to && to < kInfinity) {
     const std::int64_t last = window_of(to);
     if (!may_meet(a, f, b, g, std::max(begin, window_begin(first)), window_begin(last + 1))) {
@@ -163,7 +166,7 @@ double ImpactsOfFlights::in_windows(int a, const Flight& f, int b, const Flight&
     const double high = window_begin(k + 1);
     for (double low = std::max(begin, window_begin(k)), end = low; low < high && low < to; low = end) {
       end = of_pieces ? world_.smooth_until(g, low, world_.smooth_until(f, low, high)) : high;
-      if (!(end > low)) return kInfinity;   // one of them has ended
+      if (!(end > low)) return kInfinity;   // one of the flights has ended
       if (!(end > from)) continue;
       ++cost.pair_checks;
       if (may_meet(a, f, b, g, low, end)) {

@@ -1,4 +1,4 @@
-#include "framework/engines/truths/known_places.h"
+#include "framework/engines/truths/known_positions.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,13 +20,13 @@ bool falls_along_z(const scene::Scene& scene, double g) {
   return gravity && same(*gravity, Vector3d(0.0, 0.0, -g));
 }
 
-/// Whether a scene asks for nothing but these, by their keys in a file.
+/// Whether a scene has no entries but these, by their keys in a file.
 bool asks_only(const scene::Scene& scene, const std::vector<std::string>& keys) {
   const auto& words = scene::all_words();
   return !scene.contact && std::none_of(words.begin(), words.end(), [&](const scene::Words* one) { return std::find(keys.begin(), keys.end(), one->key()) == keys.end() && one->is_asked(scene); });
 }
 
-/// Bob i hangs on bob i - 1, the first on the world's origin, each by its centre.
+/// Bob i is attached to bob i - 1, the first to the world's origin, each at its centre.
 bool hangs_in_a_row(const scene::Scene& scene, const VectorXd& lengths) {
   const scene::Words* words = scene::words_of("rods");
   const std::vector<scene::Link> rods = words == nullptr ? std::vector<scene::Link>{} : words->links(scene);
@@ -55,9 +55,9 @@ bool is_that_chain(const scene::Scene& scene, const Case& truth) {
   return true;
 }
 
-std::vector<KnownPlace> places_of_chain(const scene::Scene& scene, const Case& truth) {
+std::vector<KnownPosition> places_of_chain(const scene::Scene& scene, const Case& truth) {
   if (!is_that_chain(scene, truth)) return {};
-  std::vector<KnownPlace> places;
+  std::vector<KnownPosition> places;
   for (const Value& time : truth.input("times").list()) {
     const Value& rows = truth.output("positions_t" + time.text());
     for (std::size_t i = 0; i < rows.list().size(); ++i) places.push_back({time.number(), i, {rows.at(i).at(std::size_t{0}).number(), 0.0, rows.at(i).at(std::size_t{1}).number()}});
@@ -65,7 +65,7 @@ std::vector<KnownPlace> places_of_chain(const scene::Scene& scene, const Case& t
   return places;
 }
 
-std::vector<KnownPlace> places_of_ball(const scene::Scene& scene, const Case& truth) {
+std::vector<KnownPosition> places_of_ball(const scene::Scene& scene, const Case& truth) {
   if (scene.bodies.size() != 2 || !asks_only(scene, {"gravity_m_s2"}) || !falls_along_z(scene, truth.input("g").number())) return {};
   const std::size_t which = scene.bodies[0].immovable ? 1 : 0;
   const scene::BodySpec &ball = scene.bodies[which], &floor = scene.bodies[1 - which];
@@ -73,15 +73,15 @@ std::vector<KnownPlace> places_of_ball(const scene::Scene& scene, const Case& tr
   const bool is_floor = floor.immovable && std::holds_alternative<scene::PlaneSpec>(floor.shape) && floor.position_m.isZero(0.0) && floor.world_from_body.isApprox(Quaterniond::Identity(), engines::kCoordinateRounding);
   if (sphere == nullptr || !is_floor || ball.immovable || !ball.velocity_m_s.isZero(0.0) || !same(std::min(ball.restitution, floor.restitution), truth.input("e").number())) return {};
   if (!same(ball.position_m, Vector3d(0.0, 0.0, truth.input("h").number() + sphere->radius_m))) return {};
-  std::vector<KnownPlace> places;
-  for (const Value& time : truth.input("times").list())   // heights are the lowest point's
+  std::vector<KnownPosition> places;
+  for (const Value& time : truth.input("times").list())   // heights are those of the lowest point
     places.push_back({time.number(), which, {0.0, 0.0, truth.output("z_t" + time.text()).number() + sphere->radius_m}});
   return places;
 }
 
 }  // namespace
 
-std::vector<KnownPlace> known_places(const scene::Scene& scene, const Case& truth) {
+std::vector<KnownPosition> known_positions(const scene::Scene& scene, const Case& truth) {
   if (truth.family == "chain" || truth.family == "double_pendulum") return places_of_chain(scene, truth);
   if (truth.family == "bouncing_ball") return places_of_ball(scene, truth);
   return {};

@@ -1,0 +1,57 @@
+/// Collision response of two bodies on their flights: the laws' impulse, rest, or a separation
+/// impulse below the restitution threshold.
+///
+/// Several bodies that touch at one instant collide pair by pair in the order of events (flight.h):
+/// lowest microstep first, then lowest bodies. For equal balls in a row and restitution 1 this is
+/// Newton's cradle.
+#pragma once
+
+#include <vector>
+
+#include "framework/dynamics/laws.h"
+#include "framework/engines/events/flight_world.h"
+#include "framework/trajectory/trajectory.h"
+
+namespace tumble::engines {
+
+/// A discontinuity: the event, and the flights of its pair or its processes that begin with it.
+struct Discontinuity {
+  EventStamp key;
+  Flight a, b;                 // of key.body_a and key.body_b, from key.time on; the caller sets their versions
+  std::vector<BegunFlight> begun;   // with processes: all flights that begin; `a` and `b` are then unused
+  double impulse = 0.0;        // sum of the impulses along the normal [N s]
+  Event first;                 // the first impulse, or the transition to rest without one
+  std::vector<Event> more;     // further impulses of flat contacts; transitions to rest
+  bool is_silent = false;      // members of a process separate without contact: no event is recorded
+};
+
+struct FlightImpactRules {
+  double restitution_threshold;         // [m/s]
+  double micro_interval;       // a pair slower than the restitution threshold that meets again within this time gets that separation speed [s]
+};
+
+class FlightImpactResponse {
+ public:
+  /// @pre `laws` has the three laws of an impact
+  FlightImpactResponse(const FlightWorld& world, const Laws& laws, FlightImpactRules rules) : world_(world), laws_(laws), rules_(rules) {}
+
+  /// @param f, g  flights of key.body_a and key.body_b, which meet at key.time
+  /// @throws StoppedRun where the laws leave the two approaching, or return values that are not
+  ///   finite
+  Discontinuity resolve_impact(const EventStamp& key, const Flight& f, const Flight& g) const;
+
+ private:
+  struct Work;
+  void collide(Work& work) const;
+  void push(Work& work, const Contact& contact, double impulse) const;
+  void hop(Work& work) const;
+  bool settle(Work& work, int body, int support) const;
+  void remove_overlaps(Work& work) const;
+  Flight flight_of(const Work& work, int body, const Flight& before, const Body& now) const;
+
+  const FlightWorld& world_;
+  const Laws& laws_;
+  FlightImpactRules rules_;
+};
+
+}  // namespace tumble::engines

@@ -1,0 +1,159 @@
+#include "framework/engines/events/island_segments.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/step_limits.h"
+#include "framework/engines/base/tolerances.h"
+
+namespace tumble::engines {
+
+IslandSegments::IslandSegments(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules)
+    : whole_(whole), entries_(whole), shape_of_(std::move(shape_of)), laws_(laws), rules_(rules) {
+  if (!whole_.contact) return;
+  for (int i = 0; i < static_cast<int>(whole_.bodies.size()); ++i)
+    if (whole_.bodies[i].immovable() && whole_.bodies[i].collides) obstacles_.push_back(i);
+}
+
+// ---- Process worlds --------------------------------------------------------------------------
+
+// A world is safe from deletion only while one thread uses its set of members: no world is deleted
+// while threads share them.
+IslandSegments::CachedWorld& IslandSegments::cached_world(const std::vector<int>& members, int still) {
+  CachedWorld* cached_world = nullptr;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto known = worlds_.find({members, still});
+    if (known != worlds_.end() && known->second.world) return known->second;
+    if (worlds_.size() > clear_at_ && !is_shared_) {
+      std::erase_if(worlds_, [this](const auto& old) {
+        if (old.second.users > 0) return false;
+        past_.add(old.second.counters);
+        return true;
+      });
+      clear_at_ = std::max(kMostCachedWorlds, 2 * worlds_.size());   // where most worlds are in use, a scan at each new one would cost O(n^2)
+    }
+    cached_world = &worlds_[{members, still}];
+  }
+  std::vector<int> immovable = obstacles_;
+  if (still >= 0) immovable.push_back(still);
+  cached_world->world = std::make_unique<ProcessWorld>(whole_, entries_, shape_of_, laws_, rules_, cached_world->counters, members, immovable);
+  return *cached_world;
+}
+
+void IslandSegments::add_counts_to(RunCounters& counters) const {
+  counters.add(past_);
+  counters.passages_begun += begun_;
+  counters.passages_let_go += let_go_;
+  for (const auto& [members, cached_world] : worlds_) counters.add(cached_world.counters);
+}
+
+ProcessWorld& IslandSegments::world_of(const std::vector<int>& members, int still) { return *cached_world(members, still).world; }
+
+// ---- Segments --------------------------------------------------------------------------------
+
+int IslandSegments::begin(const ProcessState& state) {
+  auto segment = std::make_unique<Segment>();
+  segment->cached_world = &cached_world(state.members, -1);
+  segment->start.emplace(state.without_memory());
+  segment->front.emplace(state);
+  segment->holders = static_cast<int>(state.members.size());
+  const std::lock_guard lock(mutex_);
+  ++segment->cached_world->users;
+  ++begun_;
+  const int number = segments_.take();
+  segments_[number] = std::move(segment);
+  return number;
+}
+
+void IslandSegments::release(int number) {
+  const std::lock_guard lock(mutex_);
+  Segment& segment = at(number);
+  if (--segment.holders > 0) return;
+  kept_ -= segment.steps.size();
+  --segment.cached_world->users;
+  ++let_go_;
+  segments_.give_back(number);
+}
+
+void IslandSegments::forget_before(double t) { forgotten_ = t; }
+
+std::size_t IslandSegments::place(int segment, int body) const {
+  const std::vector<int>& members = at(segment).start->members;
+  return static_cast<std::size_t>(std::lower_bound(members.begin(), members.end(), body) - members.begin());
+}
+
+std::string IslandSegments::names(const std::vector<int>& members) const {
+  return fmt::format("body '{}'{}", whole_.bodies[static_cast<std::size_t>(members.front())].name, members.size() > 1 ? " and its island" : "");
+}
+
+void IslandSegments::take_step(Segment& segment) {
+  // Steps end on a grid that all processes share, as frames do: bodies in contact match each
+  // other's surfaces at the ends of steps.
+  const double now = segment.front->time, due = (std::floor((now + kNegligible * rules_.step) / rules_.step) + 1) * rules_.step;
+  ProcessWorld::Outcome outcome = naming(fmt::format("at t = {:.6f} s, {}", now, names(segment.start->members)), [&] { return segment.cached_world->world->step(*segment.front, due); });
+  segment.idle = outcome.step.end > now ? 0 : segment.idle + 1;
+  if (segment.idle > kMostIdleSteps) throw StoppedRun(fmt::format("at t = {:.6f} s, {}: time stands still, its bodies collide again and again", now, names(segment.start->members)));
+  while (segment.steps.size() > 1 && segment.steps.front().end < forgotten_ - 2 * rules_.step) {
+    segment.steps.pop_front();
+    --kept_;
+  }
+  segment.steps.push_back(std::move(outcome.step));
+  ++kept_;
+  const bool is_one = segment.start->near.empty() || !falls_apart_(outcome.after);
+  if (outcome.events.empty() && is_one) segment.front.emplace(std::move(outcome.after));
+  else segment.end.emplace(SegmentEnd{segment.steps.back().end, std::move(outcome.after), std::move(outcome.events)});
+}
+
+// Computes steps until one ends after t: the state at the end of a step is the start of the next.
+void IslandSegments::reach(int number, double t) {
+  Segment& segment = at(number);
+  while (!segment.end && !(segment.front->time > t)) take_step(segment);
+}
+
+const SegmentEnd* IslandSegments::end_by(int number, double to) {
+  reach(number, to);
+  const Segment& segment = at(number);
+  return segment.end && segment.end->time <= to ? &*segment.end : nullptr;
+}
+
+const ProcessStep& IslandSegments::step_at(int number, double t) {
+  reach(number, t);
+  const std::deque<ProcessStep>& steps = at(number).steps;
+  std::size_t k = steps.size() - 1;
+  while (k > 0 && steps[k].from.time > t) --k;
+  return steps[k];
+}
+
+double IslandSegments::step_end(int number, double t) { return std::max(t, step_at(number, t).end); }
+
+RigidBodyState IslandSegments::body_state(int segment, int body, double t) { return step_at(segment, t).state_at(place(segment, body), t); }
+
+collision::MotionState IslandSegments::motion_at(int segment, int body, double t) { return step_at(segment, t).motion_at(place(segment, body), t, whole_.bodies[static_cast<std::size_t>(body)].inertia); }
+
+ProcessState IslandSegments::state_at(int number, double t) {
+  const ProcessStep& step = step_at(number, t);
+  ProcessState state(step.from);
+  if (t == step.from.time) return state;
+  state.time = t;
+  for (std::size_t k = 0; k < state.members.size(); ++k) state.states[k] = step.state_at(k, t);
+  return state;
+}
+
+std::vector<RigidBodyState> IslandSegments::shown_at(int number, double t) {
+  const ProcessStep& step = step_at(number, t);
+  const ProcessState state = state_at(number, t);
+  return t > step.from.time && t < step.end ? at(number).cached_world->world->shown(state).states : state.states;
+}
+
+collision::Motion IslandSegments::motion_in_step(int number, int body, double low) {
+  const ProcessStep& step = step_at(number, low);
+  const std::size_t member = place(number, body);
+  const Inertia* inertia = &whole_.bodies[static_cast<std::size_t>(body)].inertia;
+  return {[&step, member, inertia](double t) { return step.motion_at(member, t, *inertia); }, step.paths.empty() ? collision::MotionBounds{} : step.paths[member].bounds()};
+}
+
+}  // namespace tumble::engines

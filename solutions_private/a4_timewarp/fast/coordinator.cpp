@@ -1,0 +1,337 @@
+#include "solutions_private/a4_timewarp/fast/coordinator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <thread>
+
+#include <fmt/format.h>
+
+#include "framework/core/cpu_time.h"
+#include "framework/core/error.h"
+#include "framework/core/numbers.h"
+#include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/timewarp/fast_timewarp.h"
+#include "framework/engines/timewarp/flight_boxes.h"
+#include "solutions_private/a4_timewarp/fast/fast_timewarp.h"
+
+namespace tumble::a4 {
+namespace {
+
+constexpr std::size_t kCommitAfter = 512;      // executed events between computations of global virtual time
+constexpr std::size_t kForgetAfter = 1;        // advances per body, likewise: the data of segments should stay in the nearer caches
+constexpr int kMostThreads = 64;
+constexpr int kRegionIds = std::numeric_limits<std::uint8_t>::max();   // Shared::owner has one byte; the boundary is one more
+constexpr int kFewestStates = 8;               // a segment keeps two committed steps, and the current one
+
+// Bounded optimism: the window is adapted so that 5 to 15 % of the integrations are rolled back.
+constexpr double kTooMuchUndone = 0.15, kTooLittleUndone = 0.05, kWiden = 1.3, kNarrow = 0.75;
+constexpr std::uint64_t kIntegrationsToJudgeBy = 2000;
+constexpr double kWidest = 2.0, kNarrowest = 1.0 / 64;   // of the first window
+constexpr double kOptimismWindowSteps = 2.0;           // with several threads, the first window: of the time in which a process advances once
+constexpr double kOptimismWindowAlone = 2.0;           // with one thread, which is unbounded until too much is rolled back: of that window
+constexpr double kRound = 0.25;                // of the window is an epoch: at its end processes have completed their advances, not been cut short
+constexpr double kMostInARound = 2.0;          // integrations per body
+constexpr double kEpochAlone = 0.125;          // with one thread and several regions: longer epochs check more pairs, shorter ones switch between regions more often
+
+}  // namespace
+
+Coordinator::Coordinator(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record, const engines::RollbackCheck* watch)
+    : all_(scene, laws, options, sink), record_(record), watch_(watch), commit_at_(kCommitAfter), wanted_owner_(all_.owner), leaders_(all_.owner.size()) {
+  const FlightWorld& world = all_.world();
+  const double bin = bin_for(world, all_.lengths.advance, all_.run.duration());
+  const std::size_t domains = all_.regions > 1 ? static_cast<std::size_t>(all_.regions) + 1 : 1;
+  const int all_bodies = world.size(), a_territory = 2 * all_bodies / all_.regions;
+  all_.domains.reserve(domains);
+  for (std::size_t k = 0; k < domains; ++k) {
+    all_.domains.emplace_back(all_.boxes, static_cast<int>(k), k == kBoundary ? all_bodies : a_territory, all_.lengths, k == kBoundary ? bin : bin * all_.regions);
+    workers_.push_back(std::make_unique<Worker>(all_, k));
+  }
+  if (domains > 1) all_.work_loads.assign(static_cast<std::size_t>(world.size()), 0.0);
+  all_.is_recorded = record_ != nullptr;
+  for (const int i : world.movers()) {
+    if (record_) record_->processes.push_back(world.world().bodies[i].name);
+    all_.histories.push(i, world.first_flight(i));
+    ++alone().kept;
+  }
+  for (const int i : world.obstacles()) enter_obstacle(i);
+  first_optimism_window_ = first_optimism_window();
+}
+
+void Coordinator::enter_obstacle(int i) {
+  const FlightWorld& world = all_.world();
+  all_.processes[static_cast<std::size_t>(i)].horizon = kInfinity;
+  if (world.is_half_space(i)) return all_.planes.push_back(i);
+  all_.domains[kBoundary].pairs.set_box(i, engines::box_of_immovable(world, i, all_.run.duration()));
+}
+
+void Coordinator::run() {
+  std::string stopped_by;
+  try {
+    begin();
+    if (all_.regions > 1) run_in_epochs();
+    else run_alone();
+    commit_before(kInfinity);
+    check_nothing_leaked();
+  } catch (const engines::StoppedRun& stop) {
+    stopped_by = stop.what();
+  }
+  try {   // everything before is certain, and kept
+    if (working_at_) commit_before(*working_at_);
+  } catch (const engines::StoppedRun& stop) {
+    stopped_by = stop.what();
+  }
+  end(stopped_by);
+}
+
+void Coordinator::begin() {
+  std::vector<int> order = all_.world().movers();
+  if (all_.faults.shuffle) {
+    Random random(all_.faults.seed);
+    for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.below(i)]);
+  }
+  alone().now = 0.0;
+  all_.called.assign(all_.run.callbacks().size(), false);
+  for (const EventStamp& callback : all_.run.callbacks()) alone().expect_callback(callback);
+  for (const int body : order)
+    if (all_.first_member(body) == body) alone().begin(body);
+  alone().now = kInfinity;
+  // The cost of the first advances is the cost of the time that they cover.
+  if (all_.regions > 1)
+    for (const int body : order) all_.work_loads[static_cast<std::size_t>(body)] *= first_optimism_window_ / std::max(all_.processes[static_cast<std::size_t>(body)].horizon, 1e-3 * first_optimism_window_);
+}
+
+// ---- One thread ------------------------------------------------------------------------------
+
+void Coordinator::run_alone() {
+  engines::EventQueue<Due>& queue = all_.domains[kBoundary].queue;
+  const double duration = all_.run.duration();
+  while (!queue.empty() && queue.front().key.time <= duration) {
+    if (is_injection_due())
+      inject_rollback([&] {
+        for (std::size_t k = 0; k < all_.world().movers().size() && !queue.empty() && queue.front().key.time <= duration; ++k) work_alone_at(queue.pop());
+      });
+    if (all_.faults.rollback_every > 0) alone().disturb();
+    Due due = all_.faults.disorder_s > 0 ? alone().next_legal(duration) : queue.pop();
+    if (all_.faults.late_callbacks && due.key.kind == StampKind::kCallback && !queue.empty() && queue.front().key.time <= duration) due = in_place_of(due);
+    if (!queue.empty()) alone().fetch(queue.front());
+    work_alone_at(due);
+    const double gvt = queue.empty() ? kInfinity : queue.front().key.time;
+    const bool keeps_much = all_.world().processes() && ++since_commit_ >= kForgetAfter * all_.world().movers().size();
+    if (keeps_much || alone().executed.size() >= commit_at_ || all_.run.next_frame() < gvt) {
+      commit_before(std::min(gvt, duration));
+      commit_at_ = alone().executed.size() + kCommitAfter;
+      since_commit_ = 0;
+      adapt_optimism_window();
+    }
+  }
+}
+
+// For tests: an event after a callback is executed before it.
+Due Coordinator::in_place_of(const Due& callback) {
+  engines::EventQueue<Due>& queue = all_.domains[kBoundary].queue;
+  std::vector<Due> late{callback};
+  while (queue.front().key.kind == StampKind::kCallback && queue.size() > 1) late.push_back(queue.pop());
+  const Due next = queue.pop();
+  for (const Due& due : late) queue.push(due);
+  return next;
+}
+
+// ---- Several threads -------------------------------------------------------------------------
+
+Domain* Coordinator::next_domain() {
+  Domain* next = nullptr;
+  for (Domain& domain : all_.domains)
+    if (!domain.queue.empty() && (!next || domain.queue.front().key < next->queue.front().key)) next = &domain;
+  return next;
+}
+
+double Coordinator::next_time() {
+  const Domain* next = next_domain();
+  return next ? next->queue.front().key.time : kInfinity;
+}
+
+// The mean over bodies of the time of one advance.
+double Coordinator::first_optimism_window() const {
+  const FlightWorld& world = all_.world();
+  double sum = 0.0;
+  for (const int i : world.movers()) {
+    const double speed = world.first_flight(i).velocity_world.norm() + std::sqrt(0.5 * world.gravity_world().norm() * all_.lengths.advance);
+    sum += world.is_ball(i) && speed > 0 ? std::min(all_.lengths.advance / speed, all_.run.duration()) : all_.run.step();
+  }
+  return world.movers().empty() ? all_.run.step() : kOptimismWindowSteps * sum / static_cast<double>(world.movers().size());
+}
+
+void Coordinator::run_in_epochs() {
+  all_.optimism_window = first_optimism_window_;
+  double end_of_epoch = 0.0;
+  bool is_over = false;
+  std::barrier resolve_impact(all_.threads);
+  std::vector<std::jthread> threads;
+  // An exception in this thread ends the others.
+  struct Release {
+    std::barrier<>& resolve_impact;
+    bool& is_over;
+    ~Release() {
+      is_over = true;
+      resolve_impact.arrive_and_wait();
+    }
+  };
+  for (int thread = 1; thread < all_.threads; ++thread)
+    threads.emplace_back([&, thread] {
+      for (;;) {
+        resolve_impact.arrive_and_wait();
+        if (is_over) return;
+        work_as(thread, end_of_epoch);
+        resolve_impact.arrive_and_wait();
+      }
+    });
+  const Release release{resolve_impact, is_over};
+  while (next_time() <= all_.run.duration()) {
+    if (is_injection_due()) inject_rollback([&] { run_epoch(end_of_epoch, resolve_impact); });
+    run_epoch(end_of_epoch, resolve_impact);
+    commit_before(std::min(next_time(), all_.run.duration()));
+    adapt_optimism_window();
+  }
+}
+
+// Threads take the regions in turn, each to the end of the epoch, so that a region's data stays in
+// the caches meanwhile.
+// @return the time that all of them have reached
+double Coordinator::work_as(int thread, double end) {
+  for (std::size_t k = 1 + static_cast<std::size_t>(thread); k < workers_.size(); k += static_cast<std::size_t>(all_.threads)) end = workers_[k]->work_before(end);
+  return end;
+}
+
+void Coordinator::run_epoch(double& end_of_epoch, std::barrier<>& resolve_impact) {
+  all_.global_virtual_time = next_time();
+  end_of_epoch = all_.global_virtual_time + (all_.threads > 1 ? kRound : kEpochAlone) * all_.optimism_window;
+  const double began = thread_seconds();
+  settle();
+  const double settled = thread_seconds();
+  all_.run.share(all_.threads > 1);
+  resolve_impact.arrive_and_wait();
+  const double reached = work_as(0, end_of_epoch);   // with several threads: the end of the epoch
+  resolve_impact.arrive_and_wait();
+  all_.run.share(false);
+  for (const auto& worker : workers_)
+    if (worker->deferred.out_of_time) std::rethrow_exception(worker->deferred.out_of_time);
+  std::vector<double> of_threads(static_cast<std::size_t>(all_.threads), 0.0);
+  for (std::size_t k = 1; k < workers_.size(); ++k) of_threads[(k - 1) % of_threads.size()] += std::exchange(workers_[k]->cpu_seconds, 0.0);
+  const double busiest = *std::max_element(of_threads.begin(), of_threads.end());
+  const double worked = thread_seconds();
+  collect_deferred();
+  work_alone_before(reached);
+  ++alone().counters.rounds;
+  alone().counters.together_seconds += busiest;
+  alone().counters.alone_seconds += settled - began + thread_seconds() - worked;
+}
+
+void Coordinator::collect_deferred() {
+  for (std::size_t k = 1; k < workers_.size(); ++k) {
+    alone().moves.insert(alone().moves.end(), workers_[k]->moves.begin(), workers_[k]->moves.end());
+    workers_[k]->moves.clear();
+    Worker::Deferred& deferred = workers_[k]->deferred;
+    for (const Due& due : deferred.due) all_.domains[kBoundary].queue.push(due);
+    for (const EventStamp& callback : deferred.cancelled_callbacks)
+      if (all_.called[callback.microstep]) alone().expect_callback(callback);
+    deferred.due.clear();
+    deferred.cancelled_callbacks.clear();
+  }
+  for (std::size_t k = 1; k < workers_.size(); ++k) {
+    for (const auto& [body, version] : workers_[k]->deferred.anti_messages) alone().roll_back_from(body, version);
+    workers_[k]->deferred.anti_messages.clear();
+  }
+}
+
+void Coordinator::work_alone_before(double end) {
+  for (Domain* next = next_domain(); next && next->queue.front().key.time < end && next->queue.front().key.time <= all_.run.duration(); next = next_domain()) work_alone_at(next->queue.pop());
+}
+
+// A body at its limit of states waits until global virtual time has passed some of them. The first
+// event of all need not wait.
+void Coordinator::work_alone_at(Due due) {
+  if (all_.most_states > 0 && !alone().has_room(due)) {
+    ++alone().counters.held_back;
+    if (Domain* next = next_domain(); next && next->queue.front().key < due.key) {
+      const Due first = next->queue.pop();
+      all_.domains[all_.regions > 1 ? all_.owner_of(due.key) : kBoundary].queue.push(due);
+      due = first;
+    }
+    commit_before(due.key);
+    alone().purge(due);
+  }
+  const Domain* next = next_domain();
+  working_at_ = next && next->queue.front().key < due.key ? next->queue.front().key : due.key;
+  alone().work_at(due);
+  working_at_.reset();
+}
+
+// ---- Optimism --------------------------------------------------------------------------------
+
+void Coordinator::adapt_optimism_window() {
+  if (all_.threads == 1 && all_.regions > 1 && !all_.world().processes()) return adapt_epochs();   // it cuts no advance short; it only measures epochs
+  if (all_.faults.late_callbacks) return;   // events that wait for the late callback would wait for the window too
+  std::uint64_t done = 0, undone = 0;
+  for (const auto& worker : workers_) {
+    done += worker->counters.integrations;
+    undone += worker->counters.undone_integrations;
+  }
+  if (done - done_before_ < kIntegrationsToJudgeBy) return;
+  const double share = static_cast<double>(undone - undone_before_) / static_cast<double>(done - done_before_);
+  done_before_ = done;
+  undone_before_ = undone;
+  const double first = all_.regions > 1 ? first_optimism_window_ : kOptimismWindowAlone * first_optimism_window_;
+  if (share > kTooMuchUndone) all_.optimism_window = std::max(kNarrowest * first, kNarrow * (all_.optimism_window < kInfinity ? all_.optimism_window : first));
+  else if (share < kTooLittleUndone) all_.optimism_window = all_.regions > 1 ? std::min(kWidest * first, kWiden * all_.optimism_window) : all_.optimism_window > first ? kInfinity : kWiden * all_.optimism_window;
+}
+
+// With one thread states are kept until the end of an epoch, so an epoch must not have many more
+// events than bodies, however fast these have become.
+void Coordinator::adapt_epochs() {
+  std::uint64_t done = 0;
+  for (const auto& worker : workers_) done += worker->counters.integrations;
+  const double a_body = static_cast<double>(done - std::exchange(done_before_, done)) / static_cast<double>(all_.world().movers().size());
+  if (a_body > kMostInARound) all_.optimism_window *= std::max(0.1, kMostInARound / a_body);
+  else if (a_body < 0.25 * kMostInARound) all_.optimism_window = std::min(kWidest * first_optimism_window_, kWiden * all_.optimism_window);
+}
+
+// ---- End -------------------------------------------------------------------------------------
+
+// Every flight has been dropped, discarded, or is a body's last: segments and records that are
+// still held by no flight are leaks.
+void Coordinator::check_nothing_leaked() {
+  for (const int body : all_.world().movers())
+    for (std::size_t k = 0; k < all_.histories[body].size(); ++k) {
+      all_.world().release(all_.histories[body][k]);
+      if (all_.histories[body][k].change >= 0) all_.changes.release(all_.histories[body][k].change);
+    }
+  require(all_.world().all_processes().segments().alive() == 0 && all_.changes.alive() == 0, "no segment or change outlives its flights");
+}
+
+void Coordinator::end(const std::string& stopped_by) {
+  for (const auto& worker : workers_) {
+    all_.run.counters.add(worker->counters);
+    all_.run.cost.pair_checks += worker->cost.pair_checks;
+    all_.run.cost.narrow.gap_evaluations += worker->cost.narrow.gap_evaluations;
+    all_.run.cost.narrow.root_findings += worker->cost.narrow.root_findings;
+  }
+  if (workers_.size() > 1) {
+    const auto works_less = [](const auto& x, const auto& y) { return x->worked_at < y->worked_at; };
+    all_.run.counters.least_of_a_thread = (*std::min_element(workers_.begin() + 1, workers_.end(), works_less))->worked_at;
+  }
+  all_.run.counters.states_kept = static_cast<std::uint64_t>(most_kept_);
+  if (record_) record_->moves = std::move(alone().moves);
+  all_.run.end(stopped_by);
+}
+
+void run_fast_timewarp(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record, const engines::RollbackCheck* watch) {
+  if (options.most_states != 0 && options.most_states < kFewestStates)
+    throw UserError("--most-states " + std::to_string(options.most_states), fmt::format("a process in contact needs {}", kFewestStates), fmt::format("Give {} or more, or 0: as many as it takes.", kFewestStates));
+  if (options.threads < 1 || options.threads > kMostThreads)
+    throw UserError("--threads " + std::to_string(options.threads), fmt::format("expected a number from 1 to {}", kMostThreads), "More threads than cores do not help.");
+  require(options.faults.regions >= 0 && options.faults.regions <= kRegionIds, fmt::format("FaultInjection::regions is from 0 to {}, and not {}: the owner of a body is stored in a byte", kRegionIds, options.faults.regions));
+  Coordinator(scene, laws, options, sink, record, watch).run();
+}
+
+}  // namespace tumble::a4

@@ -1,0 +1,86 @@
+/// The order of execution: one thread alone, or several in epochs. Its parts: coordinator.cpp has
+/// the loops, ownership.cpp assigns bodies to threads, commits.cpp commits, fault_injection.cpp
+/// rolls everything back for tests.
+///
+/// An epoch begins at global virtual time. Each worker advances the processes that its region owns,
+/// optimistically, each as far as the optimism window allows; bodies of the boundary do not
+/// advance. Then one thread alone executes what was deferred and the boundary's own events, in
+/// order, and rolls back the bodies that these affect in their past. Everything before the end of
+/// the epoch is then certain. So nothing depends on the speed of threads: a thread reads what
+/// others did in earlier epochs, and nothing that they do concurrently.
+#pragma once
+
+#include <barrier>
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "framework/engines/timewarp/rollback_check.h"
+#include "solutions_private/a4_timewarp/fast/worker.h"
+
+namespace tumble::a4 {
+
+class Coordinator {
+ public:
+  Coordinator(const scene::Scene& scene, const Laws& laws, const engines::RunOptions& options, TrajectorySink& sink, VirtualTimes* record, const engines::RollbackCheck* watch);
+  void run();
+
+ private:
+  // fault_injection.cpp
+  bool is_injection_due();
+  void inject_rollback(const std::function<void()>& take_a_step);
+
+  // conductor.cpp
+  void enter_obstacle(int body);
+  void begin();
+  void run_alone();
+  Due in_place_of(const Due& callback);
+  void run_in_epochs();
+  double work_as(int thread, double end);
+  void run_epoch(double& end_of_epoch, std::barrier<>& resolve_impact);
+  void work_alone_before(double end);
+  void work_alone_at(Due due);
+  void collect_deferred();
+  Domain* next_domain();
+  double next_time();
+  void adapt_optimism_window();
+  void adapt_epochs();
+  double first_optimism_window() const;
+  void check_nothing_leaked();
+  void end(const std::string& stopped_by);
+  Worker& alone() { return *workers_[kBoundary]; }
+
+  // ownership.cpp
+  void settle();
+  void repartition();
+  void find_owners();
+  void keep_processes_together();
+  void change_owner(int body, std::uint8_t owner);
+  void hand_out();
+
+  // commits.cpp
+  void require_certain(const EventStamp& key) const;
+  void commit_before(const EventStamp& key);
+  void commit_before(double t) { commit_before(EventStamp{t, 0, StampKind::kRecheck, -1, -1}); }   // a stamp before all others of that time
+  void note_kept();
+  bool is_current(int body, std::uint32_t version) const;
+
+  Shared all_;
+  std::vector<std::unique_ptr<Worker>> workers_;   // by domain
+  VirtualTimes* record_;                           // null: no record is wanted
+  const engines::RollbackCheck* watch_;            // null: no fault injection
+  int injections_ = 0;                                 // so far
+  int since_injection_ = 0;                            // events, or epochs
+  double last_injection_ = 0.0;                        // [s]
+  std::size_t commit_at_;                          // executed events between computations of global virtual time
+  std::size_t since_commit_ = 0;                   // events
+  std::optional<EventStamp> working_at_;             // by one thread alone
+  std::vector<std::uint8_t> wanted_owner_;               // by body: the new owner
+  std::vector<int> leaders_;                       // by body: of processes that must have one owner
+  std::uint64_t epochs_ = 0, last_partition_ = 0;        // started; the epoch before which regions were last cut
+  double first_optimism_window_ = 0.0;                      // [s]
+  std::uint64_t done_before_ = 0, undone_before_ = 0;   // integrations, at the last adaptation of the window
+  std::int64_t most_kept_ = 0;
+};
+
+}  // namespace tumble::a4
