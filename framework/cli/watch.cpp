@@ -57,15 +57,15 @@ class SaveWatch {
   int fd_;
 };
 
-void watch(Context& context, const CheckWords& words) {
-  const fs::path file = checked_file(context, words);
+void watch(Command& command, const CheckWords& words) {
+  const fs::path file = checked_file(command, words);
   SaveWatch saves(file);
   const bool screen = ::isatty(STDOUT_FILENO) == 1;
   for (;;) {
     if (screen) fmt::print("\033[2J\033[3J\033[H");
     // The test program and the compiler have endings of their own; what the loop itself meets is told and outlived.
     try {
-      check_once(context, words);
+      check_once(command, words);
     } catch (const UserError& error) {
       fmt::print("{}\n", error.what());
     }
@@ -80,12 +80,12 @@ void watch(Context& context, const CheckWords& words) {
 
 }  // namespace
 
-void add_watch(CLI::App& app, Context& context) {
+void add_watch(CLI::App& app, Command& command) {
   auto id = std::make_shared<std::string>();
   auto rest = std::make_shared<std::vector<std::string>>();
   Verb verb(app, "watch", "The same as check, on every save");
   add_check_words(verb, *rest, *id);
-  verb.runs([&context, id, rest] { watch(context, read_check_words(context, *id, *rest)); });
+  verb.runs([&command, id, rest] { watch(command, read_check_words(*id, *rest)); });
 }
 
 }  // namespace tumble::cli

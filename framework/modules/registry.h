@@ -11,14 +11,13 @@
 #include <vector>
 
 #include "framework/dynamics/laws.h"
+#include "framework/modules/load.h"
+#include "framework/modules/names.h"
 #include "framework/modules/proxy.h"
 #include "framework/modules/serve.h"
 #include "framework/modules/watched.h"
 
 namespace tumble::modules {
-
-/// A table of functions of some module, its type known to the registration only.
-using AnyModule = std::shared_ptr<const void>;
 
 /// One of a module's own methods of integration, to be measured beside others.
 struct NamedMethod {
@@ -28,11 +27,7 @@ struct NamedMethod {
 };
 
 /// All that the framework can do with a module without knowing its header.
-struct ModuleKind {
-  std::string id;                          // "a1"
-  std::string folder;                      // "a1_impulse": below assignments/, solutions_private/ and tests/
-  std::string title;                       // for people
-  std::string exported_name;               // C symbol of a shared object that gives the table
+struct ModuleKind : ModuleName {
   std::vector<std::string> functions;      // in header order
   std::function<void(const AnyModule&, Laws&)> bind;                 // lets the module's functions be laws of a world
   std::function<void(const AnyModule&, Channel&)> serve;             // worker's side
@@ -55,13 +50,11 @@ class Registry {
  public:
   /// The one registration line of an assignment.
   /// @param bind  fills the laws that this module is about
+  /// @pre assignment_names() has it
   template <class Module>
-  void add(const std::string& folder, const std::string& title, void (*bind)(const Module&, Laws&)) {
+  void add(void (*bind)(const Module&, Laws&)) {
     ModuleKind kind;
-    kind.id = Module::kId;
-    kind.folder = folder;
-    kind.title = title;
-    kind.exported_name = Module::kExportedName;
+    static_cast<ModuleName&>(kind) = find_name(assignment_names(), Module::kId);
     Module names;
     Module::visit(names, [&](const char* name, auto&) { kind.functions.push_back(name); });
     kind.bind = [bind](const AnyModule& module, Laws& laws) { bind(*static_cast<const Module*>(module.get()), laws); };

@@ -4,9 +4,9 @@
 #include <numbers>
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <gtest/gtest.h>
 
+#include "framework/core/decompositions.h"
 #include "framework/core/random.h"
 #include "framework/dynamics/build_world.h"
 #include "framework/engines/judging/judge.h"
@@ -154,10 +154,8 @@ double held_inverse_mass(const engines::MovingWorld& moving, const std::vector<C
   }
   const MatrixXd S = J * inverse_mass * J.transpose();
   const VectorXd response = inverse_mass * D;
-  Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
-  decomposition.setThreshold(1e-11);
-  decomposition.compute(S);
-  return D.dot(response - inverse_mass * J.transpose() * decomposition.solve(J * response));
+  const VectorXd taken_up = least_squares(S, J * response, 1e-11);
+  return D.dot(response - inverse_mass * J.transpose() * taken_up);
 }
 
 /// One impact in a world that stands still in time.

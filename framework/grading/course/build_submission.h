@@ -1,21 +1,15 @@
-/// From a submission's source to a shared object.
+/// From a submission's source to a shared object, in a course.
 #pragma once
 
 #include <filesystem>
 #include <string>
 
+#include "framework/grading/compiler/build_module.h"
 #include "framework/grading/course/course.h"
 
 namespace tumble::grading {
 
-struct BuiltSubmission {
-  enum class Outcome { kBuilt, kRefused, kGraderFault };
-  Outcome outcome = Outcome::kGraderFault;
-  std::string said;   // the compiler's words, cut short; or why it could not be asked
-};
-
-/// Compiles in the sandbox, where nothing of the project but headers can be seen.
-/// @param object  written where the outcome is kBuilt
+/// See build_module.
 BuiltSubmission build_submission(const Course& course, const std::string& id, const std::filesystem::path& source, const std::filesystem::path& object);
 
 /// The header that says what the module of an assignment is.
