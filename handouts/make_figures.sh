@@ -35,4 +35,4 @@ plot_of t_handle error_against_evaluations accuracy_and_its_price
 ./tumble cost double_pendulum --methods none --engines none --stabilisations none,baumgarte,projection --steps 1/30,1/60,1/120,1/240,1/480,1/960,1/1920 --modules reference --out "$pages"
 plot_of double_pendulum error_against_the_step stabilisation_and_its_worth
 ./tumble engines atoms --sizes 10,20,40,80,160 --duration-s 1 --modules reference --out "$pages"
-plot_of atoms work_a_body_and_simulated_second work_of_three_engines
+plot_of atoms work_per_body_and_simulated_second work_of_three_engines

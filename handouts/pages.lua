@@ -36,7 +36,7 @@ end
 -- A long command or path may break where a reader would break it.
 local kEscapes = { ['\\'] = '\\textbackslash{}', ['{'] = '\\{', ['}'] = '\\}', ['$'] = '\\$', ['&'] = '\\&', ['%'] = '\\%', ['#'] = '\\#', ['_'] = '\\_', ['^'] = '\\^{}', ['~'] = '\\textasciitilde{}', ['-'] = '-{}' }
 local function code(element)
-  if not latex or #element.text < 20 then return nil end
+  if not latex or #element.text < 12 then return nil end
   local text = element.text:gsub('[\\{}$&%%#_^~-]', kEscapes):gsub('[/,=:]', '%0\\allowbreak{}'):gsub('\\_', '\\_\\allowbreak{}')
   return pandoc.RawInline('latex', '\\texttt{' .. text .. '}')
 end
@@ -51,7 +51,7 @@ local function columns(element)
   local function look(row)
     for i, cell in ipairs(row.cells or row[2]) do
       local words = pandoc.utils.stringify(pandoc.Div(cell.contents or cell[5] or {}))
-      longest[i] = math.max(longest[i] or 6, math.min(60, utf8.len(words) or #words))
+      longest[i] = math.max(longest[i] or 8, math.min(60, utf8.len(words) or #words))
     end
   end
   for _, row in ipairs(element.head.rows or element.head[2]) do look(row) end
@@ -59,12 +59,13 @@ local function columns(element)
   local sum = 0
   for _, n in ipairs(longest) do sum = sum + n end
   if sum < 70 then return nil end
-  for i, spec in ipairs(element.colspecs) do element.colspecs[i] = { spec[1], (longest[i] or 6) / sum } end
+  for i, spec in ipairs(element.colspecs) do element.colspecs[i] = { spec[1], (longest[i] or 8) / sum } end
   return element
 end
 
 return {
   { Meta = function(meta) root = meta.root and pandoc.utils.stringify(meta.root) or '' end },
-  { RawInline = anchor, RawBlock = anchor, Link = link, Table = columns, Code = code },
+  { RawInline = anchor, RawBlock = anchor, Link = link, Table = columns },
+  { Code = code },   -- after the columns, which count its letters
   { Pandoc = title },
 }

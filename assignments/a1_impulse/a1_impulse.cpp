@@ -1,4 +1,4 @@
-// Your work for assignment 1. Replace each body; what a function must do stands above its declaration in a1_impulse.h.
+// Your work for assignment 1. Replace each body; the comment above its declaration in a1_impulse.h says what it must do.
 #include "assignments/a1_impulse/a1_impulse.h"
 
 namespace tumble::a1 {

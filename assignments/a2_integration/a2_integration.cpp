@@ -1,4 +1,4 @@
-// Your work for assignment 2. Replace each body; what a function must do stands above its declaration in a2_integration.h.
+// Your work for assignment 2. Replace each body; the comment above its declaration in a2_integration.h says what it must do.
 #include "assignments/a2_integration/a2_integration.h"
 
 namespace tumble::a2 {

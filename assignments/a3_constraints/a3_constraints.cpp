@@ -1,4 +1,4 @@
-// Your work for assignment 3. Replace each body; what a function must do stands above its declaration in a3_constraints.h.
+// Your work for assignment 3. Replace each body; the comment above its declaration in a3_constraints.h says what it must do.
 #include "assignments/a3_constraints/a3_constraints.h"
 
 namespace tumble::a3 {

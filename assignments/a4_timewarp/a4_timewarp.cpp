@@ -1,4 +1,4 @@
-// Your work for assignment 4. Replace each body; what a function must do stands above its declaration in a4_timewarp.h.
+// Your work for assignment 4. Replace each body; the comment above its declaration in a4_timewarp.h says what it must do.
 #include "assignments/a4_timewarp/a4_timewarp.h"
 
 namespace tumble::a4 {

@@ -1,11 +1,12 @@
 /// Assignment 4, Timewarp: what you write. Theory, hints and points: handouts/a4_timewarp.md. Your file: a4_timewarp.cpp.
 ///
-/// The decisions of an optimistic scheduler. Every body is a process that goes on by itself, at a local virtual time of its own, as
-/// if nothing would hit it; what proves wrong is undone. The framework holds the queue, the histories of states, the integration and
-/// the search for impacts, and asks you: which event is first? what to do with it? who goes back, and how far? which effects on
-/// others are taken back? up to when is everything certain? what may be forgotten?
+/// The decisions of an optimistic scheduler. Every body is a logical process that advances by itself, at its own local virtual time,
+/// as if nothing would hit it; what proves wrong is rolled back. The framework holds the queue, the histories of states, the integration
+/// and the search for impacts. You decide: which event is first? what to do with it? which processes roll back, and how far? which
+/// effects on others are cancelled? up to when is everything certain? what may be discarded?
 ///
-/// All functions are pure: the same data in, the same answer out. Nothing is kept between calls.
+/// Terms, symbols and sources: handouts/notation.md.
+/// All functions are pure: the same data in, the same answer out. No state between calls.
 /// Times are virtual times [s]. Walls have no process: they are never among `receivers` or `processes`.
 /// Types: framework/dynamics/scheduling.h.
 /// Sources, cited below by name:
@@ -24,21 +25,22 @@ namespace tumble::a4 {
 
 // ---- Events and their order --------------------------------------------------------------------------------------------
 
-/// Whether x happens before y, in one total order of all that happens:
+/// Whether x comes before y, in one total order of all events:
 ///   by time, then generation, then kind, then body_a, then body_b; the smaller first                         (A4.1)
-/// The queue's front, the order of what is committed, and "at a stamp and later" all mean this order. It makes the result the same
-/// whatever order things were found in. The generation stands before the bodies: at one instant an effect follows its cause.
+/// The queue's front, the order of what is committed, and "at a stamp and later" all mean this order. It makes the result
+/// independent of the order in which impacts are found. The generation (a microstep of superdense time) comes before the bodies:
+/// at one instant an effect follows its cause.
 /// @param x, y  stamps without NaN
 /// @return false for x == y
 /// Source: Jefferson, section 3; Mirtich, section 3.   Tests: ComesBefore.*   Hints: handouts/a4_timewarp.md#hint-order
 bool comes_before(const Stamp& x, const Stamp& y);
 
-/// No check waits longer than so many steps: its safe time holds global virtual time back, for everybody.
+/// No check waits longer than so many steps: its safe time holds global virtual time back.
 inline constexpr double kMostStepsAhead = 10;
 
-/// When a pair that is disjoint is worth the next look.
+/// When a disjoint pair is checked next.
 ///   t' = t + min( 10 h, max( h, s ) ),   gap = v s + a s^2 / 2,   s = 2 gap / ( v + sqrt( v^2 + 2 a gap ) )  (A4.2)
-/// They cannot touch before t + s. A look sooner than a step h ahead would not pay: an optimist looks back instead.
+/// They cannot touch before t + s. A check sooner than a step h ahead would not pay: an optimistic method rolls back instead.
 /// @param now                   t [s]
 /// @param gap                   >= 0 [m]
 /// @param closing_speed         v >= 0 [m/s]
@@ -50,10 +52,10 @@ double next_check_time(double now, double gap, double closing_speed, double clos
 
 // ---- What to do with an event ------------------------------------------------------------------------------------------
 
-/// A collision check was at the front of the queue; its receivers have come to its time, and [safe_time, time] was looked at.
-///   nothing there:    safe_time' = time,      time' = next_check_time( time, ... ),   nobody goes back
-///   impact at tc:     safe_time' = time' = tc,   every receiver goes back to the impact's stamp               (A4.3)
-/// The interval begins at the safe time, so an impact lies in the receivers' past more often than not. The check goes back into the
+/// A collision check was at the front of the queue; its receivers have come to its time, and [safe_time, time] was searched.
+///   no impact:        safe_time' = time,      time' = next_check_time( time, ... ),   no rollback
+///   impact at tc:     safe_time' = time' = tc,   every receiver rolls back to the impact's stamp              (A4.3)
+/// The interval begins at the safe time, so an impact usually lies in the receivers' past. The check returns to the
 /// queue in either case: they may meet again.
 /// @param event    kind kCollision; safe_time <= stamp.time
 /// @param finding  what was found; contact->time is in the interval
@@ -62,19 +64,19 @@ double next_check_time(double now, double gap, double closing_speed, double clos
 /// Source: Mirtich, section 4.   Tests: OnCollisionCheck.*   Hints: handouts/a4_timewarp.md#hint-check
 CheckDecision on_collision_check(const ScheduledEvent& event, const CheckFinding& finding, double step);
 
-/// Bodies that hang together by contacts: the connected components of the contact graph.                       (A4.4)
+/// Contact groups (islands): the connected components of the contact graph.                                    (A4.4)
 /// @param bodies    ascending, each once
 /// @param contacts  of two of them, or of one of them and a wall (a body that is not among `bodies`), in any order. A wall connects
-///                  nobody: a hundred boxes on one floor are a hundred groups. `opens` is not looked at
-/// @return a partition of `bodies`: each group ascending, groups by their lowest member; who touches nobody is a group alone
+///                  no bodies: a hundred boxes on one floor are a hundred groups. `opens` is ignored
+/// @return a partition of `bodies`: each group ascending, groups by their lowest member; a body without contact is a group alone
 /// Source: Mirtich, section 5.   Tests: ContactGroups.*   Hints: handouts/a4_timewarp.md#hint-groups
 std::vector<std::vector<std::int32_t>> contact_groups(const std::vector<std::int32_t>& bodies, const std::vector<GroupContact>& contacts);
 
 /// A group check was at the front of the queue: does a contact within the group open in [safe_time, time]?
-///   none:             safe_time' = time,      time' = time + h,   the group stays, nobody goes back
-///   the first at tc:  safe_time' = time' = tc,   every member goes back to tc, and the group becomes the components of the
+///   none:             safe_time' = time,      time' = time + h,   the group stays, no rollback
+///   the first at tc:  safe_time' = time' = tc,   every member rolls back to tc, and the group becomes the components of the
 ///                     contacts that are still closed after tc                                                (A4.5)
-/// Contacts that open later are not looked at: after tc everything is different.
+/// Contacts that open later are ignored: after tc everything is different.
 /// @param event     kind kGroup; receivers: the members, ascending
 /// @param contacts  the group's; `opens` at or after safe_time
 /// @param step      h > 0 [s]
@@ -83,8 +85,8 @@ std::vector<std::vector<std::int32_t>> contact_groups(const std::vector<std::int
 /// Source: Mirtich, section 5.   Tests: OnGroupCheck.*   Hints: handouts/a4_timewarp.md#hint-groups
 GroupDecision on_group_check(const ScheduledEvent& event, const std::vector<GroupContact>& contacts, double step);
 
-/// A callback (a control law, a kick) was at the front of the queue, and may change its receivers from its time on. Who of them is
-/// already later must come back; who is not need not.                                                          (A4.6)
+/// A callback (a control law, a kick) was at the front of the queue, and may change its receivers from its time on. Receivers that
+/// are already later must roll back; the others need not.                                                      (A4.6)
 /// @param event        kind kCallback
 /// @param local_times  of all processes, in any order
 /// @return a rollback to event.stamp for each receiver whose local virtual time is later than the callback; by body, ascending
@@ -93,18 +95,18 @@ std::vector<Rollback> on_callback(const ScheduledEvent& event, const std::vector
 
 // ---- Rollback ----------------------------------------------------------------------------------------------------------
 
-/// What must be unsent when one body goes back: it forgets all that it did at the rollback's stamp and later, so whoever took part
-/// in that must forget it too.
-///   for each effect of the body with not (effect.stamp before rollback.stamp): each other process of it goes back to effect.stamp
+/// The anti-messages of a rollback: the body discards its effects at the rollback's stamp and later, so every process that shares
+/// one of them must discard it too.
+///   for each effect of the body with not (effect.stamp before rollback.stamp): each other process of it rolls back to effect.stamp
 ///                                                                                                            (A4.7)
-/// @param effects   worked at and not committed, in any order
+/// @param effects   executed and not committed, in any order
 /// @param rollback  of one body
 /// @return the anti-messages, in the order of `effects`; only the direct ones
 /// Source: Jefferson, section 4.   Tests: AntiMessages.*   Hints: handouts/a4_timewarp.md#hint-rollback
 std::vector<Rollback> anti_messages(const std::vector<Effect>& effects, const Rollback& rollback);
 
-/// Everybody who must go back, and how far: the first rollbacks, their anti-messages, those of these, and so on.  (A4.8)
-/// A body that is told more than once goes to the earliest of its stamps; a body that no chain of effects leads to stays as it is.
+/// All rollbacks, and how far: the first ones, their anti-messages, the anti-messages of these, and so on.        (A4.8)
+/// A body with several goes to the earliest of its stamps; a body that no chain of effects reaches stays as it is.
 /// @param effects  as above
 /// @param first    in any order; a body may be in it more than once
 /// @return by body, ascending, each once
@@ -112,11 +114,11 @@ std::vector<Rollback> anti_messages(const std::vector<Effect>& effects, const Ro
 /// Source: Jefferson, section 4.   Tests: PlanRollback.*   Hints: handouts/a4_timewarp.md#hint-rollback
 std::vector<Rollback> plan_rollback(const std::vector<Effect>& effects, const std::vector<Rollback>& first);
 
-/// What becomes of an event in the queue when bodies go back. With r the earliest time to which one of its receivers goes:
-///   a check with r < safe_time:   safe_time' = time' = r   (what was verified is no longer so)
+/// What becomes of a pending event when bodies roll back. With r the earliest time to which one of its receivers rolls back:
+///   a check with r < safe_time:   safe_time' = time' = r   (what was verified is void)
 ///   any other event:              stays as it is                                                             (A4.9)
-/// A rollback between safe time and time needs nothing: that interval has yet to be looked at. Callbacks and redraws have times of
-/// their own, which no rollback moves.
+/// A rollback between safe time and time needs nothing: that interval is searched later. Callbacks and redraws have fixed
+/// times, which no rollback moves.
 /// @return event, with its two times replaced or not
 /// Source: Mirtich, section 4.   Tests: AfterRollback.*   Hints: handouts/a4_timewarp.md#hint-after
 ScheduledEvent after_rollback(const ScheduledEvent& event, const std::vector<Rollback>& rollbacks);
@@ -125,19 +127,19 @@ ScheduledEvent after_rollback(const ScheduledEvent& event, const std::vector<Rol
 
 /// The time before which nothing can change any more.
 ///   GVT = min( all local virtual times, all safe times )                                                     (A4.10)
-/// A check may find an impact as early as its safe time, however far its bodies have gone since: local times alone are not enough.
+/// A check may find an impact as early as its safe time, however far its bodies have advanced: local times alone are not enough.
 /// @return GVT [s]; +infinity where there is neither process nor event
 /// Source: Jefferson, section 4; Mirtich, section 3.   Tests: GlobalVirtualTime.*   Hints: handouts/a4_timewarp.md#hint-gvt
 double global_virtual_time(const std::vector<LocalTime>& local_times, const std::vector<ScheduledEvent>& events);
 
-/// Whether something that was worked at is certain: an impact may be written down, a frame shown. That cannot be undone.
+/// Whether an executed event may be committed: an impact recorded, a frame shown. That cannot be undone.
 ///   stamp.time < GVT                                                                                         (A4.11)
-/// At GVT itself something may yet come in between.
+/// At GVT itself an impact may still be found.
 /// Source: Jefferson, section 4.   Tests: MayCommit.*   Hints: handouts/a4_timewarp.md#hint-gvt
 bool may_commit(const Stamp& stamp, double global_virtual_time);
 
-/// How many of a body's oldest states can be forgotten (fossil collection): all before the last one that is earlier than GVT.  (A4.12)
-/// That one stays: a rollback to GVT goes on from it. A state at GVT itself may be what is undone.
+/// How many of a body's oldest states can be discarded (fossil collection): all before the last one earlier than GVT.     (A4.12)
+/// That one stays: a rollback to GVT restarts from it. A state at GVT itself may be undone.
 /// @param state_times  ascending, equal ones allowed [s]
 /// @return 0 where no state is earlier than GVT; never all of them
 /// Source: Jefferson, section 4.   Tests: StatesToPurge.*   Hints: handouts/a4_timewarp.md#hint-purge

@@ -1,4 +1,4 @@
-// tumble audit a1 [--mutants FOLDER]: do the tests catch every known-wrong solution, and accuse no right one?
+// tumble audit a1 [--mutants FOLDER] [--lines]: do the tests catch every known-wrong solution, and accuse no right one?
 #include <cstdio>
 #include <memory>
 #include <thread>
@@ -8,6 +8,7 @@
 #include <unistd.h>
 
 #include "framework/cli/verb.h"
+#include "framework/grading/grades/touched_lines.h"
 #include "framework/grading/grades/audit.h"
 #include "framework/grading/grades/scoring.h"
 
@@ -20,7 +21,7 @@ struct AuditWords {
   std::string id, mutants;
   std::vector<std::string> only;
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  bool json = false;
+  bool lines = false, json = false;
 };
 
 std::string first_line(const std::string& text) { return text.substr(0, text.find('\n')); }
@@ -70,9 +71,29 @@ void print_json(const std::vector<AuditResult>& results) {
   fmt::print("{}\n", page.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
+std::string share_touched(const grading::TouchedLines& lines) {
+  return fmt::format("slips touch {} of {} lines of code of {} ({} %)", lines.touched, lines.code_lines, lines.file.filename().string(),
+                     lines.code_lines == 0 ? 0 : 100 * lines.touched / lines.code_lines);
+}
+
+void print_lines(const grading::TouchedLines& lines, bool json) {
+  if (json) {
+    auto untouched = nlohmann::ordered_json::array();
+    for (const grading::LineRange& range : lines.untouched) untouched.push_back({{"first", range.first}, {"last", range.last}, {"code_lines", range.code_lines}});
+    fmt::print("{}\n", nlohmann::ordered_json{{"file", lines.file.string()}, {"code_lines", lines.code_lines}, {"touched", lines.touched}, {"untouched", untouched}}.dump(2));
+    return;
+  }
+  constexpr std::size_t kWidth = 80;   // of a line of code that is shown
+  fmt::print("{}\nno slip touches\n{:>9}  {:>4}  beginning with\n", share_touched(lines), "lines", "code");
+  for (const grading::LineRange& range : lines.untouched)
+    fmt::print("{:>9}  {:>4}  {}\n", range.first == range.last ? std::to_string(range.first) : fmt::format("{}-{}", range.first, range.last), range.code_lines, range.text.substr(0, kWidth));
+}
+
 void audit(Context& context, const AuditWords& words) {
   const grading::Course course{context.root, context.build, &context.registry, context.command_line};
-  const auto candidates = grading::only(grading::find_candidates(course, words.id, words.mutants), words.only);
+  const auto all = grading::find_candidates(course, words.id, words.mutants);
+  if (words.lines) return print_lines(grading::touched_lines_of_reference(course, words.id, all), words.json);
+  const auto candidates = grading::only(all, words.only);
   grading::judge_of(course, words.id);
   const bool line = ::isatty(STDERR_FILENO) == 1;
   const auto told = [&](std::size_t done, std::size_t total) {
@@ -92,6 +113,7 @@ void audit(Context& context, const AuditWords& words) {
     print_mutants(results);
     print_tests(grading::rubric_of(course, words.id), results);
     fmt::print("\n{} of {} known-wrong solutions caught, {} of them by a story that names the slip; {} of {} right solutions have every point\n", caught, wrong, named, whole, right);
+    if (words.only.empty()) fmt::print("{}; --lines lists the others\n", share_touched(grading::touched_lines_of_reference(course, words.id, all)));
   }
   context.exit = caught == wrong && whole == right ? ExitCode::kFine : ExitCode::kCheckFailed;
 }
@@ -105,8 +127,11 @@ void add_audit(CLI::App& app, Context& context) {
   verb.option("--mutants", words->mutants, "Known-wrong solutions to judge instead of the assignment's own").type_name("FOLDER");
   verb.option("--only", words->only, "These alone, by the first column's names, with commas between them; reference and other right solutions too").separated_by(',').type_name("SLIP");
   verb.option("--jobs", words->jobs, "At a time").between(1, 256).default_text("number of cores");
+  verb.flag("--lines", words->lines, "List the lines of the reference that no slip touches, and judge nothing");
   verb.flag("--json", words->json, "For machines");
-  verb.footer("Exit: 0 all caught and no right solution accused, 1 otherwise.");
+  verb.footer("A known-wrong solution is a slip (NAME.slip: what differs from a right solution; framework/grading/course/slip.h) or a whole file (NAME.cpp). A line of the reference is touched\n"
+              "where a slip takes it out or writes it anew; comments, #include, namespaces and braces alone do not count.\n"
+              "Exit: 0 all caught and no right solution accused, 1 otherwise.");
   verb.runs([&context, words] { audit(context, *words); });
 }
 

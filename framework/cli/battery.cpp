@@ -10,9 +10,10 @@
 
 #include "framework/cli/module_choice.h"
 #include "framework/cli/read_truth.h"
+#include "framework/cli/record.h"
 #include "framework/cli/verb.h"
 #include "framework/core/text.h"
-#include "framework/grading/course/laws_around.h"
+#include "framework/modules/bind_laws.h"
 #include "framework/report/battery_page.h"
 
 namespace tumble::cli {
@@ -43,7 +44,7 @@ void provide(const Context& context, const std::string& word, battery::Given& gi
     const std::string chosen = !word.empty() ? word : has_reference ? "reference" : "student";
     const modules::AnyModule module = load_word(context, *kind, chosen);
     given.modules[kind->id] = module;
-    grading::put_into(*kind, module, kind->id + ' ' + chosen, given.laws);
+    modules::bind_laws(*kind, module, kind->id + ' ' + chosen, given.laws);
   }
 }
 
@@ -96,7 +97,7 @@ void run_battery(Context& context, const BatteryOptions& options) {
   const fs::path page = fs::path(options.out) / "battery.html";
   report::write_battery_page(rows, std::string(options.is_long ? "long runs" : "short runs (--long: the whole lengths)") + "; integration: " + given.laws.integrator_source +
                                        ", impulses: " + given.laws.impulse_source + ", constraints: " + given.laws.constraint_source,
-                             context.command_line, page);
+                             record_of(context), page);
   fmt::print("\n{}\n{}\n", report::sentence_of(count), page.string());
   if (!count.good()) context.exit = ExitCode::kCheckFailed;
 }

@@ -10,6 +10,7 @@
 #include "framework/core/keep_memory.h"
 #include "framework/core/nearest_word.h"
 #include "framework/core/not_implemented.h"
+#include "framework/core/version.h"
 
 namespace tumble::cli {
 namespace {
@@ -65,6 +66,7 @@ int run(int argc, char** argv, Command& command, const std::function<void(CLI::A
 
   CLI::App app{"Tumble: a course on rigid-body simulation that grades itself", "tumble"};
   app.require_subcommand(1);
+  app.set_version_flag("--version", std::string("Tumble ") + kProgramVersion);
   app.set_help_all_flag("--help-all", "Help of every verb");
   declare(app);
   refuse_unknown_verb(app, argc, argv);

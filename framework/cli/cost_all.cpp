@@ -12,6 +12,7 @@
 
 #include "framework/cli/cost_measure.h"
 #include "framework/cli/find_scene.h"
+#include "framework/cli/record.h"
 #include "framework/core/error.h"
 #include "framework/report/html.h"
 #include "framework/report/peer_rows.h"
@@ -150,7 +151,7 @@ void write_page(const Context& context, const std::vector<report::Table>& tables
   page.paragraph("Each scene has a page of its own, with curves. Prices are CPU times of this machine in this run: ratios matter. Where a truth holds for a part of a scene only, that part is what was looked at.");
   for (const report::Table& table : tables) page.table(table);
   if (!has_peers) page.paragraph("Other engines are not in it: tests/bench/peers/run.sh measures those that are installed.", Look::kMuted);
-  page.record(context.command_line);
+  page.record(record_of(context));
   page.write(fs::path(words.out) / "index.html");
 }
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "framework/cli/read_truth.h"
+#include "framework/cli/record.h"
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
 #include "framework/dynamics/root_methods.h"
@@ -124,7 +125,7 @@ report::CostPage cost_of_impacts(const Context& context, const CostWords& words)
   page.floor = problems.floor;
   page.scale = kStep;
   page.marks = {1e-6, 1e-9, 1e-12};
-  page.record = context.command_line;
+  page.record = record_of(context);
   std::vector<std::string> names = words.impacts;
   if (names.empty())
     for (const RootMethod& method : root_methods()) names.push_back(method.word);

@@ -7,12 +7,14 @@
 #include <fmt/format.h>
 
 #include "framework/cli/read_truth.h"
+#include "framework/cli/record.h"
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
 #include "framework/engines/cost/cost.h"
 #include "framework/engines/cost/reading.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/scene/sized_scenes.h"
+#include "framework/scene/words.h"
 
 namespace tumble::cli {
 namespace {
@@ -53,7 +55,7 @@ std::string fineness_of(const CostRung& rung) {
 
 bool is_smooth(const scene::Scene& scene) {
   const auto collide = std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const scene::BodySpec& body) { return body.collides; });
-  return collide < 2 && scene.rods.empty() && scene.joints.empty() && scene.motors.empty();
+  return collide < 2 && !scene::asks_for(scene, [](const scene::Traits& traits) { return traits.constrains || traits.looks; });
 }
 
 /// Runs whose error is no answer cost nothing worth comparing.
@@ -231,7 +233,7 @@ report::CostPage page_of(const Context& context, const std::vector<Ladder>& ladd
   }
   page.floor = truth.floor_m;
   page.scale = truth.scale_m;
-  page.record = context.command_line;
+  page.record = record_of(context, subject.scene);
   const double price = middle_price(ladders, truth);
   for (const Ladder& ladder : ladders) page.curves.push_back(curve_of(ladder, truth, price, is_smooth(subject.scene)));
   page.readings = verdicts(page);

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "framework/cli/find_scene.h"
+#include "framework/cli/record.h"
 #include "framework/core/error.h"
 #include "framework/engines/cost/showcase.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
@@ -198,7 +199,7 @@ void cost_of_scheduler(Context& context, const modules::ModuleKind& kind, const 
   page.paragraph(measuring.scene().about);
   page.paragraph(grading::what_a_scheduler_pays());
   page.paragraph("CPU time is that of the engine without the ordered reference that each run is compared with, the best of up to five runs. On this machine, in this run: ratios matter.");
-  page.record(context.command_line);
+  page.record(record_of(context, measuring.scene()));
   const std::filesystem::path file = std::filesystem::path(words.out) / words.name() / "index.html";
   page.write(file);
   if (ways[0].is_sandboxed) fmt::print("This module runs in the sandbox, where each decision crosses to another process and back: compare its counts, not its CPU time.\n");

@@ -9,13 +9,14 @@
 
 #include <fmt/format.h>
 
-#include "framework/cli/sandboxed_module.h"
 #include "framework/cli/find_scene.h"
+#include "framework/cli/sandboxed_module.h"
 #include "framework/core/error.h"
 #include "framework/dynamics/iterative_solvers.h"
 #include "framework/dynamics/root_methods.h"
 #include "framework/engines/cost/showcase.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
+#include "framework/scene/words.h"
 
 namespace tumble::cli {
 namespace {
@@ -95,7 +96,7 @@ CostWay by_impacts(const std::string& word, const scene::Scene& scene, const Law
 }
 
 CostWay by_solver(const std::string& word, const scene::Scene& scene, const Laws& laws) {
-  const bool linked = !scene.rods.empty() || !scene.joints.empty();
+  const bool linked = scene::is_constrained(scene);
   CostWay way = way_by_method(method_named("fehlberg78"), laws);
   way.method = [](double) { return step_of(method_named("fehlberg78"), kTightest); };
   way.word = word;
@@ -124,7 +125,7 @@ CostWay by_solver(const std::string& word, const scene::Scene& scene, const Laws
 std::vector<std::string> methods_for(const scene::Scene& scene, const CostWords& words) {
   if (!words.methods.empty()) return is_none(words.methods) ? std::vector<std::string>{} : words.methods;
   std::vector<std::string> chosen = {"euler", "symplectic", "midpoint", "rk4", "dopri5", "fehlberg78", "bulirsch-stoer"};
-  if (!scene.springs.empty()) chosen.push_back("rosenbrock4");
+  if (scene::asks_for(scene, [](const scene::Traits& traits) { return traits.may_be_stiff; })) chosen.push_back("rosenbrock4");
   return chosen;
 }
 

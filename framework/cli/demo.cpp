@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "framework/cli/engines_all.h"
+#include "framework/cli/record.h"
 #include "framework/cli/verb.h"
 #include "framework/core/files.h"
 #include "framework/grading/grades/grade.h"
@@ -96,7 +97,7 @@ void write_index(const Context& context, const std::vector<Graded>& all, const f
     page.heading(fmt::format("{} {}: scenes, flawed submission beside reference", graded.kind->id, graded.kind->title), 2, "scenes-" + graded.kind->id);
     grading::add_media(page, flawed.media, fs::path(graded.kind->id) / flawed.folder / "media");
   }
-  page.record(context.command_line);
+  page.record(record_of(context));
   page.write(out / "index.html");
 }
 

@@ -8,6 +8,7 @@
 #include "framework/cli/engine_rows.h"
 #include "framework/cli/engines_all.h"
 #include "framework/cli/find_scene.h"
+#include "framework/cli/record.h"
 #include "framework/core/error.h"
 #include "framework/scene/sized_scenes.h"
 
@@ -50,7 +51,7 @@ void run_engines(Context& context, const EnginesWords& words) {
   fmt::print("{}\n  impulses by {} · motion by {}\n", scene.title, chosen.laws.impulse_source, chosen.laws.integrator_source);
   print_rows(rows);
   const std::filesystem::path page = std::filesystem::path(words.out) / scene.name / "index.html";
-  report::write_engines_page(scene.title, scene.about, rows, ladder, context.command_line, page);
+  report::write_engines_page(scene.title, scene.about, rows, ladder, record_of(context, scene), page);
   fmt::print("{}\n", page.string());
   for (const EngineRow& row : rows)
     if ((!row.counts.empty() && !row.stopped_by.empty()) || !row.faults.empty()) context.exit = ExitCode::kCheckFailed;

@@ -8,6 +8,7 @@
 
 #include "framework/cli/engine_rows.h"
 #include "framework/cli/find_scene.h"
+#include "framework/cli/record.h"
 #include "framework/core/error.h"
 #include "framework/engines/judging/judge.h"
 #include "framework/render/picture.h"
@@ -163,7 +164,7 @@ EnginesScene show(const Context& context, const EnginesWords& words, const Shown
     shown.rows = rows_of(runs);
     add_judgement(scene, runs, shown);
     const fs::path folder = out / which.name;
-    report::write_engines_page(scene.title, scene.about, shown.rows, {}, context.command_line, folder / "index.html");
+    report::write_engines_page(scene.title, scene.about, shown.rows, {}, record_of(context, scene), folder / "index.html");
     shown.page = fs::path(which.name) / "index.html";
     const auto whole = in_part ? whole_run(context, scene, chosen, words) : std::nullopt;
     const EngineRun* best = whole && whole->run.frames.size() > 1 ? &*whole : run_to_show(runs);
@@ -224,7 +225,7 @@ void engines_of_all(Context& context, const EnginesWords& words) {
   for (const Shown& shown : all) total += share_of(shown);
   TableProgress progress(total);
   report::EnginesIndex index;
-  index.record = context.command_line;
+  index.record = record_of(context);
   index.is_full = words.full;
   progress.begin("atoms at several sizes");
   index.ladder = climb(context, words, "atoms", words.full ? kPaperLadder : words.small ? kSmallLadder : kLadder, std::numeric_limits<double>::infinity());

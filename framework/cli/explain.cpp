@@ -9,11 +9,12 @@
 #include "framework/cli/find_scene.h"
 #include "framework/engines/run.h"
 #include "framework/scene/effects.h"
+#include "framework/core/version.h"
 
 namespace tumble::cli {
 namespace {
 
-using scene::Effect;
+using scene::EffectUse;
 
 struct ExplainWords {
   std::string scene, modules;
@@ -29,19 +30,31 @@ struct Stage {
   std::vector<std::string> counts;   // names in Counters
 };
 
-bool is_on(const std::vector<Effect>& effects, const std::string& name) {
-  return std::any_of(effects.begin(), effects.end(), [&](const Effect& effect) { return effect.name == name && effect.is_on(); });
+bool is_on(const std::vector<EffectUse>& effects, const std::string& name) {
+  return std::any_of(effects.begin(), effects.end(), [&](const EffectUse& effect) { return effect.name == name && effect.is_on(); });
 }
 
-std::vector<Stage> stages_of(const std::vector<Effect>& effects) {
-  const bool constrained = is_on(effects, "rod") || is_on(effects, "joint"), colliding = is_on(effects, "collision"), sleeping = is_on(effects, "sleep");
-  const bool forced = constrained || is_on(effects, "spring") || is_on(effects, "drag");
+bool is_stage_asked(const std::vector<EffectUse>& effects, const std::string& stage) {
+  return std::any_of(effects.begin(), effects.end(), [&](const EffectUse& effect) { return effect.stage == stage && effect.is_on(); });
+}
+
+/// Counts of the effects whose code stands in a stage, and those of the stage itself.
+std::vector<std::string> counts_of(const std::vector<EffectUse>& effects, const std::string& stage, std::vector<std::string> before, const std::vector<std::string>& after) {
+  for (const EffectUse& effect : effects)
+    if (effect.stage == stage) before.push_back(effect.counter);
+  before.insert(before.end(), after.begin(), after.end());
+  return before;
+}
+
+std::vector<Stage> stages_of(const std::vector<EffectUse>& effects) {
+  const bool constrained = is_stage_asked(effects, "constraints"), colliding = is_on(effects, "collision"), sleeping = is_on(effects, "sleep");
+  const bool forced = constrained || is_stage_asked(effects, "forces");
   return {
       {"integration", "moves bodies by their forces, and takes back what went too far", true,
-       {"steps", "synchronisations", "shortened_steps", "integrations", "undone_integrations", "derivative_evaluations", "rollbacks", "gravity_calls", "point_force_calls"}},
-      {"forces", "springs, drag and motors, with the gravity of what they hold", forced, {"spring_calls", "drag_calls"}},
-      {"constraints", "the forces that hold rods and joints, and bringing them back", constrained, {"rod_calls", "joint_calls", "constraint_solves", "constraint_corrections"}},
-      {"control", "motors look and set their torques", is_on(effects, "motor"), {"motor_calls"}},
+       counts_of(effects, "integration", {"steps", "synchronisations", "shortened_steps", "integrations", "undone_integrations", "derivative_evaluations", "rollbacks"}, {})},
+      {"forces", "forces on bodies that are tied or do not fly freely, with their gravity", forced, counts_of(effects, "forces", {}, {})},
+      {"constraints", "the forces that hold rods and joints, and bringing them back", constrained, counts_of(effects, "constraints", {}, {"constraint_solves", "constraint_corrections"})},
+      {"control", "motors look and set their torques", is_stage_asked(effects, "control"), counts_of(effects, "control", {}, {})},
       {"collision", "which bodies are near, how far apart, when they meet", colliding, {"candidate_pairs", "gap_evaluations", "root_findings"}},
       {"impacts", "impulses where bodies meet", colliding, sleeping ? std::vector<std::string>{"impacts", "impulses", "micro_impacts", "nudges"} : std::vector<std::string>{"impacts", "impulses", "micro_impacts", "nudges", "bodies_put_to_rest", "bodies_woken"}},
       {"contacts", "the forces where bodies lie, slide and roll", is_on(effects, "lasting contact"),
@@ -77,7 +90,7 @@ struct AskerLine {
   std::string pointer, place, what;
   std::size_t count;
 };
-std::vector<AskerLine> lines_of(const Effect& effect, const scene::Scene& scene) {
+std::vector<AskerLine> lines_of(const EffectUse& effect, const scene::Scene& scene) {
   const std::string file = scene.file.filename().string();
   std::vector<AskerLine> lines;
   for (const auto& asker : effect.askers) {
@@ -92,20 +105,20 @@ std::vector<AskerLine> lines_of(const Effect& effect, const scene::Scene& scene)
 constexpr std::size_t kMostLines = 6;   // of one effect
 
 /// Of the column that says where the entries stand.
-std::size_t width_of_places(const std::vector<Effect>& effects, const scene::Scene& scene) {
+std::size_t width_of_places(const std::vector<EffectUse>& effects, const scene::Scene& scene) {
   constexpr std::size_t kLeast = 20, kMost = 60;
   std::size_t width = kLeast;
-  for (const Effect& effect : effects) {
+  for (const EffectUse& effect : effects) {
     const auto lines = lines_of(effect, scene);
     for (std::size_t i = 0; i < std::min(lines.size(), kMostLines); ++i) width = std::max(width, lines[i].place.size());
   }
   return std::min(width, kMost);
 }
 
-void print_effects(const scene::Scene& scene, const std::vector<Effect>& effects, const Trajectory* run) {
+void print_effects(const scene::Scene& scene, const std::vector<EffectUse>& effects, const Trajectory* run) {
   const std::size_t width = width_of_places(effects, scene);
   fmt::print("\n  {:<16} {:<{}} {}\n", "effects", "asked for by", width, "that is");
-  for (const Effect& effect : effects) {
+  for (const EffectUse& effect : effects) {
     if (!effect.is_on()) continue;
     const auto lines = lines_of(effect, scene);
     std::string name = effect.name;
@@ -119,7 +132,7 @@ void print_effects(const scene::Scene& scene, const std::vector<Effect>& effects
   }
   std::string off, notes;
   std::uint64_t calls = 0;
-  for (const Effect& effect : effects) {
+  for (const EffectUse& effect : effects) {
     if (effect.is_on()) continue;
     off += (off.empty() ? "" : ", ") + effect.name;
     if (!effect.note.empty()) notes += fmt::format("  {:<16} {}: {}\n", "", effect.name, effect.note);
@@ -179,7 +192,7 @@ std::string bodies_line(const scene::Scene& scene) {
   return fmt::format("{} {} move{}, {} immovable", movable, movable == 1 ? "body" : "bodies", movable == 1 ? "s" : "", immovable);
 }
 
-void print_page(const scene::Scene& scene, const std::vector<Effect>& effects, const std::vector<Stage>& stages, const Trajectory* run) {
+void print_page(const scene::Scene& scene, const std::vector<EffectUse>& effects, const std::vector<Stage>& stages, const Trajectory* run) {
   fmt::print("{}\n  {}, {:g} s in steps of {:.6g} s\n", scene.title, bodies_line(scene), scene.duration_s, scene.step_s);
   if (scene.stabilisation) {
     static const char* const kinds[] = {"nothing", "Baumgarte's term", "projection"};
@@ -191,13 +204,16 @@ void print_page(const scene::Scene& scene, const std::vector<Effect>& effects, c
   else if (!run->stopped_by.empty()) fmt::print("\n  STOPPED: {}\n", run->stopped_by);
 }
 
-void print_json(const scene::Scene& scene, const std::vector<Effect>& effects, const std::vector<Stage>& stages, const Trajectory* run) {
+void print_json(const Context& context, const scene::Scene& scene, const std::vector<EffectUse>& effects, const std::vector<Stage>& stages, const Trajectory* run) {
   nlohmann::ordered_json page;
+  page["command"] = context.command_line;
+  page["version"] = kProgramVersion;
   page["scene"] = scene.name;
   page["title"] = scene.title;
   page["file"] = scene.file.string();
-  page["scene_hash"] = scene.hash;
-  for (const Effect& effect : effects) {
+  page["scene_digest"] = scene.digest;
+  page["seeds"] = scene.seeds;
+  for (const EffectUse& effect : effects) {
     nlohmann::ordered_json entry = {{"name", effect.name}, {"on", effect.is_on()}, {"stage", effect.stage}, {"asked_for_by", nlohmann::json::array()}, {"note", effect.note}};
     for (const auto& asker : effect.askers) entry["asked_for_by"].push_back({{"pointer", asker.pointer}, {"line", asker.line}, {"what", asker.what}});
     if (run != nullptr) entry["calls"] = count_of(*run, effect.counter);
@@ -230,7 +246,7 @@ void explain(Context& context, const ExplainWords& words) {
     if (!recorder.trajectory().stopped_by.empty()) context.exit = ExitCode::kCheckFailed;
   }
   const Trajectory* run = words.run ? &recorder.trajectory() : nullptr;
-  if (words.json) print_json(scene, effects, stages, run);
+  if (words.json) print_json(context, scene, effects, stages, run);
   else print_page(scene, effects, stages, run);
 }
 

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "framework/cli/command.h"
+#include "framework/cli/record.h"
 #include "framework/cli/words.h"
 #include "framework/core/files.h"
 #include "framework/grading/course/run_program.h"
@@ -110,7 +111,7 @@ void write_index(const Command& command, const std::vector<Handout>& handouts, c
     table.rows.push_back({{handout.title, report::link_to(name + ".html")}, options.pdf ? report::Cell{"PDF", report::link_to(name + ".pdf")} : report::Cell{""}});
   }
   page.table(table);
-  page.record(command.command_line);
+  page.record(record_of(command));
   page.write(out / "index.html");
 }
 

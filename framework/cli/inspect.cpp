@@ -10,6 +10,7 @@
 #include "framework/cli/command.h"
 #include "framework/cli/find_model.h"
 #include "framework/cli/words.h"
+#include "framework/core/version.h"
 #include "framework/geometry/load_3ds.h"
 #include "framework/geometry/mass_properties.h"
 #include "framework/geometry/solid.h"
@@ -143,7 +144,7 @@ ExitCode inspect(const Command& command, const InspectWords& words) {
   for (const LoadedObject& object : file.objects) closed += object.report.is_closed() ? 1 : 0;
 
   if (words.json) {
-    Json all{{"command", command.command_line}, {"file", file.where}, {"metres_per_unit", words.metres_per_unit},
+    Json all{{"command", command.command_line}, {"version", kProgramVersion}, {"file", file.where}, {"metres_per_unit", words.metres_per_unit},
              {"density_kg_m3", words.density}, {"objects", Json::array()}};
     for (const LoadedObject& object : file.objects) all["objects"].push_back(to_json(object, words.density));
     fmt::print("{}\n", all.dump(1));

@@ -15,8 +15,8 @@
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/grading/compiler/compiler_words.h"
 #include "framework/grading/worker/guarded_calls.h"
-#include "framework/grading/course/laws_around.h"
 #include "framework/grading/course/run_program.h"
+#include "framework/modules/bind_laws.h"
 #include "framework/modules/load.h"
 #include "framework/scene/model_scene.h"
 
@@ -102,10 +102,6 @@ AnyModule load_word(const Context& context, const ModuleKind& kind, const std::s
 }
 
 namespace {
-
-void bind_module(const ModuleKind& kind, const AnyModule& module, const std::string& source, Laws& laws) {
-  grading::put_into(kind, module, kind.id + ' ' + source, laws);
-}
 
 bool is_path(const std::string& word) { return !word.empty() && word != "student" && word != "reference" && word != "library"; }
 
@@ -208,7 +204,7 @@ void add_module(const Context& context, const scene::Scene& scene, const ModuleK
   if (!file.empty()) {
     const SandboxedModule sandboxed = load_sandboxed(context, kind, file);
     Laws step, derivative;   // from workers of their own, for calls inside calls
-    bind_module(kind, sandboxed.search.module, word, result.laws);
+    modules::bind_laws(kind, sandboxed.search.module, kind.id + " " + word, result.laws);
     kind.bind(sandboxed.step.module, step);
     kind.bind(sandboxed.derivative.module, derivative);
     if (step.integrate_step) result.laws.integrate_step = step.integrate_step;
@@ -218,7 +214,7 @@ void add_module(const Context& context, const scene::Scene& scene, const ModuleK
     return;
   }
   const Laws before = result.laws;
-  bind_module(kind, load_word(context, kind, word), word, result.laws);
+  modules::bind_laws(kind, load_word(context, kind, word), kind.id + " " + word, result.laws);
   const bool may_stand_in = word == "student" && !is_about(scene, kind) && before.integrator_source != result.laws.integrator_source;
   if (!may_stand_in) return;
   const auto missing = stand_in_for_stubs(result.laws);
@@ -254,7 +250,7 @@ void bind_spare(const Context& context, const ModuleKind& kind, ChosenLaws& resu
   const std::string word = best_available(context, kind.id);
   if (kind.is_scheduler || !is_there(context, kind, word)) return;
   try {
-    bind_module(kind, load_word(context, kind, word), word, result.laws);
+    modules::bind_laws(kind, load_word(context, kind, word), kind.id + " " + word, result.laws);
   } catch (const UserError& error) {
     result.notices.push_back(error.where() + " does not compile; this scene does not need it");
   }
@@ -293,16 +289,7 @@ ChosenLaws choose_laws(const Context& context, const scene::Scene& scene, const 
   for (const ModuleKind* kind : kinds) {
     if (chosen[kind->id].empty()) bind_spare(context, *kind, result);
   }
-  // A scheduler is asked only where the scene is about it, or somebody named it: the framework has a faster one.
-  result.laws.scheduling = {};
-  result.laws.scheduling_source = "none";
-  // Over these the library's laws of motion, over those what was chosen.
-  const Laws library = library_laws();
-  result.laws.integrate_step = library.integrate_step;
-  result.laws.state_derivative = library.state_derivative;
-  result.laws.renormalize = library.renormalize;
-  result.laws.find_impact_time = library.find_impact_time;
-  result.laws.integrator_source = library.integrator_source;
+  modules::set_library_motion(result.laws);
   for (const ModuleKind* kind : kinds) {
     const std::string& word = chosen[kind->id];
     if (!word.empty()) add_module(context, scene, *kind, word, files[kind->id], result);

@@ -12,6 +12,7 @@
 #include "framework/core/cpu_time.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/report/cost_page.h"
+#include "framework/scene/words.h"
 
 namespace tumble::cli {
 namespace {
@@ -63,7 +64,7 @@ std::vector<CostWay> ways_for(const Context& context, const scene::Scene& scene,
   } else {
     for (const char* word : {"dopri5", "rk4", "fehlberg78", "bulirsch-stoer"}) ways.push_back(way_by_method(method_named(word), chosen.laws));
   }
-  if (!scene.springs.empty()) ways.push_back(way_by_method(method_named("rosenbrock4"), chosen.laws));
+  if (scene::asks_for(scene, [](const scene::Traits& traits) { return traits.may_be_stiff; })) ways.push_back(way_by_method(method_named("rosenbrock4"), chosen.laws));
   for (const char* word : {"midpoint", "verlet", "symplectic"}) ways.push_back(way_by_method(method_named(word), chosen.laws));
   return ways;
 }

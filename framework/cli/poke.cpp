@@ -11,6 +11,7 @@
 #include "framework/core/nearest_word.h"
 #include "framework/render/camera.h"
 #include "framework/scene/build_shape.h"
+#include "framework/scene/write_entries.h"
 
 namespace tumble::cli {
 namespace {
@@ -26,6 +27,13 @@ struct Target {
   std::string body;
   Vector3d point_world;
   std::string found;   // for people
+};
+
+/// A force on a point of a body, from the start on.
+struct Push {
+  std::string body;
+  Vector3d force_world, point_world;   // [N], [m]
+  double duration_s;
 };
 
 std::string show(const Vector3d& v) {
@@ -88,14 +96,14 @@ struct AfterPush {
 };
 
 /// @return nothing where gravity or an immovable body may exchange momentum
-std::optional<AfterPush> after_push(const Context& context, const scene::Scene& scene, const scene::PointForceSpec& push) {
-  if (scene.gravity_m_s2) return std::nullopt;
+std::optional<AfterPush> after_push(const Context& context, const scene::Scene& scene, const Push& push) {
+  if (scene::has_entries(scene, "gravity_m_s2")) return std::nullopt;
   AfterPush after;
   const double time = push.duration_s;
-  after.momentum = time * push.force_n;
-  after.angular_momentum = push.point_m.cross(time * push.force_n);
+  after.momentum = time * push.force_world;
+  after.angular_momentum = push.point_world.cross(time * push.force_world);
   after.momentum_scale = after.momentum.norm();
-  after.angular_scale = push.point_m.norm() * after.momentum.norm();
+  after.angular_scale = push.point_world.norm() * after.momentum.norm();
   const auto solids = scene::build_solids(scene, context.root);
   for (std::size_t i = 0; i < solids.size(); ++i) {
     if (solids[i].is_immovable()) return std::nullopt;
@@ -108,9 +116,9 @@ std::optional<AfterPush> after_push(const Context& context, const scene::Scene& 
     after.momentum_scale += momentum.norm();
     after.angular_scale += spin.norm() + body.position_m.norm() * momentum.norm();
     if (body.name != push.body) continue;
-    const Vector3d arm = push.point_m - body.position_m, w = body.omega_world_rad_s;
-    const double turning = (inertia_world.inverse() * arm.cross(push.force_n)).norm();
-    const double acceleration = push.force_n.norm() / solids[i].mass_kg + arm.norm() * (turning + w.squaredNorm());
+    const Vector3d arm = push.point_world - body.position_m, w = body.omega_world_rad_s;
+    const double turning = (inertia_world.inverse() * arm.cross(push.force_world)).norm();
+    const double acceleration = push.force_world.norm() / solids[i].mass_kg + arm.norm() * (turning + w.squaredNorm());
     // v T + a T^2 / 2 at a constant acceleration; twice the last, for it changes as the body turns.
     after.point_travel = (body.velocity_m_s + w.cross(arm)).norm() * time + acceleration * time * time;
   }
@@ -128,11 +136,11 @@ scene::CheckSpec expectation(const char* kind, const Vector3d& expected, double 
 
 /// The scene's checks speak of a run without this push: those that hold of any run stay, and what a closed system has after
 /// a push is known.
-void replace_checks(const Context& context, scene::Scene& scene, const scene::PointForceSpec& push) {
+void replace_checks(const Context& context, scene::Scene& scene, const Push& push) {
   std::erase_if(scene.checks, [](const scene::CheckSpec& check) { return check.kind != "gap" && check.kind != "restitution_law" && check.kind != "side_of_wall"; });
   const auto after = after_push(context, scene, push);
   if (!after) return;
-  const double travel_moment = push.force_n.norm() * push.duration_s * after->point_travel;
+  const double travel_moment = push.force_world.norm() * push.duration_s * after->point_travel;
   scene.checks.insert(scene.checks.begin(),
                       {expectation("momentum", after->momentum, 1e-9 * after->momentum_scale, "exact: what was there, and force times time; 1e-9 of it for rounding"),
                        expectation("angular_momentum", after->angular_momentum, travel_moment + 1e-9 * after->angular_scale,
@@ -153,8 +161,9 @@ void poke(Context& context, const PokeWords& words) {
   const std::string extra = fmt::format("{}\n  force {} N for {:.4g} s at an arm of {} m: force {} N on the centre of mass, torque {} N m about it", target.found, show(force),
                                         words.push_s, show(target.point_world - body.position_m), show(wrench.force_world), show(wrench.torque_world));
 
-  const scene::PointForceSpec push{target.body, force, target.point_world, 0.0, words.push_s};
-  scene.point_forces = {push};   // instead of the scene's own: what is seen comes of this push
+  const Push push{target.body, force, target.point_world, words.push_s};
+  scene::remove_entries(scene, "point_forces");   // instead of the scene's own: what is seen comes of this push
+  scene::EntryWriter{scene}("point_forces", {{"body", push.body}, {"force_n", push.force_world}, {"point_m", push.point_world}, {"duration_s", push.duration_s}});
   scene.duration_s = std::max(scene.duration_s, words.push_s + 2.0);   // s: time to see what comes of it
   scene.title = "Poked by hand: scene " + scene.name;
   scene.about.clear();

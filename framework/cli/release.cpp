@@ -9,6 +9,8 @@
 
 #include "framework/cli/verb.h"
 #include "framework/core/files.h"
+#include "framework/core/version.h"
+#include "framework/grading/course/slip.h"
 #include "framework/grading/course/course.h"
 #include "framework/grading/course/release_checks.h"
 #include "framework/grading/course/run_program.h"
@@ -19,6 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kPrivate = "solutions_private";
+constexpr const char* kVersionFile = ".version";   // read by framework/core/CMakeLists.txt: a released tree has no history
 constexpr const char* kStudentsReadme = "assignments/README.md";   // in the place of README.md
 
 struct ReleaseOptions {
@@ -82,6 +85,15 @@ bool is_published(const Context& context, const std::vector<std::string>& publis
   });
 }
 
+// The whole wrong solution that a slip stands for, each line with its place in the slip or in its base.
+grading::PrivateFile made_of_slip(const Context& context, const fs::path& slip) {
+  const grading::MadeSolution made = grading::make_solution(slip, slip.parent_path().parent_path());
+  grading::PrivateFile whole{slip.lexically_relative(context.root), made.text};
+  for (const auto& origin : made.origins)
+    whole.places.push_back((origin.is_of_slip ? whole.file : made.base.lexically_relative(context.root)).string() + ":" + std::to_string(origin.line));
+  return whole;
+}
+
 // A flawed submission is a student's file: what it left of the stub is the stub. What CMake says of solutions is in no student's way.
 std::vector<grading::PrivateFile> private_files(const Context& context, const std::vector<std::string>& published) {
   std::vector<grading::PrivateFile> files;
@@ -93,6 +105,7 @@ std::vector<grading::PrivateFile> private_files(const Context& context, const st
     const bool of_published = std::any_of(published.begin(), published.end(), [&](const std::string& id) { return *std::next(file.begin()) == context.registry.find(id).folder; });
     if (of_published && (folder == "mutants" || folder == "alternatives")) continue;
     files.push_back({file, text_of(entry.path()), folder == "tests" || folder == "support"});
+    if (file.extension() == grading::kSlipExtension) files.push_back(made_of_slip(context, entry.path()));
   }
   return files;
 }
@@ -158,6 +171,7 @@ void release(Context& context, const ReleaseOptions& options) {
       ++count;
     }
     for (const std::string& id : options.publish) publish_solution(context, id, partial);
+    write_whole(partial / kVersionFile, std::string(kProgramVersion) + "\n");
     if (fs::exists(partial / kStudentsReadme)) fs::rename(partial / kStudentsReadme, partial / "README.md"), --count;
     refuse_what_is_no_stub(context, partial, options.publish);
     refuse(grading::leaks(partial, private_files(context, options.publish)), "Take it out of the public folders.");

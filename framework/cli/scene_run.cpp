@@ -18,13 +18,15 @@
 #include "framework/cli/scene_pictures.h"
 #include "framework/core/cpu_time.h"
 #include "framework/core/nearest_word.h"
+#include "framework/effects/registry.h"
+#include "framework/engines/base/run_counters.h"
 #include "framework/engines/judging/judge.h"
 #include "framework/engines/run.h"
-#include "framework/engines/base/run_counters.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/grading/worker/worker_connection.h"
 #include "framework/scene/load_scene.h"
 #include "framework/scene/sized_scenes.h"
+#include "framework/trajectory/record.h"
 #include "framework/trajectory/run_progress.h"
 
 namespace tumble::cli {
@@ -35,7 +37,7 @@ using engines::CheckResult;
 
 std::string modules_line(const scene::Scene& scene, const Laws& laws) {
   std::string line = fmt::format("impulses by {} · motion by {}", laws.impulse_source, laws.integrator_source);
-  if (scene.contact || !scene.springs.empty() || !scene.rods.empty() || !scene.joints.empty()) line += " · springs, rods and contact by " + laws.constraint_source;
+  if (scene.contact || effects::asks_laws_of("a3", scene)) line += " · springs, rods and contact by " + laws.constraint_source;
   return laws.scheduling ? line + " · scheduled by " + laws.scheduling_source : line;
 }
 
@@ -103,7 +105,8 @@ void print_json(const scene::Scene& scene, const PlannedRun& plan, const Traject
   nlohmann::ordered_json page;
   page["scene"] = scene.name;
   page["title"] = scene.title;
-  page["scene_hash"] = scene.hash;
+  page["scene_digest"] = scene.digest;
+  page["seeds"] = scene.seeds;
   page["command"] = run.info.command;
   page["version"] = run.info.version;
   page["engine"] = run.info.engine;
@@ -190,7 +193,7 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   else print_summary(scene, plan.laws, run, checks, extra, searched);
   std::fflush(stdout);
 
-  fmt::print(stderr, "ran in {:.2f} s", seconds);
+  fmt::print(stderr, "{}\nran in {:.2f} s", record_of(run.info), seconds);
   for (const auto& [stage, spent] : run.counters.stage_seconds) fmt::print(stderr, " · {} {:.2f} s", stage, spent);
   fmt::print(stderr, "\n");
   if (!words.trajectory.empty()) {

@@ -10,6 +10,7 @@
 #include "framework/cli/read_truth.h"
 #include "framework/cli/truths_table.h"
 #include "framework/cli/verb.h"
+#include "framework/core/version.h"
 #include "framework/engines/truths/families.h"
 #include "framework/engines/truths/module_truths.h"
 
@@ -162,7 +163,7 @@ ExitCode run_truths(const Context& context, const TruthsOptions& options) {
     }
   }
   if (options.json) {
-    nlohmann::ordered_json all{{"command", context.command_line}, {"modules", options.modules}};
+    nlohmann::ordered_json all{{"command", context.command_line}, {"version", kProgramVersion}, {"modules", options.modules}};
     all.update(truths_to_json(results, skipped));
     all["odd_files"] = nlohmann::ordered_json::array();
     for (const OddFile& one : odd) all["odd_files"].push_back({{"file", one.file}, {"problem", one.problem}});

@@ -9,10 +9,12 @@
 namespace tumble::collision {
 namespace {
 
-// Edges more parallel than this (rad) span no axis of their own: faces and other edges cover them.
+// Edges at a smaller angle (rad) are parallel and define no axis: the axes of faces and other edges
+// cover them.
 constexpr double kParallel = 1e-9;
 
-// Keeps the best axis offered. Cheap refusals first: any corner of A - B that is known bounds the separation along every axis.
+// Keeps the best of the axes tested. Cheap rejections first: any known corner of A - B bounds the
+// separation along every axis.
 class Search {
  public:
   Search(const PlacedPolytope& a, const PlacedPolytope& b, double size) : a_(a), b_(b), handicap_(16 * kEpsilon * size) {}
@@ -29,7 +31,8 @@ class Search {
     const int i = a_.lowest(m);
     keep(m, m.dot(a_.vertex(i) - b_.translation) - b_.polytope->face_offsets[face], 0.0, i, -1);
   }
-  // A face is preferred to an edge pair that separates no better: parallel faces meet with the faces' normal.
+  // A face is preferred to an edge pair of equal separation: parallel faces touch along the faces'
+  // normal.
   void offer_edges(const Vector3d& n) {
     if (bounded(n, handicap_)) return;
     const int i = a_.lowest(n), j = b_.lowest(-n);
@@ -60,7 +63,7 @@ class Search {
 
 using Indices = InlineVector<int, 24>;
 
-// Vertices that lie at most `depth` behind the one that is lowest along a direction.
+// Vertices at most `depth` above the lowest one along a direction.
 void foremost(const PlacedPolytope& piece, const Vector3d& direction, double depth, Indices& vertices) {
   const Vector3d d = piece.in_body(direction);
   double lowest;
@@ -71,7 +74,7 @@ void foremost(const PlacedPolytope& piece, const Vector3d& direction, double dep
 }
 
 struct Edge {
-  Vector3d direction, start;   // frame of the query; not a unit
+  Vector3d direction, start;   // frame of the query; the direction is not a unit vector
 };
 using Edges = InlineVector<Edge, 32>;
 
@@ -134,7 +137,8 @@ Axis best_axis_near(const PlacedPolytope& a, const PlacedPolytope& b, const Vect
       if (!(squared > kParallel * kParallel * ea.direction.squaredNorm() * eb.direction.squaredNorm())) continue;
       const double length = std::sqrt(squared);
       const Vector3d n = across / (across.dot(direction) < 0 ? -length : length);
-      // The edges themselves are in A and B: no separation is larger than theirs.
+      // The edges belong to A and B: the solids' separation along n is not larger than that of the
+      // edges.
       if (search.too_low(n.dot(ea.start - eb.start))) continue;
       search.offer_edges(n);
     }

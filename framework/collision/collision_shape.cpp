@@ -9,8 +9,9 @@
 namespace tumble::collision {
 namespace {
 
-// Directions closer than this (rad) are one: faces of one plane, edges of one direction. Far above the rounding of a unit
-// vector, far below what models are built with; a direction dropped wrongly changes a gap by this times the size, squared.
+// Directions closer than this (rad) are merged: coplanar faces, parallel edges. Far above the
+// rounding of a unit vector, far below the angles in models; a direction dropped wrongly changes a
+// gap by the size times the square of this.
 constexpr double kSameDirection = 1e-10;
 
 void add_direction(std::vector<Vector3d>& directions, Vector3d direction, bool both_senses) {
@@ -56,7 +57,7 @@ Polytope hull_polytope(const TriangleMesh& mesh) {
   for (const auto& [edge, n] : normal_beside) {
     if (edge.first > edge.second) continue;
     const auto other = normal_beside.find({edge.second, edge.first});
-    // The diagonal of a flat face is no edge of the solid.
+    // A diagonal between coplanar triangles is not an edge of the solid.
     if (other != normal_beside.end() && (other->second - n).norm() < kSameDirection) continue;
     hull.edges.push_back(edge);
     add_direction(hull.edge_directions, mesh.vertices[edge.second] - mesh.vertices[edge.first], true);
@@ -74,7 +75,7 @@ Polytope triangle_polytope(const TriangleMesh& mesh, const Face& face) {
     const Vector3d edge = piece.vertices[(i + 1) % 3] - piece.vertices[i];
     add_direction(piece.edge_directions, edge, true);
     piece.edges.emplace_back(i, (i + 1) % 3);
-    if (flat) add_direction(piece.face_normals, edge.cross(n), false);  // the rim, seen in the triangle's own plane
+    if (flat) add_direction(piece.face_normals, edge.cross(n), false);  // normal of the triangle's side, in its plane
   }
   return piece;
 }
@@ -101,7 +102,7 @@ CollisionShape::CollisionShape(const Shape& shape) {
       faces_ = solid->mesh_body.faces;
       neighbours_.resize(solid->mesh_body.vertices.size());
       for (const Face& face : faces_)
-        for (int i = 0; i < 3; ++i) neighbours_[face[i]].push_back(face[(i + 1) % 3]);   // closed: each edge once in either sense
+        for (int i = 0; i < 3; ++i) neighbours_[face[i]].push_back(face[(i + 1) % 3]);   // a closed surface has each edge once in either direction
     }
     vertices_ = solid->mesh_body.vertices;
   } else {

@@ -1,9 +1,11 @@
-/// A solid prepared once for collision: convex pieces with a rounding radius, and a tree of balls and boxes over them.
+/// A solid prepared for collision detection: convex pieces with a rounding radius, and a
+/// bounding-volume tree over them.
 ///
-/// Sphere: one point and its radius. Box and convex model: one polytope. Other models: one flat piece a face, so that a
-/// pair of solids is a set of pairs of convex pieces, for which bounds on the time of impact exist. A half-space has no
-/// pieces; every other shape meets it by its vertices. Ellipsoid: a curved surface that meets half-spaces only (ellipsoid.h); its piece
-/// and its vertices are those of the box around it.
+/// Sphere: one point and its radius. Box and convex model: one polytope. Other models: one flat
+/// piece per face, so that a pair of solids is a set of pairs of convex pieces, for which bounds on
+/// the time of impact exist. A half-space has no pieces; every other shape is tested against it by
+/// its vertices. Ellipsoid: a curved surface that collides with half-spaces only (ellipsoid.h); its
+/// piece and its vertices are those of its bounding box.
 #pragma once
 
 #include <optional>
@@ -14,18 +16,18 @@
 
 namespace tumble::collision {
 
-/// Where a body is. World frame.
+/// Position and orientation of a body. World frame.
 struct Pose {
   Vector3d com_world = Vector3d::Zero();                 // [m]
   Quaterniond world_from_body = Quaterniond::Identity(); // unit
 };
 
-/// A ball and a box around a part of the pieces, with one middle.
+/// A ball and a box around some of the pieces, with a common centre.
 struct BallNode {
   Vector3d center_body;
   double radius;
-  Vector3d half_extents_body = Vector3d::Zero();   // of the box, edges along the body's axes [m]
-  int first_child = -1;   // the second stands behind it; -1: a leaf
+  Vector3d half_extents_body = Vector3d::Zero();   // of the box, with edges along the body's axes [m]
+  int first_child = -1;   // -1: a leaf
   int second_child = -1;
   int piece = -1;
 };
@@ -37,20 +39,22 @@ class CollisionShape {
   bool is_half_space() const { return pieces_.empty(); }
   bool is_ball() const { return pieces_.size() == 1 && pieces_[0].vertices.size() == 1; }
   bool is_closed_surface() const { return pieces_.size() > 1; }
-  const Ellipsoid* ellipsoid() const { return ellipsoid_ ? &*ellipsoid_ : nullptr; }   // null: none
-  /// Thickness around the pieces. [m]
+  const Ellipsoid* ellipsoid() const { return ellipsoid_ ? &*ellipsoid_ : nullptr; }   // null: not an ellipsoid
+  /// Rounding radius around the pieces. [m]
   double radius() const { return radius_; }
-  /// Of the smallest ball about the centre of mass that holds the solid; infinite for a half-space. [m]
+  /// Radius of the smallest ball about the centre of mass that contains the solid; infinite for a
+  /// half-space. [m]
   double bounding_radius() const { return bounding_radius_; }
   const std::vector<Polytope>& pieces() const { return pieces_; }
   const std::vector<BallNode>& nodes() const { return nodes_; }   // the first is the root
   const std::vector<Vector3d>& vertices() const { return vertices_; }
-  /// All vertices as one polytope without faces: what meets a half-space.
+  /// All vertices as one polytope without faces, for tests against a half-space.
   const Polytope& corners() const { return corners_; }
-  /// Of a solid made of flat pieces: which vertices a piece has, and which vertices share an edge with a vertex.
+  /// For a solid of flat pieces: the vertices of a piece, and the vertices that share an edge with
+  /// a vertex.
   const Face& vertices_of_piece(int piece) const { return faces_[piece]; }
   const std::vector<int>& neighbours(int vertex) const { return neighbours_[vertex]; }
-  /// Faces of a solid made of flat pieces, for the question whether a point is inside.
+  /// Whether a solid of flat pieces contains the point.
   bool holds_point(const Vector3d& point_body) const;
 
  private:
@@ -60,7 +64,7 @@ class CollisionShape {
   std::vector<BallNode> nodes_;
   std::vector<Vector3d> vertices_;
   Polytope corners_;
-  std::vector<Face> faces_;                     // of a solid made of flat pieces
+  std::vector<Face> faces_;                     // of a solid of flat pieces
   std::vector<std::vector<int>> neighbours_;
   std::optional<Ellipsoid> ellipsoid_;
   double radius_ = 0.0;

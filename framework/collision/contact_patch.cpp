@@ -5,7 +5,8 @@
 namespace tumble::collision {
 namespace {
 
-// Pieces whose normal leans more than this (rad) from the pair's own touch elsewhere, with a contact of their own.
+// Pieces whose normal differs by more than this (rad) from the pair's normal belong to another
+// contact.
 constexpr double kSamePlane = 1e-6;
 
 std::vector<Vector3d> lowest_vertices(const CollisionShape& shape, const Pose& pose, const Vector3d& n, double tolerance) {

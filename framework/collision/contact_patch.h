@@ -1,4 +1,4 @@
-/// All points at which two solids touch, as far as they share one normal.
+/// The contact patch of two solids: the points of contact that share one normal.
 #pragma once
 
 #include "framework/collision/gap.h"
@@ -6,9 +6,10 @@
 
 namespace tumble::collision {
 
-/// @param gap        of the two, as compute_gap gives it
-/// @param tolerance  further points belong to the patch if they are at most this much farther apart [m]
-/// @return corners and middle of the patch, world frame, on A's surface; the witness point alone where nothing else is near
+/// @param gap        of the two solids, from compute_gap
+/// @param tolerance  a point belongs to the patch if its gap is at most this much larger [m]
+/// @return corners and centroid of the patch, world frame, on A's surface; only the witness point
+///   where no other point is near
 FlatHull contact_patch(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, const Gap& gap,
                        double tolerance);
 

@@ -8,12 +8,13 @@
 namespace tumble::collision {
 namespace {
 
-// Of the size: edges this near lie on each other. What models keep of a place (single precision) is 1e-7 of it.
+// Relative to the size: edges this close lie on each other. Models store coordinates in single
+// precision, with an error of 1e-7.
 constexpr double kNear = 1e-6;
-// Of the size: a vertex this near to a face's plane is one of its corners.
+// Relative to the size: a vertex this close to a face's plane is one of its corners.
 constexpr double kOnFace = 1e-9;
-// rad: a narrower range of normals is one normal.
-constexpr double kOne = 1e-9;
+// rad: a narrower range of normals counts as a single normal.
+constexpr double kSingleNormal = 1e-9;
 
 using Indices = InlineVector<int, 8>;
 
@@ -30,7 +31,7 @@ Indices foremost(const PlacedPolytope& piece, const Vector3d& towards_inside, do
 
 struct Edge {
   int from, to;
-  Vector3d start, along;   // frame of the query; `along` is not a unit
+  Vector3d start, along;   // frame of the query; `along` is not a unit vector
 };
 using Edges = InlineVector<Edge, 8>;
 
@@ -44,7 +45,8 @@ Edges edges_between(const PlacedPolytope& piece, const Indices& corners) {
   return edges;
 }
 
-// Side by side, nearer than `near` all along, over a stretch that both cover: whose ends go to `shared`.
+// Whether the edges are closer than `near` along a common segment, whose ends are stored in
+// `shared`.
 bool lie_along(const Edge& a, const Edge& b, double near, EdgeOnEdge& shared) {
   const double length = a.along.squaredNorm();
   const auto place = [&](const Vector3d& point) { return a.along.dot(point - a.start) / length; };
@@ -62,9 +64,10 @@ bool lie_along(const Edge& a, const Edge& b, double near, EdgeOnEdge& shared) {
 
 double angle_about(const Vector3d& edge, const Vector3d& from, const Vector3d& to) { return std::atan2(edge.dot(from.cross(to)), from.dot(to)); }
 
-/// The normals of the faces that meet in an edge: less than half a turn about it. `side` +1: outward ones, -1: inward.
+/// The normal cone of an edge: the normals of its faces, less than 180 degrees about it. `side` +1:
+/// outward, -1: inward.
 struct Cone {
-  Vector3d middle = Vector3d::Zero();   // of its normals; zero: no faces
+  Vector3d middle = Vector3d::Zero();   // mean of its normals; zero: no faces
   double low = 0.0, high = 0.0;         // rad about the edge, from `middle`
 };
 
@@ -87,12 +90,13 @@ Cone cone_of(const PlacedPolytope& piece, const Edge& edge, double side, const V
   return cone;
 }
 
-// The middle of what two cones about an edge share. What GJK calls the normal of two edges that touch is rounding: nothing is measured from it.
+// The middle of the intersection of two cones about an edge. The GJK direction is not used: for
+// touching edges it is only rounding.
 std::optional<Vector3d> middle_of_both(const Cone& a, const Cone& b, const Vector3d& along) {
   if (a.middle.isZero(0.0) || b.middle.isZero(0.0)) return std::nullopt;
   const double aside = angle_about(along, a.middle, b.middle);
   const double low = std::max(a.low, aside + b.low), high = std::min(a.high, aside + b.high);
-  if (!(high - low > kOne)) return std::nullopt;
+  if (!(high - low > kSingleNormal)) return std::nullopt;
   return Eigen::AngleAxisd(0.5 * (low + high), along) * (a.middle - a.middle.dot(along) * along).normalized();
 }
 
@@ -101,7 +105,7 @@ std::optional<Vector3d> middle_of_both(const Cone& a, const Cone& b, const Vecto
 std::optional<EdgeOnEdge> edge_on_edge(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& n, double size) {
   const double near = kNear * size;
   const Indices of_a = foremost(a, n, near), of_b = foremost(b, -n, near);
-  if (of_a.size() < 2 || of_b.size() < 2 || (of_a.size() > 2 && of_b.size() > 2)) return std::nullopt;   // a corner, or face on face
+  if (of_a.size() < 2 || of_b.size() < 2 || (of_a.size() > 2 && of_b.size() > 2)) return std::nullopt;   // a corner on either side, or face on face
   const Edges edges_a = edges_between(a, of_a), edges_b = edges_between(b, of_b);
   for (const Edge& edge_a : edges_a)
     for (const Edge& edge_b : edges_b) {

@@ -5,8 +5,8 @@
 namespace tumble::collision {
 namespace {
 
-constexpr int kRounds = 60;         // of halving: to the last bit
-constexpr double kEnough = 1e-3;    // of the bound: advancement goes on from there
+constexpr int kMostBisections = 60;           // to the last bit
+constexpr double kBisectionAccuracy = 1e-3;   // relative: the advancement continues from the result
 
 }  // namespace
 
@@ -15,7 +15,7 @@ double duration_of_ellipsoid(const Ellipsoid& e, const Vector3d& up, const Vecto
   const auto height = [&](double t) { return approach.gap + (lowest_height(e, up + t * turn) - lowest) + (approach.rate + half_acceleration * t) * t; };
   double apart = 0.0, touching = horizon;
   if (height(horizon) > 0) return horizon;
-  for (int round = 0; round < kRounds && touching - apart > kEnough * touching; ++round) {
+  for (int round = 0; round < kMostBisections && touching - apart > kBisectionAccuracy * touching; ++round) {
     const double middle = 0.5 * (apart + touching);
     (height(middle) > 0 ? apart : touching) = middle;
   }

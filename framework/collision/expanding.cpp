@@ -9,11 +9,13 @@
 namespace tumble::collision {
 namespace {
 
-// A tetrahedron with less of the volume that its edges could span is too flat to expand from.
+// A tetrahedron with a smaller fraction of the volume that its edges could span is too flat to
+// expand.
 constexpr double kFlat = 1e-9;
-constexpr int kMostPoints = 96, kMostFacets = 192;   // living ones, at any time: 2 x points - 4
+constexpr int kMostPoints = 96, kMostFacets = 192;   // facets alive at any time: 2 x points - 4
 
-// Corners of A - B that are far from each other: what the simplex lacks to a tetrahedron is looked for across what it has.
+// Completes the simplex to a tetrahedron of corners of A - B that are far from each other,
+// searching across the span of the present ones.
 bool complete(const PlacedPolytope& a, const PlacedPolytope& b, std::array<Vector3d, 4>& p, int size) {
   const auto farthest = [&](auto&& directions, auto&& measure) {
     double best = 0.0;
@@ -52,7 +54,7 @@ bool complete(const PlacedPolytope& a, const PlacedPolytope& b, std::array<Vecto
 class Expansion {
  public:
   explicit Expansion(std::array<Vector3d, 4> p) {
-    if ((p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]) > 0) std::swap(p[0], p[1]);   // then (0, 1, 2) looks away from 3
+    if ((p[1] - p[0]).cross(p[2] - p[0]).dot(p[3] - p[0]) > 0) std::swap(p[0], p[1]);   // then the normal of (0, 1, 2) points away from 3
     for (int i = 0; i < 4; ++i) points_[i] = p[i];
     point_count_ = 4;
     whole_ = add_facet(0, 1, 2) && add_facet(0, 3, 1) && add_facet(1, 3, 2) && add_facet(2, 3, 0);
@@ -74,7 +76,7 @@ class Expansion {
   struct Facet {
     std::array<int, 3> at;
     Vector3d outward;   // unit
-    double height;      // of the plane over the origin, along `outward` [m]
+    double height;      // of the plane above the origin, along `outward` [m]
   };
   struct Side {
     int from, to;
@@ -86,13 +88,14 @@ class Expansion {
     const double area = across.norm();
     if (!(area > 0)) return false;
     const Vector3d outward = across / area;
-    // The largest of the three heights: a sliver's plane is known badly, and must not hide what lies beyond.
+    // The largest of the three heights: the plane of a sliver is inaccurate, and must not hide the
+    // surface beyond it.
     const double height = std::max({outward.dot(points_[i]), outward.dot(points_[j]), outward.dot(points_[k])});
     facets_[facet_count_++] = {{i, j, k}, outward, height};
     return true;
   }
 
-  // Facets that the new corner sees are replaced by those that join it to their rim.
+  // Facets visible from the new corner are replaced by facets that join it to their horizon.
   void grow(const Vector3d& corner, double rounding) {
     std::array<Side, 3 * kMostFacets> rim;
     int rim_size = 0;
@@ -117,7 +120,7 @@ class Expansion {
     const int at = point_count_;
     points_[point_count_++] = corner;
     for (int k = 0; k < rim_size && whole_; ++k) {
-      for (int m = 0; m < k; ++m) whole_ = whole_ && rim[m].from != rim[k].from;   // rounding has torn it: one loop has each corner once
+      for (int m = 0; m < k; ++m) whole_ = whole_ && rim[m].from != rim[k].from;   // a horizon with a corner twice is broken by rounding
       whole_ = whole_ && add_facet(rim[k].from, rim[k].to, at);
     }
     whole_ = whole_ && rim_size >= 3;

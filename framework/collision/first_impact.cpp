@@ -9,14 +9,16 @@
 namespace tumble::collision {
 namespace {
 
-// Advancement never goes by less than this part of the interval, or two solids that slide along each other would never get to its end.
-// While it does, the solids meet and part again unseen only where one clips a corner of the other by a chord that is shorter than their
-// speed times that: at 300 m/s and a step of 1/60 s, 5e-8 m. An overlap at either end of an advance is always seen.
+// Least advance, as a fraction of the interval: without it, two solids that slide along each other
+// would never reach the end. A contact within one least advance is missed only where one solid
+// clips a corner of the other over a chord shorter than their speed times the advance: 5e-8 m at
+// 300 m/s and a step of 1/60 s. An overlap at either end of an advance is always detected.
 constexpr double kLeastAdvance = 1e-8;
-// Rounds of advancement before the least advance starts to grow, by kGrowth a round: from here on the chord that may pass unseen grows
-// with it, and so does an arc that one draws into the other, which is held below kShallow of the smaller solid's size: A s^2 / 8, where A
-// bounds how paths bend and s is the advance.
-constexpr int kPatience = 2000;
+// After this many advances the least advance grows by the factor kGrowth each time, and with it the
+// chord that may be missed. A curved path may also penetrate between two tests, by at most A s^2 /
+// 8, where A bounds the relative acceleration and s is the advance: it is limited to kShallow of
+// the smaller solid's size.
+constexpr int kPlainAdvances = 2000;
 constexpr double kGrowth = 1.02;
 constexpr double kShallow = 1e-8;
 
@@ -47,7 +49,8 @@ struct Search {
 
 double next_after(double t) { return std::nextafter(t, std::numeric_limits<double>::infinity()); }
 
-// Shrinks low (gap >= 0) and high (gap < 0) to adjacent doubles, first by strides that double from a guess near the root.
+// Shrinks [low, high] (gap >= 0 at low, < 0 at high) to adjacent doubles: by growing strides from
+// low, which is near the root, then by bisection.
 double last_instant_apart(const Search& search, double low, double high) {
   double stride = next_after(high) - high;
   while (low + stride < high) {
@@ -73,7 +76,7 @@ Impact refine(const Search& search, double low, double high) {
     const double tolerance = 4 * (next_after(high) - high);
     const RootResult root = search.options.root_finder([&](double t) { return search.gap_at(t); },
                                                        [&](double t) { return search.rate_at(t); }, low, high, tolerance);
-    // Whatever came back, only its sign counts; nonsense leaves the bracket as it was.
+    // Only the sign of the gap at the result is used: a wrong result leaves the bracket unchanged.
     if (root.time > low && root.time < high) {
       const double behind = root.time - 2 * (next_after(root.time) - root.time);
       if (search.gap_at(root.time) >= 0) {
@@ -87,8 +90,9 @@ Impact refine(const Search& search, double low, double high) {
   return search.impact_at(last_instant_apart(search, low, high));
 }
 
-// The bound promised that nothing touches between t_apart and t_overlap, up to rounding: the root lies just before the latter. The
-// start of the bracket moves up to it, away from a touch just left behind, where rounding makes the sign of the gap flicker.
+// The bound excludes a contact between t_apart and t_overlap up to rounding, so the root lies just
+// before t_overlap. The start of the bracket moves close to it, away from a previous contact, where
+// rounding makes the sign of the gap flicker.
 double shorten(const Search& search, double t_apart, double t_overlap) {
   for (const double part : {1e-6, 1e-3, 0.5}) {
     const double t = t_overlap - part * (t_overlap - t_apart);
@@ -99,8 +103,8 @@ double shorten(const Search& search, double t_apart, double t_overlap) {
 
 double smaller_size(const Search& search) { return std::min(search.a.bounding_radius(), search.b.bounding_radius()); }
 
-// Bounds the relative acceleration of any two points of the two. [m/s^2]
-double most_bend(const Search& search) {
+// Bound on the relative acceleration of any point of A and any point of B. [m/s^2]
+double largest_acceleration(const Search& search) {
   const auto own = [](const CollisionShape& shape, const MotionBounds& m) {
     const double arm = shape.is_half_space() ? 0.0 : shape.bounding_radius() - shape.radius();
     return m.acceleration_deviation + arm * (m.angular_acceleration + m.angular_speed * (m.angular_speed + m.angular_velocity_error));
@@ -109,12 +113,13 @@ double most_bend(const Search& search) {
   return (a.acceleration_world - b.acceleration_world).norm() + own(search.a, a) + own(search.b, b);
 }
 
-// A feature of a solid that is smaller than this part of the solid may be stepped over.
+// A feature smaller than this fraction of the solid may be missed.
 constexpr double kSmallestFeature = 1e-9;
 
-// Whether between t and `behind` no other part of the solids than the nearest can touch and part again. Of two convex solids that
-// move almost straight against each other none can: a line meets their Minkowski sum in one interval. Of solids with several
-// pieces, only while they slide past each other by less than a feature.
+// Whether, within `duration`, only the nearest parts of the solids can touch and separate again.
+// True for two convex solids in almost straight relative motion: a line intersects their Minkowski
+// difference in one interval. For solids of several pieces, true only while they move past each
+// other by less than a feature.
 bool one_entry(const Search& search, const MotionState& sa, const MotionState& sb, double duration) {
   const auto convex = [](const CollisionShape& shape) { return shape.pieces().size() <= 1; };
   if (convex(search.a) && convex(search.b)) return true;
@@ -123,14 +128,15 @@ bool one_entry(const Search& search, const MotionState& sa, const MotionState& s
   return speed * duration <= kSmallestFeature * smaller_size(search);
 }
 
-// Where the gap closes almost linearly, a time just behind the root; nothing where it bends too much to tell.
+// A time just after the root, where the gap closes almost linearly; nothing where the path is too
+// curved.
 std::optional<double> behind_the_root(const Search& search, double t, double t1) {
   const MotionState sa = search.motion_a.at(t), sb = search.motion_b.at(t);
   const Gap gap = compute_gap(search.a, sa.pose, search.b, sb.pose, search.cache);
   const double rate = gap_rate(gap, sa, sb);
   if (!(rate < 0) || gap.distance < 0) return std::nullopt;
   const double wait = gap.distance / -rate;
-  if (most_bend(search) * wait > 0.1 * -rate) return std::nullopt;
+  if (largest_acceleration(search) * wait > 0.1 * -rate) return std::nullopt;
   const double behind = t + std::max(1.5 * wait, 8 * (next_after(t) - t));
   if (behind > t1 || !one_entry(search, sa, sb, behind - t)) return std::nullopt;
   return behind;
@@ -150,7 +156,7 @@ std::optional<Impact> first_impact(const CollisionShape& a, const Motion& motion
   PairCache own;
   const Search search{a, b, motion_a, motion_b, options, cost ? *cost : unasked, options.cache ? options.cache : &own};
   double least = kLeastAdvance * (t1 - t0);
-  const double most_least = std::sqrt(8.0 * kShallow * smaller_size(search) / most_bend(search));   // infinite for straight paths
+  const double most_least = std::sqrt(8.0 * kShallow * smaller_size(search) / largest_acceleration(search));   // infinite for straight paths
   double t = t0, t_apart = t0;
   for (int round = 0;; ++round) {
     ++search.cost.gap_evaluations;
@@ -162,7 +168,7 @@ std::optional<Impact> first_impact(const CollisionShape& a, const Motion& motion
     if (round > 0 && bound.gap < std::numeric_limits<double>::infinity()) {
       if (const auto behind = behind_the_root(search, t, t1); behind && search.gap_at(*behind) < 0) return refine(search, t, *behind);
     }
-    if (round > kPatience) least = std::max(least, std::min(kGrowth * least, most_least));
+    if (round > kPlainAdvances) least = std::max(least, std::min(kGrowth * least, most_least));
     t = std::min(t1, std::max(t + std::max(bound.duration, least), next_after(t)));
     if (t >= t1) {
       if (search.gap_at(t1) < 0) return refine(search, shorten(search, t_apart, t1), t1);

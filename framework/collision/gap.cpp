@@ -10,7 +10,7 @@
 namespace tumble::collision {
 namespace {
 
-constexpr double kRounding = 1e-14;   // of the query's size: what a search may miss a limit by
+constexpr double kRounding = 1e-14;   // relative to the query's size: error of a search against its limit
 
 Gap flipped(Gap gap) {
   std::swap(gap.point_a_world, gap.point_b_world);
@@ -87,8 +87,8 @@ double gap_distance(const CollisionShape& a, const Pose& pose_a, const Collision
   if (a.is_half_space() || b.is_half_space() || (a.is_ball() && b.is_ball())) return compute_gap(a, pose_a, b, pose_b).distance;
   if (cache && cache->measured_at(pose_a, pose_b) && (cache->measured <= cache->measured_up_to || limit <= cache->measured_up_to)) return cache->measured;
   const Query query(a, pose_a, b, pose_b);
-  const double radii = a.radius() + b.radius(), looked = std::max(limit, 0.0) + radii + kRounding * query.size;
-  double distance = nearest_pieces(query, looked, cache, Points::kUnwanted).gap.distance - radii;
+  const double radii = a.radius() + b.radius(), widened_limit = std::max(limit, 0.0) + radii + kRounding * query.size;
+  double distance = nearest_pieces(query, widened_limit, cache, Points::kUnwanted).gap.distance - radii;
   if (!(distance <= limit)) distance = std::nextafter(limit, kInfinity);
   if (cache) cache->note(pose_a, pose_b, distance, limit);
   return distance;

@@ -1,4 +1,4 @@
-/// How far two solids are apart, where they are nearest, and which way they would be pushed.
+/// Distance of two solids, their witness points and their contact normal.
 #pragma once
 
 #include <limits>
@@ -19,31 +19,34 @@ struct Gap {
 };
 
 /// The gap between two solids.
-/// Round shapes and half-spaces: closed forms, also when overlapping. Polytopes: see polytope_gap.h. Surfaces that are not
-/// convex: the smallest over their faces; an overlap is any negative number, and a solid wholly inside another is not
-/// noticed here (see `overlapping`).
+/// Round shapes and half-spaces: closed forms, also when overlapping. Polytopes: see
+/// polytope_gap.h. Surfaces that are not convex: the minimum over their faces; an overlap gives
+/// some negative number, and a solid entirely inside another is not detected (see `overlapping`).
 /// @param cache  of this pair, may be null: see pair_cache.h
-/// @return distance to a few roundings of the solids' size and of the distance of their centres. Infinite between two half-spaces.
+/// @return distance with an error of a few roundings of the solids' size and of the distance of
+///   their centres. Infinite between two half-spaces.
 Gap compute_gap(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, PairCache* cache = nullptr);
 
-/// A bound from below for next to nothing: the gap of the balls around the two; against a half-space of the ball and it. [m]
+/// A cheap lower bound of the gap, by the bounding balls. [m]
 inline double least_gap(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b) {
   const Vector3d between = pose_a.com_world - pose_b.com_world;
   if (b.is_half_space()) return (pose_b.world_from_body * Vector3d::UnitZ()).dot(between) - a.bounding_radius();
   if (a.is_half_space()) return -(pose_a.world_from_body * Vector3d::UnitZ()).dot(between) - b.bounding_radius();
   return between.norm() - a.bounding_radius() - b.bounding_radius();
 }
-/// The same distance to the last bit, sooner: without the nearest points. [m]
-/// @param limit  of gaps larger than this no more is asked than that they are [m]
-/// @return the distance, or where it is above the limit any bound from below that is above the limit as well
+/// The distance of compute_gap, equal to the last bit, but cheaper: without the witness points. [m]
+/// @param limit  larger distances need not be exact [m]
+/// @return the distance; where it is above the limit, a lower bound that is above the limit too
 double gap_distance(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, PairCache* cache = nullptr,
                     double limit = std::numeric_limits<double>::infinity());
 
-/// Whether two solids share a point of their insides, also when one lies wholly inside the other. For initial states.
-/// @param allowance  an overlap this deep still counts as touching [m]
+/// Whether the interiors of two solids intersect, also when one lies entirely inside the other. For
+/// initial states.
+/// @param allowance  a penetration up to this depth counts as touching [m]
 bool overlapping(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double allowance);
 
-/// A length whose round-off bounds that of a gap: the solids' sizes and the distance of their centres. [m]
+/// The length with which the rounding error of a gap scales: the solids' sizes and the distance of
+/// their centres. [m]
 double gap_scale(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b);
 
 }  // namespace tumble::collision

@@ -8,9 +8,10 @@
 namespace tumble::collision {
 namespace {
 
-// The plane of a triangle with a smaller sine between its sides is known no better than the nearest point.
+// Where the sine between a triangle's sides is smaller, its plane is no more accurate than the
+// nearest point.
 constexpr double kSliver = 1e-6;
-constexpr int kMostRounds = 200;   // polytopes of a thousand vertices take about thirty
+constexpr int kMostIterations = 200;   // polytopes of a thousand vertices take about thirty
 
 bool holds(const Simplex& simplex, const DifferencePoint& point) {
   for (int i = 0; i < simplex.size; ++i)
@@ -18,8 +19,9 @@ bool holds(const Simplex& simplex, const DifferencePoint& point) {
   return false;
 }
 
-// Direction and distance of the nearest point. Where it lies on a face, the face's plane gives both with all their digits, which the
-// difference of two near points cannot: a direction that is off by rounding over distance would find the wrong corner next.
+// Direction and distance of the nearest point. Where it lies on a face, both are taken from the
+// face's plane, which is accurate to all digits. The difference of two near points has a
+// directional error of rounding / distance, with which the next search would find the wrong corner.
 void settle(const Vector3d& nearest, GjkResult& result) {
   const Simplex& s = result.simplex;
   if (s.size == 3) {
@@ -51,9 +53,10 @@ GjkResult gjk(const PlacedPolytope& a, const PlacedPolytope& b, double size, dou
   simplex.size = 1;
   settle(reduce_to_nearest(simplex), result);
   const double touching = 8 * kEpsilon * size;
-  for (int round = 0; round < kMostRounds && result.distance > touching; ++round) {
+  for (int round = 0; round < kMostIterations && result.distance > touching; ++round) {
     const DifferencePoint next = lowest_difference(a, b, result.normal);
-    // The plane through `next` bounds the distance from below: where it meets the nearest point, that is the answer.
+    // The supporting plane through `next` is a lower bound of the distance; the search ends when it
+    // reaches the upper bound.
     result.lower_bound = std::max(result.lower_bound, result.normal.dot(next.difference));
     if (result.lower_bound > limit) {
       result.verdict = Apartness::kBeyond;
@@ -69,7 +72,7 @@ GjkResult gjk(const PlacedPolytope& a, const PlacedPolytope& b, double size, dou
       return result;
     }
     settle(nearest, result);
-    if (!(result.distance < before.distance)) {  // round-off ends the descent
+    if (!(result.distance < before.distance)) {  // no progress above round-off
       result = before;
       break;
     }

@@ -1,4 +1,5 @@
-/// A list whose first N items need no memory from the heap: what hot loops collect a few things in. Internal to collision.
+/// A small vector: the first N items need no heap memory. For hot loops that collect a few items.
+/// Internal to collision.
 #pragma once
 
 #include <array>

@@ -1,4 +1,5 @@
-/// How a solid moves for a while, with what bounds it: what guarantees about times of impact stand on.
+/// The motion of a solid over an interval, with bounds on it that guarantee the first time of
+/// impact.
 #pragma once
 
 #include <functional>
@@ -7,20 +8,20 @@
 
 namespace tumble::collision {
 
-/// Place and velocity at one instant. World frame.
+/// Pose and velocity at one instant. World frame.
 struct MotionState {
   Pose pose;
   Vector3d velocity_world = Vector3d::Zero();  // of the centre of mass [m/s]
   Vector3d omega_world = Vector3d::Zero();     // [rad/s]
 };
 
-/// What holds during the whole interval that is asked about.
+/// Bounds that hold during the whole interval.
 struct MotionBounds {
   Vector3d acceleration_world = Vector3d::Zero();  // constant part of the centre's acceleration, exact [m/s^2]
-  double acceleration_deviation = 0.0;             // largest length of what the acceleration has beside it [m/s^2]
+  double acceleration_deviation = 0.0;             // largest length of the rest of the acceleration [m/s^2]
   double angular_speed = 0.0;                      // largest |omega| [rad/s]
   double angular_acceleration = 0.0;               // largest |d omega/dt| [rad/s^2]
-  double angular_velocity_error = 0.0;             // largest |stated omega - rate of the path| (numerical paths) [rad/s]
+  double angular_velocity_error = 0.0;             // largest |omega of the state - angular velocity of the path| (numerical paths) [rad/s]
 };
 
 struct Motion {

@@ -12,21 +12,25 @@ namespace tumble::collision {
 namespace {
 
 
-// Pieces of a surface that is not convex push along a normal of their own if it is that of one of their faces, to this (rad).
+// rad: a contact normal this close to the normal of one of the two faces is a face normal.
 constexpr double kOfAFace = 1e-6;
-// Normals closer than this (rad) are one region's.
+// Normals closer than this (rad) belong to one region.
 constexpr double kSameNormal = 1e-6;
-// A face that leans more from the normal than this cosine does not bound a column along it.
+// A face whose normal has a smaller cosine to the contact normal is too steep to bound a column
+// along it.
 constexpr double kSteep = 0.05;
-// Cosine to the direction away from the other: a face that looks more that way than this is a far side.
+// A face whose normal has a larger cosine to the direction away from the other solid is on the far
+// side.
 constexpr double kBack = 0.5;
-// Of a solid's size: vertices that differ by less are as foremost as each other.
+// Relative to a solid's size: vertices whose heights differ by less have equal height.
 constexpr double kSameHeight = 1e-9;
-// Of a query's size: farther apart than this, the nearest points of two edges say which way they push each other.
+// Relative to the query's size: at larger distances the nearest points of two edges define the
+// contact normal.
 constexpr double kInTouch = 1e-6;
 
-// Height along n of the foremost surface of a convex piece over a point, `side` +1: the lowest of A, -1: the highest of B. The
-// vertices bound it where no face looks that way (an edge, a corner).
+// Height along n of the surface of a convex piece at a point: for `side` +1 the lowest of A, for -1
+// the highest of B. Where no face points towards the other solid (an edge, a corner), the vertices
+// bound it.
 double height_of(const PlacedPolytope& piece, const Vector3d& n, double side, const Vector3d& over) {
   const Polytope& p = *piece.polytope;
   const Vector3d d = piece.in_body(side * n), over_body = piece.in_body(over - piece.translation);
@@ -74,7 +78,7 @@ std::vector<NearPoint> above_half_space(const CollisionShape& a, const Pose& pos
     heights.push_back(point.gap);
   }
   auto lower = lower_corners(places, heights, n, kSameHeight * a.bounding_radius());
-  std::sort(lower.begin(), lower.end());   // as the vertices come
+  std::sort(lower.begin(), lower.end());   // in the order of the vertices
   std::vector<NearPoint> corners;
   for (const int i : lower) corners.push_back(points[static_cast<std::size_t>(i)]);
   return corners;
@@ -87,7 +91,8 @@ struct Region {
   InlineVector<NearPoint, 8> points;
 };
 
-// A flat piece's own normal is its first: the other side and the rims are no part of a solid's surface.
+// The first normal of a flat piece is that of its face; its back and its sides are not part of a
+// solid's surface.
 bool of_a_face(const PlacedPolytope& a, bool a_is_flat, const PlacedPolytope& b, bool b_is_flat, const Vector3d& n) {
   const auto faces = [](const PlacedPolytope& piece, bool is_flat, const Vector3d& direction) {
     const auto& normals = piece.polytope->face_normals;
@@ -98,22 +103,25 @@ bool of_a_face(const PlacedPolytope& a, bool a_is_flat, const PlacedPolytope& b,
   return faces(b, b_is_flat, n) || faces(a, a_is_flat, -n);
 }
 
-// Whether a flat piece shows the other its back, as the far side of a thin plate does. `away` leads from the other to the piece.
-bool shows_its_back(const PlacedPolytope& piece, bool is_flat, const Vector3d& away) {
+// Whether a flat piece is turned away from the other solid, like the far side of a thin plate.
+// `away` points from the other to the piece.
+bool is_far_side(const PlacedPolytope& piece, bool is_flat, const Vector3d& away) {
   const auto& normals = piece.polytope->face_normals;
   return is_flat && !normals.empty() && normals.front().dot(piece.in_body(away)) > kBack;
 }
 
-// Whether what a piece touches with is foremost of all the surface about it, too: then the push is the solid's own, of an edge or a
-// corner. Else it is that of a rim, which the face beyond it overrules. `down` leads from the piece to the other.
-bool is_foremost_around(const CollisionShape& shape, int piece, const PlacedPolytope& placed, const Vector3d& down) {
+// Whether the vertices with which a piece touches protrude from the surface around them: then the
+// contact is that of an edge or a corner of the solid. Otherwise it is that of a seam, and the
+// neighbouring face has the contact. `down` points from the piece to the other.
+bool protrudes(const CollisionShape& shape, int piece, const PlacedPolytope& placed, const Vector3d& down) {
   if (!shape.is_closed_surface()) return true;
   const Vector3d d = placed.in_body(down);
   const Face& face = shape.vertices_of_piece(piece);
   const double slack = kSameHeight * shape.bounding_radius();
   double foremost = -kInfinity;
   for (const int v : face) foremost = std::max(foremost, d.dot(shape.vertices()[v]));
-  // About an edge lie its two faces: what meets it at its ends, in a corner that is not convex, may stand out farther.
+  // For an edge only the vertices of its two faces count: other faces at its ends, in a corner that
+  // is not convex, may protrude farther.
   InlineVector<int, 4> touching;
   for (const int v : face)
     if (d.dot(shape.vertices()[v]) >= foremost - slack) touching.push_back(v);
@@ -133,7 +141,7 @@ struct NearPair {
   PolytopeGap gap;
 };
 
-// Points over the corners of the region that two pieces share.
+// Contact points at the corners of the common region of two pieces.
 void add_points(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& n, double reach, const Vector3d& com_b_world, Region& region) {
   for (const Vector3d& corner : facing_region(a, b, n, reach)) {
     const double low = height_of(a, n, 1.0, corner), high = height_of(b, n, -1.0, corner);
@@ -143,7 +151,7 @@ void add_points(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d
   }
 }
 
-// Only what the other could come down on carries: other points lie between.
+// Only points that a plate could rest on can carry; the others lie between them.
 void append_corners(const Region& region, double size, std::vector<NearPoint>& points) {
   if (region.points.size() == 1) return points.push_back(region.points[0]);
   Corners all;
@@ -155,8 +163,8 @@ void append_corners(const Region& region, double size, std::vector<NearPoint>& p
   for (const int corner : lower_corners(all, gaps, region.normal, kSameHeight * size)) points.push_back(region.points[corner]);
 }
 
-// The ends of what two edges share, each with a gap of its own, and what else is within reach. The gap there is that of the edges: the faces
-// beside them fall off.
+// The ends of the common segment of two edges, each with its own gap, and the other points within
+// reach. At the ends the gap is that of the edges, because the adjacent faces slope away.
 std::vector<NearPoint> along_edges(const PlacedPolytope& a, const PlacedPolytope& b, const EdgeOnEdge& shared, double reach, double size, const Vector3d& com_b_world) {
   const Vector3d& n = shared.normal_b_to_a;
   const double near = kInTouch * size;
@@ -183,14 +191,15 @@ std::vector<NearPoint> between_convex(const Query& query, const Vector3d& com_b_
     if (const auto edges = edge_on_edge(placed_a, placed_b, found.normal_b_to_a, query.size)) return along_edges(placed_a, placed_b, *edges, reach, query.size, com_b_world);
   Region region{found.normal_b_to_a, {}};
   add_points(placed_a, placed_b, region.normal, reach, com_b_world, region);
-  region.points.push_back({com_b_world + found.point_a, com_b_world + found.point_b, region.normal, found.distance});   // where edges cross
+  region.points.push_back({com_b_world + found.point_a, com_b_world + found.point_b, region.normal, found.distance});   // the crossing of two edges
   std::vector<NearPoint> points;
   append_corners(region, query.size, points);
   return points;
 }
 
-// Pairs of pieces that push along a normal of the surface's own, and the normal of the nearest. `radii` are those of balls.
-std::vector<NearPair> own_pairs(const Query& query, double reach, double radii, Points points, PairCache* cache) {
+// Pairs of pieces with a contact normal of the solids' surfaces (not of a seam), or with that of
+// the nearest pair. `radii` are those of balls.
+std::vector<NearPair> contact_pairs(const Query& query, double reach, double radii, Points points, PairCache* cache) {
   const bool flat_a = query.a.is_closed_surface(), flat_b = query.b.is_closed_surface();
   double nearest = kInfinity;
   Vector3d main_normal = Vector3d::UnitZ();
@@ -198,7 +207,7 @@ std::vector<NearPair> own_pairs(const Query& query, double reach, double radii, 
   for (const auto& [i, j] : pieces_within(query, reach + radii, cache)) {
     const PolytopeGap found = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size, reach + radii, points);
     if (found.beyond || found.distance > reach + radii) continue;
-    if (shows_its_back(query.piece_of_a(i), flat_a, found.normal_b_to_a) || shows_its_back(query.piece_of_b(j), flat_b, -found.normal_b_to_a)) continue;
+    if (is_far_side(query.piece_of_a(i), flat_a, found.normal_b_to_a) || is_far_side(query.piece_of_b(j), flat_b, -found.normal_b_to_a)) continue;
     pairs.push_back({i, j, found});
     if (found.distance < nearest) {
       nearest = found.distance;
@@ -209,17 +218,17 @@ std::vector<NearPair> own_pairs(const Query& query, double reach, double radii, 
     const PlacedPolytope placed_a = query.piece_of_a(pair.i), placed_b = query.piece_of_b(pair.j);
     const Vector3d& n = pair.gap.normal_b_to_a;
     const bool own = (n - main_normal).norm() <= kSameNormal || of_a_face(placed_a, flat_a, placed_b, flat_b, n) ||
-                     (is_foremost_around(query.a, pair.i, placed_a, -n) && is_foremost_around(query.b, pair.j, placed_b, n));
+                     (protrudes(query.a, pair.i, placed_a, -n) && protrudes(query.b, pair.j, placed_b, n));
     return !own;
   });
   return pairs;
 }
 
-// A ball in a corner of a surface touches each of its walls.
+// A ball in a corner of a surface touches each wall.
 std::vector<NearPoint> of_a_ball(const Query& query, const Vector3d& com_b_world, double reach, PairCache* cache) {
   const double radius_a = query.a.radius(), radius_b = query.b.radius();
   std::vector<NearPoint> points;
-  for (const NearPair& pair : own_pairs(query, reach, radius_a + radius_b, Points::kWanted, cache)) {
+  for (const NearPair& pair : contact_pairs(query, reach, radius_a + radius_b, Points::kWanted, cache)) {
     const Vector3d& n = pair.gap.normal_b_to_a;
     const NearPoint point{com_b_world + pair.gap.point_a - radius_a * n, com_b_world + pair.gap.point_b + radius_b * n, n, pair.gap.distance - radius_a - radius_b};
     const auto same = std::find_if(points.begin(), points.end(), [&](const NearPoint& p) { return (p.normal_b_to_a_world - n).norm() <= kSameNormal; });
@@ -231,7 +240,7 @@ std::vector<NearPoint> of_a_ball(const Query& query, const Vector3d& com_b_world
 
 std::vector<NearPoint> between_surfaces(const Query& query, const Vector3d& com_b_world, double reach, PairCache* cache) {
   std::vector<Region> regions;
-  for (const NearPair& pair : own_pairs(query, reach, 0.0, Points::kUnwanted, cache)) {
+  for (const NearPair& pair : contact_pairs(query, reach, 0.0, Points::kUnwanted, cache)) {
     const PlacedPolytope placed_a = query.piece_of_a(pair.i), placed_b = query.piece_of_b(pair.j);
     const Vector3d& n = pair.gap.normal_b_to_a;
     auto region = std::find_if(regions.begin(), regions.end(), [&](const Region& r) { return (r.normal - n).norm() <= kSameNormal; });

@@ -10,13 +10,14 @@ namespace {
 
 struct FlatPoint {
   Vector2d p;
-  int index;   // in the list that it came from; -1: new
+  int index;   // in the original list; -1: a new point
 };
 using Polygon = InlineVector<FlatPoint, 16>;
 
 double cross2(const Vector2d& u, const Vector2d& v) { return u.x() * v.y() - u.y() * v.x(); }
 
-// Axes of the plane across n. The one of the world's axes that lies flattest on it starts them, so that they do not jump.
+// Axes of the plane perpendicular to n, constructed from the world axis nearest to that plane, so
+// that they change continuously with n.
 struct PlaneAxes {
   Vector3d u, v;
   explicit PlaneAxes(const Vector3d& n) {
@@ -33,7 +34,7 @@ bool comes_before(const FlatPoint& a, const FlatPoint& b) {
   return a.p.y() != b.p.y() ? a.p.y() < b.p.y() : a.index < b.index;
 }
 
-// Points that coincide to round-off count once.
+// Merges points that coincide to round-off.
 Polygon distinct_of(const Polygon& sorted, double same) {
   Polygon distinct;
   for (const FlatPoint& q : sorted) {
@@ -53,7 +54,8 @@ Polygon hull_of(Polygon points) {
   const double same = 1e-12 * size;
   const Polygon distinct = distinct_of(points, same);
   if (distinct.size() < 3) return distinct;
-  // On an edge across the order, rounding would decide which comes first, and the edge's end could be lost for a point on it.
+  // On an edge perpendicular to the sorting direction, rounding would decide the order, and the
+  // edge's end could be lost to a point on the edge.
   Polygon ordered;
   double column = distinct[0].p.x();
   for (int i = 0; i < distinct.size(); ++i) {
@@ -83,7 +85,7 @@ Polygon crossing_of_segments(const Polygon& a, const Polygon& b) {
     crossing.push_back({a[0].p + t * along_a, -1});
     return crossing;
   }
-  // Side by side: the stretch that both cover.
+  // Parallel: the common segment.
   const double length = along_a.squaredNorm();
   const double first = along_a.dot(b[0].p - a[0].p) / length, second = along_a.dot(b[1].p - a[0].p) / length;
   const double low = std::clamp(std::min(first, second), 0.0, 1.0), high = std::clamp(std::max(first, second), 0.0, 1.0);
@@ -111,19 +113,20 @@ Polygon clip(const Polygon& cut, const Polygon& window) {
   return subject;
 }
 
-// The smaller of the two is `a`.
+// `a` has at most as many corners as `b`.
 Polygon shared_region(const Polygon& a, const Polygon& b) {
   if (a.size() == 1) return a;
   if (b.size() == 2) return crossing_of_segments(a, b);
   Polygon region = clip(a, b);
   if (!region.empty()) return region;
-  Vector2d middle = Vector2d::Zero();  // they only touch at a rim, and rounding parts them
+  Vector2d middle = Vector2d::Zero();  // they touch only at their boundaries, and rounding separates them
   for (const FlatPoint& q : a) middle += q.p / static_cast<double>(a.size());
   region.push_back({middle, -1});
   return region;
 }
 
-// The part of a piece that faces the other one: its hull seen along n. `side` is +1 for A, whose lowest vertices face B.
+// The facing part of a piece: the hull of its foremost vertices, projected along n. `side` is +1
+// for A, whose lowest vertices face B.
 Polygon facing(const PlacedPolytope& piece, const PlaneAxes& axes, const Vector3d& n, double side, double tolerance, double& height) {
   const Vector3d d = piece.in_body(side * n);
   double lowest;
@@ -158,17 +161,17 @@ Polygon region_of(const PlacedPolytope& a, const PlacedPolytope& b, const PlaneA
   return of_a.size() <= of_b.size() ? shared_region(of_a, of_b) : shared_region(of_b, of_a);
 }
 
-// The slopes s of planes that are still allowed: a convex polygon, and a circle about it.
+// The set of feasible slopes s of a plane: a convex polygon, with a circle around it.
 class Slopes {
  public:
   explicit Slopes(double steepest) {
     for (const Vector2d& corner : {Vector2d(-1, -1), Vector2d(1, -1), Vector2d(1, 1), Vector2d(-1, 1)}) corners_.push_back({steepest * corner, -1});
     find_circle();
   }
-  /// Keeps those with  d . s <= room. @return whether any is left
+  /// Keeps the slopes with  d . s <= room. @return whether any is left
   bool keep(const Vector2d& d, double room) {
     const double middle = d.dot(middle_) - room;
-    if (middle <= 0 && middle * middle >= square_ * d.squaredNorm()) return true;   // all of the circle
+    if (middle <= 0 && middle * middle >= square_ * d.squaredNorm()) return true;   // the whole circle
     Polygon kept;
     for (int k = 0; k < corners_.size(); ++k) {
       const FlatPoint &q = corners_[k], &next = corners_[(k + 1) % corners_.size()];
@@ -195,10 +198,11 @@ class Slopes {
   double square_ = 0.0;   // of the radius
 };
 
-// Whether a plane through point i, or a little above it, leaves all other points above: some slope s with
+// Whether all other points lie above some plane through point i: a slope s exists with
 //   s . (p_j - p_i) <= height_j - height_i - tolerance  for all j.
-// The nearest points leave few slopes, which most of the others allow at a glance.
-// Points are in the order of their heights: of two at one place the first is the lower.
+// The nearest points come first: they leave few slopes, which most other points allow without a
+// cut.
+// Points are sorted by height: of two with the same projection the first is the lower.
 bool lies_below_others(const Polygon& points, const std::vector<double>& heights, int i, double same, double tolerance, std::vector<std::pair<double, int>>& others) {
   constexpr double kSteepest = 1e3;   // steeper planes are walls
   constexpr std::ptrdiff_t kNearest = 8;

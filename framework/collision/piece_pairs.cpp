@@ -9,16 +9,19 @@
 namespace tumble::collision {
 namespace {
 
-// Bounds are rounded too. With as much room a pair is never passed over that another order of looking would have found.
+// Margin for the rounding of bounds: with it the result does not depend on the order of the
+// traversal.
 constexpr double kRoundings = 64;
-// Of the smaller solid: how much farther than asked the cache looks, so that it serves while the two move as far.
+// Relative to the smaller solid: the cache covers this much more than the reach of the query, and
+// stays valid until the solids have moved that far.
 constexpr double kSkin = 0.02;
-// Questions for which a cache is left alone that was filled in vain, its solids moving fast.
+// Queries to wait before a cache is filled again that answered none, because its solids move fast.
 constexpr int kPause = 8;
 
 double rounding(const Query& query) { return kRoundings * kEpsilon * query.size; }
 
-// Bounds from below how far nodes of the two trees are apart: by their balls, and by their boxes along the axes of either.
+// Lower bound of the distance between nodes of the two trees: by their balls, and by their boxes
+// along the axes of either.
 class NodeDistance {
  public:
   explicit NodeDistance(const Query& query)
@@ -30,7 +33,7 @@ class NodeDistance {
     const Vector3d between = offset_a_ + a.center_body - a_from_b_ * b.center_body;   // axes of A
     const double balls = between.norm() - a.radius - b.radius;
     if (balls > enough) return balls;
-    // To the box with A's axes around B's box, and the other way round.
+    // To the box with A's axes around B's box, and vice versa.
     const Vector3d out_a = (between.cwiseAbs() - a.half_extents_body - absolute_ * b.half_extents_body).cwiseMax(0.0);
     const Vector3d out_b = ((a_from_b_.transpose() * between).cwiseAbs() - b.half_extents_body - absolute_.transpose() * a.half_extents_body).cwiseMax(0.0);
     return std::max(balls, std::sqrt(std::max(out_a.squaredNorm(), out_b.squaredNorm())));
@@ -43,7 +46,8 @@ class NodeDistance {
   Vector3d offset_a_;
 };
 
-// Calls visit(piece_a, piece_b) for every pair whose bound is within reach(), which may shrink between calls; near ones first.
+// Calls visit_pair(piece_a, piece_b) for every pair whose bound is within reach(), which may shrink
+// between calls; near pairs first.
 template <class Reach, class Visit>
 void visit(const Query& query, Reach&& reach, Visit&& visit_pair) {
   struct Entry {
@@ -64,7 +68,7 @@ void visit(const Query& query, Reach&& reach, Visit&& visit_pair) {
       visit_pair(a.piece, b.piece);
       continue;
     }
-    // The larger ball is opened; the nearer of its two children is looked at first.
+    // Descends into the node with the larger ball, first into the nearer child.
     const bool open_a = b.piece >= 0 || (a.piece < 0 && a.radius >= b.radius);
     const auto entry = [&](int i, int j) { return Entry{distance(i, j, enough), i, j}; };
     Entry first = open_a ? entry(a.first_child, top.node_b) : entry(top.node_a, b.first_child);
@@ -75,13 +79,13 @@ void visit(const Query& query, Reach&& reach, Visit&& visit_pair) {
   }
 }
 
-// Keeps the nearest of the pairs that it is shown, whatever their order.
+// Keeps the nearest of the pairs tested, independent of their order.
 class Nearest {
  public:
   Nearest(const Query& query, double limit, Points points) : query_(query), limit_(limit), rounding_(rounding(query)), points_(points) {}
 
   double reach() const { return std::max(std::min(limit_, best_.gap.distance), 0.0) + rounding_; }
-  void look_at(int i, int j) {
+  void test(int i, int j) {
     const PolytopeGap found = polytope_gap(query_.piece_of_a(i), query_.piece_of_b(j), query_.size, reach(), points_);
     if (found.beyond || found.distance > limit_) return;
     const bool first = std::pair(i, j) < std::pair(best_.piece_a, best_.piece_b);
@@ -96,7 +100,7 @@ class Nearest {
   NearestPieces best_;
 };
 
-// How much nearer any two points of the solids may have come since the cache was filled.
+// Bound on the decrease of any distance between points of the solids since the cache was filled.
 double moved_since(const Query& query, const PairCache& cache) {
   const Matrix3d a_from_b = query.rotation_a.transpose() * query.rotation_b;
   const double turn = (a_from_b - cache.a_from_b).norm() / std::sqrt(2.0);   // largest |(R - R') x| / |x|
@@ -107,7 +111,7 @@ double moved_since(const Query& query, const PairCache& cache) {
 
 bool one_pair(const Query& query) { return query.a.pieces().size() == 1 && query.b.pieces().size() == 1; }
 
-// Fills the cache where that promises to pay.
+// Fills the cache, unless it did not pay the last time.
 void fill(const Query& query, double reach, PairCache& cache) {
   if (cache.unused > 0) {
     --cache.unused;
@@ -119,14 +123,14 @@ void fill(const Query& query, double reach, PairCache& cache) {
     return;
   }
   const double size = std::min(query.a.bounding_radius(), query.b.bounding_radius());
-  const double apart = reach - query.a.radius() - query.b.radius();   // pieces are cores: balls touch when they are a radius apart
+  const double apart = reach - query.a.radius() - query.b.radius();   // pieces are cores without the rounding radius
   cache.reach = reach + std::max(kSkin * size, 0.5 * apart);
   cache.served = 0;
   cache.near.clear();
-  const double looked = cache.reach + rounding(query);
-  visit(query, [&] { return looked; }, [&](int i, int j) {
-    const PolytopeGap gap = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size, looked, Points::kUnwanted);
-    if (!gap.beyond && gap.distance <= looked) cache.near.push_back({i, j, gap.distance});
+  const double widened_reach = cache.reach + rounding(query);
+  visit(query, [&] { return widened_reach; }, [&](int i, int j) {
+    const PolytopeGap gap = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size, widened_reach, Points::kUnwanted);
+    if (!gap.beyond && gap.distance <= widened_reach) cache.near.push_back({i, j, gap.distance});
   });
   std::sort(cache.near.begin(), cache.near.end(), [](const PairCache::Near& p, const PairCache::Near& q) { return std::pair(p.piece_a, p.piece_b) < std::pair(q.piece_a, q.piece_b); });
   cache.a_from_b = query.rotation_a.transpose() * query.rotation_b;
@@ -134,15 +138,16 @@ void fill(const Query& query, double reach, PairCache& cache) {
   cache.a_in_b = query.rotation_b.transpose() * query.offset;
 }
 
-// Shows the pairs of the cache, the nearest of then first. @return whether no other pair is nearer than what was found
-bool look_in_cache(const Query& query, double limit, PairCache& cache, Nearest& nearest) {
+// Tests the pairs of the cache, the formerly nearest first. @return whether the result is certain:
+// no pair outside the cache is nearer
+bool search_cache(const Query& query, double limit, PairCache& cache, Nearest& nearest) {
   if (cache.reach < 0) return false;
   const double moved = moved_since(query, cache), certain = cache.reach - moved;
   if (certain < 0) return false;
   const auto first = std::min_element(cache.near.begin(), cache.near.end(), [](const PairCache::Near& p, const PairCache::Near& q) { return p.distance < q.distance; });
-  if (first != cache.near.end()) nearest.look_at(first->piece_a, first->piece_b);
+  if (first != cache.near.end()) nearest.test(first->piece_a, first->piece_b);
   for (auto near = cache.near.begin(); near != cache.near.end(); ++near)
-    if (near != first && near->distance - moved <= nearest.reach()) nearest.look_at(near->piece_a, near->piece_b);
+    if (near != first && near->distance - moved <= nearest.reach()) nearest.test(near->piece_a, near->piece_b);
   return std::min(limit, nearest.best().gap.distance) + rounding(query) < certain;
 }
 
@@ -150,7 +155,7 @@ bool look_in_cache(const Query& query, double limit, PairCache& cache, Nearest& 
 
 PolytopeGap convex_gap(const Query& query, double limit, PairCache* cache, Points points) {
   const PlacedPolytope a = query.piece_of_a(0), b = query.piece_of_b(0);
-  // A bound that is beyond all rounding: without it the answer would be the same.
+  // Above the limit by more than rounding: without the cached axis the answer would be the same.
   const double certain = std::max(limit, 0.0) + rounding(query);
   if (cache && !cache->apart_along_body_a.isZero(0.0)) {
     const Vector3d axis = query.rotation_a * cache->apart_along_body_a;
@@ -167,11 +172,11 @@ NearestPieces nearest_pieces(const Query& query, double limit, PairCache* cache,
     const PolytopeGap gap = convex_gap(query, limit, cache, points);
     return gap.beyond || gap.distance > limit ? NearestPieces{} : NearestPieces{0, 0, gap};
   }
-  if (cache && look_in_cache(query, limit, *cache, nearest)) {
+  if (cache && search_cache(query, limit, *cache, nearest)) {
     ++cache->served;
     return nearest.best();
   }
-  visit(query, [&] { return nearest.reach(); }, [&](int i, int j) { nearest.look_at(i, j); });
+  visit(query, [&] { return nearest.reach(); }, [&](int i, int j) { nearest.test(i, j); });
   const double size = std::min(query.a.bounding_radius(), query.b.bounding_radius()), touch = query.a.radius() + query.b.radius();
   if (cache && nearest.best().gap.distance < touch + kSkin * size) fill(query, std::max(nearest.best().gap.distance, touch), *cache);
   return nearest.best();
@@ -183,13 +188,13 @@ std::vector<std::pair<int, int>> pieces_within(const Query& query, double reach,
     pairs.emplace_back(0, 0);
     return pairs;
   }
-  const double looked = reach + rounding(query);
+  const double widened_reach = reach + rounding(query);
   const auto from_cache = [&] {
     if (!cache || cache->reach < 0) return false;
     const double moved = moved_since(query, *cache);
-    if (looked + moved > cache->reach) return false;
+    if (widened_reach + moved > cache->reach) return false;
     for (const PairCache::Near& near : cache->near)
-      if (near.distance - moved <= looked) pairs.emplace_back(near.piece_a, near.piece_b);
+      if (near.distance - moved <= widened_reach) pairs.emplace_back(near.piece_a, near.piece_b);
     ++cache->served;
     return true;
   };
@@ -197,11 +202,11 @@ std::vector<std::pair<int, int>> pieces_within(const Query& query, double reach,
   if (cache) {
     fill(query, reach, *cache);
     if (from_cache()) {
-      cache->served = 0;   // by the question that filled it
+      cache->served = 0;   // the query that filled it does not count
       return pairs;
     }
   }
-  visit(query, [&] { return looked; }, [&](int i, int j) { pairs.emplace_back(i, j); });
+  visit(query, [&] { return widened_reach; }, [&](int i, int j) { pairs.emplace_back(i, j); });
   std::sort(pairs.begin(), pairs.end());
   return pairs;
 }

@@ -1,4 +1,4 @@
-/// Finds the pairs of convex pieces of two solids that are near each other. Internal to collision.
+/// Finds the near pairs of convex pieces of two solids. Internal to collision.
 #pragma once
 
 #include <limits>
@@ -11,8 +11,8 @@
 
 namespace tumble::collision {
 
-/// Two solids in the frame of a query: origin at B's centre of mass, axes of the world, so that a pair far from the world's
-/// origin loses no digits.
+/// Two solids in the frame of a query: origin at B's centre of mass, axes of the world. A pair far
+/// from the world's origin loses no digits.
 struct Query {
   const CollisionShape& a;
   const CollisionShape& b;
@@ -29,20 +29,22 @@ struct Query {
   PlacedPolytope piece_of_b(int j) const { return {&b.pieces()[j], rotation_b, Vector3d::Zero()}; }
 };
 
-/// The pair of pieces that are nearest to each other; of equals, the first. @pre neither solid is a half-space
+/// The nearest pair of pieces; of equals, the first.
+/// @pre neither solid is a half-space
 struct NearestPieces {
-  int piece_a = -1, piece_b = -1;   // -1: all are farther than the limit
+  int piece_a = -1, piece_b = -1;   // -1: all are farther apart than the limit
   PolytopeGap gap{std::numeric_limits<double>::infinity(), Vector3d::Zero(), Vector3d::Zero(), Vector3d::UnitZ()};
 };
-/// @param limit  farther pairs are of no interest [m]
+/// @param limit  pairs farther apart are ignored [m]
 /// @param cache  may be null
-/// @param points whether the nearest points are asked for, too
+/// @param points whether the nearest points are needed too
 NearestPieces nearest_pieces(const Query& query, double limit, PairCache* cache, Points points);
 
-/// The gap of two solids of one piece each, as polytope_gap gives it. @param limit, cache, points  as above
+/// The gap of two solids of one piece each, from polytope_gap.
+/// @param limit, cache, points  as above
 PolytopeGap convex_gap(const Query& query, double limit, PairCache* cache, Points points);
 
-/// Pairs of pieces that may be within `reach` of each other, sorted: all that are, and some that are not.
+/// Pairs of pieces that may be within `reach` of each other, sorted: all that are, and some others.
 std::vector<std::pair<int, int>> pieces_within(const Query& query, double reach, PairCache* cache);
 
 }  // namespace tumble::collision

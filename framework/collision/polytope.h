@@ -1,4 +1,5 @@
-/// A convex polytope prepared once for questions about it, and where it stands now. Knows points only: no radii.
+/// A convex polytope prepared for queries, and the same in its current pose. Without rounding
+/// radius.
 #pragma once
 
 #include <array>
@@ -9,31 +10,32 @@
 
 namespace tumble::collision {
 
-/// The convex hull of a few points, with the directions that can separate it from another. Body frame.
+/// The convex hull of a few points, with its possible separating axes. Body frame.
 struct Polytope {
   std::vector<Vector3d> vertices;          // at least one [m]
-  std::vector<Vector3d> face_normals;      // unit, outward; a flat triangle has both sides and its three rims
+  std::vector<Vector3d> face_normals;      // unit, outward; a flat triangle has its two faces and its three sides
   std::vector<Vector3d> edge_directions;   // unit, each direction once
   std::vector<std::pair<int, int>> edges;  // of vertices, each once
 
-  // Worked out from these by `prepare`.
+  // Computed from these by `prepare`.
   using Lanes = double __attribute__((vector_size(16)));
-  using Columns = std::array<Lanes, 3>;     // x, y and z of two vertices: one instruction works on both
-  std::vector<Columns> columns;            // the last vertex again up to a multiple of four
+  using Columns = std::array<Lanes, 3>;     // x, y and z of two vertices, for SIMD instructions
+  std::vector<Columns> columns;            // padded with the last vertex to a multiple of four
   std::vector<double> arms;                // distance of each vertex from the origin [m]
   std::vector<double> face_offsets;        // largest normal . vertex [m]
   std::vector<int> first_neighbour;        // neighbours of vertex i: from first_neighbour[i] to first_neighbour[i + 1]
   std::vector<int> neighbours;
 
   void prepare();
-  /// The vertex that lies lowest along a direction, of equal ones the first. @param height  where it lies [m]
+  /// The lowest vertex along a direction; of equal ones the first.
+  /// @param height  [out] its height [m]
   int lowest(const Vector3d& direction, double& height) const;
 
  private:
   int lowest_of_many(const Vector3d& direction, double& height) const;
 };
 
-/// A polytope where it stands now, in the frame of a query.
+/// A polytope in its current pose, in the frame of a query.
 struct PlacedPolytope {
   const Polytope* polytope;
   Matrix3d query_from_body;
@@ -42,7 +44,7 @@ struct PlacedPolytope {
   Vector3d vertex(int i) const { return query_from_body * polytope->vertices[i] + translation; }
   int size() const { return static_cast<int>(polytope->vertices.size()); }
   Vector3d in_body(const Vector3d& d) const { return {query_from_body.col(0).dot(d), query_from_body.col(1).dot(d), query_from_body.col(2).dot(d)}; }
-  /// Index of the vertex that lies lowest along a direction.
+  /// Index of the lowest vertex along a direction.
   int lowest(const Vector3d& direction) const {
     double height;
     return polytope->lowest(in_body(direction), height);
@@ -54,7 +56,7 @@ struct PlacedPolytope {
   }
 };
 
-/// min over A of n.a minus max over B of n.b: how far the two lie apart along `n`. [m]
+/// Separation along `n`: min over A of n.a minus max over B of n.b. [m]
 double separation_along(const PlacedPolytope& a, const PlacedPolytope& b, const Vector3d& normal_b_to_a);
 
 }  // namespace tumble::collision

@@ -11,16 +11,20 @@
 namespace tumble::collision {
 namespace {
 
-// Below this part of the size, the direction between the nearest points carries fewer than ten digits: axes take over.
+// Relative to the size: at smaller distances the direction between the nearest points has fewer
+// than ten digits, and axes are used.
 constexpr double kNearZone = 1e-6;
-// Vertices within this part of the size of the foremost face the other body together: a face that leans by 1e-9 lies flat.
+// Relative to the size: vertices within this distance of the foremost one face the other body too.
+// A face tilted by 1e-9 counts as flat.
 constexpr double kFacing = 1e-9;
-// Of the size: nearer than this, nearest points tell nothing that an axis does not tell better.
+// Relative to the size: at smaller distances an axis is always more accurate than the nearest
+// points.
 constexpr double kTrusted = 1e-13;
-// As many pairs of edges are tried faster than they are chosen from: boxes and triangles.
+// Up to this many pairs of edges, testing all is faster than selecting: boxes and triangles.
 constexpr std::size_t kFewPairs = 32;
-// Angles (rad) within which the axis lies whose direction the expanding polytope gave: as a rule; where its facets were slivers.
-constexpr double kLooks[] = {1e-7, 1e-3};
+// Angles (rad) around the direction from the expanding polytope algorithm within which the axis is
+// searched: usually, and where facets are slivers.
+constexpr double kSearchAngles[] = {1e-7, 1e-3};
 
 PolytopeGap from_simplex(const PlacedPolytope& a, const PlacedPolytope& b, const GjkResult& found) {
   PolytopeGap gap;
@@ -47,11 +51,12 @@ bool has_few_axes(const PlacedPolytope& a, const PlacedPolytope& b) {
   return a.polytope->edge_directions.size() * b.polytope->edge_directions.size() <= kFewPairs;
 }
 
-// For two that touch or overlap: bounded from above by the face of their difference that is least deep.
+// For touching or overlapping solids. The nearest face of A - B is an upper bound of the
+// separation.
 Axis axis_of_overlap(const PlacedPolytope& a, const PlacedPolytope& b, const Simplex& simplex, double size) {
   if (has_few_axes(a, b)) return best_axis(a, b, size);
   if (const auto bound = expand(a, b, simplex, size)) {
-    for (const double look : kLooks) {
+    for (const double look : kSearchAngles) {
       const Axis axis = best_axis_near(a, b, bound->normal_b_to_a, look, size);
       if (axis.separation >= bound->separation - 32 * kEpsilon * size) return axis;
     }
@@ -67,11 +72,12 @@ PolytopeGap polytope_gap(const PlacedPolytope& a, const PlacedPolytope& b, doubl
   if (found.verdict == Apartness::kApart) {
     const PolytopeGap gap = from_simplex(a, b, found);
     if (gap.distance > kNearZone * size) return gap;
-    // What rounding has made of the direction between the nearest points.
+    // Rounding error of the direction between the nearest points.
     const double angle = std::min(1e-2, std::max(1e-7, 16 * kEpsilon * size / gap.distance));
     const Axis axis = best_axis_near(a, b, gap.normal_b_to_a, angle, size);
     if (axis.separation * (1 + 1e-9) + 16 * kEpsilon * size >= gap.distance) return from_axis(a, b, axis, size, points);
-    // Corner against corner, or corner against edge: no axis of faces and edges measures their distance, the algorithm does.
+    // Corner against corner, or corner against edge: their distance lies along no axis of faces and
+    // edges, so the GJK distance is used.
     if (gap.distance > kTrusted * size) return gap;
   }
   const Axis axis = axis_of_overlap(a, b, found.simplex, size);

@@ -5,7 +5,7 @@
 namespace tumble::collision {
 namespace {
 
-// The part of a simplex that holds its nearest point.
+// The face of a simplex that contains its nearest point.
 struct Part {
   int size;
   std::array<int, 3> at;
@@ -41,12 +41,13 @@ Part nearest_on_triangle(const Simplex& s, int i, int j, int k) {
   if (vb <= 0 && d2 >= 0 && d6 <= 0) return nearest_on_segment(s, i, k);
   if (va <= 0 && d4 - d3 >= 0 && d5 - d6 >= 0) return nearest_on_segment(s, j, k);
   const double sum = va + vb + vc;
-  if (!(sum > 0)) return nearest_on_segment(s, i, j);  // a sliver: its face adds nothing to its edges
+  if (!(sum > 0)) return nearest_on_segment(s, i, j);  // a sliver: its edges cover it
   const double u = va / sum, v = vb / sum, w = vc / sum;
   return {3, {i, j, k}, {u, v, w}, u * a + v * b + w * c};
 }
 
-// The nearest point lies on a face that the origin is outside of; where there is none, the origin is inside.
+// The nearest point lies on a face with the origin on its outer side; where no face has, the origin
+// is inside.
 bool nearest_on_tetrahedron(const Simplex& s, Part& best) {
   constexpr int kFaces[4][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 3, 2, 0}};
   double best_distance = std::numeric_limits<double>::infinity();
@@ -80,7 +81,8 @@ Vector3d reduce_to_nearest(Simplex& simplex) {
   } else if (!nearest_on_tetrahedron(simplex, part)) {
     return Vector3d::Zero();
   }
-  // The indices ascend but for a face of a tetrahedron: its points are taken out before they are overwritten.
+  // The indices of a tetrahedron's face may not ascend: copy the points before they are
+  // overwritten.
   const std::array<DifferencePoint, 3> kept{simplex.points[part.at[0]], simplex.points[part.at[1]], simplex.points[part.at[2]]};
   simplex.size = part.size;
   for (int i = 0; i < part.size; ++i) {

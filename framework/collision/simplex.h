@@ -7,7 +7,7 @@
 
 namespace tumble::collision {
 
-/// A corner of the Minkowski difference, and which vertices of A and B it came from.
+/// A corner of the Minkowski difference, and the vertices of A and B that it comes from.
 struct DifferencePoint {
   Vector3d difference;   // a - b
   int vertex_a, vertex_b;
@@ -19,8 +19,10 @@ struct Simplex {
   int size = 0;
 };
 
-/// Reduces a simplex to the smallest face that holds its point nearest to the origin, and sets the weights.
-/// @return the nearest point; exactly zero, with the simplex left whole, where four points enclose the origin
+/// Reduces a simplex to the smallest face that contains its point nearest to the origin, and sets
+/// the weights.
+/// @return the nearest point; exactly zero, with the simplex unchanged, where four points enclose
+///   the origin
 /// Source: C. Ericson, Real-Time Collision Detection, 2005, sec. 5.1.
 Vector3d reduce_to_nearest(Simplex& simplex);
 

@@ -7,7 +7,7 @@
 namespace tumble::collision {
 namespace {
 
-constexpr int kLeaf = 4;   // boxes in a leaf: as many are tried faster than they are divided
+constexpr int kLeaf = 4;   // boxes in a leaf: testing so few is faster than another split
 
 struct Leaf {
   Vector3d low, high;
@@ -16,11 +16,12 @@ struct Leaf {
 };
 
 bool share_a_point(const Vector3d& low_a, const Vector3d& high_a, const Vector3d& low_b, const Vector3d& high_b) {
-  // All six without a branch: which of them tells two boxes apart cannot be foreseen.
+  // All six comparisons without a branch, because a branch could not be predicted.
   return (low_a.x() <= high_b.x()) & (low_b.x() <= high_a.x()) & (low_a.y() <= high_b.y()) & (low_b.y() <= high_a.y()) & (low_a.z() <= high_b.z()) & (low_b.z() <= high_a.z());
 }
 
-// A tree of boxes around boxes, built anew for each question: halves along the axis on which the middles are spread most.
+// A tree of bounding boxes, rebuilt for each query: split in halves along the axis of largest
+// extent of the centres.
 class BoxTree {
  public:
   BoxTree(std::vector<Leaf>& leaves, std::vector<std::pair<int, int>>& pairs) : leaves_(leaves), pairs_(pairs) {
@@ -34,13 +35,13 @@ class BoxTree {
   struct Node {
     Vector3d low, high;
     int begin, end;
-    int second_child;   // the first stands behind its parent; 0: a leaf
+    int second_child;   // 0: a leaf. The first child follows its parent
     bool can_move;
   };
 
   int build(int begin, int end) {
     Node node{leaves_[begin].low, leaves_[begin].high, begin, end, 0, false};
-    Vector3d first = node.low + node.high, last = first;   // twice the middles
+    Vector3d first = node.low + node.high, last = first;   // twice the centres
     for (int k = begin; k < end; ++k) {
       const Leaf& leaf = leaves_[k];
       node.low = node.low.cwiseMin(leaf.low);
@@ -102,7 +103,8 @@ class BoxTree {
   std::vector<Node> nodes_;
 };
 
-// By the first index by counting, by the second within it: the pairs of one box are few.
+// Counting sort by the first index, then an ordinary sort by the second: the pairs of one box are
+// few.
 std::vector<std::pair<int, int>> sorted(const std::vector<std::pair<int, int>>& pairs, std::size_t n) {
   std::vector<int> place(n + 1, 0);
   for (const auto& pair : pairs) ++place[pair.first + 1];
@@ -118,24 +120,24 @@ std::vector<std::pair<int, int>> sorted(const std::vector<std::pair<int, int>>& 
   return result;
 }
 
-// Boxes without end would make every box around them endless.
-bool has_an_end(const SweptBox& box) { return std::isfinite((box.high - box.low).sum()); }
+// Infinite boxes are kept out of the tree: they would make all their ancestors infinite.
+bool is_finite(const SweptBox& box) { return std::isfinite((box.high - box.low).sum()); }
 
 }  // namespace
 
 std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<SweptBox>& boxes) {
   std::vector<std::pair<int, int>> pairs;
   std::vector<Leaf> leaves;
-  std::vector<int> endless;
+  std::vector<int> infinite;
   leaves.reserve(boxes.size());
   for (int i = 0; i < static_cast<int>(boxes.size()); ++i) {
-    if (has_an_end(boxes[i])) leaves.push_back({boxes[i].low, boxes[i].high, i, boxes[i].can_move});
-    else endless.push_back(i);
+    if (is_finite(boxes[i])) leaves.push_back({boxes[i].low, boxes[i].high, i, boxes[i].can_move});
+    else infinite.push_back(i);
   }
-  for (const int i : endless)
+  for (const int i : infinite)
     for (int j = 0; j < static_cast<int>(boxes.size()); ++j) {
       const SweptBox &a = boxes[i], &b = boxes[j];
-      if (j == i || (j < i && !has_an_end(b)) || !(a.can_move || b.can_move)) continue;
+      if (j == i || (j < i && !is_finite(b)) || !(a.can_move || b.can_move)) continue;
       if (share_a_point(a.low, a.high, b.low, b.high)) pairs.emplace_back(std::min(i, j), std::max(i, j));
     }
   BoxTree(leaves, pairs);

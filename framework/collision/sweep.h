@@ -1,4 +1,4 @@
-/// Broad phase: which bodies can come near each other during a step, by the boxes that they sweep.
+/// Broad phase: which bodies can come near each other during a step, by their swept boxes.
 #pragma once
 
 #include <utility>
@@ -8,14 +8,15 @@
 
 namespace tumble::collision {
 
-/// Axis-aligned box around all that a body sweeps in a step. World frame.
+/// Axis-aligned box around the volume that a body sweeps in a step. World frame.
 struct SweptBox {
   Vector3d low, high;   // [m]
-  bool can_move;        // two that cannot are no pair
+  bool can_move;        // two bodies that cannot move are not a pair
 };
 
-/// Pairs (i, j), i < j, of boxes that share a point, at least one of which can move; sorted.
-/// Cost: O(n log n + pairs) where boxes are of similar size or few are large; boxes without end are tried with every other.
+/// Pairs (i, j), i < j, of overlapping or touching boxes, at least one of which can move; sorted.
+/// Cost: O(n log n + pairs) where boxes are of similar size or few are large; infinite boxes are
+/// tested against every other box.
 std::vector<std::pair<int, int>> overlapping_pairs(const std::vector<SweptBox>& boxes);
 
 }  // namespace tumble::collision

@@ -13,32 +13,33 @@ namespace tumble::collision {
 namespace {
 
 
-// One vertex of (E.1): height over the supporting plane, rate along the normal, and half the bound on its acceleration.
+// One vertex of (E.1): height over the supporting plane, rate along the normal, and half the bound
+// on its acceleration.
 struct VertexLine {
-  double height, rate, bend;
-  double at(double t) const { return height + (rate - bend * t) * t; }
+  double height, rate, half_acceleration;
+  double at(double t) const { return height + (rate - half_acceleration * t) * t; }
 };
 
 using VertexLines = InlineVector<VertexLine, 32>;
 
-// Largest acceleration that turning gives an arm of 1 m. [1/s^2]
-double bend_of_turning(const MotionBounds& bounds) { return bounds.angular_acceleration + bounds.angular_speed * (bounds.angular_speed + bounds.angular_velocity_error); }
+// Largest acceleration by rotation, per length of the arm. [1/s^2]
+double acceleration_by_rotation(const MotionBounds& bounds) { return bounds.angular_acceleration + bounds.angular_speed * (bounds.angular_speed + bounds.angular_velocity_error); }
 
 // Lines of all vertices of a piece of a body. `side` is +1 for A (heights along n) and -1 for B (heights along -n).
 void collect_lines(const PlacedPolytope& piece, const MotionState& state, const MotionBounds& bounds, const Vector3d& n, double side, VertexLines& lines) {
   lines.clear();
   const Polytope& p = *piece.polytope;
-  const double bend_of_arm = 0.5 * bend_of_turning(bounds);
+  const double half_acceleration_of_arm = 0.5 * acceleration_by_rotation(bounds);
   const Vector3d up = piece.in_body(side * n), turn = piece.in_body(side * n.cross(state.omega_world));  // n . (w x r) = (n x w) . r
   double lowest;
   p.lowest(up, lowest);
   for (int i = 0; i < piece.size(); ++i)
-    lines.push_back({up.dot(p.vertices[i]) - lowest, turn.dot(p.vertices[i]) - bounds.angular_velocity_error * p.arms[i], bend_of_arm * p.arms[i]});
+    lines.push_back({up.dot(p.vertices[i]) - lowest, turn.dot(p.vertices[i]) - bounds.angular_velocity_error * p.arms[i], half_acceleration_of_arm * p.arms[i]});
 }
 
 double lowest_at(const VertexLines& lines, double t, const VertexLine*& line) {
   double lowest = kInfinity;
-  line = lines.begin();   // of a motion that is no longer finite none is lowest
+  line = lines.begin();   // kept where all heights are NaN
   for (const VertexLine& candidate : lines) {
     const double value = candidate.at(t);
     if (value < lowest) {
@@ -49,12 +50,13 @@ double lowest_at(const VertexLines& lines, double t, const VertexLine*& line) {
   return lowest;
 }
 
-// Largest t up to `horizon` with (E.1) holding on [0, t]: from the right, always to the first root of the pair that is lowest.
-// Every pair's curve must bend down or be straight, so that one above zero at t was never below it before.
+// Largest t up to `horizon` with (E.1) on [0, t]: starts at the horizon and moves back to the first
+// root of the lowest pair. Requires every pair's curve to be concave, so that a curve above zero at
+// t was never below zero before.
 double duration_of_lines(double gap, double rate, double half_acceleration, const VertexLines& a,
                          const VertexLines& b, double horizon) {
   if (a.size() == 1 && b.size() == 1) {
-    return std::min(horizon, first_root_of_quadratic(gap, rate + a[0].rate + b[0].rate, half_acceleration - a[0].bend - b[0].bend));
+    return std::min(horizon, first_root_of_quadratic(gap, rate + a[0].rate + b[0].rate, half_acceleration - a[0].half_acceleration - b[0].half_acceleration));
   }
   half_acceleration = std::min(half_acceleration, 0.0);
   double t = horizon;
@@ -62,14 +64,14 @@ double duration_of_lines(double gap, double rate, double half_acceleration, cons
     const VertexLine *va, *vb;
     if (gap + lowest_at(a, t, va) + lowest_at(b, t, vb) + (rate + half_acceleration * t) * t > 0) return t;
     const double root = first_root_of_quadratic(gap + va->height + vb->height, rate + va->rate + vb->rate,
-                                                half_acceleration - va->bend - vb->bend);
+                                                half_acceleration - va->half_acceleration - vb->half_acceleration);
     if (!(root < t)) return t;
     t = root;
   }
   return 0.0;
 }
 
-// Two balls whose centres move straight against each other: the first root of |d + u t|^2 = r^2, exactly.
+// Two balls with centres in straight relative motion: the first root of |d + u t|^2 = r^2.
 double duration_of_balls(const Vector3d& d, const Vector3d& u, double gap, double radius) {
   const double approach = d.dot(u);
   if (approach >= 0) return kInfinity;
@@ -129,33 +131,33 @@ TimeBound bound_time_apart(const CollisionShape& a, const MotionState& state_a, 
       bound.gap = gap_distance(a, state_a.pose, b, state_b.pose);
       bound.duration = duration_of_ellipsoid(*a.ellipsoid(), body_from_world * n, body_from_world * n.cross(state_a.omega_world),
                                              {std::max(bound.gap, 0.0), n.dot(relative.velocity) - bounds_a.angular_velocity_error * arm,
-                                              0.5 * (n.dot(relative.acceleration) - relative.deviation - bend_of_turning(bounds_a) * arm)},
+                                              0.5 * (n.dot(relative.acceleration) - relative.deviation - acceleration_by_rotation(bounds_a) * arm)},
                                              horizon);
       return bound;
     }
     collect_lines({&a.corners(), query.rotation_a, query.offset}, state_a, bounds_a, n, 1.0, lines_a);
-    lines_b.push_back({0.0, 0.0, 0.0});   // nothing turns
+    lines_b.push_back({0.0, 0.0, 0.0});   // a half-space does not rotate
     along(gap_distance(a, state_a.pose, b, state_b.pose), n, lines_b);
     return bound;
   }
   const double turning = 1.0 + 1e-12;  // the bounding radii are rounded
   relative.turning_reach = turning * ((a.bounding_radius() - a.radius()) * (bounds_a.angular_speed + bounds_a.angular_velocity_error) +
                                       (b.bounding_radius() - b.radius()) * (bounds_b.angular_speed + bounds_b.angular_velocity_error));
-  const auto look_at = [&](int i, int j, const PolytopeGap& found) {
+  const auto shorten_by_pair = [&](int i, int j, const PolytopeGap& found) {
     collect_lines(query.piece_of_a(i), state_a, bounds_a, found.normal_b_to_a, 1.0, lines_a);
     collect_lines(query.piece_of_b(j), state_b, bounds_b, found.normal_b_to_a, -1.0, lines_b);
     along(found.distance - radius, found.normal_b_to_a, lines_b);
   };
-  // The nearest pair first: the sooner it may touch, the fewer others can touch before.
+  // The nearest pair first: the shorter its bound, the fewer other pairs can touch before.
   const NearestPieces nearest = nearest_pieces(query, relative.reach(horizon) + radius, cache, Points::kUnwanted);
   if (nearest.piece_a < 0) return bound;
-  look_at(nearest.piece_a, nearest.piece_b, nearest.gap);
+  shorten_by_pair(nearest.piece_a, nearest.piece_b, nearest.gap);
   if (!a.is_closed_surface() && !b.is_closed_surface()) return bound;
   for (const auto& [i, j] : pieces_within(query, relative.reach(bound.duration) + radius, cache)) {
     if (i == nearest.piece_a && j == nearest.piece_b) continue;
     const double limit = relative.reach(bound.duration) + radius;
     const PolytopeGap found = polytope_gap(query.piece_of_a(i), query.piece_of_b(j), query.size, limit, Points::kUnwanted);
-    if (!found.beyond && found.distance <= limit) look_at(i, j, found);
+    if (!found.beyond && found.distance <= limit) shorten_by_pair(i, j, found);
   }
   return bound;
 }

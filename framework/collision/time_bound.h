@@ -1,14 +1,16 @@
-/// How long two moving solids certainly stay apart: a lower bound on the time of impact.
+/// A lower bound on the time of impact: how long two moving solids certainly stay apart.
 ///
-/// For a pair of convex pieces that are `gap` apart along the unit normal n (from B to A), every vertex a of A stays above every
-/// vertex b of B along the fixed direction n while
+/// For a pair of convex pieces at the distance `gap` along the unit normal n (from B to A), every
+/// vertex a of A stays above every vertex b of B along the fixed direction n while
 ///   gap + h_a + h_b + (n.u + n.(w_A x r_a) - n.(w_B x r_b)) tau + (n.a_rel - A_a - A_b) tau^2 / 2 > 0        (E.1)
-/// where h are the heights of the vertices over the supporting planes, u and a_rel the relative velocity and acceleration of the
-/// centres, r the arms from them, and A = (|alpha| + |w| (|w| + e)) |r| the most that turning can bend a vertex's path. A numerical
-/// path turns at w + e, w the angular velocity that its states say: the rate of an arm is w x r + e x r, of which the second part is
-/// taken at its largest, |e| |r|, and the first changes by alpha x r + w x ((w + e) x r). The piece pairs of solids that are not
-/// convex are all looked at that can come near within the bound.
-/// Of an ellipsoid over a half-space all points of the surface are looked at together, by its support function (ellipsoid.h).
+/// where h are the heights of the vertices over the supporting planes, u and a_rel the relative
+/// velocity and acceleration of the centres, r the arms from them, and A = (|alpha| + |w| (|w| +
+/// e)) |r| the largest acceleration of a vertex by rotation. A numerical path rotates at w + e,
+/// where w is the angular velocity in its states: the rate of an arm is w x r + e x r. The second
+/// term is bounded by |e| |r|; the first changes at the rate alpha x r + w x ((w + e) x r). For
+/// solids that are not convex, every pair of pieces that can come near within the bound is tested.
+/// For an ellipsoid over a half-space, the support function covers all points of the surface at
+/// once (ellipsoid.h).
 /// Source: B. Mirtich, Impulse-based Dynamic Simulation of Rigid Body Systems, PhD thesis, Berkeley 1996, ch. 2, extended to
 /// arms of single vertices.
 #pragma once
@@ -19,8 +21,8 @@
 namespace tumble::collision {
 
 struct TimeBound {
-  double duration;   // [s], in [0, horizon]: no contact before; exactly the horizon where none can happen in it
-  double gap;        // [m]: of the nearest pieces; infinite where all are too far to touch before the horizon
+  double duration;   // [s], in [0, horizon]: no contact before; exactly the horizon where none is possible before it
+  double gap;        // [m]: of the nearest pieces; infinite where all are too far apart to touch before the horizon
 };
 
 /// @param horizon  [s], >= 0: how far ahead to look; the motion bounds must hold that long

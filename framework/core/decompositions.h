@@ -1,4 +1,5 @@
-/// Eigen's decompositions behind plain functions: their templates take seconds of every file that includes them.
+/// Eigen's decompositions behind plain functions: including the templates costs every file seconds
+/// of compile time.
 #pragma once
 
 #include <optional>
@@ -7,7 +8,8 @@
 
 namespace tumble {
 
-/// Of a symmetric matrix: values in ascending order, vectors of length 1 as columns. Only the lower triangle is read.
+/// Eigendecomposition of a symmetric matrix: values in ascending order, unit eigenvectors as
+/// columns. Only the lower triangle is read.
 struct SymmetricEigen3 {
   Vector3d values;
   Matrix3d vectors;
@@ -21,10 +23,11 @@ struct SymmetricEigen {
 /// Cost: O(n^3)
 SymmetricEigen symmetric_eigen(const MatrixXd& matrix);
 
-/// The symmetric root of a symmetric matrix with no negative eigenvalue.
+/// The symmetric square root of a symmetric matrix without negative eigenvalues.
 Matrix3d symmetric_root(const Matrix3d& matrix);
 
-/// Of any matrix, by a complete orthogonal decomposition (Golub and Van Loan, section 5.5): rows may depend on each other.
+/// Moore-Penrose inverse of any matrix, rank-deficient ones too, by a complete orthogonal
+/// decomposition (Golub and Van Loan, section 5.5).
 MatrixXd pseudo_inverse(const MatrixXd& matrix);
 
 /// The X of least norm that minimises |A X - B|, (columns of A) x (columns of B).

@@ -1,4 +1,4 @@
-/// Errors of the framework, by who can repair them (see the table in framework/README.md).
+/// Errors of the framework, by where they can be repaired (see the table in framework/README.md).
 #pragma once
 
 #include <stdexcept>
@@ -6,7 +6,7 @@
 
 namespace tumble {
 
-/// The person at the keyboard can repair it: a file, a flag, a scene. Ends a command with exit code 2.
+/// The user can repair it: a file, a flag, a scene. Ends a command with exit code 2.
 class UserError : public std::runtime_error {
  public:
   /// @param where    file, place in it, or flag
@@ -28,7 +28,8 @@ class PreconditionError : public std::logic_error {
   using std::logic_error::logic_error;
 };
 
-/// Beside an exception: what it tells of stays so however often it is tried again, and with whatever step (time is up, a module is gone).
+/// Second base of an exception: trying again, with any step size, cannot succeed (time is up, a
+/// module is gone).
 class Final {
  public:
   virtual ~Final() = default;

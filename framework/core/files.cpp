@@ -20,7 +20,7 @@ UserError cannot_write(const std::filesystem::path& file, const std::string& rea
           "Is there room on the disk, and may you write to this folder?"};
 }
 
-// Goes away with the draft that it names, unless that was renamed.
+// Removes the draft when it goes out of scope; after the rename there is nothing left to remove.
 struct Draft {
   std::filesystem::path path;
   ~Draft() {
@@ -65,10 +65,11 @@ void sweep_folders_of_the_dead(const std::filesystem::path& where, const std::st
     char* rest = nullptr;
     const long maker = std::strtol(folder.c_str() + name.size(), &rest, 10);
     if (maker <= 0 || *rest != '-' || ::kill(static_cast<pid_t>(maker), 0) == 0 || errno != ESRCH) continue;
-    // Not a link, and held by nobody: a maker in another container has a number that is nobody's here, and its lock.
+    // Neither a link nor locked: a maker in another container has a process id that does not exist
+    // here, but it holds the lock.
     const int fd = ::open(it->path().c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (fd < 0) continue;
-    std::error_code ignored;   // another user's stays
+    std::error_code ignored;   // a folder of another user cannot be removed, and stays
     if (::flock(fd, LOCK_EX | LOCK_NB) == 0) fs::remove_all(it->path(), ignored);
     ::close(fd);
   }

@@ -1,4 +1,5 @@
-/// Files written whole or not at all.
+/// Files that are written whole or not at all, files that are read with limits, and private
+/// temporary folders.
 #pragma once
 
 #include <cstdint>
@@ -10,29 +11,33 @@
 
 namespace tumble {
 
-/// Calls `make(draft)` to write a file beside the one wanted, then renames it: a reader sees the old file or the new one,
-/// never half. The draft keeps the file's extension. Makes missing folders; leaves no draft behind when `make` throws.
+/// Calls `make(draft)` to write a draft in the same folder, then renames the draft to `file`: a
+/// reader sees the old file or the new one, never half of one. The draft keeps the file's
+/// extension. Creates missing folders; leaves no draft behind when `make` throws.
 /// @throws UserError when the file cannot be put in place, and whatever `make` throws
 void make_whole(const std::filesystem::path& file, const std::function<void(const std::filesystem::path& draft)>& make);
 
-/// The same, for bytes at hand.
+/// The same, for bytes in memory.
 /// @throws UserError when the file cannot be written
 void write_whole(const std::filesystem::path& file, std::string_view bytes);
 
-/// All bytes of a file; none where it cannot be read.
+/// All bytes of a file; empty where it cannot be read.
 std::string text_of(const std::filesystem::path& file);
 
-/// The bytes of a plain file: no link (it would show what the one who follows it may see), no device, no pipe that waits for a writer.
-/// @param why  what stands in the way, after the file's name: "is a link; hand in the file itself"
-/// @return nothing where `why` says why not
+/// The bytes of a regular file. Links are refused, because a link would show files that this user
+/// may read and its author may not; so are devices, and pipes, which would wait for a writer.
+/// @param why  [out] why the file is refused, to follow its name in a message: "is a link; hand in
+///   the file itself"
+/// @return nothing where `why` was set
 std::optional<std::string> read_plain_file(const std::filesystem::path& file, std::uint64_t most_bytes, std::string& why);
 
-/// A folder that only this user can enter (mode 0700, a name nobody can foresee), gone with this object. For whatever passes
-/// between two of our processes: in a shared /tmp, a file under a name that can be guessed is anybody's to write. What a killed process
-/// left behind is removed when a later one makes its first.
+/// A folder that only this user can enter (mode 0700, an unpredictable name), removed with this
+/// object. It holds what two of our processes exchange: in a shared /tmp every user can write a
+/// file whose name can be guessed. A folder that a killed process left behind is removed when a
+/// later process creates its first one.
 class PrivateFolder {
  public:
-  /// @throws UserError when it cannot be made
+  /// @throws UserError when it cannot be created
   PrivateFolder();
   PrivateFolder(const PrivateFolder&) = delete;
   PrivateFolder& operator=(const PrivateFolder&) = delete;
@@ -41,14 +46,16 @@ class PrivateFolder {
 
  private:
   std::filesystem::path path_;
-  int alive_ = -1;   // a lock on the folder, which the kernel lets go of when the last process that shares it ends
+  int alive_ = -1;   // holds a lock on the folder, which the kernel releases when the last process that shares the descriptor ends
 };
 
-/// Marks a folder of this process's, so that sweep_folders_of_the_dead leaves it alone. @return a descriptor to close when it may go
+/// Locks a folder of this process, so that sweep_folders_of_the_dead leaves it alone.
+/// @return a descriptor; closing it releases the lock
 int hold_folder(const std::filesystem::path& folder);
 
-/// Removes the folders NAME<process id>-... in `where` whose process is gone without having removed them: those of this user, which
-/// nobody holds. A process id that somebody else has by now keeps a folder; a folder is never taken from a process that lives.
+/// Removes the folders NAME<process id>-... in `where` that belong to this user, are not locked,
+/// and whose process has ended without removing them. A folder stays while another process has the
+/// same id; a folder of a living process is never removed.
 void sweep_folders_of_the_dead(const std::filesystem::path& where, const std::string& name);
 
 }  // namespace tumble

@@ -1,14 +1,15 @@
-/// What a program frees stays with it, for its next request.
+/// Keeps freed memory in the process for its next allocation.
 #pragma once
 
 #include <malloc.h>
 
 namespace tumble {
 
-/// To be called first thing in main. The C library gives every freed block above 128 KiB back to the system, which pages it in anew,
-/// zeroed, at the next request: of a step of a chain of 1,000 rods that was 0.4 of the time.
+/// Call it first in main. The C library returns every freed block above 128 KiB to the system,
+/// which pages it in again, zeroed, at the next allocation: 0.4 of the time of a step of a chain of
+/// 1,000 rods.
 inline void keep_freed_memory() {
-  constexpr int kLargestKept = 32 << 20, kMostKept = 256 << 20;   // [bytes], of a block and at the heap's end
+  constexpr int kLargestKept = 32 << 20, kMostKept = 256 << 20;   // [bytes], of one block and at the end of the heap
   mallopt(M_MMAP_THRESHOLD, kLargestKept);
   mallopt(M_TRIM_THRESHOLD, kMostKept);
 }

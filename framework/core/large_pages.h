@@ -1,5 +1,6 @@
-/// Memory for large arrays that are read here and there: in pages of 2 MiB where the system has them, or a look at a far place would have to
-/// look up where that place is first, in tables that do not fit the cache either.
+/// Memory for large arrays with random access, in pages of 2 MiB where the system has them. With
+/// small pages the page tables do not fit the cache either, and every access to a distant element
+/// first waits for its address translation.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +10,8 @@
 
 namespace tumble {
 
-/// An allocator for std::vector. Measured on a gas of 10^5 balls: 14 us a body and second instead of 25.
+/// An allocator for std::vector. Measured on a gas of 10^5 balls: 14 us per body and simulated
+/// second instead of 25.
 template <class T>
 struct LargePages {
   using value_type = T;
@@ -23,7 +25,7 @@ struct LargePages {
     if (bytes < kPage) return static_cast<T*>(::operator new(bytes, std::align_val_t{alignof(T)}));
     const std::size_t whole = (bytes + kPage - 1) / kPage * kPage;
     void* memory = ::operator new(whole, std::align_val_t{kPage});
-    madvise(memory, whole, MADV_HUGEPAGE);   // a wish: where it is not granted, pages are small
+    madvise(memory, whole, MADV_HUGEPAGE);   // a request: where it is refused, pages are small
     return static_cast<T*>(memory);
   }
   void deallocate(T* memory, std::size_t count) {

@@ -28,7 +28,7 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
     const bool unit_differs = word.starts_with(candidate.substr(0, candidate.find('_')) + '_');
     const std::size_t letters = edit_distance(word, candidate);
     const std::size_t distance = is_cut || unit_differs ? std::min<std::size_t>(letters, 1) : letters;
-    if (distance >= least || letters >= std::max(word.size(), candidate.size())) continue;   // no letter in common is no slip
+    if (distance >= least || letters >= std::max(word.size(), candidate.size())) continue;   // nothing in common: not a typing error
     least = distance;
     nearest = candidate;
   }

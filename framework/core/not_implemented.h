@@ -1,4 +1,4 @@
-/// The third verdict beside right and wrong: a stub that nobody has filled in yet.
+/// The third verdict beside right and wrong: a stub that is not filled in yet.
 #pragma once
 
 #include <stdexcept>
@@ -10,7 +10,7 @@ namespace tumble {
 class NotImplemented : public std::logic_error {
  public:
   /// @param function  name as in the header, without namespace
-  /// @param handout   where the theory and the hints stand
+  /// @param handout   file with the theory and the hints
   NotImplemented(const std::string& function, const std::string& handout)
       : std::logic_error(function + " is not implemented yet; theory and hints: " + handout),
         function_(function),

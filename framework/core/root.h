@@ -1,4 +1,4 @@
-/// Roots of a scalar function of time: the words that root finders and collision finding share.
+/// Roots of a scalar function of time: the types that root finders and collision detection share.
 #pragma once
 
 #include <functional>
@@ -7,11 +7,11 @@
 
 namespace tumble {
 
-/// A scalar function of time whose sign change is looked for, e.g. the gap between two bodies [m].
+/// A scalar function of time whose change of sign is sought, e.g. the gap between two bodies [m].
 using ScalarFunction = std::function<double(double t)>;
 
 enum class RootStatus {
-  kConverged,    // the bracket is as small as asked, or the function is exactly zero
+  kConverged,    // the bracket is as small as requested, or the function is exactly zero
   kNoSignChange, // f does not go from + (or 0) to - (or 0): no impact seen, or overlap from the start. Nothing was searched
   kNotConverged, // the search ended with a larger bracket: f was NaN, or a method's own iteration limit was reached; `time` is the best so far
 };

@@ -5,9 +5,9 @@
 namespace tumble {
 namespace {
 
-// Past this cosine 1 + cosine, of which the half angle is made, loses more than two bits.
+// Below this cosine, 1 + cosine (from which the half angle is computed) loses more than two bits.
 constexpr double kNearlyOpposite = -0.5;
-// A cross product of unit vectors shorter than this points nowhere in particular.
+// A cross product of unit vectors that is shorter than this has no reliable direction.
 constexpr double kNoAxis = 1e-9;
 
 Vector3d axis_across(const Vector3d& unit) {
@@ -23,7 +23,7 @@ Quaterniond shortest_turn(const Vector3d& from, const Vector3d& to) {
   const double cosine = b.dot(a);
   const Vector3d across = a.cross(b);
   if (cosine < kNearlyOpposite) {
-    // By way of the opposite direction: half a turn, and from there the little that is left.
+    // In two rotations: half a turn to -a, then the small rotation from -a to b.
     const Vector3d axis = across.norm() < kNoAxis ? axis_across(a) : across.normalized();
     return shortest_turn(-a, b) * Quaterniond(0.0, axis.x(), axis.y(), axis.z());
   }

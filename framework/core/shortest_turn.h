@@ -1,13 +1,14 @@
-/// The rotation about the axis across both that carries one direction onto another: what Eigen's FromTwoVectors does, without
-/// the singular value decomposition that every file that calls it compiles (ten seconds each).
+/// The smallest rotation that takes one direction to another: Eigen's FromTwoVectors without its
+/// singular value decomposition, which costs every file that calls it ten seconds of compile time.
 #pragma once
 
 #include "framework/core/math.h"
 
 namespace tumble {
 
-/// Carries the direction of `from` onto that of `to`; neither needs unit length, neither may be 0. Opposite directions are joined
-/// by a half turn about an axis across them that depends on `from` alone.
+/// Rotates the direction of `from` to that of `to`, about an axis perpendicular to both. Neither
+/// needs unit length; neither may be 0. Opposite directions need half a turn, about a perpendicular
+/// axis that depends on `from` only.
 Quaterniond shortest_turn(const Vector3d& from, const Vector3d& to);
 
 }  // namespace tumble

@@ -1,7 +1,9 @@
-/// Things with numbers, for threads that share them: a number stays valid and its thing stays in place until it is given back.
+/// A table of numbered entries that threads share: a number stays valid, and its entry keeps its
+/// address, until the number is given back.
 ///
-/// Things lie in blocks that never move, each twice as long as the one before it. Taking a number and giving it back need the owner's lock;
-/// looking at a thing whose number one has does not.
+/// Entries are stored in blocks that never move; each block is twice as long as the one before it.
+/// Taking a number and giving it back need the owner's lock; access to an entry by its number does
+/// not.
 #pragma once
 
 #include <array>
@@ -16,7 +18,7 @@ namespace tumble {
 template <class Thing>
 class StableTable {
  public:
-  /// @return a number nobody has. Not by two threads at once
+  /// @return a free number. Not to be called by two threads at once
   int take() {
     if (free_.empty()) {
       const auto [block, place] = where(count_);
@@ -27,7 +29,7 @@ class StableTable {
     free_.pop_back();
     return number;
   }
-  /// Not by two threads at once, nor beside take().
+  /// Not to be called by two threads at once, nor at the same time as take().
   void give_back(int number) {
     (*this)[number] = Thing{};
     free_.push_back(number);
@@ -41,7 +43,7 @@ class StableTable {
     const auto [block, place] = where(static_cast<std::size_t>(number));
     return blocks_[block][place];
   }
-  /// Numbers that somebody has.
+  /// How many numbers are in use.
   std::size_t taken() const { return count_ - free_.size(); }
 
  private:
@@ -49,13 +51,13 @@ class StableTable {
   struct Where {
     std::size_t block, place;
   };
-  // Block b holds kFirst 2^b things, from kFirst (2^b - 1) on.
+  // Block b holds kFirst 2^b entries, from number kFirst (2^b - 1) on.
   static Where where(std::size_t number) {
     const std::size_t shifted = number + kFirst, block = static_cast<std::size_t>(std::bit_width(shifted) - std::bit_width(kFirst));
     return {block, shifted - (kFirst << block)};
   }
 
-  std::array<std::unique_ptr<Thing[]>, 26> blocks_;   // more than an int can number
+  std::array<std::unique_ptr<Thing[]>, 26> blocks_;   // enough for every int
   std::vector<int> free_;
   std::size_t count_ = 0;
 };

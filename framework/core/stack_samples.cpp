@@ -23,10 +23,10 @@
 namespace tumble {
 namespace {
 
-constexpr int kDeepest = 64;                  // functions of a stack that are kept, from the innermost
-constexpr std::size_t kMostSamples = 1 << 15; // what comes later is not kept: minutes of CPU
-constexpr int kOfTheSignal = 2;               // functions that the signal itself has put on the stack
-constexpr suseconds_t kInterval_us = 1000;    // wished for; the system rounds it up to its own tick
+constexpr int kDeepest = 64;                  // stack frames kept, from the innermost
+constexpr std::size_t kMostSamples = 1 << 15; // minutes of CPU time; later samples are dropped
+constexpr int kSignalFrames = 2;              // innermost frames, which belong to the signal's delivery
+constexpr suseconds_t kInterval_us = 1000;    // requested; the system rounds it up to its own tick
 
 struct Stack {
   int depth = 0;
@@ -56,7 +56,7 @@ const Record* records(const std::string& file, std::size_t offset, std::size_t b
   return offset + bytes <= file.size() ? reinterpret_cast<const Record*>(file.data() + offset) : nullptr;
 }
 
-// Functions of one ELF file, those too that nobody outside of it may call; by where they begin.
+// Functions of one ELF file, local ones included, sorted by address.
 std::vector<Function> functions_of(const std::filesystem::path& path, std::uintptr_t loaded_at) {
   std::ifstream in(path, std::ios::binary);
   const std::string file((std::istreambuf_iterator<char>(in)), {});
@@ -102,11 +102,11 @@ const Function* function_at(const std::vector<std::vector<Function>>& files, std
   return nullptr;
 }
 
-// Letters of the longest of these that the name begins with; 0: of none.
-std::size_t named_by(const std::vector<std::string>& beginnings, const std::string& name) {
+// Length of the longest of these prefixes that the name begins with; 0 where there is none.
+std::size_t matching_prefix(const std::vector<std::string>& prefixes, const std::string& name) {
   std::size_t longest = 0;
-  for (const std::string& beginning : beginnings)
-    if (name.starts_with(beginning)) longest = std::max(longest, beginning.size());
+  for (const std::string& prefix : prefixes)
+    if (name.starts_with(prefix)) longest = std::max(longest, prefix.size());
   return longest;
 }
 
@@ -119,7 +119,7 @@ struct StackSamples::Stacks {
 
 namespace {
 
-// A signal's handler has no other way to what it writes into.
+// Globals: a signal handler has no argument through which to reach its buffer.
 std::atomic<std::vector<Stack>*> writing = nullptr;
 std::atomic<std::size_t>* writing_at = nullptr;
 
@@ -140,7 +140,7 @@ void set_timer(suseconds_t interval_us) {
 }  // namespace
 
 StackSamples::StackSamples() : stacks_(std::make_unique<Stacks>()) {
-  std::array<void*, 4> unused;   // the first call loads what later ones need, which no signal's handler may do
+  std::array<void*, 4> unused;   // the first call of backtrace loads a library, which a signal handler must not do
   backtrace(unused.data(), static_cast<int>(unused.size()));
 }
 
@@ -149,7 +149,7 @@ StackSamples::~StackSamples() {
 }
 
 void StackSamples::begin() {
-  require(writing.load() == nullptr, "one takes samples at a time");
+  require(writing.load() == nullptr, "only one StackSamples may take samples at a time");
   writing_at = &stacks_->taken;
   writing.store(&stacks_->all, std::memory_order_release);
   struct sigaction action{};
@@ -159,7 +159,7 @@ void StackSamples::begin() {
   set_timer(kInterval_us);
 }
 
-// The handler stays: a signal may still be on its way, and without one it would end the program.
+// The handler stays installed: a pending signal without a handler would end the program.
 void StackSamples::end() {
   set_timer(0);
   writing.store(nullptr, std::memory_order_release);
@@ -168,18 +168,19 @@ void StackSamples::end() {
 StackSamples::Shares StackSamples::shares(const std::vector<Part>& parts, const std::vector<std::string>& without) const {
   const auto files = functions_of_all();
   constexpr int kNone = -1, kLeftOut = -2;
-  std::map<void*, int> known;   // part of a function
+  std::map<void*, int> known;   // part by address
   const auto part_at = [&](void* address, bool is_innermost) {
     const auto [place, is_new] = known.try_emplace(address, kNone);
     if (!is_new) return place->second;
-    // A caller's address is the one that it goes on at, which may be another function's.
+    // A caller's frame holds its return address, which may already belong to the next function:
+    // look one byte before it.
     const Function* function = function_at(files, reinterpret_cast<std::uintptr_t>(address) - (is_innermost ? 0 : 1));
     if (function == nullptr) return kNone;
     const std::string name = plain_name(function->name.c_str());
-    if (named_by(without, name) > 0) return place->second = kLeftOut;
+    if (matching_prefix(without, name) > 0) return place->second = kLeftOut;
     std::size_t longest = 0;
     for (std::size_t p = 0; p < parts.size(); ++p)
-      if (const std::size_t letters = named_by(parts[p].functions, name); letters > longest) {
+      if (const std::size_t letters = matching_prefix(parts[p].functions, name); letters > longest) {
         longest = letters;
         place->second = static_cast<int>(p);
       }
@@ -190,8 +191,8 @@ StackSamples::Shares StackSamples::shares(const std::vector<Part>& parts, const 
   for (std::size_t k = 0; k < std::min(stacks_->taken.load(), kMostSamples); ++k) {
     const Stack& stack = stacks_->all[k];
     int part = kNone;
-    for (int i = kOfTheSignal; i < stack.depth && part != kLeftOut; ++i)
-      if (const int its = part_at(stack.functions[static_cast<std::size_t>(i)], i == kOfTheSignal); its == kLeftOut || part == kNone) part = its;
+    for (int i = kSignalFrames; i < stack.depth && part != kLeftOut; ++i)
+      if (const int its = part_at(stack.functions[static_cast<std::size_t>(i)], i == kSignalFrames); its == kLeftOut || part == kNone) part = its;
     if (part == kLeftOut) continue;
     ++shares.samples;
     (part == kNone ? shares.rest : shares.of_part[static_cast<std::size_t>(part)]) += 1.0;

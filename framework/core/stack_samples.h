@@ -1,14 +1,17 @@
-/// Where the CPU time of a piece of work goes: at even intervals of CPU time the stack of whoever runs is looked at.
+/// Sampling profiler: at even intervals of CPU time the stack of the running thread is recorded.
 ///
 ///   StackSamples samples;
 ///   samples.begin();  work();  samples.end();
 ///   const auto shares = samples.shares({{"search", {"tumble::collision::"}}, {"contacts", {"tumble::solve_contacts"}}}, {"tumble::build_world"});
 ///
-/// What is looked at pays under a percent for it and knows nothing of it, so that short functions can be told apart, which no clock around
-/// them could. Functions that the compiler has put into their callers count as these. Intervals are the system's, 1 to 10 ms: a share p of N
-/// samples is known to sqrt(p (1 - p) / N).
-/// Meanwhile the system's clock of the process's CPU time goes by these ticks: a thread's own stays as fine as it is.
-/// Linux only: a timer of CPU time (setitimer), its signal, the functions' names from the program's own files (ELF).
+/// The overhead is under one percent, and the profiled code needs no change; short functions can be
+/// measured that a clock around each call would distort. An inlined function counts as its caller.
+/// The system's tick is the interval, 1 to 10 ms: a share p of N samples has the standard error
+/// sqrt(p (1 - p) / N).
+/// While samples are taken, the clock of the process's CPU time advances by these ticks; a thread's
+/// own clock keeps its resolution.
+/// Linux only: a timer of CPU time (setitimer), its signal, and the functions' names from the
+/// program's own files (ELF).
 #pragma once
 
 #include <cstddef>
@@ -20,16 +23,17 @@ namespace tumble {
 
 class StackSamples {
  public:
-  /// What belongs together: functions whose full name, without arguments ("tumble::collision::compute_gap"), begins like one of these. Unnamed
-  /// namespaces are no part of a name, nor is what a template is made for.
+  /// Functions that are counted together: their full name, without arguments
+  /// ("tumble::collision::compute_gap"), begins with one of these prefixes. Names are compared
+  /// without unnamed namespaces and template arguments.
   struct Part {
     std::string name;
     std::vector<std::string> functions;
   };
   struct Shares {
-    std::vector<double> of_part;   // of the samples that count, one a part; all 0 where there is no sample
-    double rest = 0.0;             // in no part
-    std::size_t samples = 0;       // that count
+    std::vector<double> of_part;   // share of the counted samples, by part; all 0 where there is no sample
+    double rest = 0.0;             // share in no part
+    std::size_t samples = 0;       // number of counted samples
   };
 
   StackSamples();
@@ -37,16 +41,19 @@ class StackSamples {
   StackSamples(const StackSamples&) = delete;
   StackSamples& operator=(const StackSamples&) = delete;
 
-  /// From now on samples are taken, of all threads, until end(). May be done again: samples add up.
-  /// @throws PreconditionError where another one is at it: a process has one timer of its CPU time
+  /// Takes samples of all threads until end(). May be called again: samples add up.
+  /// @throws PreconditionError while another StackSamples takes samples: a process has one timer of
+  ///   its CPU time
   void begin();
   void end();
 
-  /// A sample belongs to the part that names its innermost function; that which names it at greater length where several do.
-  /// @param without  a sample with one of these anywhere on its stack is left out
+  /// A sample belongs to the part that names its innermost named function; the longest matching
+  /// prefix wins.
+  /// @param without  prefixes; a sample with one of them anywhere on its stack is left out
   Shares shares(const std::vector<Part>& parts, const std::vector<std::string>& without) const;
 
-  /// Whether a function of this program, or of a file that it has loaded, has a name that begins so: a list of parts can be checked by it.
+  /// Whether a function of this program, or of a library that it has loaded, has a name with this
+  /// prefix. Checks a list of parts.
   static bool is_known(const std::string& beginning);
 
  private:

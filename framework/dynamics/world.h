@@ -30,61 +30,16 @@ struct WorldBody {
   bool immovable() const { return inertia.inverse_mass == 0.0; }
 };
 
-/// A constant force on a point fixed in a body, for a while.
-struct PointForce {
-  int body;
-  Vector3d force_world;      // [N]
-  Vector3d point_world;      // where the point is at `start` [m]
-  double start, end;         // [s]
-};
-
 /// A point fixed in a body, or in the world.
 struct Anchor {
   int body;                  // -1: the world
   Vector3d point_body;       // body frame; world frame for the world [m]
 };
 
-struct SpringLink {
-  std::string name;
-  Anchor a, b;
-  Spring spring;
-};
-
-struct RodLink {
-  std::string name;
-  Anchor a, b;
-  double length;             // [m]
-};
-
-/// Two bodies that share a point (ball), an axis besides (hinge), or are one (weld).
-struct JointLink {
-  std::string name;
-  scene::JointKind kind;
-  Anchor a, b;               // the shared point
-  Quaterniond a_from_joint, b_from_joint;   // frame fixed in each body (b: in the world for body -1); a hinge turns about its z
-};
-
-struct Drag {
-  int body;
-  double linear;             // [N s/m]
-  double angular;            // [N m s]
-};
-
-/// A control law in a hinge (scene::MotorSpec).
-struct Motor {
-  int joint;                 // index into World::joints
-  scene::MotorSpec law;
-};
-
 struct World {
   std::vector<WorldBody> bodies;
+  TypedLists effects;                             // what acts on them: lists of the types in framework/effects/NAME/NAME.h, such as effects.of<SpringLink>()
   std::optional<Vector3d> gravity_world;          // [m/s^2]
-  std::vector<PointForce> point_forces;           // in the scene's order
-  std::vector<SpringLink> springs;
-  std::vector<RodLink> rods;
-  std::vector<JointLink> joints;
-  std::vector<Drag> drags;
-  std::vector<Motor> motors;
   std::optional<scene::ContactSpec> contact;      // lasting contact; absent where the scene does not ask for it
   std::optional<scene::StabilisationSpec> stabilisation;
   std::vector<std::pair<int, int>> apart;         // (i, j), i < j, sorted: pairs that do not collide; joined bodies are among them

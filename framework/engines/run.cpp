@@ -9,14 +9,16 @@
 
 #include "framework/core/error.h"
 #include "framework/core/nearest_word.h"
-#include "framework/dynamics/build_world.h"
+#include "framework/core/version.h"
 #include "framework/dynamics/world.h"
+#include "framework/effects/build_world.h"
+#include "framework/effects/registry.h"
+#include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/run_counters.h"
 #include "framework/engines/events/advancement.h"
 #include "framework/engines/events/ordered.h"
-#include "framework/engines/base/guarded_laws.h"
-#include "framework/engines/stepping/local_origin.h"
 #include "framework/engines/rd/retroactive.h"
-#include "framework/engines/base/run_counters.h"
+#include "framework/engines/stepping/local_origin.h"
 #include "framework/engines/stepping/start_overlaps.h"
 #include "framework/engines/stepping/start_watch.h"
 #include "framework/engines/timewarp/taught_timewarp.h"
@@ -39,14 +41,9 @@ void check_laws(const scene::Scene& scene, const Laws& laws) {
   need(laws.integrate_step, scene, "a step of integration", "a2 (or the framework's library laws)");
   need(laws.state_derivative, scene, "the derivative of a rigid body's state", "a2 (or the framework's library laws)");
   need(laws.renormalize, scene, "the renormalisation of quaternions", "a2 (or the framework's library laws)");
-  if (!scene.point_forces.empty()) need(laws.wrench_of_point_force, scene, "the force and torque of a point force", "a1");
-  if (!scene.springs.empty()) need(laws.spring_force, scene, "the force of a spring", "a3");
-  if (!scene.rods.empty()) need(laws.rod_row, scene, "the constraint of a rod", "a3");
-  if (!scene.rods.empty() || !scene.joints.empty()) {
-    need(laws.constraint_multipliers, scene, "the multipliers of rods and joints", "a3");
-    need(laws.constraint_correction, scene, "the correction onto rods and joints", "a3");
-    if (scene.stabilisation && scene.stabilisation->kind == scene::StabilisationKind::kBaumgarte) need(laws.baumgarte_acceleration, scene, "Baumgarte's acceleration", "a3");
-  }
+  for (const effects::Effect* effect : effects::all())
+    if (effect->is_asked(scene))
+      for (const effects::NeededLaw& law : effect->needed_laws(scene, laws)) need(law.is_there, scene, law.what.c_str(), law.assignment.c_str());
   if (scene.contact) {
     need(laws.ends_in_contact, scene, "the beginning of a lasting contact", "a3");
     need(laws.contact_forces, scene, "the forces of lasting contacts", "a3");
@@ -165,10 +162,13 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& as
   TrajectoryInfo info;
   info.command = options.command;
   info.scene_name = scene.name;
-  info.scene_hash = scene.hash;
+  info.version = kProgramVersion;
+  info.scene_digest = scene.digest;
+  info.seeds = scene.seeds;
   info.engine = options.engine;
   info.impulse_source = laws.impulse_source;
   info.integrator_source = laws.integrator_source;
+  info.constraint_source = laws.constraint_source;
   info.step_s = step;
   info.frame_rate_hz = options.frame_rate_hz;
   std::vector<TrajectoryBody> bodies;
@@ -184,9 +184,10 @@ void run_scene(const scene::Scene& scene, const Laws& laws, const RunOptions& as
   if (origin_world.isZero(0.0)) return run_from_apart(engine, scene, laws, options, watch, counted);
   const scene::Scene local = seen_from(origin_world, scene);
   double mass = 0.0;
-  for (const WorldBody& body : build_world(local).bodies)
+  const World seen = build_world(local);
+  for (const WorldBody& body : seen.bodies)
     if (!body.immovable()) mass += body.inertia.mass;
-  WorldSink world(counted, origin_world, mass, scene.gravity_m_s2.value_or(Vector3d::Zero()));
+  WorldSink world(counted, origin_world, mass, seen.gravity_world.value_or(Vector3d::Zero()));
   run_from_apart(engine, local, laws, options, watch, world);
 }
 

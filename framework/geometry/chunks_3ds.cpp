@@ -13,7 +13,7 @@
 namespace tumble {
 namespace {
 
-constexpr std::size_t kMostBytes = 32u << 20;   // the reader needs about 12 bytes of memory for each byte of the file
+constexpr std::size_t kMostBytes = 32u << 20;   // assimp needs about 12 bytes of memory for each byte of the file
 constexpr int kMostFaces = 500'000;             // and about 300 for each face
 constexpr std::size_t kMostMeshes = 5'000;      // and 1 kB for each mesh, however small
 constexpr int kDeepest = 16;                    // real files nest 5 deep
@@ -23,7 +23,7 @@ enum Chunk : std::uint16_t {
   kMain = 0x4D4D, kEditor = 0x3D3D, kMasterScale = 0x0100, kObject = 0x4000, kTriangles = 0x4100, kVertices = 0x4110,
   kFaces = 0x4120, kFaceMaterial = 0x4130, kSmoothing = 0x4150, kMatrix = 0x4160, kKeyframer = 0xB000, kObjectNode = 0xB002,
   kFirstNode = 0xB001, kLastNode = 0xB007, kPositionTrack = 0xB020, kRotationTrack = 0xB021, kScaleTrack = 0xB022, kLastTrack = 0xB029,
-  kHidden = 0x7FFF,  // no chunk of the format: readers skip it
+  kHidden = 0x7FFF,  // not a chunk of the format: readers skip it
 };
 
 const char* name_of(std::uint16_t id) {
@@ -41,7 +41,7 @@ const char* name_of(std::uint16_t id) {
   }
 }
 
-// What a file that is not 3DS most likely is.
+// The format that a file which is not 3DS most likely has.
 std::string guess(std::string_view bytes) {
   const auto starts = [&](std::string_view magic) { return bytes.substr(0, magic.size()) == magic; };
   if (starts("\x89PNG")) return " (it looks like a PNG picture)";
@@ -86,7 +86,7 @@ class Checker {
     const std::string remedy = "Export the model as 3D Studio (.3ds).";
     if (bytes_.empty()) throw UserError(where_, "the file is empty", remedy);
     if (bytes_.size() > kMostBytes) {
-      throw UserError(where_, fmt::format("the file has {:.1f} MiB, and at most {} are read", bytes_.size() / 1048576.0, kMostBytes >> 20),
+      throw UserError(where_, fmt::format("the file has {:.1f} MiB, and the limit is {}", bytes_.size() / 1048576.0, kMostBytes >> 20),
                       "Simplify the model.");
     }
     if (bytes_.size() < 2 || read<std::uint16_t>(0) != kMain) {
@@ -97,12 +97,12 @@ class Checker {
     if (bytes_.size() < kHeader) throw truncated(bytes_.size());
     const std::uint32_t length = read<std::uint32_t>(2);
     if (length > bytes_.size()) throw truncated(length);
-    if (length < kHeader) refuse_damaged(0, fmt::format("the main chunk says it is {} bytes long, less than its own header", length));
+    if (length < kHeader) refuse_damaged(0, fmt::format("the main chunk declares a length of {} bytes, less than its own header", length));
     main_end_ = length;
   }
 
   UserError truncated(std::size_t wanted) const {
-    return UserError(where_, fmt::format("truncated: it says it has {} bytes, and there are {}", std::max(wanted, kHeader), bytes_.size()),
+    return UserError(where_, fmt::format("truncated: it declares {} bytes, but has {}", std::max(wanted, kHeader), bytes_.size()),
                      "Copy or export it again.");
   }
 
@@ -112,7 +112,7 @@ class Checker {
       const std::uint16_t id = read<std::uint16_t>(at);
       const std::uint32_t length = read<std::uint32_t>(at + 2);
       if (length < kHeader || length > end - at) {
-        refuse_damaged(at, fmt::format("chunk {:04X} ({}) says it is {} bytes long, and its holder has {} left", id, name_of(id), length, end - at));
+        refuse_damaged(at, fmt::format("chunk {:04X} ({}) declares {} bytes, but its parent has {} left", id, name_of(id), length, end - at));
       }
       enter(id, at, at + kHeader, at + length, depth);
       at += length;
@@ -138,14 +138,15 @@ class Checker {
     if (id >= kPositionTrack && id <= kLastTrack) check_track(id, at, data, end);
   }
 
-  // A track: 10 bytes of flags, a count u32, then keys of a frame u32, flags u16 and a value. Readers allocate by the count.
+  // A track: 10 bytes of flags, a count u32, then keys, each a frame u32, flags u16 and a value.
+  // assimp allocates memory by the count.
   void check_track(std::uint16_t id, std::size_t at, std::size_t data, std::size_t end) const {
     constexpr std::size_t kTrackHeader = 14, kKeyHeader = 6;
-    if (end - data < kTrackHeader) refuse_damaged(at, fmt::format("animation track {:04X} needs {} bytes, and its chunk holds {}", id, kTrackHeader, end - data));
+    if (end - data < kTrackHeader) refuse_damaged(at, fmt::format("animation track {:04X} needs {} bytes, but its chunk holds {}", id, kTrackHeader, end - data));
     const std::size_t value = id == kRotationTrack ? 16 : id == kPositionTrack || id == kScaleTrack ? 12 : 0;
     const std::uint32_t count = read<std::uint32_t>(data + 10);
     const std::size_t room = (end - data - kTrackHeader) / (kKeyHeader + value);
-    if (count > room) refuse_damaged(at, fmt::format("animation track {:04X} says it has {} keys, and its chunk holds at most {}", id, count, room));
+    if (count > room) refuse_damaged(at, fmt::format("animation track {:04X} declares {} keys, but its chunk holds at most {}", id, count, room));
   }
 
   std::size_t read_name(std::size_t data, std::size_t end) {
@@ -166,7 +167,7 @@ class Checker {
     walk(data, end, depth + 1);
     const DeclaredMesh& mesh = found_.meshes.back();
     if (highest_index_ && *highest_index_ >= mesh.vertices) {
-      refuse_damaged(highest_index_at_, fmt::format("mesh '{}': a face names vertex {}, and there are {} vertices", mesh.name,
+      refuse_damaged(highest_index_at_, fmt::format("mesh '{}': a face refers to vertex {}, but there are {} vertices", mesh.name,
                                                     *highest_index_, mesh.vertices));
     }
   }
@@ -175,7 +176,7 @@ class Checker {
     const int count = end - data >= 2 ? read<std::uint16_t>(data) : -1;
     const std::size_t room = count < 0 ? 0 : (end - data - 2) / size;
     if (count < 0 || static_cast<std::size_t>(count) > room) {
-      refuse_damaged(at, fmt::format("mesh '{}' says it has {} {}, and its chunk holds at most {}", mesh_name(), std::max(count, 0), what, room));
+      refuse_damaged(at, fmt::format("mesh '{}' declares {} {}, but its chunk holds at most {}", mesh_name(), std::max(count, 0), what, room));
     }
     return count;
   }
@@ -214,7 +215,7 @@ class Checker {
 
   void check_matrix(std::size_t at, std::size_t data, std::size_t end) const {
     double m[12];
-    if (end - data < 48) refuse_damaged(at, fmt::format("mesh '{}': its matrix needs 48 bytes, and its chunk holds {}", mesh_name(), end - data));
+    if (end - data < 48) refuse_damaged(at, fmt::format("mesh '{}': its matrix needs 48 bytes, but its chunk holds {}", mesh_name(), end - data));
     for (int i = 0; i < 12; ++i) {
       m[i] = read<float>(data + 4 * static_cast<std::size_t>(i));
       if (!std::isfinite(m[i])) refuse_damaged(data + 4 * static_cast<std::size_t>(i), fmt::format("mesh '{}': its matrix is not finite", mesh_name()));

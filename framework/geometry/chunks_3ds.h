@@ -1,4 +1,5 @@
-/// A look at the structure of a .3ds file before anything believes it: nested chunks of (id u16, length u32, data), little-endian.
+/// Validates the structure of a .3ds file before it is read: nested chunks of (id u16, length u32,
+/// data), little-endian.
 #pragma once
 
 #include <string>
@@ -14,19 +15,20 @@ struct DeclaredMesh {
   int faces = 0;
 };
 
-/// What stands in the file, and its bytes without what plays no part in a shape.
+/// The meshes that the file declares, and its bytes with every chunk hidden that does not affect a
+/// shape.
 struct Checked3ds {
   std::vector<DeclaredMesh> meshes;   // in the file's order
   bool has_nodes = false;             // a keyframer section places the meshes
-  std::string bytes;                  // materials, smoothing groups and the master scale are hidden, so that no mesh is split by
-                                      // material and coordinates stay in the file's unit
+  std::string bytes;                  // with materials, smoothing groups and the master scale hidden: no mesh is
+  // split by material, and coordinates stay in the file's unit
 };
 
 /// Checks every length, count and index.
-/// @param where  said in errors
-/// @throws UserError, each kind with its own message and byte offset: empty, not 3DS, truncated, a chunk longer than its
-///         holder, counts that the chunk cannot hold, an index without its vertex, NaN or infinite numbers, a singular
-///         transform, too deep, too large
+/// @param where  names the file in errors
+/// @throws UserError, each kind with its own message and byte offset: empty, not 3DS, truncated, a
+///   chunk longer than its parent, counts that the chunk cannot hold, an index out of range, NaN or
+///   infinite numbers, a singular transform, nested too deep, too large
 /// Source: format as in the public 3D Studio file notes (J. van Velsen, R. Kalms, 1996).   Cost: O(bytes)
 Checked3ds check_3ds(std::string_view bytes, const std::string& where);
 

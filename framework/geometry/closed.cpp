@@ -16,23 +16,25 @@
 namespace tumble {
 namespace {
 
-// Sine of a face's smallest angle below which its area is round-off: coordinates are exact in 2^-53, and the cross product
-// adds a few of these.
+// Sine of a face's smallest angle, below which its area is round-off: coordinates are rounded to
+// 2^-53, and the cross product adds a few such errors.
 constexpr double kZeroArea = 1e-15;
 
-// Smallest over largest principal moment; below it the rounding of the large one (about 10 eps) is more than 1/500 of the small one.
-// A round rod reaches it at a length of a million radii.
+// Smallest over largest principal moment. Below this ratio the rounding of the large one (about 10
+// eps) exceeds 1/500 of the small one. A round rod reaches it at a length of a million radii.
 constexpr double kNeedle = 1e-12;
 
-// What rounding may leave of an integral that is zero, against the largest moment: sums over a million faces of both signs, 1e4 eps. A
-// plate is thinner than that from a millionth of its width on.
+// Rounding error of an integral whose exact value is zero, relative to the largest moment: sums
+// over a million faces of both signs, 1e4 eps. A plate falls below it at a thickness of a millionth
+// of its width.
 constexpr double kRoundedMoment = 1e-12;
 
 constexpr double kSingleSpacing = 0x1.0p-23;   // of float32 numbers, relative
 
 std::string plural(std::size_t n, const char* one, const char* many) { return fmt::format("{} {}", n, n == 1 ? one : many); }
 
-// What must hold before anything can be measured: faces, indices, finite numbers.
+// Defects that make every later test meaningless: no faces, indices out of range, numbers that are
+// not finite.
 std::vector<Defect> find_unusable(const TriangleMesh& mesh) {
   if (mesh.faces.empty()) {
     return {{DefectKind::kNoFaces, "no faces", "A rigid body needs a closed surface: model one, or leave the object out."}};
@@ -41,7 +43,7 @@ std::vector<Defect> find_unusable(const TriangleMesh& mesh) {
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     for (int v : mesh.faces[f]) {
       if (v >= 0 && v < n) continue;
-      return {{DefectKind::kBadIndex, fmt::format("face {} names vertex {}, and there are vertices 0 to {}", f, v, n - 1),
+      return {{DefectKind::kBadIndex, fmt::format("face {} refers to vertex {}, but the vertices are 0 to {}", f, v, n - 1),
                "The file is damaged: export it again."}};
     }
   }
@@ -68,34 +70,34 @@ TriangleMesh keep_faces(const TriangleMesh& mesh, Keep keep) {
 
 // Faces on the same three vertices: the same face twice, or two back to back with nothing between them.
 struct CoincidentFaces {
-  std::size_t repeated = 0, back_to_back = 0;   // faces that could go
+  std::size_t repeated = 0, back_to_back = 0;   // faces that can be dropped
   std::pair<int, int> first_repeated{-1, -1}, first_back_to_back{-1, -1};
-  std::vector<char> goes;                       // by face: without these each place has one face or none
+  std::vector<char> droppable;                  // by face: without these each place has one face or none
 };
 
-/// Whether the face runs through its corners in ascending order, but for where it begins.
-bool runs_upward(const Face& f) { return (f[0] < f[1]) + (f[1] < f[2]) + (f[2] < f[0]) == 2; }
+/// Whether the face's corners are an even permutation of ascending order.
+bool is_even(const Face& f) { return (f[0] < f[1]) + (f[1] < f[2]) + (f[2] < f[0]) == 2; }
 
 CoincidentFaces find_coincident(const TriangleMesh& mesh) {
   CoincidentFaces found;
-  found.goes.assign(mesh.faces.size(), 0);
-  std::map<Face, std::vector<int>> standing;   // by corners: faces that look the same way, one at most once all are looked at
+  found.droppable.assign(mesh.faces.size(), 0);
+  std::map<Face, std::vector<int>> kept;   // by sorted corners: the face that stays, if any
   for (int f = 0; f < static_cast<int>(mesh.faces.size()); ++f) {
     Face sorted = mesh.faces[f];
     std::sort(sorted.begin(), sorted.end());
-    std::vector<int>& here = standing[sorted];
+    std::vector<int>& here = kept[sorted];
     if (here.empty()) {
       here.push_back(f);
       continue;
     }
-    const bool is_same = runs_upward(mesh.faces[here.back()]) == runs_upward(mesh.faces[f]);
+    const bool is_same = is_even(mesh.faces[here.back()]) == is_even(mesh.faces[f]);
     std::pair<int, int>& first = is_same ? found.first_repeated : found.first_back_to_back;
     if (first.first < 0) first = {here.back(), f};
-    found.goes[f] = 1;
+    found.droppable[f] = 1;
     if (is_same) {
       ++found.repeated;
     } else {
-      found.goes[here.back()] = 1;
+      found.droppable[here.back()] = 1;
       found.back_to_back += 2;
       here.pop_back();
     }
@@ -108,7 +110,7 @@ std::string show_middle(const TriangleMesh& mesh, int face) {
   return show_point((mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]) / 3.0);
 }
 
-/// @param lines  how many faces had lost their area before: two of their corners had become one
+/// @param lines  number of faces that were dropped because two of their corners had merged
 std::vector<Defect> describe_coincident(const TriangleMesh& mesh, std::size_t lines) {
   const CoincidentFaces found = find_coincident(mesh);
   const auto& [same_a, same_b] = found.first_repeated;
@@ -116,15 +118,15 @@ std::vector<Defect> describe_coincident(const TriangleMesh& mesh, std::size_t li
   std::vector<Defect> defects;
   if (found.repeated > 0)
     defects.push_back({DefectKind::kRepeatedFace,
-                       fmt::format("{} there twice: face {} is face {} once more, at {}", plural(found.repeated, "face is", "faces are"), same_b, same_a, show_middle(mesh, same_a)),
-                       "Remove what stands twice (\"remove doubles\" in the modelling program)."});
+                       fmt::format("{}: face {} repeats face {}, at {}", plural(found.repeated, "duplicate face", "duplicate faces"), same_b, same_a, show_middle(mesh, same_a)),
+                       "Remove the duplicates (\"remove doubles\" in the modelling program)."});
   if (found.back_to_back > 0 && lines > 0) {
     const Bounds bounds = bounds_of(mesh);
     const double far = std::max(bounds.low.cwiseAbs().maxCoeff(), bounds.high.cwiseAbs().maxCoeff());
     defects.push_back({DefectKind::kMergedCorners,
-                       fmt::format("corners have become one: {} lost their area, and faces {} and {} lie on each other at {}; a .3ds file holds single precision, which at coordinates of {:.3g} m tells no less than "
-                                   "{:.2g} m apart", plural(lines, "face has", "faces have"), front, back, show_middle(mesh, front), far, kSingleSpacing * far),
-                       "Model it near the origin (a scene says where it stands: \"position_m\"), or make thin places thicker."});
+                       fmt::format("corners have merged: {} no area left, and faces {} and {} lie on each other at {}; a .3ds file holds single precision, which at coordinates of {:.3g} m cannot resolve less than "
+                       "{:.2g} m", plural(lines, "face has", "faces have"), front, back, show_middle(mesh, front), far, kSingleSpacing * far),
+                       "Model it near the origin (a scene places it by \"position_m\"), or make thin places thicker."});
   } else if (found.back_to_back > 0) {
     defects.push_back({DefectKind::kLampshade,
                        fmt::format("a wall one polygon thick, like a lampshade: {} on another, the first two are faces {} and {} at {}",
@@ -147,7 +149,8 @@ std::vector<Defect> find_edges_of_many_faces(const TriangleMesh& mesh, const std
            "Remove inner walls, and separate parts that touch along an edge."}};
 }
 
-// Spreads a choice of sides over each part. An edge that both its faces run along in the same direction asks for a turn of one.
+// Propagates an orientation over each part. Where both faces of an edge traverse it in the same
+// direction, one of them must be reversed.
 std::vector<Defect> find_disagreement(const TriangleMesh& mesh, const std::vector<EdgeUse>& uses) {
   const int n = static_cast<int>(mesh.faces.size());
   std::vector<std::vector<std::pair<int, bool>>> neighbours(n);
@@ -179,7 +182,7 @@ std::vector<Defect> find_disagreement(const TriangleMesh& mesh, const std::vecto
           to_do.push_back(g);
         } else if (turned[g] != wanted) {
           return {{DefectKind::kOneSided, "a one-sided surface (like a Moebius strip): no choice of inside exists; " + first +
-                                              " disagree whichever way they are turned",
+                                              " disagree however they are oriented",
                    "A solid has an inside: cut the strip and close it differently."}};
         }
       }
@@ -210,26 +213,27 @@ std::vector<Defect> find_impossible_mass(const TriangleMesh& closed_mesh) {
   const double ratio = moments[0] / moments[2];
   const Bounds bounds = bounds_of(closed_mesh);
   const Vector3d& com = mass.com_mesh;
-  // The eigenvalues of int x x' are integrals of squares, positive for every solid; in terms of the moments (I_1 + I_2 - I_3) / 2 etc.
+  // The eigenvalues of int x x' are integrals of squares, positive for every solid. In terms of the
+  // moments: (I_1 + I_2 - I_3) / 2 etc.
   const double least_square = 0.5 * (moments[0] + moments[1] - moments[2]);
   std::string impossible;
   if ((com.array() < bounds.low.array()).any() || (com.array() > bounds.high.array()).any())
     impossible = fmt::format("the centre of mass would be at {}, outside the surface", show_point(com));
   else if (moments[2] <= 0.0 || least_square < -kRoundedMoment * moments[2])
-    impossible = fmt::format("what is left would have moments of inertia {:.3g}, {:.3g} and {:.3g} (at density 1), which no solid has", moments[0], moments[1], moments[2]);
+    impossible = fmt::format("the rest would have moments of inertia {:.3g}, {:.3g} and {:.3g} (at density 1), which no solid has", moments[0], moments[1], moments[2]);
   if (!impossible.empty()) {
     return {{DefectKind::kSelfCrossing, "faces pass through each other: parts of the inside cancel, and " + impossible,
              "Separate the crossing faces in the modelling program."}};
   }
   if (ratio >= kNeedle) return {};
   return {{DefectKind::kNeedle,
-           fmt::format("a needle from {} to {}: its moments of inertia are too far apart to be told in double precision", show_point(bounds.low),
+           fmt::format("a needle from {} to {}: its moments of inertia are too far apart for double precision", show_point(bounds.low),
                        show_point(bounds.high)),
            "Look for a vertex far from the others, or make it thicker."}};
 }
 
-// The whole check of a mesh whose numbers are usable.
-// @param lines  faces that named a vertex twice and were dropped
+// Every check of a mesh that find_unusable accepts.
+// @param lines  number of faces that were dropped because they had a vertex twice
 ClosedReport examine(const TriangleMesh& mesh, std::size_t lines) {
   ClosedReport report;
   report.mesh = mesh;
@@ -256,27 +260,27 @@ ClosedReport examine(const TriangleMesh& mesh, std::size_t lines) {
 ClosedReport check_closed(const TriangleMesh& mesh) {
   if (std::vector<Defect> unusable = find_unusable(mesh); !unusable.empty()) return {std::move(unusable), {}, mesh, 0};
 
-  // A face that names a vertex twice is no triangle at all.
+  // A face with a repeated vertex is not a triangle.
   std::vector<std::string> notices;
   const TriangleMesh triangles = keep_faces(mesh, [](const Face& f) { return f[0] != f[1] && f[1] != f[2] && f[2] != f[0]; });
   const std::size_t lines = mesh.faces.size() - triangles.faces.size();
-  if (lines > 0) notices.push_back(fmt::format("dropped {} that named a vertex twice", plural(lines, "face", "faces")));
+  if (lines > 0) notices.push_back(fmt::format("dropped {} with a repeated vertex", plural(lines, "face", "faces")));
   if (triangles.faces.empty()) {
     return {{{DefectKind::kNoFaces, "no face has an area", "Model a surface: lines and points bound no volume."}}, notices, mesh, 0};
   }
 
   ClosedReport report = examine(triangles, lines);
-  // A face that is there twice, or two back to back: without them the rest may be a solid.
+  // Without duplicate faces, and faces back to back, the rest may be a solid.
   const CoincidentFaces coincident = find_coincident(triangles);
   if (coincident.repeated + coincident.back_to_back > 0) {
     TriangleMesh rest{triangles.vertices, {}};
     for (std::size_t f = 0; f < triangles.faces.size(); ++f)
-      if (coincident.goes[f] == 0) rest.faces.push_back(triangles.faces[f]);
+      if (coincident.droppable[f] == 0) rest.faces.push_back(triangles.faces[f]);
     ClosedReport repaired = rest.faces.empty() ? ClosedReport{report} : examine(rest, lines);
     if (repaired.is_closed()) {
       const auto& [front, back] = coincident.first_back_to_back;
       if (coincident.repeated > 0)
-        notices.push_back(fmt::format("dropped {} there twice, the first: face {}, which is face {} at {}", plural(coincident.repeated, "face that was", "faces that were"),
+        notices.push_back(fmt::format("dropped {}, the first: face {}, which repeats face {} at {}", plural(coincident.repeated, "duplicate face", "duplicate faces"),
                                       coincident.first_repeated.second, coincident.first_repeated.first, show_middle(triangles, coincident.first_repeated.first)));
       if (coincident.back_to_back > 0)
         notices.push_back(fmt::format("dropped {} back to back with nothing between them, the first: {} and {} at {}", plural(coincident.back_to_back, "face that lay", "faces that lay"), front, back, show_middle(triangles, front)));
@@ -285,7 +289,8 @@ ClosedReport check_closed(const TriangleMesh& mesh) {
     }
   }
 
-  // Faces of zero area may close a seam (then they stay) or be in the way (then they go).
+  // Faces of zero area may close a seam (then they stay) or break the surface (then they are
+  // dropped).
   const auto is_about_size = [](const Defect& d) { return d.kind == DefectKind::kZeroVolume || d.kind == DefectKind::kNeedle || d.kind == DefectKind::kSelfCrossing; };
   if (!report.is_closed() && !is_about_size(report.defects.front())) {
     const TriangleMesh solid_faces = keep_faces(triangles, [&](const Face& f) { return has_area(triangles, f); });

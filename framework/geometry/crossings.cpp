@@ -18,12 +18,12 @@ namespace {
 constexpr int kCrossingLeaf = 4;
 // Spacing of float32 coordinates relative to the largest, with a factor 2 for a transform after rounding (as in solid.cpp).
 constexpr double kCrossingRounding = 0x1.0p-22;
-// Planes whose normals differ by less [rad] have no line in common that rounding leaves where it is.
+// Planes whose normals differ by less [rad] have a common line that is lost in rounding.
 constexpr double kParallel = 1e-6;
-constexpr double kAside = 16.0;              // roundings: so far before and behind a face it is asked what is inside
-constexpr std::size_t kMostNamed = 3;        // pairs of parts: a heap of leaves needs no thousand messages
-constexpr std::size_t kMostFacePairs = 20'000'000;   // pairs of faces, 2 s: a bundle of needles through one place is not looked through beyond that
-constexpr double kMostCrossingAngles = 5e7;     // about 5 s: parts that lie on each other are not looked through beyond that
+constexpr double kAside = 16.0;              // roundings: distance from a face at which the winding number is evaluated
+constexpr std::size_t kMostNamed = 3;        // pairs of parts: a tree of a thousand leaves needs no thousand messages
+constexpr std::size_t kMostFacePairs = 20'000'000;   // pairs of faces, 2 s; a bundle of needles through one place would take hours
+constexpr double kMostCrossingAngles = 5e7;     // solid angles, about 5 s; further parts that lie on each other are not tested
 
 struct Interval {
   double low, high;
@@ -33,7 +33,7 @@ struct Interval {
 struct Plate {
   Vector3d corners[3];
   Vector3d normal;      // unit
-  bool has_plane;       // not a sliver
+  bool has_plane;       // false for a sliver
 
   Plate(const TriangleMesh& mesh, const Face& face, double tolerance) {
     for (int i = 0; i < 3; ++i) corners[i] = mesh.vertices[face[i]];
@@ -43,14 +43,16 @@ struct Plate {
     normal = has_plane ? Vector3d(area.normalized()) : Vector3d::Zero();
   }
 
-  /// Heights of the other's corners above this plane; nothing unless they lie on both sides by more than the tolerance.
+  /// Heights of the other's corners above this plane; nothing unless they lie on both sides of it
+  /// by more than the tolerance.
   std::optional<Vector3d> cut(const Plate& other, double tolerance) const {
     const Vector3d heights(normal.dot(other.corners[0] - corners[0]), normal.dot(other.corners[1] - corners[0]), normal.dot(other.corners[2] - corners[0]));
     if (heights.maxCoeff() <= tolerance || heights.minCoeff() >= -tolerance) return std::nullopt;
     return heights;
   }
 
-  /// Where the plane from which the corners have these heights cuts this face: from where to where along a direction.
+  /// The interval, along a direction, in which a plane cuts this face; the corners have these
+  /// heights above the plane.
   Interval along(const Vector3d& direction, const Vector3d& heights) const {
     Interval interval{std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
     for (int i = 0; i < 3; ++i) {
@@ -77,8 +79,8 @@ std::optional<Vector3d> crossing_point(const Plate& a, const Plate& b, double to
   const Vector3d direction = across / sine;
   const Interval in_a = a.along(direction, *of_a), in_b = b.along(direction, *of_b);
   const double low = std::max(in_a.low, in_b.low), high = std::min(in_a.high, in_b.high);
-  if (!(high - low > 4.0 * tolerance / sine)) return std::nullopt;   // both ends of both are off by tolerance / sine
-  // The point of both planes that is nearest to a's corner, moved along the line.
+  if (!(high - low > 4.0 * tolerance / sine)) return std::nullopt;   // each of the four ends has an error of tolerance / sine
+  // The point of the common line that is nearest to a's corner, then moved along the line.
   const Vector3d down = a.normal.cross(direction);
   const Vector3d on_line = a.corners[0] + down * (b.normal.dot(b.corners[0] - a.corners[0]) / b.normal.dot(down));
   return on_line + direction * (0.5 * (low + high) - direction.dot(on_line));
@@ -90,7 +92,7 @@ struct Crossing {
 };
 using PairOfParts = std::pair<int, int>;   // first <= second
 
-/// Boxes about halves of the faces, and what the traversal of a tree against itself finds.
+/// A tree of bounding boxes over the faces, traversed against itself.
 class CrossingSearch {
  public:
   CrossingSearch(const TriangleMesh& mesh, const std::vector<int>& part_of_face) : mesh_(mesh), part_of_face_(part_of_face) {
@@ -104,13 +106,13 @@ class CrossingSearch {
     search();
   }
 
-  /// By pair of parts: the crossing of the lowest faces.
+  /// By pair of parts: the crossing with the lowest face indices.
   const std::map<PairOfParts, Crossing>& crossings() const { return crossings_; }
-  /// What rounding of coordinates leaves between faces. [m]
+  /// Distance between faces that rounding of coordinates can cause. [m]
   double tolerance() const { return tolerance_; }
   /// Whether all faces that may cross were compared.
   bool is_complete() const { return compared_ < kMostFacePairs; }
-  /// Pairs of different parts with faces in each other's boxes.
+  /// Pairs of different parts with faces whose boxes overlap.
   const std::map<PairOfParts, bool>& close() const { return close_; }
 
  private:
@@ -166,11 +168,11 @@ class CrossingSearch {
     for (int k = a.first; k < a.first + a.count; ++k)
       for (int l = is_same ? k + 1 : b.first; l < b.first + b.count; ++l) {
         const auto [f, g] = std::minmax(order_[k], order_[l]);
-        look_at(f, g);
+        test_pair(f, g);
       }
   }
 
-  void look_at(int f, int g) {
+  void test_pair(int f, int g) {
     ++compared_;
     const PairOfParts parts = std::minmax(part_of_face_[f], part_of_face_[g]);
     if (parts.first != parts.second) close_[parts] = true;
@@ -217,9 +219,10 @@ Bounds bounds_of_faces(const TriangleMesh& mesh) {
   return bounds;
 }
 
-/// Whether some of the faces of one part lie inside the other and some outside; the middle of one that lies inside. A face is looked at
-/// a little before and behind it: one that lies on the other's surface has one side in it and one outside, and says nothing.
-/// @param step  how much, above rounding [m]
+/// Whether some faces of one part lie inside the other and some outside; if so, the centroid of one
+/// that lies inside. Points a little in front of a face and behind it are tested: a face on the
+/// other's surface has one of them inside and one outside, and decides nothing.
+/// @param step  distance of these points from the face, above rounding [m]
 std::optional<Vector3d> half_inside(const TriangleMesh& inner, const TriangleMesh& outer, double step) {
   const Bounds box = bounds_of_faces(outer);
   const auto is_inside = [&](const Vector3d& point) {
@@ -253,7 +256,7 @@ std::vector<Defect> find_crossings(const TriangleMesh& mesh, const std::vector<i
   std::vector<std::pair<PairOfParts, std::string>> found;
   for (const auto& [parts, crossing] : search.crossings()) found.emplace_back(parts, fmt::format("faces {} and {} at {}", crossing.face_a, crossing.face_b, show_point(crossing.point)));
 
-  // Shells whose faces only lie on each other.
+  // Shells with faces that only lie on each other.
   double work = 0.0;
   for (const auto& [parts, is_close] : search.close()) {
     if (search.crossings().contains(parts)) continue;
@@ -268,7 +271,7 @@ std::vector<Defect> find_crossings(const TriangleMesh& mesh, const std::vector<i
     if (inside) found.emplace_back(parts, fmt::format("one has a face about {} inside the other", show_point(*inside)));
   }
 
-  if (!is_complete && found.empty()) notices.push_back("too many faces lie in each other's way: whether some pass through each other was not looked for everywhere");
+  if (!is_complete && found.empty()) notices.push_back("too many faces overlap: not all of them were tested for crossings");
   std::vector<Defect> defects;
   for (const auto& [parts, place] : found) {
     if (defects.size() == kMostNamed) {

@@ -1,4 +1,5 @@
-/// Do shells of a surface pass through each other, or one through itself? What lies inside twice would count twice in the volume.
+/// Do shells of a surface pass through each other, or one through itself? A region inside two
+/// shells would count twice in the volume.
 #pragma once
 
 #include <string>
@@ -9,13 +10,15 @@
 
 namespace tumble {
 
-/// Defects of a closed, oriented surface whose faces cross: one for every pair of parts that cross (a part with itself too), the first
-/// few named. Parts that touch, at a corner, along an edge or face on face, do not cross.
-/// Two faces cross where the line that their planes share runs through the insides of both for longer than float32 coordinates are
-/// rounded by. Parts whose faces only lie on each other (two boxes pushed into each other along an edge) are told by winding numbers:
-/// a part of whose faces some lie inside the other and some outside crosses it.
-/// @param part_of_face  (faces), by the smallest face of each part
-/// @param notices       told where so many faces lie in each other's way that not all were looked at
+/// Defects of a closed, oriented surface whose faces cross: one for every pair of parts that cross
+/// (also a part with itself); the first few are named. Parts that touch, at a corner, along an edge
+/// or face on face, do not cross.
+/// Two faces cross where the common line of their planes runs through the interiors of both over a
+/// length above the rounding of float32 coordinates. Parts whose faces only lie on each other (two
+/// boxes pushed into each other along an edge) are decided by winding numbers: a part crosses
+/// another where some of its faces lie inside the other and some outside.
+/// @param part_of_face  (faces), each part named by its smallest face
+/// @param notices       gets a line where too many pairs of faces overlap to test them all
 /// Cost: O(n log n) for a surface that is spread out; O(n m) for parts of n and m faces that lie on each other
 /// Source: T. Moeller, "A fast triangle-triangle intersection test", J. Graphics Tools 2(2), 1997 (intervals on the common line).
 std::vector<Defect> find_crossings(const TriangleMesh& closed_mesh, const std::vector<int>& part_of_face, std::vector<std::string>& notices);

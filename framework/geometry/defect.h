@@ -1,4 +1,4 @@
-/// What can be wrong with a surface that should bound a solid.
+/// Defects of a surface that should bound a solid.
 #pragma once
 
 #include <string>
@@ -7,25 +7,25 @@ namespace tumble {
 
 enum class DefectKind {
   kNoFaces,
-  kBadIndex,          // a face names a vertex that does not exist
+  kBadIndex,          // a face refers to a vertex that does not exist
   kNotFinite,         // NaN or infinite coordinate
   kSinglePolygon,     // open and flat
-  kTerrain,           // open, and every face looks up
+  kTerrain,           // open, and every normal points up
   kMissingFace,       // one or more holes in an otherwise closed surface
   kLampshade,         // one polygon thick: a tube open at both ends, or two layers of faces back to back
-  kRepeatedFace,      // the same face twice, looking the same way
-  kMergedCorners,     // corners that single precision has made one: faces without area, and others back to back
-  kCrack,             // open edges that lie beside each other
+  kRepeatedFace,      // the same face twice, with the same orientation
+  kMergedCorners,     // corners that single precision has merged: faces without area, and others back to back
+  kCrack,             // open edges close beside each other
   kEdgeOfManyFaces,   // three or more faces at an edge
   kOrientation,       // neighbours disagree on which side is outside
   kOneSided,          // like a Moebius strip: no choice of sides exists
-  kNestedOutward,     // a part inside another that is not its cavity: its volume would count twice
+  kNestedOutward,     // a part inside another that is not a cavity of it: its volume would count twice
   kZeroVolume,
-  kNeedle,            // so long and thin that double precision cannot tell how it turns about its length
+  kNeedle,            // so long and thin that its moment about its length is lost in double precision
   kSelfCrossing,      // shells pass through each other, or one through itself
 };
 
-/// One thing that is wrong with a surface.
+/// One defect of a surface.
 struct Defect {
   DefectKind kind;
   std::string problem;  // what and where: "2 open edges, the first at (0, 0, 1)-(1, 0, 1)"

@@ -1,4 +1,4 @@
-// The one place where assimp is seen.
+// The only file that uses assimp.
 #include "framework/geometry/load_3ds.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 namespace tumble {
 namespace {
 
-constexpr const char* kNameless = "3DSMesh_";  // what assimp calls the node of mesh i in a file without node names
+constexpr const char* kNameless = "3DSMesh_";  // assimp's name for the node of mesh i in a file without nodes
 
 using Affine = Eigen::Affine3d;
 
@@ -37,7 +37,7 @@ class Gatherer {
       : scene_(scene), file_(file), metres_per_unit_(metres_per_unit) {}
 
   std::vector<std::pair<std::string, TriangleMesh>> run() {
-    // The root turns z up into y up; leaving its transform out leaves the file's axes.
+    // The root's transform changes z up to y up; without it the file's own axes remain.
     visit(*scene_.mRootNode, Affine::Identity(), true);
     return std::move(objects_);
   }
@@ -78,7 +78,7 @@ class Gatherer {
     return place->second;
   }
 
-  // A file without nodes loses its objects' names on the way; its meshes come in the file's order.
+  // In a file without nodes assimp loses the objects' names, but keeps their order.
   std::string name_of(const aiNode& node) const {
     const std::string name = node.mName.C_Str();
     if (!name.starts_with(kNameless) || file_.has_nodes) return name;
@@ -101,7 +101,7 @@ std::string unique_name(const std::string& name, std::map<std::string, int>& use
   return count == 1 ? name : fmt::format("{}#{}", name, count);
 }
 
-// Meshes without faces never reach the scene: they are told of, each as an object that bounds nothing.
+// assimp drops meshes without faces; each is added here as an object that encloses nothing.
 void add_faceless(const Checked3ds& file, LoadedFile& loaded) {
   for (const DeclaredMesh& mesh : file.meshes) {
     if (mesh.faces > 0) continue;
@@ -143,7 +143,7 @@ LoadedFile parse_3ds(std::string_view bytes, const std::string& where, const Loa
   }
   add_faceless(file, loaded);
   if (loaded.objects.empty()) {
-    throw UserError(where, "holds no mesh (cameras and lights are no bodies)", "Export the objects as triangle meshes.");
+    throw UserError(where, "holds no mesh (cameras and lights are not bodies)", "Export the objects as triangle meshes.");
   }
   return loaded;
 }

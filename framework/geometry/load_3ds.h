@@ -1,4 +1,5 @@
-/// Reads .3ds files: objects as welded triangle meshes in the file's frame (z up), each with the verdict whether it is closed.
+/// Reads .3ds files: objects as welded triangle meshes in the file's frame (z up), each with a
+/// report whether it is closed.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +12,7 @@
 namespace tumble {
 
 struct Load3dsOptions {
-  double metres_per_unit = 1.0;  // length of the file's unit [m], > 0: the format does not say it
+  double metres_per_unit = 1.0;  // length of the file's unit [m], > 0: the format does not specify it
 };
 
 struct LoadedObject {
@@ -24,11 +25,13 @@ struct LoadedFile {
   std::vector<LoadedObject> objects;  // in the file's order; at least one
 };
 
-/// All objects of a .3ds file, with node transforms and pivots applied. Open surfaces are loaded too: see their reports.
+/// All objects of a .3ds file, with node transforms and pivots applied. Open surfaces are loaded
+/// too; their reports list the defects.
 /// @throws UserError when the file cannot be read, is not 3DS, is truncated or damaged (with the byte offset), or holds no mesh
 LoadedFile load_3ds(const std::filesystem::path& path, const Load3dsOptions& options = {});
 
-/// The same from memory. @param where  said in errors
+/// The same from memory.
+/// @param where  names the file in errors
 LoadedFile parse_3ds(std::string_view bytes, const std::string& where, const Load3dsOptions& options = {});
 
 }  // namespace tumble

@@ -15,8 +15,9 @@ struct Moments {
   Matrix3d second = Matrix3d::Zero();          // int x x'
 };
 
-// `shift` moves by an exact or nearly exact difference, `fine` by a small one: applied one after the other, so that a solid far
-// from the origin is not rounded to the coordinates' spacing.
+// Moves the origin by `shift`, an exact or nearly exact difference, and then by `fine`, a small
+// one: with their sum, a solid far from the origin would be rounded to the spacing of its
+// coordinates.
 Moments integrate(const TriangleMesh& mesh, const Vector3d& shift, const Vector3d& fine) {
   Moments sum;
   for (const auto& [i, j, k] : mesh.faces) {
@@ -76,13 +77,13 @@ MassProperties compute_mass_properties(const TriangleMesh& mesh, double density)
   require(density > 0.0, "compute_mass_properties: density must be positive");
   const Vector3d middle = middle_of(mesh);
 
-  // First pass, about the middle of the bounding box: where is the centre of mass?
+  // First pass, about the centre of the bounding box: find the centre of mass.
   const Moments about_middle = integrate(mesh, middle, Vector3d::Zero());
   require(std::isfinite(about_middle.volume) && about_middle.volume != 0.0,
           "compute_mass_properties: the surface encloses no volume (check it with check_closed first)");
   const Vector3d com_from_middle = about_middle.first / about_middle.volume;
 
-  // Second pass, about the centre of mass itself: no difference of large moments remains.
+  // Second pass, about the centre of mass: no large moments cancel.
   const Moments about_com = integrate(mesh, middle, com_from_middle);
   const Vector3d rest = about_com.first / about_com.volume;
   const Matrix3d second = about_com.second - about_com.volume * rest * rest.transpose();

@@ -1,10 +1,11 @@
-/// Who shares an edge with whom: the table that the closed check, convexity and rays are built on.
+/// Which faces share an edge: the basis of the closed check and of the tests for convexity and open
+/// edges.
 #pragma once
 
-#include <numeric>
 #include <string>
 #include <vector>
 
+#include "framework/core/disjoint_sets.h"
 #include "framework/geometry/triangle_mesh.h"
 
 namespace tumble {
@@ -13,11 +14,12 @@ namespace tumble {
 struct EdgeUse {
   int low, high;   // vertices, low < high
   int face;
-  int corner;      // the face runs from faces[face][corner] to the next corner
-  bool forward;    // it runs from low to high
+  int corner;      // the edge goes from faces[face][corner] to the face's next corner
+  bool forward;    // from low to high
 };
 
-/// Every use of every edge, sorted by (low, high, face): uses of the same edge stand together. Cost: O(n log n)
+/// Every use of every edge, sorted by (low, high, face), so that uses of the same edge are
+/// adjacent. Cost: O(n log n)
 std::vector<EdgeUse> edge_uses(const TriangleMesh& mesh);
 
 /// Calls group(first, last) for every run of uses of the same edge, in order.
@@ -30,25 +32,6 @@ void for_each_edge(const std::vector<EdgeUse>& uses, Group group) {
     first = last;
   }
 }
-
-/// Disjoint sets with the smallest member as the name of each.
-class DisjointSets {
- public:
-  explicit DisjointSets(int size) : parent_(size) { std::iota(parent_.begin(), parent_.end(), 0); }
-  int find(int i) {
-    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
-    return i;
-  }
-  void unite(int a, int b) {
-    a = find(a);
-    b = find(b);
-    if (a < b) parent_[b] = a;
-    else parent_[a] = b;
-  }
-
- private:
-  std::vector<int> parent_;
-};
 
 /// "(0, 0.5, 1)": a place in messages.
 std::string show_point(const Vector3d& point);

@@ -1,4 +1,4 @@
-// Open edges, sorted into what people call them: a crack, a single polygon, a lampshade, a terrain, a missing face.
+// Open edges classified: cracks, a single polygon, a lampshade, a terrain, a missing face.
 #include "framework/geometry/open_surface.h"
 
 #include <algorithm>
@@ -13,11 +13,11 @@ namespace {
 
 constexpr double kCrackWidth = 0.05;          // of an open edge's length: nearer to another open edge than this is a crack
 constexpr std::size_t kMostCompared = 3000;   // open edges compared pairwise: 9 million distances take about 0.1 s
-constexpr double kFlat = 1e-6;                // of the part's size: float32 coordinates of a flat polygon scatter less
-constexpr std::size_t kMostPartsNamed = 5;    // a file of a thousand leaves needs no thousand messages
+constexpr double kFlat = 1e-6;                // of the part's size: above the scatter of a flat polygon's float32 coordinates
+constexpr std::size_t kMostPartsNamed = 5;    // a tree of a thousand leaves needs no thousand messages
 
 struct OpenEdge {
-  int from, to;      // as its face runs
+  int from, to;      // in the order of its face
   int face;
   bool in_crack = false;
   double width = 0;  // to the nearest other open edge, where in_crack [m]
@@ -40,8 +40,8 @@ std::vector<OpenEdge> find_open_edges(const TriangleMesh& mesh, const std::vecto
   return open;
 }
 
-// An open edge whose middle lies beside another open edge: corners that should coincide differ, or an edge of one face ends in
-// the middle of another's.
+// An open edge is part of a crack where its midpoint is close to another open edge: corners that
+// should coincide differ, or an edge of one face ends in the middle of another's.
 void mark_cracks(const TriangleMesh& mesh, std::vector<OpenEdge>& open) {
   const std::size_t n = std::min(open.size(), kMostCompared);
   for (std::size_t i = 0; i < n; ++i) {
@@ -57,7 +57,7 @@ void mark_cracks(const TriangleMesh& mesh, std::vector<OpenEdge>& open) {
   }
 }
 
-// One connected piece and its open edges.
+// One connected part and its open edges.
 struct OpenPart {
   std::vector<int> faces;
   std::vector<OpenEdge> edges;
@@ -96,7 +96,7 @@ bool is_flat(const TriangleMesh& mesh, const std::vector<int>& faces) {
   return height <= kFlat * size;
 }
 
-bool looks_up_everywhere(const TriangleMesh& mesh, const std::vector<int>& faces) {
+bool all_normals_point_up(const TriangleMesh& mesh, const std::vector<int>& faces) {
   const bool up = area_vector(mesh, faces.front()).z() > 0.0;
   return std::all_of(faces.begin(), faces.end(), [&](int f) {
     const Vector3d area = area_vector(mesh, f);
@@ -117,7 +117,7 @@ int count_rims(const std::vector<OpenEdge>& edges) {
   return static_cast<int>(rims.size());
 }
 
-// Vertices - edges + faces: 0 for a ring (a tube open at both ends), 1 for a sheet or a box without its lid.
+// Vertices - edges + faces: 0 for a tube open at both ends, 1 for a sheet or a box without its lid.
 int euler_characteristic(const TriangleMesh& mesh, const OpenPart& part) {
   std::set<int> vertices;
   for (int f : part.faces) vertices.insert(mesh.faces[f].begin(), mesh.faces[f].end());
@@ -141,9 +141,10 @@ Defect describe_part(const TriangleMesh& mesh, const OpenPart& part) {
     return {DefectKind::kLampshade, "a lampshade, one polygon thick and open at both ends: " + place,
             "Cap both ends to make it solid, or give the wall a thickness."};
   }
-  // A pyramid without its base looks up everywhere too; four edges or fewer are a missing face rather than a rim of a terrain.
-  if (rims == 1 && part.edges.size() > 4 && looks_up_everywhere(mesh, part.faces)) {
-    return {DefectKind::kTerrain, "a terrain: every face looks to the same side of the horizon and the rim is open: " + place,
+  // All faces of a pyramid without its base point up too: four open edges or fewer are a missing
+  // face rather than the rim of a terrain.
+  if (rims == 1 && part.edges.size() > 4 && all_normals_point_up(mesh, part.faces)) {
+    return {DefectKind::kTerrain, "a terrain: every face points to the same side of the horizon and the rim is open: " + place,
             "Add walls and a bottom, or use a plane or a box as the ground."};
   }
   return {DefectKind::kMissingFace,
@@ -175,7 +176,7 @@ std::vector<Defect> describe_open_edges(const TriangleMesh& mesh, const std::vec
   if (open.empty()) return {};
   mark_cracks(mesh, open);
 
-  // A part that is mostly cracked is told once for all parts; each other part gets a description of its own.
+  // Parts that are mostly cracked share one description; every other part gets its own.
   std::vector<Defect> defects;
   bool has_cracks = false;
   std::size_t unnamed = 0;

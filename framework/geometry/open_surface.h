@@ -1,4 +1,4 @@
-/// What kind of hole does an open surface have? Names it as a person would, with its place and remedy.
+/// Classifies the holes of an open surface in everyday words, with place and remedy.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,8 @@
 
 namespace tumble {
 
-/// Defects of a surface with open edges (used by one face only); empty when it has none.
-/// @param part_of_face  (faces), the connected piece that each face belongs to, by the smallest face in it
+/// Defects of a surface with open edges (edges of one face only); empty when it has none.
+/// @param part_of_face  (faces), the part of each face, named by its smallest face
 std::vector<Defect> describe_open_edges(const TriangleMesh& mesh, const std::vector<EdgeUse>& uses,
                                         const std::vector<int>& part_of_face);
 

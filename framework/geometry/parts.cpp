@@ -13,9 +13,10 @@
 namespace tumble {
 namespace {
 
-// Volume below this times area^1.5 is flat: a plate of relative thickness 1e-10 is 500 times thinner than float32 can tell.
+// A part is flat where its volume is below this times area^1.5: a plate of relative thickness 1e-10
+// is 500 times thinner than float32 resolves.
 constexpr double kFlatPart = 1e-10;
-constexpr double kMostSolidAngles = 5e7;  // about 5 s; a file of thousands of parts inside each other is not looked through
+constexpr double kMostSolidAngles = 5e7;  // about 5 s; with thousands of parts inside each other not all are tested
 
 struct Part {
   TriangleMesh mesh;
@@ -33,8 +34,9 @@ double area_of(const TriangleMesh& mesh) {
   return 0.5 * doubled;
 }
 
-// Largest error that rounding can leave in the volume: each of n terms d = a . ((b - a) x (c - a)) / 6 by a few eps of the product of its
-// lengths, and their sum by n eps more. A spike of length 1e31 on a stone of 1 m has nothing but this.
+// Bound on the rounding error of the volume: each of n terms d = a . ((b - a) x (c - a)) / 6 is off
+// by a few eps of the product of its lengths, and their sum by n eps more. The volume of a stone of
+// 1 m with a spike of length 1e31 is nothing but rounding.
 double rounding_of_volume(const Part& part) {
   const Vector3d middle = 0.5 * (part.bounds.low + part.bounds.high);
   double lengths = 0.0;
@@ -82,7 +84,7 @@ void find_depths(std::vector<Part>& parts, std::vector<std::string>& notices) {
       if (&outer == &inner || !holds(outer.bounds, inner.bounds)) continue;
       work += static_cast<double>(outer.mesh.faces.size());
       if (work > kMostSolidAngles) {
-        notices.push_back("too many parts inside each other: which are cavities was taken from the way their faces look");
+        notices.push_back("too many parts inside each other: a part counts as a cavity where its faces point inward");
         for (Part& part : parts) part.depth = part.volume < 0.0 ? 1 : 0;
         return;
       }
@@ -91,7 +93,7 @@ void find_depths(std::vector<Part>& parts, std::vector<std::string>& notices) {
   }
 }
 
-void turn(const Part& part, TriangleMesh& mesh) {
+void flip(const Part& part, TriangleMesh& mesh) {
   for (int f : part.faces) std::swap(mesh.faces[f][1], mesh.faces[f][2]);
 }
 
@@ -146,7 +148,7 @@ TriangleMesh double_pinched_vertices(const TriangleMesh& mesh, const std::vector
     }
   });
 
-  // One new vertex a fan, in the order of the old vertices.
+  // One new vertex for each fan, in the order of the old vertices.
   std::map<std::pair<int, int>, int> fans;  // (old vertex, smallest corner) -> new vertex
   for (int corner = 0; corner < corners; ++corner) fans[{mesh.faces[corner / 3][corner % 3], sets.find(corner)}] = 0;
   TriangleMesh result{{}, mesh.faces};
@@ -171,7 +173,7 @@ std::vector<Defect> orient_parts(const std::vector<int>& part_of_face, TriangleM
   if (std::vector<Defect> nothing = find_without_volume(parts); !nothing.empty()) return nothing;
   find_depths(parts, notices);
 
-  // Solid and cavity alternate from the outside inward: volumes have the signs +, -, +, ...
+  // Solids and cavities alternate from the outside inward: volumes have the signs +, -, +, ...
   const auto is_wrong = [](const Part& part) { return (part.volume < 0.0) != (part.depth % 2 == 1); };
   const auto wrong = std::count_if(parts.begin(), parts.end(), is_wrong);
   const bool all_wrong = wrong == static_cast<std::ptrdiff_t>(parts.size());
@@ -179,14 +181,14 @@ std::vector<Defect> orient_parts(const std::vector<int>& part_of_face, TriangleM
   for (const Part& part : parts) {
     if (!is_wrong(part)) continue;
     if (all_wrong || part.depth == 0) {
-      turn(part, mesh);
-      if (!all_wrong) notices.push_back(place_of(part) + " was inside out: its faces were turned");
+      flip(part, mesh);
+      if (!all_wrong) notices.push_back(place_of(part) + " was inside out: its faces were flipped");
     } else {
-      defects.push_back({DefectKind::kNestedOutward, place_of(part) + " lies inside another part and is not its cavity: its volume would count twice",
-                         "Remove it, or turn its faces inward if it is meant as a cavity."});
+      defects.push_back({DefectKind::kNestedOutward, place_of(part) + " lies inside another part and is not a cavity: its volume would count twice",
+                         "Remove it, or flip its faces if it is meant as a cavity."});
     }
   }
-  if (all_wrong) notices.push_back("the surface was inside out: all its faces were turned");
+  if (all_wrong) notices.push_back("the surface was inside out: all its faces were flipped");
   return defects;
 }
 

@@ -16,7 +16,8 @@ constexpr double kBoxRounding = 16 * kEpsilon;
 
 }  // namespace
 
-// The ray's own frame: its origin at 0, its direction along +z with length 1 there; x and y are sheared, not turned.
+// The ray's frame: its origin at 0, its direction (0, 0, 1). The transform is a shear, not a
+// rotation.
 struct RayTree::Shear {
   Shear(const Vector3d& origin_in, const Vector3d& direction_in) : origin(origin_in), direction(direction_in) {
     Eigen::Index largest = 0;
@@ -28,20 +29,21 @@ struct RayTree::Shear {
     slope_y = direction[y] / direction[z];
   }
 
-  /// x, y: where the corner stands beside the ray; z: how far along it [lengths of the direction]
+  /// x, y: position of the corner beside the ray; z: position along it [lengths of the direction]
   Vector3d operator()(const Vector3d& corner) const {
     const Vector3d from_origin = corner - origin;
     return {from_origin[x] - slope_x * from_origin[z], from_origin[y] - slope_y * from_origin[z], from_origin[z] / direction[z]};
   }
 
-  /// Smallest t at which the ray is in the widened box, or infinity.
+  /// Smallest t at which the ray is in the widened box; infinity where it misses the box.
   double entry(const Vector3d& low, const Vector3d& high, double margin, double t_most) const {
     double enter = 0.0, leave = t_most;
     for (int i = 0; i < 3; ++i) {
       double near = (low[i] - margin - origin[i]) / direction[i];
       double far = (high[i] + margin - origin[i]) / direction[i];
       if (direction[i] < 0.0) std::swap(near, far);
-      // Along a slab (0 / 0) the axis says nothing: comparisons with NaN are false and leave the interval as it is.
+      // A ray in the plane of a slab (0 / 0) is not limited by it: comparisons with NaN are false
+      // and leave the interval unchanged.
       if (near > enter) enter = near;
       if (far < leave) leave = far;
     }
@@ -58,7 +60,7 @@ RayTree::RayTree(TriangleMesh mesh) : mesh_(std::move(mesh)) {
   const int n = static_cast<int>(mesh_.vertices.size());
   std::vector<Vector3d> middles;
   for (const auto& [a, b, c] : mesh_.faces) {
-    require(std::min({a, b, c}) >= 0 && std::max({a, b, c}) < n, "RayTree: a face names a vertex that does not exist");
+    require(std::min({a, b, c}) >= 0 && std::max({a, b, c}) < n, "RayTree: a face refers to a vertex that does not exist");
     middles.push_back((mesh_.vertices[a] + mesh_.vertices[b] + mesh_.vertices[c]) / 3.0);
     require(middles.back().allFinite(), "RayTree: a vertex is not finite");
   }
@@ -66,7 +68,7 @@ RayTree::RayTree(TriangleMesh mesh) : mesh_(std::move(mesh)) {
   build(0, static_cast<int>(faces_.size()), middles);
 }
 
-// Halves the faces at the median of their middles, along the axis in which these spread most.
+// Splits the faces at the median of their centroids, along the axis of largest extent.
 int RayTree::build(int first, int count, const std::vector<Vector3d>& middles) {
   const int index = static_cast<int>(nodes_.size());
   const auto begin = faces_.begin() + first, end = begin + count;
@@ -102,7 +104,8 @@ void RayTree::try_face(int face, const Shear& shear, double t_most, std::optiona
   const Vector3d b = shear(mesh_.vertices[mesh_.faces[face][1]]);
   const Vector3d c = shear(mesh_.vertices[mesh_.faces[face][2]]);
 
-  // Twice the areas that the ray cuts off beside each edge; the same edge of the neighbour gives exactly the opposite number.
+  // Twice the signed areas between the ray and each edge; the neighbour's value for the same edge
+  // is exactly the negative.
   const double u = c.x() * b.y() - c.y() * b.x();
   const double v = a.x() * c.y() - a.y() * c.x();
   const double w = b.x() * a.y() - b.y() * a.x();
@@ -111,7 +114,7 @@ void RayTree::try_face(int face, const Shear& shear, double t_most, std::optiona
   if (whole == 0.0) return;  // edge-on, or without area
 
   const Vector3d weights = Vector3d(u, v, w) / whole;
-  // Between the corners, whatever the rounding of the weights.
+  // Clamped to the range of the corners, against rounding of the weights.
   const double t = std::clamp(weights.dot(Vector3d(a.z(), b.z(), c.z())), std::min({a.z(), b.z(), c.z()}), std::max({a.z(), b.z(), c.z()}));
   if (!(t >= 0.0) || t > t_most) return;
   if (best && (t > best->t || (t == best->t && face > best->face))) return;
@@ -127,7 +130,7 @@ std::optional<SurfaceHit> RayTree::nearest(const Vector3d& origin, const Vector3
 
   std::optional<SurfaceHit> best;
   const auto limit = [&] { return best ? best->t : t_most; };
-  std::vector<std::pair<double, int>> to_do{{0.0, 0}};  // entry, node; the nearer child on top
+  std::vector<std::pair<double, int>> to_do{{0.0, 0}};  // (entry, node); the nearer child on top
   while (!to_do.empty()) {
     const auto [enter, index] = to_do.back();
     to_do.pop_back();

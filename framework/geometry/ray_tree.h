@@ -1,4 +1,5 @@
-/// Where a ray first meets a surface, found through a tree of bounding boxes; nothing slips through an edge or a vertex.
+/// The first intersection of a ray with a surface, by a tree of bounding boxes. Watertight: no ray
+/// passes through an edge or a vertex.
 #pragma once
 
 #include <optional>
@@ -8,16 +9,17 @@
 
 namespace tumble {
 
-/// Where a ray meets a face.
+/// Intersection of a ray with a face.
 struct SurfaceHit {
   int face = -1;
   double t = kUnset;                                  // >= 0, in lengths of the ray's direction
   Vector3d barycentric{kUnset, kUnset, kUnset};       // (3), weights of the face's corners; sum 1, each in [0, 1]
 };
 
-/// A surface, ready to be asked by many rays.
-/// Watertight: the sign of a ray against an edge is computed from the same rounded numbers for both faces at the edge, so that at
-/// least one of them is hit; boxes are widened by the rounding of those numbers. Faces seen edge-on are not hit themselves.
+/// A surface prepared for queries by many rays.
+/// Watertight: the side on which a ray passes an edge is computed from the same rounded numbers for
+/// both faces at the edge, so that at least one of them is hit; boxes are widened by the rounding
+/// of those numbers. A face that is parallel to the ray is not hit.
 /// Source: S. Woop, C. Benthin, I. Wald, J. Computer Graphics Techniques 2(1), 2013, with double in place of float.
 class RayTree {
  public:
@@ -25,7 +27,8 @@ class RayTree {
   /// Cost: O(n log n)
   explicit RayTree(TriangleMesh mesh);
 
-  /// The nearest face on origin + t direction, 0 <= t <= t_most, from whichever side; of equal t the face of lowest index.
+  /// The nearest face on origin + t direction, 0 <= t <= t_most, from either side; of equal t the
+  /// face of lowest index.
   /// @param origin, direction  (3), in the mesh's frame; direction finite, not zero, need not be unit
   /// Cost: O(log n) for a surface that is spread out
   std::optional<SurfaceHit> nearest(const Vector3d& origin, const Vector3d& direction,
@@ -45,7 +48,7 @@ class RayTree {
   void try_face(int face, const Shear& shear, double t_most, std::optional<SurfaceHit>& best) const;
 
   TriangleMesh mesh_;
-  std::vector<int> faces_;      // permuted so that each leaf's stand together
+  std::vector<int> faces_;      // permuted: the faces of a leaf are adjacent
   std::vector<Node> nodes_;
 };
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kSphereSubdivisions = 3;  // 1280 faces: the outline departs from the circle by 0.3 % of the radius
 
-// An edge's midpoint, pushed out to the unit sphere; made once for the two faces that share it.
+// An edge's midpoint, projected to the unit sphere; created once for the two faces that share it.
 int midpoint(int a, int b, std::map<std::pair<int, int>, int>& known, std::vector<Vector3d>& vertices) {
   const std::pair<int, int> edge = std::minmax(a, b);
   const auto [place, is_new] = known.try_emplace(edge, static_cast<int>(vertices.size()));
@@ -89,7 +89,7 @@ TriangleMesh surface(const MeshSolid& solid, double) { return solid.mesh_body; }
 
 double radius(const Sphere& sphere) { return sphere.radius; }
 double radius(const Box& box) { return box.half_extents_body.norm(); }
-// A bound that is reached where the middle lies on the longest axis, or at the origin.
+// Exact where the centre lies on the longest axis or at the origin.
 double radius(const Ellipsoid& ellipsoid) { return ellipsoid.center_body.norm() + ellipsoid.semi_axes_body.maxCoeff(); }
 double radius(const HalfSpace&) { return std::numeric_limits<double>::infinity(); }
 double radius(const MeshSolid& solid) {

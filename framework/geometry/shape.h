@@ -17,14 +17,16 @@ struct Box {
   Vector3d half_extents_body;  // (3), > 0 [m]
 };
 
-/// Ellipsoid whose axes lie along the body's axes; its middle need not be the centre of mass (a rattleback is the lower part of one).
-/// It meets half-spaces only.
+/// Ellipsoid with its axes along the body's axes. Its centre need not be the centre of mass (a
+/// rattleback is the lower part of an ellipsoid).
+/// It collides with half-spaces only.
 struct Ellipsoid {
   Vector3d semi_axes_body;                       // (3), > 0 [m]
   Vector3d center_body = Vector3d::Zero();       // (3) [m]
 };
 
-/// Everything at or below z = 0 of the body frame: an immovable floor or wall without end; the normal is +z.
+/// Everything at or below z = 0 of the body frame: an infinite, immovable floor or wall with normal
+/// +z.
 struct HalfSpace {};
 
 /// Solid bounded by a closed, outward-oriented surface.
@@ -35,16 +37,18 @@ struct MeshSolid {
 
 using Shape = std::variant<Sphere, Box, HalfSpace, MeshSolid, Ellipsoid>;
 
-/// The shape's surface as triangles for drawing and picking; a half-space is a square of side 2 * extent about the origin.
+/// The shape's surface as triangles, for drawing and picking; a half-space becomes a square of side
+/// 2 * extent about the origin.
 /// @param extent  [m]; only for a half-space
 TriangleMesh surface_of(const Shape& shape, double extent = 50.0);
 
-/// Unit sphere from an icosahedron whose faces are cut in four again and again: 20 * 4^subdivisions faces, vertices on the sphere.
+/// Unit sphere from an icosahedron whose faces are repeatedly cut in four: 20 * 4^subdivisions
+/// faces, vertices on the sphere.
 /// @param subdivisions  >= 0
 TriangleMesh subdivided_sphere(int subdivisions);
 
-/// Radius of the smallest ball about the body's origin that holds the shape (of an ellipsoid beside its middle a bound); infinite for a
-/// half-space. [m]
+/// Radius of the smallest ball about the body's origin that contains the shape; an upper bound for
+/// an ellipsoid off the origin, infinite for a half-space. [m]
 double bounding_radius(const Shape& shape);
 
 }  // namespace tumble

@@ -11,9 +11,10 @@
 namespace tumble {
 namespace {
 
-// Spacing of float32 coordinates, relative to the solid's size, with a factor 2 for a transform after rounding.
+// Spacing of float32 coordinates relative to the solid's size, with a factor 2 for a transform
+// after rounding.
 constexpr double kRounding = 0x1.0p-22;
-constexpr double kMostTests = 2e8;  // vertex against plane: about half a second; beyond it every n-th plane is tried
+constexpr double kMostTests = 2e8;  // vertices against planes, about half a second; above it only every n-th plane is tested
 
 SolidModel solid_from_report(const ClosedReport& report, const std::string& where) {
   if (!report.is_closed()) {
@@ -57,9 +58,10 @@ SolidModel load_solid(const std::filesystem::path& path, const std::string& obje
   return solid_from_report(chosen.report, fmt::format("{}: object '{}'", file.where, chosen.name));
 }
 
-// A vertex may lie above a face's plane by what the rounding of the face's own corners explains: `rounding` near the face,
-// and more in proportion to the distance over the face's height, because a narrow face tilts easily. A slip of convexity within
-// that bound moves a gap by no more than it.
+// A vertex may lie above a face's plane by as much as the rounding of the face's corners explains:
+// `rounding` near the face, growing with distance / height of the face, because rounding tilts a
+// narrow face more. A violation of convexity within this bound changes a gap by no more than the
+// bound.
 bool is_convex(const TriangleMesh& mesh) {
   require(!mesh.vertices.empty() && !mesh.faces.empty(), "is_convex: the mesh is empty");
   const Bounds bounds = bounds_of(mesh);
@@ -75,7 +77,7 @@ bool is_convex(const TriangleMesh& mesh) {
     const Vector3d area = u.cross(v);
     const double longest = std::max({u.norm(), v.norm(), (u - v).norm()});
     const double height = area.norm() / longest;
-    if (!(height > rounding)) continue;  // a sliver has no plane of its own
+    if (!(height > rounding)) continue;  // a sliver has no reliable plane
     const Vector3d normal = area.normalized();
     for (const Vector3d& vertex : mesh.vertices) {
       const Vector3d to_vertex = vertex - a;

@@ -1,4 +1,5 @@
-/// A surface as triangles. What is closed, what it weighs and where a ray meets it stand in files of their own.
+/// A surface as triangles. Other files check that it is closed, and compute mass properties and
+/// intersections with rays.
 #pragma once
 
 #include <array>
@@ -12,7 +13,7 @@ namespace tumble {
 using Face = std::array<int, 3>;
 
 struct TriangleMesh {
-  std::vector<Vector3d> vertices;  // [m], frame as the holder says (mesh or body)
+  std::vector<Vector3d> vertices;  // [m], in the mesh or body frame, as the member's name says
   std::vector<Face> faces;
 };
 

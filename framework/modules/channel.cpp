@@ -38,13 +38,14 @@ void Channel::wait(int fd, short events, Clock::time_point deadline) {
 
 void Channel::send(MessageKind kind, const Bytes& payload, Clock::time_point deadline) {
   if (payload.size() > kMaxPayload)
-    throw WireError("an argument or answer of " + std::to_string(payload.size()) + " bytes, where at most " + std::to_string(kMaxPayload) + " pass (a size that was never set?)");
+    throw WireError("an argument or answer of " + std::to_string(payload.size()) + " bytes, above the limit of " + std::to_string(kMaxPayload) + " (a size that was never set?)");
   Bytes frame(sizeof(Header) + payload.size());
   const Header header{static_cast<std::uint32_t>(payload.size()), static_cast<std::uint8_t>(kind), {0, 0, 0}};
   std::memcpy(frame.data(), &header, sizeof header);
   if (!payload.empty()) std::memcpy(frame.data() + sizeof header, payload.data(), payload.size());
   for (std::size_t sent = 0; sent < frame.size();) {
-    // MSG_NOSIGNAL: a dead reader is an error code here, not a SIGPIPE. MSG_DONTWAIT: a reader that never reads cannot hold us.
+    // MSG_NOSIGNAL: a dead reader gives an error code instead of SIGPIPE. MSG_DONTWAIT: a reader
+    // that never reads cannot block this process.
     ssize_t n = ::send(write_fd_, frame.data() + sent, frame.size() - sent, MSG_NOSIGNAL | MSG_DONTWAIT);
     if (n < 0 && errno == ENOTSOCK) n = ::write(write_fd_, frame.data() + sent, frame.size() - sent);
     if (n < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) {
@@ -57,11 +58,11 @@ void Channel::send(MessageKind kind, const Bytes& payload, Clock::time_point dea
   }
 }
 
-// A process that sleeps takes some 30 us to be woken, longer than most functions of a module run: so we look for a while
-// before we sleep. sched_yield: where both ends share a core, the other one needs it.
-ssize_t Channel::look() {
-  constexpr auto kPatience = std::chrono::microseconds(60);
-  const auto until = Clock::now() + kPatience;
+// Waking a sleeping process takes some 30 us, longer than most functions of a module run: so poll
+// for a while before sleeping. sched_yield: where both ends share a core, the other one needs it.
+ssize_t Channel::poll_briefly() {
+  constexpr auto kPolling = std::chrono::microseconds(60);
+  const auto until = Clock::now() + kPolling;
   ssize_t n = -1;
   do {
     n = ::recv(read_fd_, ahead_.data(), ahead_.size(), MSG_DONTWAIT);
@@ -71,9 +72,10 @@ ssize_t Channel::look() {
   return n;
 }
 
-// One system call for a message that has arrived: what a call across the boundary costs is system calls.
+// Reads as much as has arrived in one system call: system calls are the main cost of a call across
+// the boundary.
 void Channel::fill(Clock::time_point deadline) {
-  if (const ssize_t n = look(); n > 0) {
+  if (const ssize_t n = poll_briefly(); n > 0) {
     at_ = 0;
     end_ = static_cast<std::size_t>(n);
     return;

@@ -25,12 +25,12 @@ struct Message {
   Bytes payload;
 };
 
-/// The other end is gone: it exited, crashed or closed its descriptor.
+/// The other process exited, crashed or closed its descriptor.
 class ChannelClosed : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
-/// Nothing complete arrived before the deadline.
+/// No complete message arrived before the deadline.
 class ChannelTimeout : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -44,7 +44,7 @@ class Channel {
   /// Does not own the descriptors. Either may be a socket or a pipe.
   Channel(int read_fd, int write_fd) : read_fd_(read_fd), write_fd_(write_fd) {}
 
-  /// Asked when a deadline has passed: gives a later one, or the same to let it end the wait.
+  /// Called when a deadline has passed: returns a later one, or the same one to end the wait.
   using Extension = std::function<Clock::time_point(Clock::time_point passed)>;
   void extend_by(Extension extension) { extension_ = std::move(extension); }
 
@@ -55,12 +55,12 @@ class Channel {
 
  private:
   void wait(int fd, short events, Clock::time_point deadline);
-  ssize_t look();
+  ssize_t poll_briefly();
   void fill(Clock::time_point deadline);
 
   int read_fd_, write_fd_;
   Extension extension_;
-  std::array<std::uint8_t, 1 << 14> ahead_;   // read, not yet asked for: from at_ to end_
+  std::array<std::uint8_t, 1 << 14> ahead_;   // received but not consumed: from at_ to end_
   std::size_t at_ = 0, end_ = 0;
 };
 

@@ -1,4 +1,5 @@
-/// Second body of a module: a shared object, loaded at run time. For a person's own machine; a judge never calls this.
+/// Second implementation of a module: a shared object, loaded at run time. For the user's own
+/// machine; a judge never calls this.
 #pragma once
 
 #include <filesystem>

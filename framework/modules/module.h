@@ -1,15 +1,16 @@
 /// The narrow waist: what a student module is.
 ///
-/// A module is a header of plain functions in one namespace, closed by one line
+/// A module is a header of plain functions in one namespace that ends with one line
 ///     TUMBLE_MODULE(a1, intersect_ray_triangle, wrench_of_point_force, ...)
-/// which makes `a1::Module`, a table with one std::function a function of the same name. Callers hold a table and never
-/// know which of three bodies is behind it: the student's file linked in (`linked_module`), a shared object loaded at run
-/// time (load.h), or a sandboxed process that answers over a channel (proxy.h).
+/// which defines `a1::Module`, a table with one std::function for each function, of the same name.
+/// Callers hold a table and do not know which of three implementations it has: the student's file
+/// linked in (`linked_module`), a shared object loaded at run time (load.h), or a sandboxed process
+/// that answers over a channel (proxy.h).
 #pragma once
 
 #include <functional>
 
-// Applies M(namespace, name) to each name: recursion by re-scanning, enough for 60 functions.
+// Applies M(namespace, name) to each name, by recursive re-scanning; enough for 60 functions.
 #define TUMBLE_PARENS ()
 #define TUMBLE_EXPAND(...) TUMBLE_EXPAND3(TUMBLE_EXPAND3(TUMBLE_EXPAND3(TUMBLE_EXPAND3(__VA_ARGS__))))
 #define TUMBLE_EXPAND3(...) TUMBLE_EXPAND2(TUMBLE_EXPAND2(TUMBLE_EXPAND2(TUMBLE_EXPAND2(__VA_ARGS__))))
@@ -24,8 +25,9 @@
 #define TUMBLE_MODULE_VISIT(NS, NAME) visitor(#NAME, module.NAME);
 #define TUMBLE_MODULE_LINK(NS, NAME) module.NAME = &::tumble::NS::NAME;
 
-// A shared object exports its table under one name a module; the file that implements the header is compiled with
-// TUMBLE_BUILDING_MODULE and needs no other line for it. Weak: a module of several files exports it once.
+// A shared object exports its table under one name per module. The file that implements the header
+// is compiled with TUMBLE_BUILDING_MODULE and needs no line for this. Weak: a module of several
+// files exports the table once.
 #ifdef TUMBLE_BUILDING_MODULE
 #define TUMBLE_MODULE_EXPORT(NS)                                                                           \
   extern "C" __attribute__((weak, used, visibility("default"))) const void* tumble_module_##NS() {        \
@@ -36,11 +38,11 @@
 #define TUMBLE_MODULE_EXPORT(NS)
 #endif
 
-/// Closes a module's header, at global scope.
+/// Ends a module's header, at global scope.
 /// @param NS  the module's namespace inside `tumble`, which is also its id ("a1"); then the functions, in header order.
 #define TUMBLE_MODULE(NS, ...)                                                                 \
   namespace tumble::NS {                                                                       \
-  /** The module as one value: a function a field, of the same name. */                        \
+  /** The module as one value: one field per function, of the same name. */                    \
   struct Module {                                                                              \
     static constexpr const char* kId = #NS;                                                    \
     TUMBLE_FOR_EACH(TUMBLE_MODULE_FIELD, NS, __VA_ARGS__)                                      \

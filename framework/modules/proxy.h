@@ -1,5 +1,6 @@
-/// Third body of a module: a table whose functions are answered by another process. Derived from the signatures; no line
-/// a function. Functions passed as arguments are called back across the boundary, run here, and counted here.
+/// Third implementation of a module: a table whose functions run in another process. Derived from
+/// the signatures, without a line per function. Functions passed as arguments are called back
+/// across the boundary, run here, and are counted here.
 #pragma once
 
 #include <array>
@@ -16,30 +17,34 @@
 
 namespace tumble::modules {
 
-/// What a proxy needs of whoever runs the other process.
+/// The interface that a proxy needs to the owner of the other process.
 class Connection {
  public:
   virtual ~Connection() = default;
-  /// The channel to a running worker; starts one where none runs. Called once a call, before anything is sent.
-  /// A callback may call again: such calls nest, and end in the reverse order.
+  /// The channel to a running worker; starts one where none runs. Called once per call, before
+  /// anything is sent. A callback may call the module again: such calls nest.
   virtual Channel& begin_call(const char* function) = 0;
   /// The worker has answered: it waits for the next call.
   virtual void end_call() {}
-  /// The call ends without its answer because a callback threw: the worker still waits inside the call.
+  /// The call ends without its answer because a callback threw; the worker still waits inside the
+  /// call.
   virtual void abandon_call() {}
-  /// Each callback served, before it runs. May throw to end the call (a budget of evaluations is spent).
+  /// Called before each callback runs. May throw to end the call (the budget of evaluations is
+  /// spent).
   virtual void count_callback() = 0;
-  /// A callback has run and its answer is sent next: the worker goes on with the call.
+  /// A callback has run, and its answer is sent next: the worker resumes the call.
   virtual void resume_call() {}
   virtual Channel::Clock::time_point deadline() const = 0;
-  /// What the call that is about to fail was asked, in words.
+  /// The arguments, in words, of the call that is about to fail.
   virtual void note_arguments(const std::string&) {}
-  /// The worker's answer cannot be had: turn the transport error into a verdict. Must throw; the call is over.
+  /// The worker gave no answer: turn the transport error into a verdict. Must throw; the call is
+  /// over.
   [[noreturn]] virtual void fail(const char* function, std::exception_ptr transport_error) = 0;
-  /// The worker answered with an exception of its own, or with bytes that are no answer.
+  /// The worker answered with an exception, or with bytes that are not a valid answer.
   [[noreturn]] virtual void refuse(const char* function, const std::string& what) = 0;
   [[noreturn]] virtual void not_implemented(const char* function, const std::string& handout) = 0;
-  /// The worker answered, or called back, with a vector of the wrong size; the call is over. `story` says which and what is needed.
+  /// The worker returned a vector of the wrong size, or passed one to a callback; the call is over.
+  /// `story` says which one, and the size needed.
   [[noreturn]] virtual void wrong_size(const char* function, const std::string& story) {
     refuse(function, story);
     throw WrongSize(story);   // unreachable: refuse throws
@@ -88,7 +93,7 @@ R call(Connection& connection, std::uint32_t index, const char* name, const A&..
       connection.fail(name, std::current_exception());
     } catch (const WireError& error) {
       connection.note_arguments(show_arguments(arguments...));
-      connection.refuse(name, std::string("answered with bytes that are no answer: ") + error.what());
+      connection.refuse(name, std::string("answered with bytes that are not a valid answer: ") + error.what());
     }
     throw;  // unreachable: fail and refuse throw
   };
@@ -152,7 +157,7 @@ std::function<R(A...)> proxy_function(Connection& connection, std::uint32_t inde
 
 }  // namespace detail
 
-/// A table whose functions are answered over `connection`, which must outlive it.
+/// A table whose functions run at the other end of `connection`, which must outlive it.
 template <class Module>
 Module make_proxy(Connection& connection) {
   Module module;

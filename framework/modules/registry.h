@@ -1,4 +1,4 @@
-/// Which modules there are. Each assignment registers once; the framework never names one.
+/// The known modules. Each assignment registers once; the framework never names one.
 #pragma once
 
 #include <any>
@@ -19,25 +19,26 @@
 
 namespace tumble::modules {
 
-/// One of a module's own methods of integration, to be measured beside others.
+/// A method of integration of a module, to be measured beside others.
 struct NamedMethod {
-  std::string name;                        // as its function is called
-  double order;                            // that it promises
+  std::string name;                        // of its function
+  double order;                            // nominal order of convergence
   std::function<std::function<VectorXd(const OdeFunction&, double, const VectorXd&, double)>(const AnyModule&)> step;
 };
 
-/// All that the framework can do with a module without knowing its header.
+/// Everything that the framework can do with a module without its header.
 struct ModuleKind : ModuleName {
   std::vector<std::string> functions;      // in header order
-  std::function<void(const AnyModule&, Laws&)> bind;                 // lets the module's functions be laws of a world
-  std::function<void(const AnyModule&, Channel&)> serve;             // worker's side
-  std::function<AnyModule(Connection&)> make_proxy;                  // judge's side
-  std::function<AnyModule(const AnyModule&, CallWatcher&)> watched;  // the same module, its calls seen from outside
-  std::vector<NamedMethod> methods;        // empty where the module is not about integration
-  bool is_scheduler = false;               // it decides in which order a world goes on, not how: it is bound only where it is named
+  std::function<void(const AnyModule&, Laws&)> bind;                 // sets laws of a world to the module's functions
+  std::function<void(const AnyModule&, Channel&)> serve;             // on the worker's side
+  std::function<AnyModule(Connection&)> make_proxy;                  // on the judge's side
+  std::function<AnyModule(const AnyModule&, CallWatcher&)> watched;  // the same module with watched calls
+  std::vector<NamedMethod> methods;        // empty where the module has no integration
+  bool is_scheduler = false;               // it decides the order in which logical processes run, not their physics: bound only where the user names it
 
-  /// What a room above this one wishes to know of a module, as a type of that room (truths::ModuleTruths, engines::CostShowcase): kept here, and not
-  /// known here. As the type is by default where nothing was noted.
+  /// Data about a module for a room above this one, of a type of that room (truths::ModuleTruths,
+  /// engines::CostShowcase), which is stored here without knowledge of the type.
+  /// Default-constructed where nothing was set.
   template <class Note>
   Note note() const {
     const auto found = notes.find(typeid(Note));
@@ -48,8 +49,8 @@ struct ModuleKind : ModuleName {
 
 class Registry {
  public:
-  /// The one registration line of an assignment.
-  /// @param bind  fills the laws that this module is about
+  /// Registers an assignment.
+  /// @param bind  sets the laws that this module implements
   /// @pre assignment_names() has it
   template <class Module>
   void add(void (*bind)(const Module&, Laws&)) {
@@ -68,19 +69,20 @@ class Registry {
     kinds_[kind.id] = std::move(kind);
   }
 
-  /// See ModuleKind::note. @pre the module is registered
+  /// See ModuleKind::note.
+  /// @pre the module is registered
   template <class Note>
   void set_note(const std::string& id, Note note) {
     kinds_.at(id).notes[typeid(Note)] = std::move(note);
   }
 
-  /// A method of integration among a registered module's functions.
+  /// Registers one of a module's functions as a method of integration.
   template <class Module, class Member>
   void add_method(const std::string& name, double order, Member Module::*function) {
     kinds_.at(Module::kId).methods.push_back({name, order, [function](const AnyModule& module) { return static_cast<const Module*>(module.get())->*function; }});
   }
 
-  /// A registered module that decides the order in which a world goes on.
+  /// Marks a registered module as a scheduler.
   void mark_scheduler(const std::string& id) { kinds_.at(id).is_scheduler = true; }
 
   /// @throws UserError naming the known ids
@@ -94,6 +96,6 @@ class Registry {
 }  // namespace tumble::modules
 
 namespace tumble {
-/// Defined once, in assignments/register.cpp: one line an assignment.
+/// Defined in assignments/register.cpp, with one line per assignment.
 void register_assignments(modules::Registry& registry);
 }  // namespace tumble

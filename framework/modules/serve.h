@@ -1,4 +1,5 @@
-/// The worker's side of a proxied module: reads calls, runs them, answers. Runs inside the sandbox.
+/// The worker's side of a proxied module: reads calls, runs them, sends the answers. Runs inside
+/// the sandbox.
 #pragma once
 
 #include <exception>
@@ -12,13 +13,14 @@
 namespace tumble::modules {
 namespace detail {
 
-/// The functions of a module as bytes to bytes, and the line that asks for them.
+/// The functions of a module from bytes to bytes, and the channel that calls them.
 struct Server {
   Channel& channel;
   std::vector<std::function<Bytes(Reader&)>> functions;
 
-  /// Runs one call and answers it. A C++ exception out of a function is an answer; a signal is not.
-  /// @throws ChannelClosed when nobody listens any more
+  /// Runs one call and sends the answer. A C++ exception of a function is an answer; a signal is
+  /// not.
+  /// @throws ChannelClosed when the judge has closed the channel
   void answer(const Message& call) {
     const auto say = [&](MessageKind kind, const std::string& text) {
       Writer writer;
@@ -37,7 +39,7 @@ struct Server {
     } catch (const std::exception& error) {
       say(MessageKind::kException, error.what());
     } catch (...) {
-      say(MessageKind::kException, "something that is not a std::exception");
+      say(MessageKind::kException, "an object that is not a std::exception");
     }
   }
 };
@@ -54,7 +56,8 @@ struct CallbackStub<std::function<R(A...)>> {
       (writer.value(static_cast<const std::decay_t<A>&>(arguments)), ...);
       server.channel.send(MessageKind::kCallback, writer.bytes);
       Message answer = server.channel.receive();
-      // The function called back may itself need this module: an integrator's derivative is a function of the same one.
+      // The callback may itself call this module: an integrator's derivative is a function of the
+      // same module.
       for (; answer.kind == MessageKind::kCall; answer = server.channel.receive()) server.answer(answer);
       if (answer.kind != MessageKind::kCallbackReturn) throw ChannelClosed("the judge ended the call");
       Reader reader(answer.payload);

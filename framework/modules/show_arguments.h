@@ -1,4 +1,5 @@
-/// The arguments of a call in words, derived from their types as on the wire: for the story of a call that never came back.
+/// The arguments of a call in words, derived from their types like the wire format: for the story
+/// of a call that never returned.
 ///   (0, 0, 5) for vectors, {..., ...} for structs, [n: ..., ...] for lists, "f" for functions
 #pragma once
 
@@ -15,7 +16,7 @@ namespace tumble::modules {
 namespace detail {
 
 inline constexpr std::size_t kArgumentsShown = 600;   // characters
-inline constexpr int kItemsShown = 4;                 // of a list, of a vector without fixed size
+inline constexpr int kItemsShown = 4;                 // of a list, and of a vector without fixed size
 
 inline void show(std::string& text, double x) {
   char digits[32];
@@ -23,7 +24,7 @@ inline void show(std::string& text, double x) {
   text += digits;
 }
 
-// Items between brackets, the first few of many.
+// Items between brackets, at most the first few.
 template <class Item>
 void show_items(std::string& text, const char* brackets, Eigen::Index count, Eigen::Index shown, const Item& item) {
   text += brackets[0];
@@ -73,7 +74,7 @@ void show_argument(std::string& text, const T& x) {
 
 }  // namespace detail
 
-/// "{(0, 0, 5), (0, 0, -1)}, {(0, 0, 0), (1, 0, 0), (0, 1, 0)}"; what is too long ends with "..."
+/// "{(0, 0, 5), (0, 0, -1)}, {(0, 0, 0), (1, 0, 0), (0, 1, 0)}"; a long text is cut and ends with "..."
 template <class... A>
 std::string show_arguments(const A&... arguments) {
   std::string text;
@@ -89,7 +90,8 @@ std::string show_arguments(const A&... arguments) {
   return text;
 }
 
-/// The arguments as bytes, functions left out, and back as words: for a call that ends with its process.
+/// The arguments as bytes, without functions, and from bytes to words: for a call that crashes its
+/// process.
 template <class... A>
 void write_arguments(Writer& writer, const A&... arguments) {
   const auto write = [&writer](const auto& a) {

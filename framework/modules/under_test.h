@@ -1,4 +1,4 @@
-/// How a test reaches the module it is about, without knowing which of the three bodies is behind it.
+/// How a test reaches its module, without knowing which of the three implementations it has.
 ///
 /// The same object file of a test is linked into the student's program (the table is the student's linked functions) and
 /// into the judge (the table is a proxy to a sandboxed worker).
@@ -13,7 +13,7 @@ struct UnderTest {
   inline static const Module* table = nullptr;
 };
 
-/// The module under test. Inside a test only: a program sets it before the first test runs.
+/// The module under test. For use inside a test: the program sets it before the first test runs.
 template <class Module>
 const Module& under_test() {
   require(UnderTest<Module>::table != nullptr, "no module is under test: the program's main must set one");

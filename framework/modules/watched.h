@@ -1,4 +1,4 @@
-/// A module's table whose calls are seen from outside: when each begins, how it ends.
+/// A module's table whose calls are reported to a watcher: when each begins, and how it ends.
 #pragma once
 
 #include <exception>
@@ -8,21 +8,22 @@
 
 namespace tumble::modules {
 
-/// Is told of every call. Calls nest (an integrator's derivative may be a function of the same module) and end in the
-/// reverse order.
+/// Is notified of every call. Calls nest: an integrator's derivative may be a function of the same
+/// module.
 class CallWatcher {
  public:
   virtual ~CallWatcher() = default;
-  /// @return what end() is given back: the call around this one
+  /// @return the argument of the matching end(): the enclosing call
   virtual const char* begin(const char* function) = 0;
   virtual void end(const char* outer) = 0;
-  /// The function let an exception out, of its own or of a function that it was given. May throw another in its place.
+  /// An exception left the function; it may come from a callback. May throw another one in its
+  /// place.
   virtual void threw(const char* function, const std::exception& error) = 0;
 };
 
 namespace detail {
 
-/// Ends a call however it is left.
+/// Ends the call in its destructor, whether the function returns or throws.
 class WatchedCall {
  public:
   WatchedCall(CallWatcher& watcher, const char* function) : watcher_(watcher), outer_(watcher.begin(function)) {}
@@ -50,7 +51,7 @@ std::function<R(A...)> watched_function(CallWatcher& watcher, const char* name, 
 
 }  // namespace detail
 
-/// @param watcher  must outlive the table and all that is copied out of it
+/// @param watcher  must outlive the table and every copy of its functions
 template <class Module>
 Module watched(Module module, CallWatcher& watcher) {
   Module::visit(module, [&](const char* name, auto& field) { field = detail::watched_function(watcher, name, field); });

@@ -22,7 +22,7 @@ namespace tumble::modules {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// The bytes do not spell a value of the type asked for.
+/// The bytes are not a value of the requested type.
 class WireError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -89,7 +89,7 @@ class Reader {
     if constexpr (std::is_same_v<T, bool>) {
       std::uint8_t byte = 0;
       raw(&byte, 1);
-      if (byte > 1) throw WireError("a truth value that is neither 0 nor 1");
+      if (byte > 1) throw WireError("a boolean that is neither 0 nor 1");
       x = byte == 1;
     } else if constexpr (std::is_arithmetic_v<T> || std::is_enum_v<T>) {
       raw(&x, sizeof x);
@@ -104,7 +104,8 @@ class Reader {
       if (has) value(x.emplace());
       else x.reset();
     } else if constexpr (is_vector<T>::value) {
-      // Grown as it is read: a count alone must not make us allocate a thousand times the message's size.
+      // The vector grows as it is read: a count alone must not allocate a thousand times the
+      // message's size.
       const std::uint32_t n = count(1);
       x.clear();
       for (std::uint32_t i = 0; i < n; ++i) {
@@ -129,7 +130,8 @@ class Reader {
   }
 
  private:
-  // A count of items of at least `item_size` bytes each: more than the message can hold is refused before any allocation.
+  // A count of items of at least `item_size` bytes each. A count that the message cannot hold is
+  // refused before any allocation.
   std::uint32_t count(std::size_t item_size) {
     std::uint32_t n = 0;
     value(n);

@@ -16,7 +16,7 @@ View view_of(const scene::CameraSpec& camera, const Vector3d& shift_world) {
   View view;
   view.eye_world = camera.eye_m + shift_world;
   view.forward_world = sight.normalized();
-  // World z is up in the picture; looking straight up or down, world y is.
+  // World z is up in the picture; world y for a vertical line of sight.
   const Vector3d z = Vector3d::UnitZ();
   const bool vertical = view.forward_world.cross(z).norm() < 1e-6;  // sine of the angle: below it the azimuth is round-off
   const Vector3d upward = vertical ? Vector3d(Vector3d::UnitY()) : z;

@@ -1,4 +1,4 @@
-/// From the world to pixels and back. No OpenGL here: `poke --pixel` uses it too.
+/// From world coordinates to pixels and back. Without OpenGL: `poke --pixel` uses it too.
 ///
 /// Pixels: (0, 0) is the top left corner of the picture, x to the right, y down; the centre of the first pixel is (0.5, 0.5).
 #pragma once
@@ -17,15 +17,16 @@ struct View {
   double tan_half_height;   // tangent of half the vertical field of view [-]
 };
 
-/// @param shift_world  by how much the followed body has moved; zero where the camera follows nothing [m]
+/// @param shift_world  displacement of the followed body; zero where the camera follows nothing [m]
 /// @throws UserError when eye and target coincide or the field of view is not in (0, 180) degrees
 View view_of(const scene::CameraSpec& camera, const Vector3d& shift_world = Vector3d::Zero());
 
-/// The ray from the eye through a place in a picture of width x height pixels; its direction is unit.
+/// The ray from the eye through a point of a picture of width x height pixels; its direction is a
+/// unit vector.
 Ray pixel_ray(const View& view, int width, int height, double x, double y);
 Ray pixel_ray(const scene::CameraSpec& camera, int width, int height, double x, double y);
 
-/// Where a point is seen, in pixels; nothing for a point that is not in front of the eye.
+/// Image of a point, in pixels; nothing for a point that is not in front of the eye.
 std::optional<Vector2d> project(const View& view, int width, int height, const Vector3d& point_world);
 
 /// Size of one pixel at a point's depth [m].

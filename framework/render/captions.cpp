@@ -10,7 +10,7 @@
 namespace tumble::render {
 namespace {
 
-constexpr double kLineSpacing = 1.25;   // of the size of letters
+constexpr double kLineSpacing = 1.25;   // relative to the font size
 
 std::string engine_name(const std::string& id) {
   if (id == "rd") return "retroactive detection";
@@ -33,10 +33,10 @@ std::string made_by(const TrajectoryInfo& info) {
   return text;
 }
 
-/// Words in as many lines as they need, two at most: what does not fit into the second is cut short.
+/// Text in one line, or in two where it is too wide; the second is cut where it does not fit.
 std::vector<std::string> in_lines(const TextWriter& writer, const std::string& text, double size, double room, bool bold) {
   if (writer.width(text, size, bold) <= room) return {text};
-  std::size_t end = std::string::npos;   // of the first line: the last space that it has room for
+  std::size_t end = std::string::npos;   // of the first line: its last space
   for (std::size_t space = text.find(' '); space != std::string::npos && writer.width(text.substr(0, space), size, bold) <= room; space = text.find(' ', space + 1)) end = space;
   if (end == std::string::npos) return {writer.fitted(text, size, room, bold)};
   return {text.substr(0, end), writer.fitted(text.substr(end + 1), size, room, bold)};
@@ -57,7 +57,8 @@ void write_captions(Image& image, const TextWriter& writer, const scene::Scene& 
   writer.write(image, time, margin, h - margin, words == Words::kAll ? 15.0 * unit : small, kDark, Align::kLeft, true);
   if (words == Words::kTimeOnly) return;
 
-  // Of a run beside another the label stands below the title, which has the whole width: half a picture is too narrow for both.
+  // For runs side by side the label is below the title: half a picture is too narrow for both in
+  // one line.
   const std::string& title = scene.title.empty() ? scene.name : scene.title;
   double baseline = margin + large * 0.8;
   for (const std::string& part : in_lines(writer, title, large, w - 2 * margin, true)) {

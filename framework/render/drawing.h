@@ -1,6 +1,7 @@
-/// What one picture holds, as plain data: what the stage says and the painter draws. Internal to framework/render.
+/// The content of one picture as plain data, from the stage to the painter. Internal to
+/// framework/render.
 ///
-/// World frame, metres; here numbers become `float`, and nowhere else.
+/// World frame, metres. Only here numbers are converted to `float`.
 #pragma once
 
 #include <array>
@@ -22,18 +23,18 @@ struct Geometry {
   std::vector<std::uint32_t> indices;
 };
 
-/// How a thing is drawn.
+/// How an object is drawn.
 enum class Pass : std::uint8_t {
-  kSolid,      // lit; throws and receives shadow
-  kGlass,      // lit, translucent, throws no shadow: a wall that stands between the eye and the action
-  kLine,       // unlit, hidden behind bodies, throws no shadow: paths, the bar that shows the grid's scale
-  kMark,       // on top of everything, unlit: arrows, flashes
+  kSolid,      // lit; casts and receives shadow
+  kGlass,      // lit, translucent, casts no shadow: a wall between the eye and moving bodies
+  kLine,       // unlit, occluded by bodies, casts no shadow: paths, the scale bar of the grid
+  kMark,       // unlit, in front of everything: arrows, flashes
 };
 
 struct Instance {
   float world_from_local[12];   // 3 x 4, row by row
   float color[4];               // linear RGB and opacity
-  float quartered;              // 1: quarters of two tones, so that a ball's turning shows; 0: one tone
+  float quartered;              // 1: quarters in two tones, so that the rotation of a ball is visible; 0: one tone
 };
 
 /// Instances of one geometry, drawn together.
@@ -43,20 +44,20 @@ struct Batch {
   std::vector<Instance> instances;
 };
 
-/// The ground: a plane of constant z that fades out, with a grid.
+/// The ground: a plane of constant z with a grid, which fades out.
 struct Ground {
   bool shown = false;
   double height_m = 0.0;
   double spacing_m = 0.0;        // of the grid; 0: no grid
   Vector2d centre_m = Vector2d::Zero();
-  double fade_m = 10.0;          // distance from the centre at which it is gone
+  double fade_m = 10.0;          // distance from the centre at which it has faded out
 };
 
 struct Drawing {
   View view;
   double near_m = 0.1, far_m = 100.0;
   Vector3d to_light_world;                       // unit
-  Vector3d shadow_centre_world;                  // of the ball whose shadows are drawn
+  Vector3d shadow_centre_world;                  // centre of the ball within which shadows are cast
   double shadow_radius_m = 1.0;
   Ground ground;
   std::vector<Batch> batches;

@@ -1,4 +1,5 @@
-// OpenGL without a screen by EGL's surfaceless platform: for machines whose Mesa has dropped OSMesa.
+// OpenGL without a screen, by EGL's surfaceless platform: for machines whose Mesa has dropped
+// OSMesa.
 #include <dlfcn.h>
 
 #include <EGL/egl.h>
@@ -47,7 +48,7 @@ Library open_library() {
   return found;
 }
 
-// Opened once and never closed, as OSMesa's.
+// Opened once and never closed, like OSMesa's.
 const Library& library() {
   static const Library opened = open_library();
   return opened;

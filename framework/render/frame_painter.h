@@ -1,4 +1,4 @@
-/// One run, drawn frame by frame: stage, painter and captions together. Internal to framework/render.
+/// Draws a run frame by frame: stage, painter and captions together. Internal to framework/render.
 #pragma once
 
 #include "framework/render/captions.h"
@@ -13,7 +13,7 @@ class FramePainter {
   /// @throws UserError as make_picture
   FramePainter(const scene::Scene& scene, const Trajectory& run, const PictureOptions& options, std::string label = "", Words words = Words::kAll);
 
-  /// A picture whose words are still to be written: drawing and writing can then go on in two threads.
+  /// A picture without its text, so that rendering and text can run in two threads.
   struct Wordless {
     std::size_t frame;
     Moment moment;
@@ -21,9 +21,9 @@ class FramePainter {
   };
 
   Image paint(std::size_t frame) { return with_words(paint_wordless(frame)); }
-  /// OpenGL draws here; calls must come one after the other.
+  /// Renders with OpenGL; not to be called concurrently.
   Wordless paint_wordless(std::size_t frame);
-  /// May run while the next is painted; calls must come one after the other.
+  /// May run while the next picture is rendered; not to be called concurrently.
   Image with_words(Wordless painted) const;
   std::size_t frame_at(double time_s) const { return stage_.frame_at(time_s); }
   Image paint_at(double time_s) { return paint(stage_.frame_at(time_s)); }
@@ -40,7 +40,7 @@ class FramePainter {
   TextWriter writer_;
 };
 
-/// What a PNG of this run says of itself.
+/// Provenance of this run, for the text chunks of a PNG.
 ImageNotes notes_of(const scene::Scene& scene, const Trajectory& run, double time_s);
 
 }  // namespace tumble::render

@@ -20,8 +20,8 @@ GlFunctions load_gl_functions(void* (*address)(const char*), const std::string& 
 }
 
 std::unique_ptr<GlContext> make_gl_context(const std::string& choice) {
-  const char* told = std::getenv("TUMBLE_GL");
-  const std::string wanted = !choice.empty() ? choice : told != nullptr ? told : "";
+  const char* environment = std::getenv("TUMBLE_GL");
+  const std::string wanted = !choice.empty() ? choice : environment != nullptr ? environment : "";
   if (wanted == "osmesa") return make_osmesa_context();
   if (wanted == "egl") return make_egl_context();
   if (!wanted.empty()) throw UserError(choice.empty() ? "TUMBLE_GL" : "--gl", "\"" + wanted + "\" is not known", "Choose osmesa or egl.");

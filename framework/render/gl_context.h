@@ -1,5 +1,6 @@
-/// Where OpenGL runs without a screen. One interface, two bodies: OSMesa, and EGL without a surface for a Mesa that has
-/// dropped OSMesa. Both draw into our own framebuffer object, so that their pictures match.
+/// OpenGL contexts without a screen. One interface with two implementations: OSMesa, and EGL
+/// without a surface for a Mesa that has dropped OSMesa. Both draw into a framebuffer object of
+/// this program, so that their pictures match.
 #pragma once
 
 #include <memory>
@@ -9,21 +10,22 @@
 
 namespace tumble::render {
 
-/// An OpenGL 3.3 core context. A thread has one current context at most; hold a `Current` around every use.
+/// An OpenGL 3.3 core context. A thread has at most one current context; hold a `Current` around
+/// every use.
 class GlContext {
  public:
   virtual ~GlContext() = default;
   virtual void make_current() = 0;
   virtual void release() = 0;
   const GlFunctions& gl() const { return gl_; }
-  /// Name of the body, "osmesa" or "egl".
+  /// Name of the implementation, "osmesa" or "egl".
   virtual const char* name() const = 0;
 
  protected:
   GlFunctions gl_;
 };
 
-/// Makes a context current for as long as this lives.
+/// Makes a context current during its own lifetime.
 class Current {
  public:
   explicit Current(GlContext& context) : context_(context) { context_.make_current(); }
@@ -35,16 +37,19 @@ class Current {
   GlContext& context_;
 };
 
-/// The two bodies. Their libraries are opened when first asked for, so that no other command pays for them.
-/// @throws UserError saying what is missing
+/// The two implementations. Their libraries are loaded on first use, so that other commands do not
+/// pay for them.
+/// @throws UserError with what is missing
 std::unique_ptr<GlContext> make_osmesa_context();
 std::unique_ptr<GlContext> make_egl_context();
 
-/// @param choice  "osmesa", "egl", or empty: what the environment's TUMBLE_GL says, else OSMesa, else EGL with a line on stderr
+/// @param choice  "osmesa", "egl", or empty: the environment's TUMBLE_GL, else OSMesa, else EGL
+///   with a line on stderr
 /// @throws UserError when the choice is unknown, or nothing works (both reasons)
 std::unique_ptr<GlContext> make_gl_context(const std::string& choice = "");
 
-/// Fills the table by asking `address` for each "gl..." name. @throws UserError naming the first that is missing
+/// Fills the table with `address("gl...")` for each function.
+/// @throws UserError with the first missing function
 GlFunctions load_gl_functions(void* (*address)(const char* name), const std::string& library);
 
 }  // namespace tumble::render

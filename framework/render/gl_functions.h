@@ -1,8 +1,10 @@
-/// The part of OpenGL 3.3 core that pictures need, as a table of function pointers: internal to framework/render.
+/// The part of OpenGL 3.3 core that pictures need, as a table of function pointers. Internal to
+/// framework/render.
 ///
-/// No gl* symbol is linked and no GL header is included here: a program linked with both libGL and libOSMesa draws black
-/// pictures (the loader's stubs win over Mesa's functions), and our scalar types are those of the GL binary interface.
-/// osmesa_context.cpp checks the constants against Mesa's header.
+/// No gl* symbol is linked, because a program linked with both libGL and libOSMesa draws black
+/// pictures (the loader's stubs take precedence over Mesa's functions). No GL header is included:
+/// the scalar types here are those of the GL binary interface, and osmesa_context.cpp checks the
+/// constants against Mesa's header.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-/// A picture in memory, and its file.
+/// A picture in memory, and as a PNG file.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace tumble::render {
 
-/// 8-bit sRGB, three bytes a pixel, rows from the top.
+/// 8-bit sRGB, three bytes per pixel, rows from the top.
 struct Image {
   int width = 0, height = 0;           // pixels
   std::vector<std::uint8_t> rgb;       // width * height * 3
@@ -23,10 +23,11 @@ struct Image {
 /// Copies `part` into `whole` with its top left corner at (x, y). @pre it fits
 void paste(const Image& part, int x, int y, Image& whole);
 
-/// Words kept in the file beside the picture: (keyword, text), e.g. {"Scene hash", "..."}.
+/// Text chunks of the file: (keyword, text), e.g. {"Scene digest", "..."}.
 using ImageNotes = std::vector<std::pair<std::string, std::string>>;
 
-/// Whole or not at all; the same pixels and notes give the same bytes (no date is written).
+/// Writes the file whole or not at all; the same pixels and notes give the same bytes (no date is
+/// written).
 /// @throws UserError when the file cannot be written
 void write_png(const std::filesystem::path& file, const Image& image, const ImageNotes& notes = {});
 

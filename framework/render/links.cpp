@@ -6,21 +6,23 @@
 #include <map>
 #include <numbers>
 
+#include "framework/effects/registry.h"
 #include "framework/render/stage_geometries.h"
 #include "framework/render/surfaces.h"
 
 namespace tumble::render {
 namespace {
 
-constexpr double kPitch = 0.9;               // radii of the coil between turns, at the length at which it was wound
+constexpr double kPitch = 0.9;               // distance between turns in radii of the coil, at its length turned_m
 constexpr double kWire = 0.17;               // radii of the coil
-constexpr double kHook = 0.07;               // share of a coil's length that leads from the axis to the turns
+constexpr double kHook = 0.07;               // fraction of a coil's length from the axis to the turns, at each end
 const Vector3d kSpringColor(0.10, 0.13, 0.17), kRodColor(0.16, 0.18, 0.21), kJointColor(0.52, 0.30, 0.03);
 
-// Sizes as shares of the sight: 0.004 is two pixels of a picture 480 high at 40 degrees.
+// Sizes relative to the distance of the camera's target: 0.004 is two pixels in a picture of height
+// 480 at 40 degrees.
 constexpr double kCoilRadius = 0.016, kRodRadius = 0.0032, kBallRadius = 0.0075;
 
-// A point of the coil's middle line.
+// A point of the coil's centre line.
 Vector3d on_coil(double share, int turns) {
   const double ramp = std::clamp(std::min(share, 1.0 - share) / kHook, 0.0, 1.0);
   const double radius = (1.0 - kWire) * ramp * ramp * (3.0 - 2.0 * ramp), angle = 2 * std::numbers::pi * turns * share;
@@ -38,8 +40,8 @@ bool is_finite(const Link& link) { return link.a_world.allFinite() && link.b_wor
 }  // namespace
 
 Geometry unit_coil(int turns) {
-  constexpr int kSegments = 14, kSides = 6;                  // a turn; around the wire
-  const double squeeze = 1.0 / (kPitch * turns);             // of the wire along z, undone by the scale
+  constexpr int kSegments = 14, kSides = 6;                  // per turn; around the wire
+  const double squeeze = 1.0 / (kPitch * turns);             // of the wire along z; scaling to turned_m undoes it
   Geometry coil;
   const int rings = kSegments * turns;
   for (int i = 0; i <= rings; ++i) {
@@ -52,7 +54,7 @@ Geometry unit_coil(int turns) {
       const double angle = 2 * std::numbers::pi * k / kSides;
       const Vector3d out = std::cos(angle) * side + std::sin(angle) * up;
       const Vector3d place = middle + kWire * Vector3d(out.x(), out.y(), out.z() * squeeze);
-      // The scale along z divides a normal by it: what is given here comes out as `out`.
+      // Scaling along z divides the normal's z by the scale: this normal becomes `out`.
       const Vector3d normal = Vector3d(out.x(), out.y(), out.z() / squeeze).normalized();
       Vertex vertex;
       for (int axis = 0; axis < 3; ++axis) vertex.position[axis] = static_cast<float>(place[axis]), vertex.normal[axis] = static_cast<float>(normal[axis]);
@@ -91,7 +93,6 @@ SceneLinks::SceneLinks(const scene::Scene& scene, const Frame& first, double sig
   std::map<std::string, int> index;
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) index[scene.bodies[i].name] = static_cast<int>(i);
   const auto body_of = [&](const std::string& name) { return name.empty() ? -1 : index.at(name); };
-  const auto anchor = [&](const scene::AnchorSpec& spec) { return Anchor{body_of(spec.body), spec.point_m}; };
   const auto fixed = [&](int body, const Vector3d& point_world) {   // a point given in the world at the start
     if (body < 0) return Anchor{body, point_world};
     const BodyPose& pose = first.poses[static_cast<std::size_t>(body)];
@@ -108,23 +109,26 @@ SceneLinks::SceneLinks(const scene::Scene& scene, const Frame& first, double sig
       if (body >= 0 && radius_m[static_cast<std::size_t>(body)] > 0.0) width = std::min(width, 0.4 * radius_m[static_cast<std::size_t>(body)]);
     return width;
   };
-  for (const auto& spring : scene.springs) {
-    const Anchor a = anchor(spring.a), b = anchor(spring.b);
-    const double length = std::max((place(b) - place(a)).norm(), std::isfinite(spring.rest_length_m) ? spring.rest_length_m : 0.0);
+  const effects::Drawables drawn = effects::drawn(scene);
+  const auto point = [&](const effects::DrawnPoint& drawn_point) { return Anchor{body_of(drawn_point.body), drawn_point.point}; };
+  for (const effects::DrawnCoil& coil : drawn.coils) {
+    const Anchor a = point(coil.a), b = point(coil.b);
+    const double length = std::max((place(b) - place(a)).norm(), std::isfinite(coil.rest_length) ? coil.rest_length : 0.0);
     const double wound = std::max(length, 0.05 * sight_m);
     links_.push_back({LinkKind::kSpring, a, b, std::min(kCoilRadius * sight_m, wound / 7.0), wound});
   }
-  for (const auto& rod : scene.rods) {
-    const Anchor a = anchor(rod.a), b = anchor(rod.b);
+  for (const effects::DrawnBar& bar : drawn.bars) {
+    const Anchor a = point(bar.a), b = point(bar.b);
     links_.push_back({LinkKind::kRod, a, b, slim(kRodRadius, {a.body, b.body}), 0.0});
   }
-  for (const auto& joint : scene.joints) {
-    const int a = body_of(joint.body_a), b = body_of(joint.body_b);
+  for (const effects::DrawnPivot& pivot : drawn.pivots) {
+    using Kind = effects::DrawnPivot::Kind;
+    const int a = body_of(pivot.body_a), b = body_of(pivot.body_b);
     const double width = slim(kBallRadius, {a, b});
-    if (joint.kind == scene::JointKind::kBall) links_.push_back({LinkKind::kBallJoint, fixed(a, joint.point_m), fixed(a, joint.point_m), width, 0.0});
-    if (joint.kind != scene::JointKind::kHinge) continue;   // a weld is no moving part
-    const Vector3d half = 2.2 * width * joint.axis.normalized();
-    links_.push_back({LinkKind::kHinge, fixed(a, joint.point_m - half), fixed(a, joint.point_m + half), 0.7 * width, 0.0});
+    if (pivot.kind == Kind::kBall) links_.push_back({LinkKind::kBallJoint, fixed(a, pivot.point_world), fixed(a, pivot.point_world), width, 0.0});
+    if (pivot.kind != Kind::kPin) continue;   // a weld is not drawn
+    const Vector3d half = 2.2 * width * pivot.axis_world.normalized();
+    links_.push_back({LinkKind::kHinge, fixed(a, pivot.point_world - half), fixed(a, pivot.point_world + half), 0.7 * width, 0.0});
   }
 }
 

@@ -1,4 +1,4 @@
-// What a drawing adds to the bodies: impulses, forces, paths, the scale of the grid.
+// Marks of a drawing: impulses, forces, paths, the scale bar of the grid.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,18 +12,21 @@
 namespace tumble::render {
 namespace {
 
-constexpr double kFlashSeconds = 0.22;       // of video: about seven pictures, long enough to be noticed
-constexpr double kForceLinger = 0.12;        // s of video after a push has ended, for pushes shorter than a picture
+constexpr double kFlashSeconds = 0.22;       // of video: about seven frames, long enough to be noticed
+constexpr double kForceLinger = 0.12;        // s of video after a force has ended, for forces shorter than a frame
 constexpr std::size_t kMaxFlashes = 40;      // the latest; more would hide the bodies
-constexpr std::size_t kMaxPaths = 6;         // moving bodies; the paths of more would be a tangle
+constexpr std::size_t kMaxPaths = 6;         // moving bodies; more paths would be confusing
 constexpr std::size_t kPathSegments = 160;
-constexpr int kMaxCorners = 200;             // the first; a ball that bounces ever faster has no more to show
+constexpr int kMaxCorners = 200;             // the first ones; later bounces of a settling ball are too small to see
 const Vector3d kImpulseColor(0.72, 0.10, 0.01);
 const Vector3d kFlashColor(1.0, 0.78, 0.22);
 const Vector3d kForceColor(0.45, 0.02, 0.20);
+constexpr double kSheetReach = 2.6;          // of the sight
+constexpr double kSheetOpacity = 0.35;
 const Vector3d kBarColor(0.03, 0.05, 0.07);
 
-// Frames that a path is drawn through: some of all, and those on both sides of an impact, so that its corners are corners.
+// Frames through which a path is drawn: a subset of all, and those before and after each impact, so
+// that corners stay sharp.
 std::vector<std::size_t> path_frames(const Trajectory& run, std::size_t last) {
   std::vector<std::size_t> frames;
   const std::size_t stride = std::max<std::size_t>(1, run.frames.size() / kPathSegments);
@@ -44,7 +47,8 @@ std::vector<std::size_t> path_frames(const Trajectory& run, std::size_t last) {
 
 }  // namespace
 
-// The bar lies between two lines of the grid, where it is seen well at the lower left and nothing that stays stands before it.
+// The bar lies between two lines of the grid, at the lower left of the picture, where no immovable
+// body occludes it.
 void Stage::place_scale_bar() {
   if (!ground_.shown || ground_.spacing_m <= 0.0 || followed_ >= 0 || !options_.captions) return;
   const View view = view_of(scene_.camera);
@@ -84,7 +88,7 @@ void Stage::add_scale_bar(Moment& moment) const {
                    laid_between(to - tick, to + tick, width, kBarColor)};
   moment.drawing.batches.push_back(bar);
   const auto a = project(moment.drawing.view, options_.width, options_.height, from), b = project(moment.drawing.view, options_.width, options_.height, to);
-  // A slanting bar would run into its own words: they stand below its lower end.
+  // The text of a slanting bar is placed below its lower end.
   const double slant = a && b ? 0.5 * std::abs(a->y() - b->y()) : 0.0;
   moment.labels.push_back({0.5 * (from + to), fmt::format("{:g} m", scale_bar_m_), slant});
 }
@@ -138,24 +142,36 @@ void Stage::add_impacts(const Frame& frame, Drawing& drawing) const {
     if (!batch->instances.empty()) drawing.batches.push_back(std::move(*batch));
 }
 
-// A force is an arrow that pushes: its head at the point, which moves with the body.
+// So wide that its edges are far beyond what is looked at.
+void Stage::add_sheets(Drawing& drawing) const {
+  if (drawables_.sheets.empty()) return;
+  const double half = kSheetReach * sight_m();
+  Batch sheets{kPlate, Pass::kGlass, {}};
+  for (const effects::DrawnSheet& sheet : drawables_.sheets) {
+    const Vector3d middle(scene_.camera.target_m.x(), scene_.camera.target_m.y(), sheet.height_m);
+    sheets.instances.push_back(placed(middle, Eigen::Matrix3d::Identity(), Vector3d(half, half, 1.0), sheet.color, kSheetOpacity));
+  }
+  drawing.batches.push_back(std::move(sheets));
+}
+
+// A force is an arrow with its head at the point of application, which moves with the body.
 void Stage::add_forces(const Frame& frame, Moment& moment) const {
   double strongest = 0.0;
-  for (const auto& force : scene_.point_forces) strongest = std::max(strongest, force.force_n.norm());
+  for (const effects::DrawnArrow& force : drawables_.arrows) strongest = std::max(strongest, force.force_world.norm());
   Batch arrows{kArrow, Pass::kMark, {}};
-  for (const auto& force : scene_.point_forces) {
+  for (const effects::DrawnArrow& force : drawables_.arrows) {
     const double end = force.start_s + force.duration_s + kForceLinger * options_.speed;
-    if (frame.time < force.start_s - 1e-9 || frame.time > end || !(force.force_n.norm() > 0.0)) continue;
+    if (frame.time < force.start_s - 1e-9 || frame.time > end || !(force.force_world.norm() > 0.0)) continue;
     const auto body = std::find_if(scene_.bodies.begin(), scene_.bodies.end(), [&](const auto& spec) { return spec.name == force.body; });
     if (body == scene_.bodies.end()) continue;
     const auto index = static_cast<std::size_t>(body - scene_.bodies.begin());
     const BodyPose& then = run_.frames[frame_at(force.start_s)].poses[index];
     const BodyPose& now = frame.poses[index];
-    const Vector3d tip = now.com_world + now.world_from_body * (then.world_from_body.conjugate() * (force.point_m - then.com_world));
-    const double length = 0.17 * sight_m() * std::sqrt(force.force_n.norm() / strongest);
-    const Vector3d tail = tip - length * force.force_n.normalized();
+    const Vector3d tip = now.com_world + now.world_from_body * (then.world_from_body.conjugate() * (force.point_world - then.com_world));
+    const double length = 0.17 * sight_m() * std::sqrt(force.force_world.norm() / strongest);
+    const Vector3d tail = tip - length * force.force_world.normalized();
     arrows.instances.push_back(laid_between(tail, tip, length, kForceColor));
-    moment.labels.push_back({tail, fmt::format("{:.3g} N", force.force_n.norm()), 0.0});
+    moment.labels.push_back({tail, fmt::format("{:.3g} N", force.force_world.norm()), 0.0});
   }
   if (!arrows.instances.empty()) moment.drawing.batches.push_back(std::move(arrows));
 }

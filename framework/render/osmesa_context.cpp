@@ -1,4 +1,4 @@
-// OpenGL in memory by Mesa's off-screen library.
+// OpenGL in memory, by Mesa's off-screen library.
 #include <dlfcn.h>
 
 #include <GL/osmesa.h>
@@ -61,7 +61,7 @@ class OsmesaContext final : public GlContext {
   const char* name() const override { return "osmesa"; }
 
  private:
-  static constexpr int kSide = 4;  // pixels: asked for by OSMesa, never drawn into
+  static constexpr int kSide = 4;  // pixels: a buffer that OSMesa requires; nothing is drawn into it
   OSMesaContext context_ = nullptr;
   unsigned char own_buffer_[4 * kSide * kSide] = {};
 };

@@ -13,7 +13,7 @@ namespace tumble::render {
 namespace {
 
 constexpr int kShadowSide = 1024;   // texels: one is about a pixel wide where the shadow fills a 640x480 picture
-using Matrix4f = Eigen::Matrix4f;   // column by column, as OpenGL wants it
+using Matrix4f = Eigen::Matrix4f;   // column-major, as OpenGL needs it
 
 Matrix4f clip_from_world(const View& view, double aspect, double near_m, double far_m) {
   Eigen::Matrix4d camera_from_world = Eigen::Matrix4d::Identity();
@@ -30,7 +30,7 @@ Matrix4f clip_from_world(const View& view, double aspect, double near_m, double 
   return (clip_from_camera * camera_from_world).cast<float>();
 }
 
-// Parallel light: a cube around the ball of shadows, seen along the light.
+// Parallel light: orthographic projection, along the light, of a cube around the ball of shadows.
 Matrix4f shadow_from_world(const Drawing& drawing) {
   const Vector3d z = drawing.to_light_world;
   const Vector3d x = z.unitOrthogonal(), y = z.cross(x);
@@ -71,23 +71,24 @@ class Painter::Body {
     draw_shadow_map(drawing, shadow);
     gl_.BindFramebuffer(gl::kFramebuffer, canvas_);
     gl_.Viewport(0, 0, width_, height_);
-    gl_.Disable(gl::kFramebufferSrgb);   // until something is blended
+    gl_.Disable(gl::kFramebufferSrgb);   // needed for blending only
     gl_.Clear(gl::kColorBufferBit | gl::kDepthBufferBit);
     const Matrix4f clip = clip_from_world(drawing.view, static_cast<double>(width_) / height_, drawing.near_m, drawing.far_m);
     gl_.Enable(gl::kDepthTest);
-    // Surfaces are closed, so their far sides are never seen. Blending costs more than lighting here: only what needs it pays.
+    // Surfaces are closed, so back faces are never visible. Blending costs more than lighting here:
+    // it is enabled only where needed.
     gl_.Enable(gl::kCullFace);
     gl_.CullFace(gl::kBack);
     draw_bodies(drawing, clip, shadow, Pass::kSolid);
     gl_.Disable(gl::kCullFace);
-    // What is nearer comes first: what it hides is not shaded.
+    // Bodies are drawn first: hidden pixels of the ground and the backdrop are not shaded.
     draw_ground(drawing, clip, shadow);
     draw_backdrop();
     gl_.Enable(gl::kFramebufferSrgb);
     gl_.Enable(gl::kBlend);
     gl_.BlendFuncSeparate(gl::kSrcAlpha, gl::kOneMinusSrcAlpha, gl::kOne, gl::kOneMinusSrcAlpha);
     draw_unlit(drawing, clip, Pass::kLine);
-    // Glass is seen through, so it hides nothing: no depth is written, and its far side is not drawn.
+    // Glass occludes nothing: no depth is written, and its back faces are not drawn.
     gl_.DepthMask(0);
     gl_.Enable(gl::kCullFace);
     draw_bodies(drawing, clip, shadow, Pass::kGlass);
@@ -133,7 +134,7 @@ class Painter::Body {
     return program;
   }
 
-  // Attributes 0 and 1 a vertex, 2 to 6 an instance; the layout is that of Vertex and Instance.
+  // Attributes 0 and 1 are per vertex, 2 to 6 per instance, with the layout of Vertex and Instance.
   Mesh upload(const Geometry& geometry) {
     Mesh mesh;
     mesh.index_count = static_cast<int>(geometry.indices.size());
@@ -162,7 +163,7 @@ class Painter::Body {
     gl_.VertexAttribDivisor(place, divisor);
   }
 
-  // @param samples  0: a plain buffer, to resolve into
+  // @param samples  0: a buffer without multisampling, to resolve into
   GlName make_canvas(int samples) {
     GlName canvas = 0, buffers[2];
     gl_.GenFramebuffers(1, &canvas);
@@ -176,7 +177,7 @@ class Painter::Body {
     gl_.RenderbufferStorageMultisample(gl::kRenderbuffer, count, gl::kDepthComponent24, width_, height_);
     gl_.FramebufferRenderbuffer(gl::kFramebuffer, gl::kDepthAttachment, gl::kRenderbuffer, buffers[1]);
     if (gl_.CheckFramebufferStatus(gl::kFramebuffer) != gl::kFramebufferComplete)
-      throw UserError(context_->name(), "offers no framebuffer of " + std::to_string(width_) + "x" + std::to_string(height_) + " pixels with " + std::to_string(samples) + " samples", "Ask for a smaller picture.");
+      throw UserError(context_->name(), "has no framebuffer of " + std::to_string(width_) + "x" + std::to_string(height_) + " pixels with " + std::to_string(samples) + " samples", "Ask for a smaller picture.");
     return canvas;
   }
 
@@ -196,9 +197,9 @@ class Painter::Body {
     gl_.ReadBuffer(0);
   }
 
-  // A geometry may be in several batches, so its instances are filled in just before they are drawn.
+  // A geometry may be in several batches, so its instances are uploaded just before they are drawn.
   void draw(const Batch& batch) {
-    require(batch.geometry >= 0 && batch.geometry < static_cast<int>(meshes_.size()), "painter: a batch names no geometry");
+    require(batch.geometry >= 0 && batch.geometry < static_cast<int>(meshes_.size()), "painter: a batch without a known geometry");
     if (batch.instances.empty()) return;
     const Mesh& mesh = meshes_[static_cast<std::size_t>(batch.geometry)];
     gl_.BindBuffer(gl::kArrayBuffer, mesh.instances);
@@ -214,7 +215,7 @@ class Painter::Body {
     gl_.Enable(gl::kDepthTest);
     gl_.Enable(gl::kPolygonOffsetFill);
     gl_.PolygonOffset(2.0f, 4.0f);
-    gl_.Enable(gl::kCullFace);   // of a closed surface, the side that looks away from the light is behind the other
+    gl_.Enable(gl::kCullFace);   // of a closed surface only the faces towards the light are needed
     gl_.CullFace(gl::kBack);
     gl_.UseProgram(depth_);
     uniform(depth_, "clip_from_world", shadow);
@@ -283,7 +284,7 @@ class Painter::Body {
   void uniform(GlName program, const char* name, const Eigen::Vector3f& v) { gl_.Uniform3fv(gl_.GetUniformLocation(program, name), 1, v.data()); }
   void uniform(GlName program, const char* name, float x) { gl_.Uniform1f(gl_.GetUniformLocation(program, name), x); }
 
-  // OpenGL's rows go upwards, an image's downwards.
+  // OpenGL stores rows from the bottom, an image from the top.
   Image read_back() {
     gl_.BindFramebuffer(gl::kReadFramebuffer, canvas_);
     gl_.BindFramebuffer(gl::kDrawFramebuffer, resolved_);

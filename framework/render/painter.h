@@ -1,4 +1,5 @@
-/// Draws a Drawing with OpenGL into an image. Internal to framework/render: the one file that calls OpenGL is painter.cpp.
+/// Renders a Drawing with OpenGL into an image. Internal to framework/render; only painter.cpp
+/// calls OpenGL.
 #pragma once
 
 #include <memory>
@@ -11,9 +12,9 @@ namespace tumble::render {
 
 class Painter {
  public:
-  /// @param geometries  what a Batch's `geometry` counts; kept on the GL side for the painter's life
-  /// @param samples     a pixel, for antialiasing: 1, 2 or 4
-  /// @throws UserError when the context cannot do what is needed
+  /// @param geometries  indexed by Batch::geometry; kept in GL memory during the painter's lifetime
+  /// @param samples     per pixel, for antialiasing: 1, 2 or 4
+  /// @throws UserError when the context lacks a needed feature
   Painter(std::unique_ptr<GlContext> context, const std::vector<Geometry>& geometries, int width, int height, int samples);
   ~Painter();
   Painter(Painter&&) noexcept;

@@ -7,6 +7,7 @@
 
 #include "framework/core/error.h"
 #include "framework/render/frame_painter.h"
+#include "framework/trajectory/record.h"
 
 namespace tumble::render {
 namespace {
@@ -15,13 +16,13 @@ const PictureOptions& checked(const PictureOptions& options) {
   const auto fits = [](int pixels) { return pixels >= 16 && pixels <= 8192; };
   if (!fits(options.width) || !fits(options.height))
     throw UserError(fmt::format("picture of {} x {}", options.width, options.height), "a side is not between 16 and 8192 pixels",
-                    "Ask for another size.");
+                    "Choose another size.");
   if (options.samples != 1 && options.samples != 2 && options.samples != 4)
-    throw UserError("picture", fmt::format("{} samples a pixel", options.samples), "Choose 1, 2 or 4.");
+    throw UserError("picture", fmt::format("{} samples per pixel", options.samples), "Choose 1, 2 or 4.");
   return options;
 }
 
-// The thin line between views that stand side by side [pixels].
+// Width of the line between views side by side [pixels].
 constexpr int kSeam = 2;
 
 }  // namespace
@@ -44,7 +45,8 @@ Image FramePainter::with_words(Wordless painted) const {
 ImageNotes notes_of(const scene::Scene& scene, const Trajectory& run, double time_s) {
   return {{"Title", scene.title.empty() ? scene.name : scene.title},
           {"Scene", run.info.scene_name},
-          {"Scene hash", run.info.scene_hash},
+          {"Scene digest", run.info.scene_digest},
+          {"Record", record_of(run.info)},
           {"Engine", run.info.engine},
           {"Step", fmt::format("{:.17g} s", run.info.step_s)},
           {"Time", fmt::format("{:.17g} s", time_s)},
@@ -60,7 +62,7 @@ void write_picture(const std::filesystem::path& png, const scene::Scene& scene, 
 }
 
 void write_contact_sheet(const std::filesystem::path& png, const scene::Scene& scene, const Trajectory& run, int count, const PictureOptions& options) {
-  if (count < 1 || count > 100) throw UserError(png.string(), fmt::format("a sheet of {} pictures", count), "Ask for 1 to 100.");
+  if (count < 1 || count > 100) throw UserError(png.string(), fmt::format("a sheet of {} pictures", count), "Choose 1 to 100.");
   PictureOptions half = options;
   half.width = options.width / 2;
   half.height = options.height / 2;
@@ -76,7 +78,7 @@ void write_contact_sheet(const std::filesystem::path& png, const scene::Scene& s
 
 void write_side_by_side_picture(const std::filesystem::path& png, const scene::Scene& scene, const std::vector<LabelledRun>& runs, double time_s,
                                 const PictureOptions& options) {
-  if (runs.empty()) throw UserError(png.string(), "there is no run to draw", "Give one at least.");
+  if (runs.empty()) throw UserError(png.string(), "there is no run to draw", "Give at least one.");
   Image whole(static_cast<int>(runs.size()) * options.width + (static_cast<int>(runs.size()) - 1) * kSeam, options.height);
   for (std::size_t i = 0; i < runs.size(); ++i) {
     FramePainter painter(scene, runs[i].trajectory, options, runs[i].label);
@@ -91,7 +93,7 @@ double telling_instant(const Trajectory& run) {
   const Event* strongest = nullptr;
   for (const Event& event : run.events)
     if (event.kind == EventKind::kCollision && (!strongest || event.impulse > strongest->impulse)) strongest = &event;
-  // Two frames on, what hit has visibly turned back while the flash of the impact still shows.
+  // Two frames later the bodies have visibly rebounded, and the flash of the impact is still shown.
   const double frame = run.frames.size() > 1 ? end / static_cast<double>(run.frames.size() - 1) : 0.0;
   return strongest ? std::min(end, strongest->time + 2 * frame) : end / 3;
 }

@@ -12,15 +12,15 @@
 namespace tumble::render {
 namespace {
 
-// A fixed level and filter, so that the bytes do not depend on a library's default. 6: a fifth smaller than 3 at 640x480,
-// for 10 ms more.
+// A fixed level, so that the bytes do not depend on a library's default. Files of level 6 are a
+// fifth smaller than of level 3 at 640x480, and take 10 ms more.
 constexpr int kCompressionLevel = 6;
 
 void append(png_structp png, png_bytep data, png_size_t size) {
   static_cast<std::string*>(png_get_io_ptr(png))->append(reinterpret_cast<const char*>(data), size);
 }
 
-// libpng reports errors by longjmp, so nothing with a destructor is made between setjmp and the end.
+// libpng reports errors by longjmp, so no object with a destructor is created after setjmp.
 bool encode(const Image& image, std::vector<png_text>& notes, std::vector<png_bytep>& rows, std::string& bytes) {
   png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
   png_infop info = png != nullptr ? png_create_info_struct(png) : nullptr;

@@ -1,13 +1,14 @@
-/// The programs that run for each vertex and pixel (GLSL 3.30). Internal to framework/render: included by painter.cpp alone.
+/// The vertex and fragment shaders (GLSL 3.30). Internal to framework/render: included by
+/// painter.cpp only.
 #pragma once
 
 #include <string>
 
 namespace tumble::render {
 
-// Everything is computed in linear light, and samples of a pixel are mixed in it. What covers its pixel applies the curve of sRGB
-// itself, once; what is blended leaves it to the framebuffer, which applies it to every sample: in software that takes as long as
-// all the rest.
+// Colours are computed, and the samples of a pixel averaged, in linear light. Opaque surfaces apply
+// the sRGB curve themselves, once per pixel; blended ones leave it to the framebuffer, which
+// applies it to every sample. In software rendering that takes as long as everything else.
 inline const std::string kStored = R"(
 vec3 stored(vec3 light) {   // IEC 61966-2-1
   light = max(light, 0.0);
@@ -32,7 +33,8 @@ flat out float body_quartered;
 void main() {
   vec4 p = vec4(position, 1.0);
   at_world = vec3(dot(row0, p), dot(row1, p), dot(row2, p));
-  // Normals go by the inverse transpose; for rotation times scale that is the columns divided by their squared length.
+  // Normals transform by the inverse transpose; for rotation times scale these are the columns
+  // divided by their squared length.
   mat3 m = transpose(mat3(row0.xyz, row1.xyz, row2.xyz));
   vec3 squared = vec3(dot(m[0], m[0]), dot(m[1], m[1]), dot(m[2], m[2]));
   normal_world = m * (normal / squared);
@@ -59,8 +61,9 @@ inline constexpr const char* kDepthFragment = R"(#version 330 core
 void main() {}
 )";
 
-// Share of the key light that arrives: nine comparisons, each interpolated between four texels by the hardware filter. Where the
-// middle and the corners agree, as nearly everywhere, the sides between them are not asked.
+// Fraction of the key light that arrives: nine shadow-map comparisons, each interpolated between
+// four texels by the hardware filter. Where the centre and the corners agree, which is nearly
+// everywhere, the four sides are skipped.
 inline const std::string kLightShare = R"(
 uniform sampler2DShadow shadow_map;
 uniform mat4 shadow_from_world;
@@ -69,9 +72,9 @@ float lit(vec3 s, float i, float j) { return textureLod(shadow_map, s + vec3(1.4
 float light_share(vec3 p) {
   vec3 s = (shadow_from_world * vec4(p, 1.0)).xyz * 0.5 + 0.5;
   if (any(lessThan(s.xy, vec2(0.0))) || any(greaterThan(s.xy, vec2(1.0)))) return 1.0;
-  s.z = clamp(s.z, 0.0, 1.0);  // what lies beyond the casters along the light, as the ground may, is shaded by them too
+  s.z = clamp(s.z, 0.0, 1.0);  // points beyond the range of the map along the light, such as the ground, receive shadow too
   float corners = lit(s, 0.0, 0.0) + lit(s, -1.0, -1.0) + lit(s, 1.0, -1.0) + lit(s, -1.0, 1.0) + lit(s, 1.0, 1.0);
-  // A loop, because software runs both ways of an "if" for all pixels.
+  // A loop, because software rendering runs both branches of an "if" for all pixels.
   int asked = corners > 0.0 && corners < 5.0 ? 4 : 0;
   float sides = 0.0;
   for (int k = 0; k < asked; ++k) sides += lit(s, k == 0 ? -1.0 : k == 1 ? 1.0 : 0.0, k == 2 ? -1.0 : k == 3 ? 1.0 : 0.0);
@@ -109,7 +112,7 @@ void main() {
   vec3 light = ambient + vec3(0.74, 0.72, 0.68) * key + vec3(0.10, 0.115, 0.14) * fill;
   float gloss = key > 0.0 ? 0.22 * pow(max(dot(n, normalize(to_light + v)), 0.0), 48.0) * min(1.0, key * 3.0) : 0.0;
   float rim = pow(1.0 - max(dot(n, v), 0.0), 3.0);
-  // Glass shows its edges: more is reflected where the surface turns away.
+  // Glass is more opaque at grazing angles, so that its edges are visible.
   float opacity = body_color.a < 1.0 ? mix(body_color.a, min(1.0, body_color.a * 2.5), rim) : 1.0;
   vec3 seen = base * light + vec3(gloss);
   pixel = vec4(is_blended > 0.5 ? seen : stored(seen), opacity);
@@ -130,7 +133,7 @@ void main() {
 }
 )";
 
-// One triangle over the whole picture, just before the end of sight: it is seen where nothing else is.
+// One triangle over the whole picture, just before the far plane: visible where nothing else is.
 inline constexpr const char* kBackdropVertex = R"(#version 330 core
 out vec2 place;
 void main() {
@@ -140,7 +143,7 @@ void main() {
 }
 )";
 
-// The sky behind everything. @param place  of the pixel, -1 to 1 across the picture
+// The sky behind everything. @param place  coordinates of the pixel, -1 to 1 across the picture
 inline const std::string kSky = R"(
 uniform vec3 low;
 uniform vec3 high;
@@ -170,8 +173,8 @@ void main() {
 }
 )";
 
-// The ground is a shadow on light ground under a grid. Lines are as wide as a pixel at least, and fade where they would
-// be closer than a few pixels. Every fifth line is stronger.
+// The ground: a light plane with shadows and a grid. Lines are at least a pixel wide, and fade
+// where they would be closer than a few pixels. Every fifth line is stronger.
 inline const std::string kGroundFragment = std::string(R"(#version 330 core
 in vec3 at_world;
 uniform vec3 centre;
@@ -195,7 +198,7 @@ void main() {
     color = mix(color, vec3(0.36, 0.42, 0.48), line);
   }
   color *= mix(0.36, 1.0, light_share(at_world));
-  // Where it fades it shows the sky: mixed here, for blending all of a picture costs more than drawing it.
+  // It fades into the sky, mixed here: blending a whole picture costs more than drawing it.
   pixel = vec4(stored(mix(sky(2.0 * gl_FragCoord.xy / picture.xy - 1.0), color, fade)), 1.0);
 }
 )";

@@ -12,10 +12,10 @@
 namespace tumble::render {
 namespace {
 
-constexpr std::size_t kExtentFrames = 400;  // frames looked at to find where things go: enough, and quick for long runs
+constexpr std::size_t kExtentFrames = 400;  // frames sampled for the extent of the motion: enough, and fast for long runs
 
-// Colours that readers with any colour vision tell apart (Okabe and Ito 2008), as linear RGB; without the yellow and the
-// black, which are lost on light ground and in shadow.
+// Colours distinguishable for every colour vision (Okabe and Ito 2008), as linear RGB; without
+// yellow and black, which are hard to see on light ground and in shadow.
 const Vector3d kPalette[] = {{0.000, 0.168, 0.445}, {0.665, 0.112, 0.000}, {0.000, 0.342, 0.171},
                              {0.791, 0.347, 0.000}, {0.604, 0.191, 0.386}, {0.093, 0.456, 0.815}};
 const Vector3d kImmovableColor(0.42, 0.45, 0.48);
@@ -26,7 +26,7 @@ TriangleMesh two_sided(TriangleMesh mesh) {
   return mesh;
 }
 
-// The next of 1, 2, 5, 10, ... at or above x.
+// The smallest of 1, 2, 5, 10, ... at or above x.
 double round_length(double x) {
   const double decade = std::pow(10.0, std::floor(std::log10(x)));
   for (const double step : {1.0, 2.0, 5.0})
@@ -52,6 +52,7 @@ Stage::Stage(const scene::Scene& scene, const Trajectory& run, const PictureOpti
     if (event.kind == EventKind::kCollision) strongest_impulse_ = std::max(strongest_impulse_, event.impulse);
   std::vector<double> radii;
   for (const Actor& actor : actors_) radii.push_back(actor.radius_m);
+  drawables_ = effects::drawn(scene);
   links_ = SceneLinks(scene, run.frames.front(), sight_m(), radii);
   find_extent();
   lay_ground();
@@ -77,7 +78,7 @@ void Stage::add_actor(const scene::BodySpec& spec, const Shape& shape, std::size
   actor.color = spec.color ? *spec.color : spec.immovable ? kImmovableColor : kPalette[index % std::size(kPalette)];
   actor.radius_m = bounding_radius(shape);
   if (const auto* sphere = std::get_if<Sphere>(&shape)) {
-    // A point mass has no size: it is drawn as a dot.
+    // A point mass is drawn as a dot.
     const double radius = sphere->radius > 0.0 ? sphere->radius : 0.008 * sight_m();
     actor.geometry = kBall;
     actor.scale = Vector3d::Constant(radius);
@@ -118,7 +119,8 @@ void Stage::find_extent() {
       const Vector3d& com = run_.frames[f].poses[i].com_world;
       if (!std::isfinite(actors_[i].radius_m) || !com.allFinite()) continue;
       const Actor& actor = actors_[i];
-      // A box's own reach along the world's axes is tighter than its ball: a floor made of a thin box has little height.
+      // A box's extent along the world's axes is tighter than its ball: a floor made of a thin box
+      // has little height.
       Vector3d reach = Vector3d::Constant(actor.radius_m);
       if (actor.geometry == kBoxGeometry) reach = run_.frames[f].poses[i].world_from_body.toRotationMatrix().cwiseAbs() * actor.scale;
       extent_.extend(com - reach).extend(com + reach);
@@ -133,7 +135,8 @@ void Stage::lay_ground() {
   ground_.spacing_m = scene_.grid_spacing_m.value_or(round_length(sight_m() / 12.0));
   ground_.height_m = scene_.grid_height_m;
   if (floor_ >= 0) ground_.height_m = run_.frames.front().poses[static_cast<std::size_t>(floor_)].com_world.z();
-  // A grid without a floor is only a measure: it lies below everything, so that nothing seems to sink into it.
+  // A grid without a floor is only a scale: it lies below everything, so that no body seems to
+  // penetrate it.
   else if (followed_ < 0) ground_.height_m = std::min(ground_.height_m, extent_.min().z());
   ground_.fade_m = 2.6 * sight_m();
 }
@@ -149,31 +152,31 @@ TriangleMesh Stage::surface(const Actor& actor) const {
   return actor.geometry >= kFirstMesh ? meshes_[static_cast<std::size_t>(actor.geometry - kFirstMesh)] : TriangleMesh{};
 }
 
-// An immovable body between the eye and moving ones would hide what is to be seen: it becomes glass, for the whole run. Ground whose ridges
-// hide one for a moment stays ground.
+// An immovable body that occludes moving ones is drawn as glass for the whole run. Terrain that
+// hides a body for a moment stays solid.
 void Stage::turn_walls_to_glass() {
-  constexpr std::size_t kLooks = 40;
-  constexpr double kMoment = 0.05;   // of all looks at all bodies
-  const std::size_t stride = std::max<std::size_t>(1, run_.frames.size() / kLooks);
+  constexpr std::size_t kSampledFrames = 40;
+  constexpr double kMostHidden = 0.05;   // fraction of all tests
+  const std::size_t stride = std::max<std::size_t>(1, run_.frames.size() / kSampledFrames);
   for (std::size_t wall = 0; wall < actors_.size(); ++wall) {
     Actor& actor = actors_[wall];
     if (!actor.immovable || actor.geometry < 0 || actor.pass == Pass::kGlass) continue;
     const TriangleMesh shape = surface(actor);
-    std::size_t looks = 0, hidden = 0;
+    std::size_t tests = 0, hidden = 0;
     for (std::size_t f = 0; f < run_.frames.size(); f += stride) {
       const Frame& frame = run_.frames[f];
       for (std::size_t i = 0; i < actors_.size(); ++i) {
         if (actors_[i].immovable) continue;
-        ++looks;
+        ++tests;
         hidden += hides(shape, frame.poses[wall], view_at(frame).eye_world, frame.poses[i].com_world) ? 1 : 0;
       }
     }
-    if (static_cast<double>(hidden) > kMoment * static_cast<double>(looks)) actor.pass = Pass::kGlass, actor.opacity = 0.25;
+    if (static_cast<double>(hidden) > kMostHidden * static_cast<double>(tests)) actor.pass = Pass::kGlass, actor.opacity = 0.25;
   }
 }
 
 std::size_t Stage::frame_at(double time_s) const {
-  constexpr double kRoundOff = 1e-9;   // s: a frame at 0.5 is the frame at 0.5, however its time was summed
+  constexpr double kRoundOff = 1e-9;   // s: rounding of a frame's summed time
   const auto later = std::upper_bound(run_.frames.begin(), run_.frames.end(), time_s + kRoundOff,
                                       [](double time, const Frame& frame) { return time < frame.time; });
   return later == run_.frames.begin() ? 0 : static_cast<std::size_t>(later - run_.frames.begin()) - 1;
@@ -185,11 +188,13 @@ Moment Stage::moment(std::size_t index) const {
   Drawing& drawing = moment.drawing;
   drawing.view = view_at(frame);
   const View& view = drawing.view;
-  // The key light stands above, to the left of the eye and on its side, so that what is seen is lit.
+  // The key light is above, to the left of the eye and on its side, so that visible surfaces are
+  // lit.
   drawing.to_light_world = (-0.55 * view.right_world + 0.35 * view.right_world.cross(Vector3d::UnitZ()) + 0.95 * Vector3d::UnitZ()).normalized();
   drawing.shadow_centre_world = extent_.center();
   drawing.shadow_radius_m = 0.5 * extent_.diagonal().norm() + 1e-3 * sight_m();
-  // Where bodies go far, only what is near the middle of the picture throws a shadow, which keeps its edge sharp.
+  // Where bodies move far, only bodies near the centre of the picture cast shadows, so that shadows
+  // stay sharp.
   if (drawing.shadow_radius_m > sight_m()) {
     drawing.shadow_centre_world = view.eye_world + sight_m() * view.forward_world;
     drawing.shadow_radius_m = sight_m();
@@ -201,6 +206,7 @@ Moment Stage::moment(std::size_t index) const {
   drawing.far_m = 1.2 * reach + (view.eye_world - extent_.center()).norm();
   drawing.near_m = drawing.far_m / 2000.0;
   add_bodies(frame, drawing);
+  add_sheets(drawing);
   draw_links(links_.at(frame), options_.height, drawing);
   if (options_.paths) add_path(index, drawing);
   add_scale_bar(moment);

@@ -1,10 +1,12 @@
-/// From a scene and its run to what is drawn at each instant. Internal to framework/render; no OpenGL here.
+/// From a scene and its run to the drawing of each instant. Internal to framework/render; without
+/// OpenGL.
 #pragma once
 
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "framework/effects/registry.h"
 #include "framework/geometry/shape.h"
 #include "framework/render/drawing.h"
 #include "framework/render/links.h"
@@ -14,7 +16,7 @@
 
 namespace tumble::render {
 
-/// A body as drawn: a geometry, how it is scaled and coloured.
+/// How a body is drawn: geometry, scale and colour.
 struct Actor {
   int geometry = -1;                       // -1: not drawn as a body (the floor is the ground)
   Vector3d scale = Vector3d::Ones();       // along the geometry's axes
@@ -23,17 +25,17 @@ struct Actor {
   double opacity = 1.0;
   bool quartered = false;
   bool immovable = false;
-  double radius_m = 0.0;                   // of a ball about its origin that holds it; infinite for planes
+  double radius_m = 0.0;                   // of its bounding ball about the origin; infinite for planes
 };
 
-/// Words at a place of the world.
+/// Text at a point of the world.
 struct Label {
   Vector3d point_world;
   std::string text;
-  double drop_pixels = 0.0;   // further down than just below the point
+  double drop_pixels = 0.0;   // additional distance below the point
 };
 
-/// What the stage says of one instant.
+/// The drawing and labels of one instant.
 struct Moment {
   Drawing drawing;
   std::vector<Label> labels;   // forces, the scale of the grid
@@ -50,7 +52,7 @@ class Stage {
   Moment moment(std::size_t frame) const;
   /// Distance between the lines of the grid; 0 where there is none. [m]
   double grid_spacing_m() const { return ground_.shown ? ground_.spacing_m : 0.0; }
-  /// Whether the grid's scale stands on the ground itself; else the caption must say it.
+  /// Whether the grid's scale is shown on the ground; otherwise the caption must state it.
   bool has_scale_bar() const { return scale_bar_m_ > 0.0; }
 
  private:
@@ -66,6 +68,7 @@ class Stage {
   void add_scale_bar(Moment& moment) const;
   void add_path(std::size_t frame, Drawing& drawing) const;
   void add_forces(const Frame& frame, Moment& moment) const;
+  void add_sheets(Drawing& drawing) const;
   void add_impacts(const Frame& frame, Drawing& drawing) const;
   View view_at(const Frame& frame) const;
   TriangleMesh surface(const Actor& actor) const;   // body frame; empty for balls and planes
@@ -75,12 +78,13 @@ class Stage {
   const Trajectory& run_;
   PictureOptions options_;
   std::vector<Geometry> geometries_;
-  std::vector<TriangleMesh> meshes_;        // of geometries_ from kFirstMesh on, to find models used twice
+  std::vector<TriangleMesh> meshes_;        // of geometries_ from kFirstMesh on, to find models that are used twice
   std::vector<Actor> actors_;               // by body index
   SceneLinks links_;
-  Eigen::AlignedBox3d extent_;              // of everything finite, over the run
+  effects::Drawables drawables_;
+  Eigen::AlignedBox3d extent_;              // of all finite bodies, over the run
   Ground ground_;
-  int floor_ = -1;                          // body whose plane the ground is
+  int floor_ = -1;                          // the body whose plane is the ground
   int followed_ = -1;
   Vector3d scale_bar_from_ = Vector3d::Zero();
   double scale_bar_m_ = 0.0;                // its length; 0: none

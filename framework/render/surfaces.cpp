@@ -42,7 +42,7 @@ double angle_at(const TriangleMesh& mesh, const Face& face, int corner) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-// A strip around the z axis from radius r0 at z0 to r1 at z1.
+// The lateral surface of a cone around the z axis, from radius r0 at z0 to r1 at z1.
 void add_cone(Geometry& geometry, double r0, double z0, double r1, double z1, int sides) {
   const Vector3d slope(z1 - z0, 0, r0 - r1);
   for (int i = 0; i < sides; ++i) {
@@ -70,7 +70,7 @@ Geometry shaded_surface(const TriangleMesh& mesh, double crease_angle_deg) {
     for (int corner = 0; corner < 3; ++corner) around[mesh.faces[f][corner]].emplace_back(static_cast<int>(f), corner);
   }
   Geometry geometry;
-  std::map<std::array<float, 6>, std::uint32_t> known;   // equal corners are one vertex, worked on once
+  std::map<std::array<float, 6>, std::uint32_t> known;   // equal corners share a vertex, which is processed once
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
     if (normals[f].isZero(0.5)) continue;
     for (int corner = 0; corner < 3; ++corner) {
@@ -88,7 +88,8 @@ Geometry shaded_surface(const TriangleMesh& mesh, double crease_angle_deg) {
 }
 
 Geometry unit_ball(int level) {
-  // Octahedron-like longitude and latitude rings would crowd the poles; the icosahedron's faces stay even.
+  // From an icosahedron, whose faces stay of similar size; rings of longitude and latitude would
+  // crowd at the poles.
   constexpr double g = std::numbers::phi;
   std::vector<Vector3d> points = {{-1, g, 0}, {1, g, 0}, {-1, -g, 0}, {1, -g, 0}, {0, -1, g}, {0, 1, g},
                                   {0, -1, -g}, {0, 1, -g}, {g, 0, -1}, {g, 0, 1}, {-g, 0, -1}, {-g, 0, 1}};
@@ -158,7 +159,7 @@ Instance placed(const Vector3d& origin_world, const Eigen::Matrix3d& world_from_
 
 Instance laid_between(const Vector3d& from_world, const Vector3d& to_world, double width, const Vector3d& color, double opacity) {
   const Vector3d along = to_world - from_world;
-  require(along.norm() > 0.0, "laid_between: the two ends are one point");
+  require(along.norm() > 0.0, "laid_between: the two points coincide");
   const Eigen::Matrix3d turned = shortest_turn(Vector3d::UnitZ(), along).toRotationMatrix();
   return placed(from_world, turned, {width, width, along.norm()}, color, opacity);
 }

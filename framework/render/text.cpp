@@ -16,7 +16,7 @@ constexpr const char* kRegular = "/usr/share/fonts/truetype/dejavu/DejaVuSans.tt
 constexpr const char* kBold = "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf";
 constexpr double kFixed = 64.0;   // FreeType counts in 1/64 pixel
 
-// Characters of UTF-8; a byte that does not belong becomes U+FFFD.
+// Decodes UTF-8; an invalid byte becomes U+FFFD.
 std::u32string characters(const std::string& text) {
   std::u32string out;
   for (std::size_t i = 0; i < text.size();) {
@@ -40,7 +40,7 @@ void blend(std::uint8_t* pixel, const Ink& ink, double opacity) {
   for (int i = 0; i < 3; ++i) pixel[i] = static_cast<std::uint8_t>(std::lround(pixel[i] + (color[i] - pixel[i]) * opacity));
 }
 
-// A letter's coverage put at a place of the picture.
+// Draws a glyph's coverage at a position of the picture.
 void stamp(Image& image, const FT_Bitmap& letter, int left, int top, const Ink& ink, double opacity) {
   for (int row = 0; row < static_cast<int>(letter.rows); ++row) {
     for (int column = 0; column < static_cast<int>(letter.width); ++column) {
@@ -66,8 +66,8 @@ struct TextWriter::Fonts {
   }
   ~Fonts() { FT_Done_FreeType(library); }   // with its faces
 
-  // Calls visit(glyph slot, pen) for each letter; returns where the pen ends. Without hinting, so that letters keep their
-  // shapes at every size.
+  // Calls visit(glyph slot, pen) for each glyph; returns the final pen position. Without hinting,
+  // so that glyphs keep their shapes at every size.
   template <class Visit>
   double walk(const std::string& text, double size, bool is_bold, Visit visit) const {
     FT_Face face = is_bold ? bold : regular;

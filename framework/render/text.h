@@ -1,4 +1,4 @@
-/// Words in pictures. Internal to framework/render; FreeType is seen in text.cpp alone.
+/// Text in pictures. Internal to framework/render; only text.cpp uses FreeType.
 #pragma once
 
 #include <memory>
@@ -10,7 +10,7 @@ namespace tumble::render {
 
 struct Ink {
   std::uint8_t red = 28, green = 39, blue = 51;
-  double halo = 0.0;   // opacity of the light rim that keeps words legible over bodies [0, 1]
+  double halo = 0.0;   // opacity of the light outline that keeps text legible over bodies [0, 1]
 };
 inline constexpr Ink kDark{28, 39, 51, 0.75};
 inline constexpr Ink kSoft{70, 84, 98, 0.6};
@@ -24,12 +24,15 @@ class TextWriter {
   TextWriter();
   ~TextWriter();
 
-  /// One line. @param x, baseline  pixels;  @param size  height of the font [pixels];  @param text  UTF-8
+  /// Writes one line.
+  /// @param text         UTF-8
+  /// @param x, baseline  position [pixels]
+  /// @param size         height of the font [pixels]
   void write(Image& image, const std::string& text, double x, double baseline, double size, const Ink& ink = kDark,
              Align align = Align::kLeft, bool bold = false) const;
-  /// Pixels from the first letter to the end of the last.
+  /// Width of the text. [pixels]
   double width(const std::string& text, double size, bool bold = false) const;
-  /// The text, cut with an ellipsis where it is wider than `room` pixels.
+  /// The text, shortened with an ellipsis where it is wider than `room` pixels.
   std::string fitted(const std::string& text, double size, double room, bool bold = false) const;
 
  private:

@@ -9,21 +9,22 @@
 #include "framework/render/frame_painter.h"
 #include "framework/render/picture.h"
 #include "framework/render/video_writer.h"
+#include "framework/trajectory/record.h"
 
 namespace tumble::render {
 namespace {
 
-constexpr int kViewSeam = 2;   // between views side by side [pixels]
+constexpr int kViewSeam = 2;   // width of the line between views side by side [pixels]
 
-// What has been painted of one of the views.
+// A rendered picture of one view.
 struct Part {
   std::size_t view;
   FramePainter::Wordless painted;
 };
 
-// Instants of the run that the pictures of a video show, the last one held for as long as an eye needs to see it.
+// Instants of the run for the frames of a video; the last one is held long enough to be seen.
 std::vector<double> instants(double end_s, const PictureOptions& options) {
-  if (!(options.video_rate_hz > 0) || !(options.speed > 0)) throw UserError("video", "the rate and the speed must be above 0", "Choose others.");
+  if (!(options.video_rate_hz > 0) || !(options.speed > 0)) throw UserError("video", "the rate and the speed must be above 0", "Choose positive values.");
   std::vector<double> times;
   const double step = options.speed / options.video_rate_hz;
   const auto count = static_cast<std::size_t>(std::floor(end_s / step + 1e-9)) + 1;
@@ -36,7 +37,7 @@ std::vector<double> instants(double end_s, const PictureOptions& options) {
 
 void write_side_by_side_video(const std::filesystem::path& mp4, const scene::Scene& scene, const std::vector<LabelledRun>& runs,
                               const PictureOptions& options) {
-  if (runs.empty()) throw UserError(mp4.string(), "there is no run to draw", "Give one at least.");
+  if (runs.empty()) throw UserError(mp4.string(), "there is no run to draw", "Give at least one.");
   std::vector<std::unique_ptr<FramePainter>> painters;
   double end = 0.0;
   for (const LabelledRun& run : runs) {
@@ -46,11 +47,11 @@ void write_side_by_side_video(const std::filesystem::path& mp4, const scene::Sce
   const int count = static_cast<int>(runs.size());
   Image whole(count * options.width + (count - 1) * kViewSeam, options.height);
   make_whole(mp4, [&](const std::filesystem::path& draft) {
-    VideoWriter video(draft, whole.width, whole.height, options.video_rate_hz);
+    VideoWriter video(draft, whole.width, whole.height, options.video_rate_hz, record_of(runs.front().trajectory.info));
     std::vector<std::optional<std::size_t>> shown(painters.size());   // frame
-    std::future<void> before;   // the picture before is lettered and encoded while this one is painted
+    std::future<void> before;   // writes the text of the previous picture and encodes it while this one is rendered
     for (const double time : instants(end, options)) {
-      std::vector<Part> fresh;   // a view in which nothing has changed stays
+      std::vector<Part> fresh;   // a view without changes is kept
       for (std::size_t i = 0; i < painters.size(); ++i) {
         const std::size_t frame = painters[i]->frame_at(time);
         if (shown[i] != frame) fresh.push_back({i, painters[i]->paint_wordless(frame)});

@@ -1,4 +1,4 @@
-/// Pictures into an MP4 by ffmpeg, a process of its own. Internal to framework/render.
+/// Encodes pictures into an MP4 by an ffmpeg process. Internal to framework/render.
 #pragma once
 
 #include <sys/types.h>
@@ -12,17 +12,19 @@ namespace tumble::render {
 
 class VideoWriter {
  public:
-  /// @param mp4  written as pictures come: give a draft's name (core/files.h)
-  /// @param width, height  of every picture; odd ones lose their last column or row
-  /// @throws UserError when ffmpeg is not there
-  VideoWriter(const std::filesystem::path& mp4, int width, int height, double rate_hz);
+  /// @param mp4  written as pictures arrive: give a draft's name (core/files.h)
+  /// @param width, height  of every picture; odd sizes lose the last column or row
+  /// @param record  provenance, stored as the file's comment
+  /// @throws UserError when ffmpeg is missing
+  VideoWriter(const std::filesystem::path& mp4, int width, int height, double rate_hz, const std::string& record);
   VideoWriter(const VideoWriter&) = delete;
   VideoWriter& operator=(const VideoWriter&) = delete;
   ~VideoWriter();
 
-  /// @throws UserError with ffmpeg's words when it has given up
+  /// @throws UserError with ffmpeg's messages when it has ended early
   void add(const Image& image);
-  /// Waits for the file. @throws UserError with ffmpeg's words when it failed
+  /// Waits until the file is complete.
+  /// @throws UserError with ffmpeg's messages when it failed
   void finish();
 
  private:

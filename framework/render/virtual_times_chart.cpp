@@ -13,12 +13,12 @@ namespace {
 
 // Pixels.
 constexpr int kLeft = 110, kRight = 24, kRow = 26, kBar = 16, kHead = 40, kAxis = 44, kTitle = 40, kLegend = 30;
-constexpr std::size_t kMostCharts = 6;   // where none are asked for
+constexpr std::size_t kMostCharts = 6;   // where options.moves is empty
 
 struct Colour {
   std::uint8_t red, green, blue;
 };
-// The colours of the page's chart; told apart in print by lightness.
+// The colours of the page's chart; in print they differ in lightness.
 constexpr Colour kCommitted{0, 68, 107}, kAhead{140, 190, 222}, kUndone{193, 77, 0}, kGrid{217, 224, 230}, kLine{28, 39, 51};
 
 void fill(Image& image, double x0, double y0, double x1, double y1, const Colour& colour) {
@@ -38,7 +38,7 @@ void hatch(Image& image, double x0, double y0, double x1, double y1) {
       if ((x + y) % 6 < 2) fill(image, x, y, x + 1, y + 1, kUndone);
 }
 
-// Round numbers, some four to eight of them.
+// A round number that gives about four to eight ticks.
 double tick_spacing(double range) {
   const double decade = std::pow(10.0, std::floor(std::log10(range / 4)));
   for (const double part : {1.0, 2.0, 5.0, 10.0})
@@ -46,11 +46,11 @@ double tick_spacing(double range) {
   return decade;
 }
 
-std::vector<std::size_t> telling_moves(const VirtualTimes& times) {
+std::vector<std::size_t> moves_at_rollbacks(const VirtualTimes& times) {
   std::vector<std::size_t> moves;
   for (std::size_t k = 0; k < times.moves.size() && moves.size() < kMostCharts; ++k) {
     const auto is_back = [&](std::size_t i) { return i < times.moves.size() && !(times.moves[i].to_s > times.moves[i].from_s); };
-    if (!is_back(k) && is_back(k + 1)) moves.push_back(k + 1);   // before it
+    if (!is_back(k) && is_back(k + 1)) moves.push_back(k + 1);   // before a rollback
     if (is_back(k) && !is_back(k + 1)) moves.push_back(k + 1);   // after it
   }
   if (moves.empty()) moves.push_back(times.moves.size());
@@ -59,7 +59,7 @@ std::vector<std::size_t> telling_moves(const VirtualTimes& times) {
 
 class Chart {
  public:
-  Chart(const VirtualTimes& times, const ChartOptions& options) : times_(times), options_(options), moves_(options.moves.empty() ? telling_moves(times) : options.moves) {
+  Chart(const VirtualTimes& times, const ChartOptions& options) : times_(times), options_(options), moves_(options.moves.empty() ? moves_at_rollbacks(times) : options.moves) {
     low_ = options.from_s;
     high_ = options.to_s;
     if (!(high_ > low_))
@@ -124,7 +124,7 @@ class Chart {
       const VirtualTimes::Move& move = times_.moves[k];
       if (move.to_s > move.from_s) continue;
       const double y = bars + kRow * static_cast<double>(move.process);
-      // Only where it has not gone again meanwhile.
+      // Only where the process has not advanced again since.
       hatch(image_, x(std::max(move.to_s, local[static_cast<std::size_t>(move.process)])), y, x(move.from_s), y + kBar);
       fill(image_, x(move.to_s) - 1, y - 4, x(move.to_s) + 2, y + kBar + 4, kUndone);
     }
@@ -165,9 +165,9 @@ class Chart {
 }  // namespace
 
 void write_virtual_times_chart(const std::filesystem::path& png, const VirtualTimes& times, const ChartOptions& options) {
-  if (times.moves.empty()) throw UserError(png.string(), "there is no scheduler's move to draw", "Run with --engine tw and a module that schedules: --modules a4=student.");
+  if (times.moves.empty()) throw UserError(png.string(), "there is no move of a scheduler to draw", "Run with --engine tw and a scheduler module: --modules a4=student.");
   for (const std::size_t move : options.moves)
-    if (move < 1 || move > times.moves.size()) throw UserError(fmt::format("move {}", move), fmt::format("this run has moves 1 to {}", times.moves.size()), "Name some of these.");
+    if (move < 1 || move > times.moves.size()) throw UserError(fmt::format("move {}", move), fmt::format("this run has moves 1 to {}", times.moves.size()), "Choose among these.");
   std::vector<std::size_t> sorted = options.moves;
   std::sort(sorted.begin(), sorted.end());
   ChartOptions in_order = options;

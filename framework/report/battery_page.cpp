@@ -8,8 +8,8 @@ namespace tumble::report {
 namespace {
 
 constexpr const char* kHowToRead =
-    "Each row is a case that is known to break simulations. A value stands against a threshold that was derived beforehand; the margin says how many times better it is "
-    "than it need be. Methods that cannot hold are run too, and must be seen failing: a battery that cannot fail is no battery. What is not reached is marked SHORT, with the reason.";
+    "Each row is a case that is known to break simulations. A value is compared with a threshold that was derived beforehand; the margin is how many times better it is "
+    "than required. Methods that cannot hold are run too, and must fail: this shows that the measures can fail. A known shortfall is marked SHORT, with the reason.";
 
 Look look_of(Outcome outcome) {
   switch (outcome) {
@@ -20,7 +20,7 @@ Look look_of(Outcome outcome) {
   }
 }
 
-// With a sign of its own, for those who do not see the colour; the two stay on one line.
+// With a sign, for readers who do not see the colour; both stay on one line.
 std::string marked(Outcome outcome) {
   std::string sign;
   switch (outcome) {

@@ -1,4 +1,5 @@
-/// The page of the stability battery: one table, then each hard case with its numbers, their reasons and its plots.
+/// The page of the stability battery: an overview table, then each hard case with its measures,
+/// their reasons and its plots.
 #pragma once
 
 #include <filesystem>
@@ -9,7 +10,7 @@
 
 namespace tumble::report {
 
-/// @param subtitle  which lengths were run, on whose laws
+/// @param subtitle  length of the runs, and the laws' source
 /// @param record    command and version
 /// @throws UserError when the file cannot be written
 void write_battery_page(const std::vector<BatteryRow>& rows, const std::string& subtitle, const std::string& record, const std::filesystem::path& file);

@@ -41,7 +41,7 @@ Outcome outcome_of(const BatteryRow& row) {
 const Measure* tightest(const BatteryRow& row) {
   const auto rank = [](const Measure& m) {
     const Outcome outcome = outcome_of(m);
-    return outcome == Outcome::kFailsAsItMust || outcome == Outcome::kNotRun ? -1 : static_cast<int>(outcome);   // no news
+    return outcome == Outcome::kFailsAsItMust || outcome == Outcome::kNotRun ? -1 : static_cast<int>(outcome);   // expected
   };
   const auto closer = [](const Measure& a, const Measure& b) { return margin_of(a) < margin_of(b) || (std::isnan(margin_of(b)) && !std::isnan(margin_of(a))); };
   const Measure* found = nullptr;

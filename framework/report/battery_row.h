@@ -1,7 +1,9 @@
-/// What the stability battery found, as plain data: a row a hard case, measured numbers against thresholds, plots.
+/// Results of the stability battery as plain data: one row per hard case, with measured numbers
+/// against thresholds, and plots.
 ///
-/// A battery that cannot fail is no battery: of methods known not to hold it is measured that they do not. What the project does not
-/// reach yet is a known shortfall: it stays red in the table with its value and its reason, and is counted.
+/// Methods that are known to fail are measured too, and must fail: this shows that the measures
+/// can. A threshold that the project does not reach yet is a known shortfall: it stays red in the
+/// table, with its value and reason, and is counted.
 #pragma once
 
 #include <string>
@@ -13,10 +15,10 @@ namespace tumble::report {
 
 enum class Outcome {
   kHolds,
-  kFailsAsItMust,   // a method known not to hold, seen failing
-  kNotRun,          // says why
-  kShort,           // does not hold, and stands in the list of shortfalls
-  kTooGood,         // a method known not to hold, and it held: the measurement cannot tell right from wrong
+  kFailsAsItMust,   // a method known to fail has failed
+  kNotRun,          // with a reason
+  kShort,           // does not hold, and is a known shortfall
+  kTooGood,         // a method known to fail has not: the measure cannot distinguish right from wrong
   kBroken,          // does not hold
 };
 
@@ -27,24 +29,24 @@ struct Measure {
   std::string unit;               // empty: none
   std::string why;                // the threshold's reason
   bool at_least = false;          // holds when value >= threshold instead of <=
-  bool must_fail = false;         // of a method known not to hold
-  bool is_question = false;       // yes (1) or no (0), of which the threshold is the right one
-  std::string shortfall{};        // why it is known not to be reached; empty: it must be
+  bool must_fail = false;         // the method is known to fail
+  bool is_question = false;       // yes (1) or no (0); the threshold is the right answer
+  std::string shortfall{};        // known shortfall: why the threshold is not reached; empty: it must be
   std::string not_run{};          // why there is no value; empty: there is one
-  std::string error{};            // what stopped it, where something did
+  std::string error{};            // what stopped the run; empty: nothing
 };
 
 /// One hard case.
 struct BatteryRow {
   int row = 0;                    // of the table of hard cases
   std::string name;
-  std::string about;              // what it is, what goes wrong in it, in two or three sentences
+  std::string about;              // what it is and what goes wrong in it, in two or three sentences
   std::vector<Measure> measures;
   std::vector<Plot> plots;
-  std::string not_part{};         // why the battery does not hold this row yet; empty: it does
+  std::string not_part{};         // why the battery does not include this row yet; empty: it does
 };
 
-/// Whether value and threshold stand as `at_least` says. NaN never does.
+/// Whether the value is on the right side of the threshold; false for NaN.
 bool within(const Measure& measure);
 Outcome outcome_of(const Measure& measure);
 /// How many times better than the threshold; below 1: worse. Infinite for an error of exactly 0; NaN without a value, and for a question.
@@ -58,7 +60,7 @@ const Measure* tightest(const BatteryRow& row);
 std::string word_of(Outcome outcome);
 /// "3.1e-12 m", "12", "without bound".
 std::string shown(double value, const std::string& unit);
-/// The value, "yes" or "no" of a question, "-" where there is none.
+/// The value; "yes" or "no" for a question; "-" where there is none.
 std::string shown_value(const Measure& measure);
 /// "x 32", "exact".
 std::string shown_margin(const Measure& measure);
@@ -68,11 +70,11 @@ std::string shown_threshold(const Measure& measure);
 struct BatteryCount {
   int rows = 0, not_part = 0;                                                              // hard cases, and those not part yet
   int holds = 0, fails_as_it_must = 0, not_run = 0, shortfalls = 0, too_good = 0, broken = 0;   // measures
-  int reached_now = 0;                                                                     // listed as shortfalls, and they hold
+  int reached_now = 0;                                                                     // known shortfalls that hold
   bool good() const { return too_good == 0 && broken == 0; }
 };
 BatteryCount count_of(const std::vector<BatteryRow>& rows);
-/// One sentence, for the last line.
+/// A summary in one sentence.
 std::string sentence_of(const BatteryCount& count);
 
 }  // namespace tumble::report

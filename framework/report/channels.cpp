@@ -14,7 +14,7 @@ namespace tumble::report {
 namespace {
 
 constexpr int kMissing = 4;
-constexpr double kLargest = 4503599627370496.0;   // 2^52: whole numbers that a page's doubles hold, with room for a second difference
+constexpr double kLargest = 4503599627370496.0;   // 2^52: integers that doubles represent exactly, with room for a second difference
 
 void add_varint(std::int64_t value, std::string& bytes) {
   auto zigzag = (static_cast<std::uint64_t>(value) << 1) ^ static_cast<std::uint64_t>(value >> 63);
@@ -39,7 +39,7 @@ void ChannelWriter::add(std::span<const double> values, double quantum, int orde
   if (missing)
     for (const double v : values) bytes_ += static_cast<char>(std::isfinite(v) ? 0 : 1);
 
-  std::int64_t before = 0, earlier = 0;   // the last two whole numbers; a missing value stands where the line through them would go
+  std::int64_t before = 0, earlier = 0;   // the last two integers; a missing value is coded as their linear extrapolation
   for (const double v : values) {
     const std::int64_t guess = order == 0 ? 0 : order == 1 ? before : 2 * before - earlier;
     const std::int64_t whole = std::isfinite(v) ? std::llround(v / quantum) : before;

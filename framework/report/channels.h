@@ -1,11 +1,12 @@
-/// Series of numbers packed for a page: rounded to a quantum, told by their differences, as few bytes as those need.
+/// Series of numbers packed for a page: rounded to a quantum, then coded by their differences in a
+/// variable number of bytes.
 ///
 /// A channel is
 ///   order        u8   0: values, 1: first differences, 2: second differences (constant force costs nothing); + 4 where values are missing
 ///   quantum      f64, little-endian
-///   missing      u8 a value, 1 where it is not finite (only with order + 4)
-///   differences  of round(value / quantum), each as a zigzag varint: 7 bits a byte, least first, the top bit set on all but the last
-/// How many values there are is told elsewhere. player/decode.js reads it.
+///   missing      one u8 per value, 1 where it is not finite (only with order + 4)
+///   differences  of round(value / quantum), each as a zigzag varint: 7 bits per byte, lowest first, the top bit set in all but the last
+/// The number of values is stored elsewhere. player/decode.js reads channels.
 #pragma once
 
 #include <span>
@@ -15,7 +16,8 @@ namespace tumble::report {
 
 class ChannelWriter {
  public:
-  /// @param quantum  > 0: values come back within half of it; raised where a value would need more than 52 bits
+  /// @param quantum  > 0: values are restored to within half of it; increased where a value would
+  ///   need more than 52 bits
   void add(std::span<const double> values, double quantum, int order);
   const std::string& bytes() const { return bytes_; }
 
@@ -23,10 +25,12 @@ class ChannelWriter {
   std::string bytes_;
 };
 
-/// The power of two at or below x, so that rounding adds no digits; 2^-40 for what is not positive or not finite.
+/// The power of two at or below x, so that rounding adds no digits; 2^-40 where x is not positive
+/// or not finite.
 double quantum_of(double x);
 
-/// zlib's format at its best ratio: what a browser's DecompressionStream("deflate") opens.
+/// Compressed in zlib's format at the highest level, for a browser's
+/// DecompressionStream("deflate").
 std::string deflated(const std::string& bytes);
 std::string base64(const std::string& bytes);
 

@@ -11,9 +11,10 @@
 namespace tumble::report {
 namespace {
 
-constexpr double kSameInstant = 1e-9;   // s: frames are recorded at the same multiples of a rate, however the times were summed
+constexpr double kSameInstant = 1e-9;   // s: rounding of the summed times of frames, which are multiples of the same interval
 
-// |x_a - x_b| + r |turn|, an upper bound of how far a point of the body is from its place in the other run.
+// |x_a - x_b| + r |rotation|, an upper bound of the distance of a point of the body from its place
+// in the other run.
 double apart(const BodyPose& a, const BodyPose& b, double radius_m) {
   const double shift = (a.com_world - b.com_world).norm();
   if (!std::isfinite(radius_m)) return shift;
@@ -28,7 +29,7 @@ std::string bodies_of(const Event& event, const Trajectory& run) {
 
 bool differ(double a, double b, double scale) { return std::abs(a - b) > kEventShare * std::max({std::abs(a), std::abs(b), scale}); }
 
-// What is not the same in two events; empty: nothing.
+// The difference of two events in words; empty: none.
 std::string difference_of(const Event& a, const Event& b, double impulse_scale, const Trajectory& run_a, const Trajectory& run_b, const std::string& label_a,
                           const std::string& label_b) {
   const std::string head = std::string(name_of_event(a.kind)) + bodies_of(a, run_a);
@@ -53,7 +54,7 @@ std::optional<Difference> first_event(const Trajectory& a, const std::string& la
   const Trajectory& more = a_has_more ? a : b;
   const Event& event = more.events[both];
   const Trajectory& other = a_has_more ? b : a;
-  if (other.frames.empty() || other.frames.back().time < event.time) return std::nullopt;   // it ended before: no difference of the motion
+  if (other.frames.empty() || other.frames.back().time < event.time) return std::nullopt;   // that run ended earlier: not a difference of the motion
   return Difference{event.time, fmt::format("{}{} only in {}", name_of_event(event.kind), bodies_of(event, more), a_has_more ? label_a : label_b), event.body_a};
 }
 

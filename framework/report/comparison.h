@@ -10,29 +10,30 @@
 
 namespace tumble::report {
 
-/// The first thing that is not the same in both.
+/// The first difference of two runs.
 struct Difference {
   double time_s;
   std::string what;   // a sentence: "Collision of ball and wall: impulse 6 N s in submission, 9 N s in reference"
-  int body = -1;      // -1: none in particular
+  int body = -1;      // -1: not of a particular body
 };
 
 struct Comparison {
-  std::vector<double> apart_m;         // by frame of the first run: how far any point of any body is at most from where the other run has it; NaN where the other has no such frame
-  std::optional<Difference> first;     // none: the same to round-off
+  std::vector<double> apart_m;         // by frame of the first run: largest distance of any point of any body from its place in the other run; NaN where the other run has no such frame
+  std::optional<Difference> first;     // none: equal to round-off
 };
 
-/// Bodies differ where a point of one is `kApart` of the sight (eye to what it looks at) from its place in the other run, events where
-/// kind or bodies do, or time or impulse do by more than `kEventShare` of themselves.
+/// Bodies differ where a point of one is farther than `kApart`, relative to the distance of the
+/// camera's target, from its place in the other run. Events differ in kind or bodies, or in time or
+/// impulse by a relative `kEventShare`.
 inline constexpr double kApart = 1e-6;        // a thousandth of a pixel, and a million times the round-off of a short run
 inline constexpr double kEventShare = 1e-6;
 
-/// @pre both runs are of the scene, with its bodies
-/// @param radius_m  by body: of a ball about its origin that holds it; infinite for planes
+/// @pre both runs are of the scene
+/// @param radius_m  by body: of its bounding ball about the origin; infinite for planes
 Comparison compare(const scene::Scene& scene, const std::vector<double>& radius_m, const Trajectory& a, const std::string& label_a, const Trajectory& b,
                    const std::string& label_b);
 
-/// "collision", "comes to rest", ...: an event in a list.
+/// Name in a list of events: "collision", "comes to rest", ...
 const char* name_of_event(EventKind kind);
 
 }  // namespace tumble::report

@@ -12,14 +12,14 @@
 namespace tumble::report {
 namespace {
 
-constexpr double kExact = 1e-17;                  // m: an error of nothing at all is drawn here
+constexpr double kExact = 1e-17;                  // m: where an error of exactly 0 is drawn
 
-/// Runs that came to no end, or to no answer, are in no picture.
+/// Runs that did not finish, or whose error is too large, are not drawn.
 bool is_drawn(const CostPage& page, const CostPoint& point) { return point.stopped_by.empty() && point.error < page.scale; }
 
 const std::string& counted_by(const CostPage& page, const CostCurve& curve) { return curve.counted.empty() ? page.counted : curve.counted; }
 
-/// @param counting  what curves count that are drawn; empty: all are
+/// @param counting  draws only the curves with this counted quantity; empty: all
 Plot drawn(const CostPage& page, Axis across, const std::string& title, double (*x)(const CostPoint&), const std::string& caption, const std::string& counting = "") {
   Plot plot{title, std::move(across), {page.error_name, page.error_unit, Scale::kLog}, {}, {}, caption};
   for (const CostCurve& curve : page.curves) {
@@ -27,18 +27,18 @@ Plot drawn(const CostPage& page, Axis across, const std::string& title, double (
     for (const CostPoint& point : curve.points) {
       if (!is_drawn(page, point) || !(x(point) > 0) || (!counting.empty() && counted_by(page, curve) != counting)) continue;
       line.x.push_back(x(point));
-      line.y.push_back(std::max({point.error, page.floor, kExact}));   // below the floor nothing can be told
+      line.y.push_back(std::max({point.error, page.floor, kExact}));   // errors below the error floor cannot be resolved
     }
-    if (line.x.empty()) line.name.clear();   // its place stays, so that a method looks the same in all pictures
+    if (line.x.empty()) line.name.clear();   // keeps its place, so that a method has the same style in all plots
     plot.curves.push_back(std::move(line));
   }
   if (page.error_unit.empty()) plot.limits.push_back({1.0, "right below"});
-  if (page.floor > 0) plot.limits.push_back({page.floor, "the truth's own error"});
+  if (page.floor > 0) plot.limits.push_back({page.floor, "error of the reference solution"});
   return plot;
 }
 
 Plot plot_of_energy(const CostPage& page) {
-  Plot plot{"Energy against time, at about the same price", {"time", "s"}, {page.error_unit.empty() ? "|E - E at the start| / energy" : "|E - E of the truth| / energy", "-", Scale::kLog}, {}, {}, "Each curve is the run of its method that comes closest to the middle price of all: "};
+  Plot plot{"Energy against time, at about the same cost", {"time", "s"}, {page.error_unit.empty() ? "|E - E at the start| / energy" : "|E - E of the reference| / energy", "-", Scale::kLog}, {}, {}, "Each curve is the run of its method whose cost is closest to the median of all: "};
   std::string which;
   for (const CostCurve& curve : page.curves) {
     plot.curves.push_back({curve.times.empty() ? "" : curve.name, curve.times, curve.energy_errors});
@@ -49,7 +49,7 @@ Plot plot_of_energy(const CostPage& page) {
   return plot;
 }
 
-/// Kept in one line: "tolerance 1e-08" is not to be broken behind its hyphen.
+/// With hyphens that do not break: "tolerance 1e-08" stays on one line.
 std::string unbroken(const std::string& fineness) {
   std::string kept;
   for (const char letter : fineness) kept += letter == '-' ? "\u2011" : std::string(1, letter);
@@ -58,8 +58,8 @@ std::string unbroken(const std::string& fineness) {
 
 Table table_of_prices(const CostPage& page) {
   Table table;
-  table.caption = "CPU time for an error of at most this much, and what was needed for it. \u2013: it does not get there.";
-  if (page.error_unit.empty()) table.caption = std::string("CPU time for a run that is right by all its numbers") + (page.marks.size() > 1 ? ", or uses up a tenth of what they allow" : "") + ", and what was needed for it. \u2013: it does not get there.";
+  table.caption = "CPU time for an error of at most this much, and the setting that reaches it. \u2013: not reached.";
+  if (page.error_unit.empty()) table.caption = std::string("CPU time for a run that is right by all its numbers") + (page.marks.size() > 1 ? ", or uses a tenth of what they allow" : "") + ", and the setting that reaches it. \u2013: not reached.";
   table.columns = {{""}, {"order", true}};
   for (const double mark : page.marks) table.columns.insert(table.columns.end(), {{mark_in_words(page, mark), true}, {"by"}});
   for (const CostCurve& curve : page.curves) {
@@ -77,15 +77,15 @@ Table table_of_prices(const CostPage& page) {
   return table;
 }
 
-/// Of each curve's example: the same runs as in the picture of energies.
+/// Stages of each curve's example, the same runs as in the plot of energies.
 StackedBars bars_of_stages(const CostPage& page) {
-  std::set<std::string> stages;   // that took any time
+  std::set<std::string> stages;   // with any time
   for (const CostCurve& curve : page.curves)
     for (const auto& [stage, seconds] : curve.stage_seconds)
       if (seconds > 0) stages.insert(stage);
   StackedBars bars;
   bars.title = "Where the time of the same runs went";
-  bars.axis = {"share of what the stages took together", "%"};
+  bars.axis = {"share of the stages' total time", "%"};
   bars.parts.assign(stages.begin(), stages.end());
   for (const CostCurve& curve : page.curves) {
     const double all = std::accumulate(curve.stage_seconds.begin(), curve.stage_seconds.end(), 0.0, [](double sum, const auto& stage) { return sum + stage.second; });
@@ -136,13 +136,13 @@ std::string mark_in_words(const CostPage& page, double mark) {
 
 std::string price_of(double seconds) {
   if (!std::isfinite(seconds)) return "\u2013";
-  const double rounded = std::stod(fmt::format("{:.1e}", seconds));   // prices are known to two digits
+  const double rounded = std::stod(fmt::format("{:.1e}", seconds));   // costs are known to two digits
   if (rounded < 1e-3) return fmt::format("{:g} \u00b5s", 1e6 * rounded);
   return rounded < 1.0 ? fmt::format("{:g} ms", 1e3 * rounded) : fmt::format("{:g} s", rounded);
 }
 
 Plot plot_of_price(const CostPage& page) {
-  return drawn(page, {"CPU time", "s", Scale::kLog}, "Error against CPU time", [](const CostPoint& point) { return point.cpu_s; }, "Left is cheaper, down is more accurate. A method of order p falls by p decades where its price rises by one.");
+  return drawn(page, {"CPU time", "s", Scale::kLog}, "Error against CPU time", [](const CostPoint& point) { return point.cpu_s; }, "Left is cheaper, down is more accurate. The error of a method of order p falls by p decades where its cost rises by one.");
 }
 
 std::vector<Plot> plots_of_evaluations(const CostPage& page) {
@@ -152,7 +152,7 @@ std::vector<Plot> plots_of_evaluations(const CostPage& page) {
   std::vector<Plot> plots;
   for (const std::string& counter : counters) {
     Plot plot = drawn(page, {counter, "-", Scale::kLog}, counters.size() > 1 ? "Error against " + counter : "Error against evaluations", [](const CostPoint& point) { return point.evaluations; },
-                          "What a method costs on any machine. What asks for none, as closed forms do, is not in this picture.", counter);
+                          "The cost of a method on any machine. Methods without evaluations, such as closed forms, are not in this plot.", counter);
     if (std::any_of(plot.curves.begin(), plot.curves.end(), [](const Curve& curve) { return !curve.x.empty(); })) plots.push_back(std::move(plot));
   }
   return plots;
@@ -171,8 +171,8 @@ void write_cost_page(const CostPage& cost, const std::filesystem::path& file) {
   page.heading(by_step ? "Order" : "Tolerance");
   if (std::any_of(cost.curves.begin(), cost.curves.end(), has_steps))
     page.plot(drawn(cost, cost.finer, "Error against the " + cost.finer.name, [](const CostPoint& point) { return point.step; },
-                    by_step ? "The slope is the order: halving the step divides the error of a method of order p by 2^p. Methods that choose their own steps are not in this picture."
-                            : "What a finder is asked for, and what it gives. What has no tolerance is not in this picture."));
+                    by_step ? "The slope is the order: halving the step divides the error of a method of order p by 2^p. Methods that choose their own steps are not in this plot."
+                            : "The tolerance of a root finder, and the error it reaches. Finders without a tolerance are not in this plot."));
   for (const CostCurve& curve : cost.curves)
     if (!curve.reading.empty()) page.paragraph(curve.reading);
   const std::vector<Plot> evaluations = plots_of_evaluations(cost);
@@ -190,7 +190,7 @@ void write_cost_page(const CostPage& cost, const std::filesystem::path& file) {
   page.paragraph(cost.about);
   page.paragraph(cost.what_error_is);
   if (!cost.what_price_is.empty()) page.paragraph(cost.what_price_is);
-  else page.paragraph("CPU time is that of the engine without models and shapes, the best of up to five runs; samples are part of it. On this machine, in this run: ratios matter.");
+  else page.paragraph("CPU time is that of the engine without loading models and shapes, the best of up to five runs, with the overhead of stack samples. Only ratios are meaningful on other machines.");
   page.fold("Every run", all_points(cost));
   page.record(cost.record);
   page.write(file);

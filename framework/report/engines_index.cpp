@@ -9,7 +9,8 @@
 namespace tumble::report {
 namespace {
 
-/// Total time of 2 s of Atoms on the slides' machine, in the slides' unit: compared as ratios only.
+/// Total time for 2 s of Atoms on the slides' machine, in the slides' unit: only ratios are
+/// compared.
 /// Source: the course's slides on B. Mirtich, Timewarp Rigid Body Simulation, SIGGRAPH 2000.
 struct SlideFigure {
   int atoms;
@@ -36,7 +37,7 @@ const EngineRow* labelled(const std::vector<EngineRow>& rows, const std::string&
   return nullptr;
 }
 
-/// A label that no line breaks within.
+/// A label without line breaks.
 std::string in_one(const std::string& label) {
   std::string text;
   for (const char c : label) text += c == '-' ? "\u2011" : std::string(1, c);
@@ -49,14 +50,15 @@ Cell ratio_cell(const EngineRow* row, const EngineRow* timewarp) {
   return {fmt::format("{:.{}f}", ratio, ratio < 9.95 ? 2 : 0), "", ratio > 1.0 ? Look::kGood : Look::kPlain};
 }
 
-/// RD over TW in integrations, by our model: what a scene with so few discontinuities can show.
+/// RD / TW in integrations by the cost model: the ratio to expect at this number of
+/// discontinuities.
 std::string model_ratio(int bodies, double w_h) {
   if (!(w_h > 0)) return "\u2013";
   const double ratio = *modelled_integrations("rd", bodies, w_h, 1.0) / *modelled_integrations("tw", bodies, w_h, 1.0);
   return fmt::format("{:.{}f}", ratio, ratio < 9.95 ? 2 : 0);
 }
 
-/// Why RD / TW of 100 atoms is not the slides' 0.97, with the numbers of this run.
+/// Why RD / TW for 100 atoms is not the slides' 0.97, with the numbers of this run.
 std::string why_slides_differ(const std::vector<std::vector<EngineRow>>& ladder) {
   std::string ours;
   for (const auto& rows : ladder) {
@@ -79,10 +81,10 @@ std::string agreement_in_short(const EnginesScene& scene) {
 }
 
 void add_engines(Page& page) {
-  page.table({"", {{"Engine"}, {"Idea"}, {"What it pays for"}},
-              {{{"RD: retroactive detection"}, {"All bodies take a step; where something has happened meanwhile, all go back to it."}, {"Every discontinuity, of whomever, costs everybody a step done again."}},
-               {{"CA: conservative advancement"}, {"Nobody ever steps past a time at which something may happen; lower bounds wait in a queue."}, {"All advance together, from each bound to the next."}},
-               {{"TW: timewarp"}, {"Each body, or group that touches or is linked, has a time of its own and goes ahead; a late event takes back only those that it concerns."}, {"Pasts are kept until nothing can reach them any more, and a part of the work is undone."}}}});
+  page.table({"", {{"Engine"}, {"Idea"}, {"Cost"}},
+              {{{"RD: retroactive detection"}, {"All bodies take a step; if a discontinuity is found in it, all go back to its time."}, {"Every discontinuity, of any body, costs all bodies a repeated step."}},
+               {{"CA: conservative advancement"}, {"No body ever steps past a time at which a discontinuity is possible; lower bounds on these times are in a queue."}, {"All bodies advance together, from each bound to the next."}},
+               {{"TW: timewarp"}, {"Each body, or island of bodies in contact or linked, has its own local virtual time and runs ahead; a straggler rolls back only the bodies that it concerns."}, {"States are kept until global virtual time has passed them, and some of the work is undone."}}}});
 }
 
 void add_scene(Page& page, const EnginesScene& scene) {
@@ -103,14 +105,14 @@ void add_scene(Page& page, const EnginesScene& scene) {
   }
   std::string checks;
   for (const std::string& check : scene.checks) checks += check + "\n";
-  if (!checks.empty()) page.fold(scene.is_right ? "The scene's own numbers: right" : "The scene's own numbers: NOT right", checks, !scene.is_right);
-  page.paragraph("Again: " + scene.command, Look::kMuted);
+  if (!checks.empty()) page.fold(scene.is_right ? "The scene's checks: right" : "The scene's checks: NOT right", checks, !scene.is_right);
+  page.paragraph("Command: " + scene.command, Look::kMuted);
 }
 
-// Pong is an example of the slides; these sizes, and the ladder, are ours.
+// Pong is an example of the slides; the sizes are this project's.
 void add_pong(Page& page, const EnginesIndex& index) {
   page.heading("Pong: balls that ignore each other, then collide", 2, "pong_ladder");
-  page.paragraph("Balls that meet nothing but the walls are as many simulations of one ball, and should cost as much: an engine that stops all balls where one meets a wall pays more for each, the more there are. Then the same balls "
+  page.paragraph("n balls that collide only with the walls are n independent simulations of one ball, and should cost n times as much. An engine that stops all balls when one hits a wall pays more per ball, the more balls there are. Then the same balls "
                  "collide. The lecture shows Pong; the sizes are ours.");
   for (const auto& [rows, caption] : {std::pair{&index.ghosts, "They ignore each other."}, {&index.pong, "They collide."}}) {
     if (rows->empty()) continue;
@@ -119,10 +121,10 @@ void add_pong(Page& page, const EnginesIndex& index) {
     page.table(table);
   }
   Plot plot;
-  plot.title = "Pong: work a ball and simulated second";
+  plot.title = "Pong: work per ball and simulated second";
   plot.x = {"balls", "", Scale::kLog};
   plot.y = {"integrations", "1/s", Scale::kLog};
-  plot.caption = "Flat: a ball costs what happens to it, however many others there are.";
+  plot.caption = "Flat: the cost of a ball depends on its own collisions only, not on the number of other balls.";
   for (const auto& [ladder, how] : {std::pair{&index.ghosts, "ignoring each other"}, {&index.pong, "colliding"}})
     for (const auto& rows : *ladder)
       for (const EngineRow& row : rows) {
@@ -138,8 +140,8 @@ void add_pong(Page& page, const EnginesIndex& index) {
 
 void add_slides(Page& page, const EnginesIndex& index) {
   page.heading("The slides' table of atoms, with our numbers", 2, "slides");
-  page.paragraph("Balls and molecules of water in a divided box for 2 s, density kept, timed on this machine. RD goes in closed form where the others do, so what differs is who has to move when, not how a body is "
-                 "integrated. RD-1/30 and RD-1/60 have largest steps of 1/30 s and 1/60 s.");
+  page.paragraph("Balls and molecules of water in a divided box for 2 s, at constant density, timed on this machine. RD uses closed forms where the others do, so the engines differ in which bodies advance when, not in how a body is "
+  "integrated. RD-1/30 and RD-1/60 have largest steps of 1/30 s and 1/60 s.");
   for (const Plot& plot : plots_against_n(index.ladder)) page.plot(plot);
   page.table(table_of_ladder(index.ladder));
   const Table slides = table_of_slides(index.ladder);
@@ -147,10 +149,10 @@ void add_slides(Page& page, const EnginesIndex& index) {
     page.table(slides);
     page.paragraph(why_slides_differ(index.ladder));
   }
-  page.heading("The model of cost, against what was counted", 2, "model");
-  page.paragraph("This model is ours, not the lecture's; handouts/a4_timewarp.md derives it. With lambda = n w / 2 discontinuities a second among n bodies, p = 1 - exp(-lambda h) the chance that a step of h holds one, integrations a second are RD n lambda (1 + p) / p, CA n (1/h + 3 "
-                 "lambda), TW n (1/h + 3 w). So RD and CA grow with the square of n once n w h is above 2, TW with n. Our engines stay below the model where a free body goes to its next discontinuity in one go: "
-                 "1/h steps a second are then not taken.");
+  page.heading("The model of cost, and measured counts", 2, "model");
+  page.paragraph("This model is ours, not the lecture's; handouts/a4_timewarp.md derives it. With lambda = n w / 2 discontinuities a second among n bodies, p = 1 - exp(-lambda h) the probability that a step of h contains one, integrations per second are RD n lambda (1 + p) / p, CA n (1/h + 3 "
+                 "lambda), TW n (1/h + 3 w). So RD and CA grow with the square of n once n w h is above 2, TW with n. Our engines stay below the model where a free body advances to its next discontinuity in one integration: "
+                 "the 1/h steps per second are then not needed.");
   page.plot(plot_of_model(index.ladder));
   page.table(table_of_model(index.ladder));
 }
@@ -159,7 +161,7 @@ void add_slides(Page& page, const EnginesIndex& index) {
 
 Table table_of_scenes(const std::vector<EnginesScene>& scenes) {
   Table table;
-  table.caption = "Time against timewarp's (above 1: timewarp is quicker). w h: discontinuities a body and largest step; where n w h is above 2, whoever stops all bodies at each discontinuity begins to pay for it. By the model: what RD / TW would be in integrations.";
+  table.caption = "Time relative to timewarp (above 1: timewarp is faster). w h: discontinuities per body and largest step; where n w h is above 2, stopping all bodies at each discontinuity becomes costly. By the model: the expected RD / TW in integrations.";
   table.columns = {{"Scene"}, {"Bodies", true}, {"Simulated", true}, {"w h", true}, {"n w h", true}, {"RD / TW", true}, {"by the model", true}, {"CA / TW", true}, {"TW undone", true}, {"Agreement"}};
   for (const EnginesScene& scene : scenes) {
     const Cell name{scene.name, "#" + scene.name};
@@ -179,7 +181,7 @@ Table table_of_scenes(const std::vector<EnginesScene>& scenes) {
 
 Table table_of_mean_steps(const std::vector<EnginesScene>& scenes) {
   Table table;
-  table.caption = "The mean step against w: simulated time a body over integrations, those undone too. RD and CA stop all bodies at each discontinuity of any, so n w is what shortens their steps; TW stops those who meet.";
+  table.caption = "The mean step against w: simulated time per body over integrations, including undone ones. RD and CA stop all bodies at every discontinuity, so their steps shrink with n w; TW stops only the bodies that collide.";
   table.columns = {{"Scene"}, {"Bodies n", true}, {"w [1/s]", true}, {"n w [1/s]", true}, {"Largest step [ms]", true}, {"RD [ms]", true}, {"CA [ms]", true}, {"TW [ms]", true}};
   std::vector<const EnginesScene*> sorted;
   for (const EnginesScene& scene : scenes)
@@ -197,8 +199,8 @@ Table table_of_mean_steps(const std::vector<EnginesScene>& scenes) {
 
 Table table_of_ladder(const std::vector<std::vector<EngineRow>>& ladder) {
   Table table;
-  table.caption = "Average integration step: simulated time a body over integrations. Work: integrations a body and simulated second. Undone work counts.";
-  table.columns = {{"Bodies", true}, {"Engine"}, {"w h", true}, {"Mean step [ms]", true}, {"Work a body [1/s]", true}, {"Checks a body [1/s]", true}, {"Time [s]", true}, {"Over TW", true}};
+  table.caption = "Average integration step: simulated time per body over integrations. Work: integrations per body and simulated second. Undone integrations are included.";
+  table.columns = {{"Bodies", true}, {"Engine"}, {"w h", true}, {"Mean step [ms]", true}, {"Work per body [1/s]", true}, {"Checks per body [1/s]", true}, {"Time [s]", true}, {"Over TW", true}};
   for (const auto& rows : ladder)
     for (const EngineRow& row : rows) {
       if (!row.stopped_by.empty()) {
@@ -214,8 +216,8 @@ Table table_of_ladder(const std::vector<std::vector<EngineRow>>& ladder) {
 
 Table table_of_slides(const std::vector<std::vector<EngineRow>>& ladder) {
   Table table;
-  table.caption = "Total time for 2 s of atoms: the slides' figures (another machine, another scene of the same kind, in the slides' unit) and ours. Ratios are what can be compared.";
-  table.columns = {{"Atoms", true}, {"Engine"}, {"Slides", true}, {"Ours [s]", true}, {"Slides: against TW", true}, {"Ours: against TW", true}};
+  table.caption = "Total time for 2 s of atoms: the slides' figures (another machine, a similar scene, in the slides' unit) and ours. Only ratios can be compared.";
+  table.columns = {{"Atoms", true}, {"Engine"}, {"Slides", true}, {"Ours [s]", true}, {"Slides: over TW", true}, {"Ours: over TW", true}};
   for (const auto& rows : ladder) {
     if (rows.empty()) continue;
     const int n = rows.front().bodies;
@@ -240,7 +242,7 @@ void write_engines_index(const EnginesIndex& index, const std::filesystem::path&
   page.heading("All scenes", 2, "all");
   page.table(table_of_scenes(index.scenes));
   page.table(table_of_mean_steps(index.scenes));
-  page.paragraph(std::string("Times are CPU times of this machine in this run; their ratios are what matters. ") + (index.is_full ? "Sizes are those of the paper." : "Sizes are small, so that the page takes little time; ./tumble engines --full runs those of the paper."), Look::kMuted);
+  page.paragraph(std::string("Times are CPU times on this machine in this run; only their ratios are meaningful. ") + (index.is_full ? "Sizes are those of the paper." : "Sizes are small, so that the page takes little time; ./tumble engines --full runs the sizes of the paper."), Look::kMuted);
   if (!index.ladder.empty()) add_slides(page, index);
   if (!index.ghosts.empty() || !index.pong.empty()) add_pong(page, index);
   for (const EnginesScene& scene : index.scenes) add_scene(page, scene);

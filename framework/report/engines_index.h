@@ -1,4 +1,5 @@
-/// The page out/engines/index.html: the course's scenes by every engine, the slides' tables with our numbers, and the model of cost.
+/// The page out/engines/index.html: the course's scenes in every engine, the slides' tables with
+/// the project's numbers, and the cost model.
 #pragma once
 
 #include <filesystem>
@@ -9,32 +10,32 @@
 
 namespace tumble::report {
 
-/// One scene by every engine. Paths are relative to the page; an empty one is not linked.
+/// One scene in every engine. Paths are relative to the page; an empty one is not linked.
 struct EnginesScene {
   std::string name, title, about, command;
-  std::string problem;                     // why there is nothing; empty: there is
+  std::string problem;                     // why there is no result; empty: there is one
   std::vector<EngineRow> rows;
-  std::vector<std::string> checks;         // what the scene's own numbers say of each run
-  bool is_right = true;                    // all of them
+  std::vector<std::string> checks;         // results of the scene's checks, by run
+  bool is_right = true;                    // all checks hold
   Figure figure;
   std::filesystem::path page, player;
 };
 
 struct EnginesIndex {
   std::vector<EnginesScene> scenes;
-  std::vector<std::vector<EngineRow>> ladder;   // of atoms: sizes ascending
-  std::vector<std::vector<EngineRow>> ghosts, pong;   // of balls on a table that ignore each other, and that collide: sizes ascending; may be empty
-  bool is_full = false;                         // sizes as in the paper
+  std::vector<std::vector<EngineRow>> ladder;   // of atoms, by ascending size
+  std::vector<std::vector<EngineRow>> ghosts, pong;   // of balls on a table that ignore each other, and that collide, by ascending size; may be empty
+  bool is_full = false;                         // with the sizes of the paper
   std::string record;
 };
 
-/// A line a scene: size, w h, time of each engine against timewarp, agreement.
+/// One row per scene: size, w h, time of each engine relative to timewarp, agreement.
 Table table_of_scenes(const std::vector<EnginesScene>& scenes);
-/// A line a scene, w ascending: how far each engine takes a body at once, on the average.
+/// One row per scene, by ascending w: mean integration step of each engine.
 Table table_of_mean_steps(const std::vector<EnginesScene>& scenes);
-/// The slides' total times beside those of the ladder, where sizes are the same.
+/// The slides' total times beside those of the sequence of sizes, where sizes are equal.
 Table table_of_slides(const std::vector<std::vector<EngineRow>>& ladder);
-/// One row a size and engine of the ladder: average integration step, work a body, total time.
+/// One row per size and engine: average integration step, work per body, total time.
 Table table_of_ladder(const std::vector<std::vector<EngineRow>>& ladder);
 
 /// @throws UserError when the file cannot be written

@@ -33,10 +33,10 @@ double discontinuities_a_body(const std::vector<EngineRow>& rows) {
 
 Plot plot_of_model(const std::vector<std::vector<EngineRow>>& ladder) {
   Plot plot;
-  plot.title = "The model of cost, and what was counted";
+  plot.title = "The model of cost, and measured counts";
   plot.x = {"bodies", "", Scale::kLog};
-  plot.y = {"integrations a simulated second", "1/s", Scale::kLog};
-  plot.caption = "With marks: counted. Without: our model at each size's own number of discontinuities a body and second.";
+  plot.y = {"integrations per simulated second", "1/s", Scale::kLog};
+  plot.caption = "With marks: counted. Without: our model at each size's own number of discontinuities per body and second.";
   std::map<std::string, std::pair<std::size_t, std::size_t>> places;
   for (const auto& rows : ladder) {
     const double w = discontinuities_a_body(rows);
@@ -61,7 +61,7 @@ Plot plot_of_model(const std::vector<std::vector<EngineRow>>& ladder) {
 
 Table table_of_model(const std::vector<std::vector<EngineRow>>& ladder) {
   Table table;
-  table.caption = "Integrations a simulated second: by the model, and counted.";
+  table.caption = "Integrations per simulated second: by the model, and counted.";
   table.columns = {{"Bodies", true}, {"Engine"}, {"w [1/s]", true}, {"n w h", true}, {"Model", true}, {"Counted", true}, {"Counted / model", true}};
   for (const auto& rows : ladder) {
     const double w = discontinuities_a_body(rows);

@@ -47,15 +47,15 @@ const std::vector<std::pair<std::string, std::string>>& compared_counts() {
 std::vector<Plot> plots_against_n(const std::vector<std::vector<EngineRow>>& ladder) {
   return {against_n("Average integration step", "step", "s", ladder,
                     mean_step_s,
-                    "Simulated time a body divided by integrations. An engine whose bodies all stop at each discontinuity of any takes shorter steps the more bodies there are."),
-          against_n("Work a body and simulated second", "integrations", "1/s", ladder,
+                    "Simulated time per body divided by integrations. The steps of an engine that stops all bodies at every discontinuity shrink with the number of bodies."),
+          against_n("Work per body and simulated second", "integrations", "1/s", ladder,
                     [](const EngineRow& row) { return static_cast<double>(count_of(row, "integrations")) / (row.bodies * row.simulated_s); },
-                    "A flat curve means that a body costs what its own discontinuities cost, whatever the others do."),
-          against_n("Time", "CPU time a simulated second", "s", ladder, [](const EngineRow& row) { return row.cpu_s / row.simulated_s; }, "On this machine, in this run.")};
+                    "A flat curve means that the cost of a body depends only on its own discontinuities."),
+          against_n("Time", "CPU time per simulated second", "s", ladder, [](const EngineRow& row) { return row.cpu_s / row.simulated_s; }, "On this machine, in this run.")};
 }
 
 std::vector<StackedBars> bars_of_work(const std::vector<EngineRow>& rows) {
-  StackedBars integrations{"Integrations", {"integrations"}, {"kept", "undone"}, {}, "One body taken from one time to another. Undone: taken back, and paid for."};
+  StackedBars integrations{"Integrations", {"integrations"}, {"kept", "undone"}, {}, "One integration advances one body from one time to another. Undone: rolled back, but paid for."};
   StackedBars checks{"Pair checks", {"pair checks"}, {"searched for their first impact in an interval"}, {}};
   StackedBars time{"CPU time", {"CPU time", "ms"}, {"of a run without pictures"}, {}};
   for (const EngineRow& row : rows) {
@@ -76,7 +76,7 @@ StackedBars bars_of_time(const std::vector<EngineRow>& rows) {
   for (const EngineRow& row : rows) {
     const double sum = std::accumulate(row.time_parts.begin(), row.time_parts.end(), 0.0, [](double x, const auto& part) { return x + part.second; });
     if (!(sum > 0)) {
-      if (!row.counts.empty()) too_short += (too_short.empty() ? " Too quick to tell: " : ", ") + row.label;
+      if (!row.counts.empty()) too_short += (too_short.empty() ? " Too short to measure: " : ", ") + row.label;
       continue;
     }
     if (bars.parts.empty())
@@ -85,7 +85,7 @@ StackedBars bars_of_time(const std::vector<EngineRow>& rows) {
     for (const auto& [name, share] : row.time_parts) bars.rows.back().values.push_back(100.0 * share);
     physics += fmt::format("{}{:.0f} % of {}'s", physics.empty() ? "" : ", ", 100.0 * row.physics, row.label);
   }
-  bars.caption = fmt::format("By samples of the stack. Contacts, links, motion, impacts and the search for them are physics, which every engine has done by the same functions: {}. Only what is left can differ by who waits for whom.{}", physics, too_short.empty() ? "" : too_short + ".");
+  bars.caption = fmt::format("By samples of the stack. Contacts, links, motion, impacts and the search for them are physics, which all engines compute by the same functions: {}. Only the rest depends on how an engine schedules the bodies.{}", physics, too_short.empty() ? "" : too_short + ".");
   return bars;
 }
 
@@ -96,13 +96,14 @@ Plot plot_of_energy(const std::vector<EngineRow>& rows) {
   plot.y = {"|E - E0| / (kinetic + |potential|)", "", Scale::kLog};
   for (const EngineRow& row : rows)
     if (!row.frame_times.empty()) plot.curves.push_back({row.label + ": " + row.meaning, row.frame_times, row.energy_error, false});
-  plot.caption = "Where something is lost or added on purpose (restitution below 1, friction, drag, motors) this is what was lost or added.";
+  plot.caption =
+      "Where energy is lost or added by the physics (restitution below 1, friction, effects that slow bodies down or drive them), this includes the energy lost or added.";
   return plot;
 }
 
 Table table_of_engines(const std::vector<EngineRow>& rows) {
-  const auto quickest = std::min_element(rows.begin(), rows.end(), [](const EngineRow& x, const EngineRow& y) { return (x.stopped_by.empty() ? x.cpu_s : 1e300) < (y.stopped_by.empty() ? y.cpu_s : 1e300); });
-  // One column an engine: there are few of them.
+  const auto fastest = std::min_element(rows.begin(), rows.end(), [](const EngineRow& x, const EngineRow& y) { return (x.stopped_by.empty() ? x.cpu_s : 1e300) < (y.stopped_by.empty() ? y.cpu_s : 1e300); });
+  // One column per engine, because there are few.
   Table table;
   table.columns = {{""}};
   for (const EngineRow& row : rows) table.columns.push_back({row.label, true});
@@ -112,10 +113,10 @@ Table table_of_engines(const std::vector<EngineRow>& rows) {
     table.rows.push_back(std::move(cells));
   };
   for (const auto& [name, heading] : compared_counts()) line(heading, [&](const EngineRow& row) { return Cell{std::to_string(count_of(row, name))}; });
-  line("Undone of integrations", [](const EngineRow& row) { return Cell{fmt::format("{:.1f} %", 100.0 * static_cast<double>(count_of(row, "undone_integrations")) / std::max<double>(1.0, static_cast<double>(count_of(row, "integrations"))))}; });
+  line("Integrations undone", [](const EngineRow& row) { return Cell{fmt::format("{:.1f} %", 100.0 * static_cast<double>(count_of(row, "undone_integrations")) / std::max<double>(1.0, static_cast<double>(count_of(row, "integrations"))))}; });
   line("w h", [](const EngineRow& row) { return Cell{fmt::format("{:.3g}", row.w_h)}; });
   line("CPU time", [](const EngineRow& row) { return Cell{fmt::format("{:.3g} s", row.cpu_s)}; });
-  line("Time, against the quickest", [&](const EngineRow& row) { return Cell{fmt::format("{:.2f}", row.cpu_s / quickest->cpu_s)}; });
+  line("Time, relative to the fastest", [&](const EngineRow& row) { return Cell{fmt::format("{:.2f}", row.cpu_s / fastest->cpu_s)}; });
   return table;
 }
 
@@ -128,11 +129,11 @@ void write_engines_page(const std::string& title, const std::string& about, cons
     const std::string what = row.label + " (" + row.meaning + "): ";
     if (row.stopped_by.empty()) page.paragraph(what + row.agreement + ".");
     else page.paragraph(what + (row.counts.empty() ? "not run: " : "stopped ") + row.stopped_by, row.counts.empty() ? Look::kMuted : Look::kBad);
-    if (!row.faults.empty()) page.paragraph(row.label + " is not to be trusted: " + row.faults + ".", Look::kBad);
+    if (!row.faults.empty()) page.paragraph(row.label + " cannot be trusted: " + row.faults + ".", Look::kBad);
   }
-  page.paragraph("An integration takes one body from one time to another; undone ones were taken back. A pair check looks for the first impact of one pair in an interval. w h is the number of "
-                 "discontinuities a body and largest step: where n w h is above 2, engines whose bodies all stop at each discontinuity begin to pay for every other body. A change between sliding and sticking or rolling is a discontinuity "
-                 "in the lecture; here it is not in w h, because no engine ends a step of all bodies for it: the contact problem of one island finds it. Retroactive detection counts it apart.", Look::kMuted);
+  page.paragraph("An integration advances one body from one time to another; undone ones were rolled back. A pair check searches for the first impact of one pair in an interval. w h is the number of "
+  "discontinuities per body and largest step: where n w h is above 2, stopping all bodies at every discontinuity becomes costly. A change between sliding and sticking or rolling is a discontinuity "
+  "in the lecture; here it is not in w h, because no engine ends a step of all bodies for it: the contact problem of one island finds it. Retroactive detection counts it separately.", Look::kMuted);
   if (!ladder.empty()) {
     page.heading("Against the number of bodies");
     for (const Plot& plot : plots_against_n(ladder)) page.plot(plot);

@@ -6,15 +6,17 @@
 namespace tumble::report {
 namespace {
 
-// Nothing from the network, no script at all; pictures and video from beside the page (`file:` for pages opened from disk).
+// No network and no scripts; pictures and video from the page's folder (`file:` for pages opened
+// from disk).
 constexpr const char* kPolicy =
     "default-src 'none'; img-src 'self' file: data:; media-src 'self' file: data:; style-src 'unsafe-inline'; "
     "base-uri 'none'; form-action 'none'";
 
-// A table of more columns stands closer, so that it fits the page and paper.
+// A table with more columns has less space between them, so that it fits the page and paper.
 constexpr std::size_t kManyColumns = 7;
 
-// Colours pass 4.5:1 against their ground and differ in lightness, not in hue alone.
+// Colours have a contrast of at least 4.5:1 to their background and differ in lightness, not only
+// in hue.
 constexpr const char* kStyle = R"(
 :root { --ink: #1c2733; --soft: #5b6875; --line: #d9e0e6; --wash: #f4f7f9; --good: #00664b; --warn: #8a5a00; --bad: #a82c00; --link: #005a96; }
 * { box-sizing: border-box; }
@@ -58,7 +60,7 @@ const char* class_of(Look look) {
   return "";
 }
 
-// A link is a path made by link_to or an anchor; a scheme (javascript:, http:) in its place is a bug.
+// A link is a path from link_to or an anchor; a scheme (javascript:, http:) is a bug.
 std::string linked(const Cell& cell) {
   if (cell.link.empty()) return html_escape(cell.text);
   require(cell.link.find(':') == std::string::npos, "report: a link must be made by link_to or be \"#id\", not: " + cell.link);
@@ -121,7 +123,7 @@ void Page::table(const Table& table) {
     body_ += "<th scope=\"col\"" + class_attribute(Look::kPlain, column.is_number) + '>' + html_escape(column.name) + "</th>";
   body_ += "</tr></thead>\n<tbody>\n";
   for (const auto& row : table.rows) {
-    require(row.size() == table.columns.size(), "report: a table's row has another number of cells than the table has columns");
+    require(row.size() == table.columns.size(), "report: a table's row must have one cell for each column");
     body_ += "<tr>";
     for (std::size_t i = 0; i < row.size(); ++i)
       body_ += "<td" + class_attribute(row[i].look, table.columns[i].is_number) + '>' + linked(row[i]) + "</td>";

@@ -1,4 +1,4 @@
-/// Pages that people read in a browser or print: one look, and one place where text becomes HTML.
+/// Pages for a browser or print, with one style and one place where text becomes HTML.
 ///
 ///   Page page("Assignment a1", "submission alice");
 ///   page.heading("Score");
@@ -6,8 +6,9 @@
 ///   page.figures({{.picture = "run.png", .video = "run.mp4", .caption = "A poked box"}});
 ///   page.write("out/index.html");
 ///
-/// Whatever a submission printed or named is text to these functions: it is escaped here and nowhere else, and the page
-/// forbids scripts and anything from the network, so that a story cannot act on its reader.
+/// Everything that comes from a submission is text to these functions: it is escaped here and
+/// nowhere else, and the page forbids scripts and network access, so that a story cannot attack its
+/// reader.
 #pragma once
 
 #include <filesystem>
@@ -22,7 +23,8 @@
 
 namespace tumble::report {
 
-/// How a piece of text is meant. Shown by colour and by weight, so that print and colour-blind readers see it too.
+/// The meaning of a text, shown by colour and by weight, so that it is visible in print and to
+/// colour-blind readers.
 enum class Look { kPlain, kMuted, kGood, kWarning, kBad };
 
 struct Cell {
@@ -33,7 +35,7 @@ struct Cell {
 
 struct Column {
   std::string name;
-  bool is_number = false;    // set flush right
+  bool is_number = false;    // right-aligned
 };
 
 struct Table {
@@ -42,7 +44,7 @@ struct Table {
   std::vector<std::vector<Cell>> rows;
 };
 
-/// A picture, a video, or a video with the picture shown until it plays. Paths are relative to the page.
+/// A picture, a video, or a video with the picture as its poster. Paths are relative to the page.
 struct Figure {
   std::filesystem::path picture;
   std::filesystem::path video;
@@ -56,29 +58,30 @@ class Page {
   /// @param subtitle  second line of the head; may be empty
   explicit Page(std::string title, std::string subtitle = "");
 
-  /// @param level  2 (section) or 3;  @param id  anchor for links "#id", letters, digits, - and _ only; may be empty
+  /// @param level  2 (section) or 3
+  /// @param id     anchor for links "#id": letters, digits, - and _ only; may be empty
   void heading(std::string_view text, int level = 2, std::string_view id = "");
   void paragraph(std::string_view text, Look look = Look::kPlain);
   /// A line of links: {{text, link}, ...}
   void links(const std::vector<Cell>& links);
-  /// Text as it stands, in a fixed-width font: stories, commands, compiler output.
+  /// Preformatted text in a fixed-width font: stories, commands, compiler output.
   void preformatted(std::string_view text);
-  /// A fold that opens on a click (and is open in print): one line, then text as it stands.
+  /// A section that opens on a click and is open in print: one line, then preformatted text.
   void fold(std::string_view summary, std::string_view text, bool open = false);
   void table(const Table& table);
   /// Side by side while the page is wide enough.
   void figures(const std::vector<Figure>& figures);
-  /// Drawn in the page itself, with its caption.
+  /// Draws it in the page, with its caption.
   void plot(const Plot& plot);
   void plot(const StackedBars& bars);
-  /// A large number with a name: scores at the head of a page.
+  /// Large numbers with names: scores at the head of a page.
   void tiles(const std::vector<std::pair<std::string, Cell>>& tiles);
   /// Last line of the page: command, version, hash.
   void record(std::string_view text);
 
   /// The whole page.
   std::string html() const;
-  /// Whole or not at all. Makes missing folders.
+  /// Writes the file whole or not at all. Creates missing folders.
   /// @throws UserError when the file cannot be written
   void write(const std::filesystem::path& file) const;
 

@@ -1,4 +1,4 @@
-// Text to HTML. Everything that comes from outside passes here.
+// Text to HTML. All untrusted text passes here.
 #include "framework/report/html_text.h"
 
 #include <cstdint>
@@ -8,7 +8,7 @@ namespace {
 
 struct Decoded {
   std::uint32_t code;   // kInvalid for bytes that are not UTF-8
-  std::size_t length;   // bytes taken, at least 1
+  std::size_t length;   // bytes consumed, at least 1
 };
 constexpr std::uint32_t kInvalid = 0xffffffff;
 
@@ -30,7 +30,8 @@ Decoded decode(std::string_view text, std::size_t at) {
   return {code, length};
 }
 
-// Characters that hide or reorder what stands beside them (the "Trojan source" set), and the C0 and C1 controls.
+// Characters that hide or reorder their neighbours (the "Trojan source" set), and the C0 and C1
+// controls.
 bool is_dropped(std::uint32_t code) {
   if (code == '\n' || code == '\t') return false;
   if (code < 0x20 || (code >= 0x7f && code <= 0x9f)) return true;

@@ -1,4 +1,4 @@
-/// The one place where text becomes HTML.
+/// The only place where text becomes HTML.
 #pragma once
 
 #include <filesystem>
@@ -7,8 +7,9 @@
 
 namespace tumble::report {
 
-/// Text as HTML shows it: markup escaped; terminal colour codes, control characters and characters that reverse the
-/// direction of writing dropped; bytes that are not UTF-8 shown as U+FFFD. Newline and tab stay.
+/// Text as HTML: markup escaped; terminal colour codes, control characters and characters that
+/// reverse the writing direction dropped; bytes that are not UTF-8 replaced by U+FFFD. Newline and
+/// tab stay.
 std::string html_escape(std::string_view text);
 
 /// A file's path, relative to the page, as a link: every byte outside [A-Za-z0-9._~/-] as %XX.

@@ -1,6 +1,7 @@
-// Order of the channels, F frames kept, of which C with contacts:
-//   times (F); by body that moves: place (3), quaternion x y z w (4), velocity (3), angular velocity (3), F each; series, F each;
-//   contacts a frame (C); of all contacts in order: body_a, body_b, point (3), force (3); of events: time, kind, body_a, body_b, point (3),
+// Order of the channels, for F kept frames, C of them with contacts:
+//   times (F); by moving body: position (3), quaternion x y z w (4), velocity (3), angular velocity
+//   (3), F each; series, F each;
+//   number of contacts per frame (C); of all contacts in order: body_a, body_b, point (3), force (3); of events: time, kind, body_a, body_b, point (3),
 //   normal (3), impulse, normal velocity before and after.
 #include "framework/report/packed_run.h"
 
@@ -10,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/effects/registry.h"
 #include "framework/report/channels.h"
 #include "framework/report/comparison.h"
 #include "framework/trajectory/fault_words.h"
@@ -17,10 +19,11 @@
 namespace tumble::report {
 namespace {
 
-// Shares of a run's largest value at which curves and arrows are rounded: finer than a line is wide, on any screen.
+// Rounding of curves, speeds and arrows relative to the run's largest value: less than the width of
+// a line on any screen.
 constexpr double kCurve = 1e-6, kSpeed = 1.5e-5, kArrow = 1e-3;
-constexpr double kPlace = 1e-6;           // of the sight
-constexpr double kTurn = 1.0 / 32768;     // of a quaternion's parts: 6e-5 rad
+constexpr double kPlace = 1e-6;           // relative to the distance of the camera's target
+constexpr double kTurn = 1.0 / 32768;     // of a quaternion's components: 6e-5 rad
 constexpr double kTime = 1.0 / 1048576;   // s
 
 using Value = std::function<double(std::size_t)>;
@@ -69,7 +72,7 @@ class RunPacker {
  private:
   const Frame& frame(std::size_t k) const { return run_.frames[frames_[k]]; }
 
-  // Bodies whose pose changes at all; of the others one pose is told.
+  // Separates moving bodies from those with a constant pose.
   void find_moving() {
     const Frame& first = run_.frames.front();
     for (std::size_t i = 0; i < run_.bodies.size(); ++i) {
@@ -116,7 +119,8 @@ class RunPacker {
     }
   }
 
-  // q and -q are one rotation: of the two, the one near the quaternion before, so that differences stay small.
+  // q and -q are the same rotation: signs are chosen so that successive quaternions are close and
+  // differences stay small.
   std::vector<double> steady_signs(std::size_t body) const {
     std::vector<double> signs;
     for (std::size_t k = 0; k < frames_.size(); ++k) {
@@ -145,9 +149,8 @@ class RunPacker {
       for (std::size_t i = 0; i < links.size(); ++i)
         add(plot, links[i].name, "N", [&, i, forces](std::size_t k) { return i < (frame(k).*forces).size() ? (frame(k).*forces)[i] : kUnset; });
     };
-    add_forces(scene.springs, "springs", &Frame::spring_forces);
-    add_forces(scene.rods, "rods", &Frame::rod_tensions);
-    add_forces(scene.joints, "joints", &Frame::joint_forces);
+    for (const effects::Effect* effect : effects::all())
+      if (const auto kept = effect->measured_as()) add_forces(effect->links(scene), effect->key().c_str(), kept);
     return all;
   }
 

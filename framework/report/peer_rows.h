@@ -1,4 +1,4 @@
-/// The rows that the programs of tests/bench/peers have written: what each engine pays for which error.
+/// Results of the programs in tests/bench/peers: cost against error for each engine.
 #pragma once
 
 #include <filesystem>
@@ -26,8 +26,8 @@ struct PeerRows {
 /// All *.tsv files of a folder, Tumble's first, the others by name.
 PeerRows read_peer_rows(const std::filesystem::path& folder);
 
-/// The cheapest row of an engine whose error is at most this; nullptr where none gets there.
-/// @param of_others  of any engine but this one instead
+/// The cheapest row of an engine with at most this error; nullptr where there is none.
+/// @param of_others  searches all engines except this one instead
 const PeerRow* cheapest_row(const std::vector<PeerRow>& rows, const std::string& bench, const std::string& engine, bool of_others, double error);
 
 }  // namespace tumble::report

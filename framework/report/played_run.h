@@ -1,4 +1,4 @@
-/// What a player's page shows.
+/// Input of a player's page.
 #pragma once
 
 #include <cstddef>
@@ -12,22 +12,23 @@ namespace tumble::report {
 
 struct PlayedRun {
   const Trajectory& run;
-  std::string label;             // "student", "reference"; may be empty where there is one run only
+  std::string label;             // "student", "reference"; may be empty for a single run
 };
 
-/// A chart of an engine's own, shown beside the curves (local virtual times, for example). The page's script draws it by a function that
-/// registered itself under the kind: `panelKinds.virtual_times = (element, data, player) => ({ at(time_s) {} })` in player/panel_*.js.
+/// An engine's own chart beside the curves, such as local virtual times. It is drawn by the
+/// function that player/panel_*.js registers for the kind: `panelKinds.virtual_times = (element,
+/// data, player) => ({ at(time_s) {} })`.
 struct PlayerPanel {
   std::string kind, title;
-  std::string data_json;         // what that function is given
+  std::string data_json;         // argument `data` of that function
 };
 
 struct PlayerOptions {
-  std::filesystem::path root;                                              // source root, where models are looked for; empty: see scene::build_solid
-  std::filesystem::path three = "/usr/share/javascript/three";             // where Debian's package puts three.js
+  std::filesystem::path root;                                              // source root, where models are searched; empty: see scene::build_solid
+  std::filesystem::path three = "/usr/share/javascript/three";             // folder of three.js in Debian's package
   std::vector<PlayerPanel> panels;
-  std::size_t most_poses = 4'000'000;      // of a run (bodies that move times frames): beyond it every second, third, ... frame is kept, and the page says so
-  std::size_t most_contacts = 1'000'000;   // of a run: beyond it contact points of every second, third, ... frame are kept
+  std::size_t most_poses = 4'000'000;      // limit per run (moving bodies times frames): above it only every second, third, ... frame is kept, and the page says so
+  std::size_t most_contacts = 1'000'000;   // limit per run: above it contact points of only every second, third, ... frame are kept
 };
 
 }  // namespace tumble::report

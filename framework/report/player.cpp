@@ -16,6 +16,7 @@
 #include "framework/report/player_scene.h"
 #include "framework/report/player_still.h"
 #include "framework/scene/build_shape.h"
+#include "framework/trajectory/record.h"
 
 namespace tumble::report {
 namespace {
@@ -23,12 +24,12 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// In the order in which they stand in the page: what is used stands above.
+// In the order of the page: each script uses only earlier ones.
 constexpr const char* kScripts[] = {"decode.js", "model.js", "shapes.js", "marks.js", "pick.js", "stage.js", "plot.js", "curves.js", "events.js", "player.js", "panel_virtual_times.js", "main.js"};
 
 std::string library(const fs::path& folder, const char* file) {
   std::ifstream in(folder / file, std::ios::binary);
-  if (!in) throw UserError((folder / file).string(), "three.js is not there, and a page that plays a run is made of it", "Install Debian's package libjs-three.");
+  if (!in) throw UserError((folder / file).string(), "three.js is missing, which a page that plays a run needs", "Install Debian's package libjs-three.");
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
@@ -38,7 +39,7 @@ std::string script_text() {
   return text + "})();\n";
 }
 
-// Data in a script element ends at "</": in JSON a slash or a less-than sign may be written otherwise.
+// "</" would end a script element; JSON allows an escape for the less-than sign.
 std::string json_text(const Json& json) {
   std::string text;
   for (const char c : json.dump(-1, ' ', false, Json::error_handler_t::replace)) c == '<' ? text += "\\u003c" : text += c;
@@ -66,12 +67,9 @@ Json panels_json(const std::vector<PlayerPanel>& panels) {
   return all;
 }
 
-std::string record_of(const scene::Scene& scene, const std::vector<PlayedRun>& runs) {
-  const TrajectoryInfo& info = runs.front().run.info;
-  std::string record;
-  for (const std::string& part : {info.command, "Tumble " + info.version, "seed " + std::to_string(info.seed), "scene " + scene.name + " " + scene.hash})
-    if (!part.empty()) record += (record.empty() ? "" : " · ") + html_escape(part);
-  for (const PlayedRun& played : runs)   // what the run had to say beside its numbers, such as start velocities that were changed
+std::string record_and_notices(const std::vector<PlayedRun>& runs) {
+  std::string record = html_escape(tumble::record_of(runs.front().run.info));
+  for (const PlayedRun& played : runs)   // notes of the run, such as changed initial velocities
     for (const std::string& notice : played.run.counters.notices) record += "<br>note" + (played.label.empty() ? "" : " (" + html_escape(played.label) + ")") + ": " + html_escape(notice);
   return record;
 }
@@ -111,7 +109,7 @@ std::string player_page(const scene::Scene& scene, const std::vector<PlayedRun>&
   head["panels"] = panels_json(options.panels);
   return filled(player_file("page.html"), {{"title", html_escape(scene.title.empty() ? scene.name : scene.title)}, {"about", html_escape(scene.about)},
                                            {"style", std::string(player_file("player.css"))}, {"script", script_text()}, {"head", json_text(head)}, {"data", data},
-                                           {"still", player_still(runs, packed)}, {"record", record_of(scene, runs)}});
+                                           {"still", player_still(runs, packed)}, {"record", record_and_notices(runs)}});
 }
 
 std::size_t write_player(const fs::path& file, const scene::Scene& scene, const std::vector<PlayedRun>& runs, const PlayerOptions& options) {

@@ -1,9 +1,11 @@
-/// One self-contained page that plays a recorded run: the motion in three dimensions, curves, events; one run, or two beside each other.
+/// A self-contained page that plays a recorded run, or two side by side: the motion in three
+/// dimensions, curves, events.
 ///
 ///   report::write_player("fall.html", scene, {{run, "student"}, {reference, "reference"}});
 ///
-/// The page needs no network and no server: three.js (Debian's libjs-three) and the data stand in it, deflated. Where it finds no WebGL it
-/// says so and shows curves and events; where it finds no scripts at all, plots and a table that were written here.
+/// The page needs no network and no server: it contains three.js (Debian's libjs-three) and the
+/// data, deflated. Without WebGL it says so and shows curves and events; without scripts it shows
+/// plots and a table.
 #pragma once
 
 #include <cstddef>
@@ -18,10 +20,11 @@ namespace tumble::report {
 
 /// The page.
 /// @param runs  one or two, each of the scene and with at least one frame
-/// @throws UserError when three.js is not there, or a run has no frame
+/// @throws UserError when three.js is missing, or a run has no frame
 std::string player_page(const scene::Scene& scene, const std::vector<PlayedRun>& runs, const PlayerOptions& options = {});
 
-/// Whole or not at all.   @return its size in bytes
+/// Writes the page whole or not at all.
+/// @return its size in bytes
 std::size_t write_player(const std::filesystem::path& file, const scene::Scene& scene, const std::vector<PlayedRun>& runs, const PlayerOptions& options = {});
 
 }  // namespace tumble::report

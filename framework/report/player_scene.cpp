@@ -4,6 +4,8 @@
 #include <deque>
 #include <map>
 
+#include "framework/effects/registry.h"
+
 namespace tumble::report {
 namespace {
 
@@ -11,10 +13,10 @@ using Json = nlohmann::ordered_json;
 
 Json triple(const Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
 
-/// Meshes used twice are told once.
+/// Collects meshes; one that is used twice is stored once.
 class Meshes {
  public:
-  /// Of a shape that the page knows no better than by its triangles.
+  /// For a shape that the page draws by its triangles.
   std::size_t index_of_surface(const Shape& shape) { return index_of(made_.emplace_back(surface_of(shape))); }
   std::size_t index_of(const TriangleMesh& mesh) {
     for (std::size_t i = 0; i < meshes_.size(); ++i)
@@ -56,8 +58,8 @@ class Anchors {
     for (std::size_t i = 0; i < scene.bodies.size(); ++i) index_[scene.bodies[i].name] = static_cast<int>(i);
   }
   int body(const std::string& name) const { return name.empty() ? -1 : index_.at(name); }
-  Json of(const scene::AnchorSpec& spec) const { return {{"body", body(spec.body)}, {"point", triple(spec.point_m)}}; }
-  /// A point given in the world at the start.
+  Json of(const effects::DrawnPoint& point) const { return {{"body", body(point.body)}, {"point", triple(point.point)}}; }
+  /// A point in world coordinates at the start.
   Json fixed(const std::string& name, const Vector3d& point_world) const {
     const int index = body(name);
     if (index < 0) return {{"body", -1}, {"point", triple(point_world)}};
@@ -71,21 +73,24 @@ class Anchors {
 };
 
 void add_links(const scene::Scene& scene, const Anchors& anchors, Json& page) {
-  page["springs"] = page["rods"] = page["joints"] = page["forces"] = Json::array();
-  for (const auto& spring : scene.springs)
-    page["springs"].push_back({{"name", spring.name}, {"a", anchors.of(spring.a)}, {"b", anchors.of(spring.b)}, {"rest", spring.rest_length_m}});
-  for (const auto& rod : scene.rods) page["rods"].push_back({{"name", rod.name}, {"a", anchors.of(rod.a)}, {"b", anchors.of(rod.b)}});
-  for (const auto& joint : scene.joints) {
-    const bool is_hinge = joint.kind == scene::JointKind::kHinge;
-    // Of a joint with the world, body_a is the one that moves.
-    Json entry{{"name", joint.name}, {"kind", is_hinge ? "hinge" : joint.kind == scene::JointKind::kBall ? "ball" : "weld"}};
-    entry["a"] = anchors.fixed(joint.body_a, joint.point_m);
-    if (is_hinge) entry["b"] = anchors.fixed(joint.body_a, joint.point_m + joint.axis.normalized());
+  page["springs"] = page["rods"] = page["joints"] = page["forces"] = page["sheets"] = Json::array();
+  const effects::Drawables drawn = effects::drawn(scene);
+  for (const effects::DrawnCoil& coil : drawn.coils)
+    page["springs"].push_back({{"name", coil.name}, {"a", anchors.of(coil.a)}, {"b", anchors.of(coil.b)}, {"rest", coil.rest_length}});
+  for (const effects::DrawnBar& bar : drawn.bars) page["rods"].push_back({{"name", bar.name}, {"a", anchors.of(bar.a)}, {"b", anchors.of(bar.b)}});
+  for (const effects::DrawnPivot& pivot : drawn.pivots) {
+    using Kind = effects::DrawnPivot::Kind;
+    const bool is_pin = pivot.kind == Kind::kPin;
+    // In a joint with the world, body_a is the moving body.
+    Json entry{{"name", pivot.name}, {"kind", is_pin ? "hinge" : pivot.kind == Kind::kBall ? "ball" : "weld"}};
+    entry["a"] = anchors.fixed(pivot.body_a, pivot.point_world);
+    if (is_pin) entry["b"] = anchors.fixed(pivot.body_a, pivot.point_world + pivot.axis_world.normalized());
     page["joints"].push_back(std::move(entry));
   }
-  for (const auto& force : scene.point_forces)
-    page["forces"].push_back({{"body", anchors.body(force.body)}, {"force", triple(force.force_n)}, {"point", triple(force.point_m)},
+  for (const effects::DrawnArrow& force : drawn.arrows)
+    page["forces"].push_back({{"body", anchors.body(force.body)}, {"force", triple(force.force_world)}, {"point", triple(force.point_world)},
                               {"start", force.start_s}, {"duration", force.duration_s}});
+  for (const effects::DrawnSheet& sheet : drawn.sheets) page["sheets"].push_back({{"height", sheet.height_m}, {"color", triple(sheet.color)}});
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// What a player's page knows of a scene before anything moves. Internal to framework/report.
+/// The scene for a player's page, as JSON. Internal to framework/report.
 #pragma once
 
 #include <vector>
@@ -11,11 +11,12 @@
 
 namespace tumble::report {
 
-/// By body: radius of a ball about its origin that holds it; infinite for planes. [m]
+/// By body: radius of its bounding ball about the origin; infinite for planes. [m]
 std::vector<double> radii_of(const std::vector<Shape>& shapes);
 
-/// Bodies (shape, colour), links with their anchors, camera, ground, pushes. SI units, world and body frames as in scene.h.
-/// @param first  the run's first frame: joints are given in the world at the start
+/// Bodies (shape, colour), links with their anchors, camera, ground, point forces. SI units, world
+/// and body frames as in scene.h.
+/// @param first  the run's first frame: joints are given in world coordinates at the start
 nlohmann::ordered_json player_scene(const scene::Scene& scene, const std::vector<Shape>& shapes, const Frame& first);
 
 }  // namespace tumble::report

@@ -12,13 +12,13 @@
 namespace tumble::report {
 namespace {
 
-constexpr std::size_t kMostStillPoints = 240;   // of a curve: a plot that stands still is 500 pixels wide
+constexpr std::size_t kMostStillPoints = 240;   // per curve: a static plot is 500 pixels wide
 constexpr std::size_t kMostEvents = 40;
 
 struct Wanted {
   const char *plot, *title, *axis;
 };
-constexpr Wanted kWanted[] = {{"energy", "Energy", "energy"}, {"drift", "Change of the total energy", "E - E(0)"}, {"momentum", "Momentum of what moves", "momentum"}};
+constexpr Wanted kWanted[] = {{"energy", "Energy", "energy"}, {"drift", "Change of the total energy", "E - E(0)"}, {"momentum", "Momentum of all movable bodies", "momentum"}};
 
 Curve curve_of(const Series& series, const std::vector<double>& times_s, const std::string& name) {
   Curve curve{name, {}, {}};

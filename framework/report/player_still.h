@@ -1,4 +1,5 @@
-/// What a player's page shows where no script runs, and what a printer gets: plots and a table of events. Internal to framework/report.
+/// The static part of a player's page, for browsers without scripts and for print: plots and a
+/// table of events. Internal to framework/report.
 #pragma once
 
 #include <string>

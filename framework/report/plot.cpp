@@ -12,23 +12,24 @@
 namespace tumble::report {
 namespace {
 
-// Units of the drawing. The frame leaves room for numbers at the left and names below.
+// Units of the drawing. Numbers are at the left of the frame, names below it.
 constexpr double kWidth = 640, kHeight = 360, kLeft = 78, kRight = 622, kTop = 34, kBottom = 306;
 constexpr std::size_t kMostPoints = 2000, kParts = 1000;
 constexpr double kTextHeight = 17;
-constexpr double kLetter = 0.64;        // width of a bold letter over its size, on average
-constexpr double kMostDecades = 40.0;   // on a logarithmic axis: what lies deeper is rounding, and drawn at the edge
-constexpr double kFlat = 1.001;           // largest over least of values that are one
+constexpr double kLetter = 0.64;        // mean width of a bold letter over its size
+constexpr double kMostDecades = 40.0;   // on a logarithmic axis: smaller values are rounding, drawn at the edge
+constexpr double kFlat = 1.001;           // largest over smallest: below it values are drawn as equal
 
-// From dark to light for print, told apart by the colour-blind (after M. Okabe, K. Ito, "Color universal design", 2008). Eight colours are as
-// many as people tell apart: the second eight curves take them again, with other dashes, thinner lines and hollow marks.
+// From dark to light for print, distinguishable to colour-blind readers (after M. Okabe, K. Ito,
+// "Color universal design", 2008). More than eight colours are hard to distinguish: the second
+// eight curves repeat them with other dashes, thinner lines and hollow marks.
 struct Style {
   const char *colour, *dashes;
 };
 constexpr Style kStyles[] = {{"#00446b", ""},     {"#c14d00", "7 3"},    {"#007a57", "2 2.5"},    {"#9a4f86", "9 3 2 3"}, {"#3d8fc4", "4 2"},   {"#8a6d00", "1.5 4"},     {"#222222", "12 4"}, {"#b5465f", "5 2 1.5 2 1.5 2"},
                              {"#00446b", "3 5"},  {"#c14d00", ""},       {"#007a57", "10 2 2 2"}, {"#9a4f86", "1 2"},     {"#3d8fc4", "14 5"},  {"#8a6d00", "6 2 1 2 1 2 1 2"}, {"#222222", "2 6"},  {"#b5465f", ""}};
-constexpr std::size_t kColours = 8;     // also: shapes of marks
-constexpr std::size_t kMarksOfLong = 6; // along a curve without marks of its own, where colours repeat
+constexpr std::size_t kColours = 8;     // and shapes of marks
+constexpr std::size_t kMarksOfLong = 6; // per curve without marks, where colours repeat
 
 struct Range {
   double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
@@ -40,12 +41,12 @@ struct Range {
 
 bool drawable(double v, Scale scale) { return std::isfinite(v) && (scale == Scale::kLinear || v > 0); }
 
-// Room around what is drawn, so that no curve runs along the frame.
+// Adds margins, so that no curve runs along the frame.
 Range widened(Range range, Scale scale) {
   if (!(range.low <= range.high)) return scale == Scale::kLog ? Range{0.1, 1.0} : Range{0.0, 1.0};
   if (scale == Scale::kLog) {
     range.low = std::max(range.low, range.high * std::pow(10.0, -kMostDecades));
-    if (range.high < kFlat * range.low) return {range.low / 10.0, range.high * 10.0};   // one value: a decade about it, not its last digits
+    if (range.high < kFlat * range.low) return {range.low / 10.0, range.high * 10.0};   // equal values: show a decade on both sides, not the last digits
     const double decades = std::max(std::log10(range.high / range.low), 0.5), room = std::pow(10.0, 0.06 * decades);
     return {range.low / room, range.high * room};
   }
@@ -56,7 +57,7 @@ Range widened(Range range, Scale scale) {
 
 struct Scaled {
   Scale scale;
-  double low, high, from, to;   // values, and where they are drawn
+  double low, high, from, to;   // range of values, and its positions in the drawing
   double operator()(double v) const {
     const double part = scale == Scale::kLog ? std::log(std::max(v, low) / low) / std::log(high / low) : (v - low) / (high - low);
     return from + part * (to - from);
@@ -89,7 +90,8 @@ std::string grid(const Axis& axis, const Scaled& at, bool across) {
   return svg;
 }
 
-// The least and the largest of each part, in their order: what a thousand columns of a screen can show.
+// The minimum and maximum of each part in their order: all that a thousand columns of a screen can
+// show.
 Curve thinned(const Curve& curve) {
   if (curve.x.size() <= kMostPoints) return curve;
   Curve thin{curve.name, {}, {}, curve.marks};
@@ -112,7 +114,8 @@ const Style& style_of(std::size_t place) { return kStyles[place % std::size(kSty
 bool is_hollow(std::size_t place) { return place % std::size(kStyles) >= kColours; }
 double width_of(std::size_t place) { return is_hollow(place) ? 1.2 : 1.8; }
 
-// Outlines in units of a mark's radius, drawn around its centre: square, triangles, diamond, cross, star, hexagon. A circle comes before these.
+// Outlines in units of a mark's radius around its centre: a circle (empty), square, triangle,
+// diamond, inverted triangle, cross, star, hexagon.
 constexpr const char* kOutlines[kColours] = {"", "M-1 -1H1V1H-1z", "M0 -1.3L1.2 0.9H-1.2z", "M0 -1.4L1.1 0L0 1.4L-1.1 0z", "M-1.2 -0.9H1.2L0 1.3z", "M-1.3 -0.45H-0.45V-1.3H0.45V-0.45H1.3V0.45H0.45V1.3H-0.45V0.45H-1.3z",
                                              "M0 -1.5L0.4 -0.4L1.5 0L0.4 0.4L0 1.5L-0.4 0.4L-1.5 0L-0.4 -0.4z", "M-0.6 -1.1H0.6L1.2 0L0.6 1.1H-0.6L-1.2 0z"};
 
@@ -129,14 +132,14 @@ std::string dashes_of(std::size_t place) {
   return *dashes == '\0' ? "" : fmt::format(" stroke-dasharray=\"{}\"", dashes);
 }
 
-// Every so many points of a curve bear a mark; 0: none does.
+// Interval between marked points of a curve; 0: no marks.
 std::size_t points_a_mark(const Curve& curve, const Plot& plot) {
   if (curve.marks) return 1;
   return plot.curves.size() > kColours ? std::max<std::size_t>(1, curve.x.size() / kMarksOfLong) : 0;
 }
 
 std::string draw(const Curve& curve, std::size_t place, const Plot& plot, const Scaled& x, const Scaled& y) {
-  const std::size_t each = points_a_mark(curve, plot), first = each > 1 ? place % kColours * each / kColours : 0;   // marks of neighbours do not hide each other
+  const std::size_t each = points_a_mark(curve, plot), first = each > 1 ? place % kColours * each / kColours : 0;   // so that marks of similar curves do not overlap
   std::string path, marks;
   bool pen_down = false;
   for (std::size_t i = 0; i < curve.x.size(); ++i) {
@@ -151,7 +154,7 @@ std::string draw(const Curve& curve, std::size_t place, const Plot& plot, const 
   return fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\"{}/>\n{}", path, style_of(place).colour, width_of(place), dashes_of(place), marks);
 }
 
-// Below the names of the axis, in rows.
+// Below the name of the axis, in rows.
 std::string legend(const Plot& plot, double& bottom) {
   std::string svg;
   double x = kLeft, y = kBottom + 58;
@@ -198,7 +201,7 @@ svg.plot .grid { stroke: #d9e0e6; stroke-width: .8; } svg.plot .halo { paint-ord
 std::string svg_of(const Plot& plot) {
   Range xs, ys;
   for (const Curve& curve : plot.curves) {
-    require(curve.x.size() == curve.y.size(), "report: a curve needs as many x as y");
+    require(curve.x.size() == curve.y.size(), "report: a curve needs x and y of equal length");
     for (std::size_t i = 0; i < curve.x.size(); ++i) {
       if (!drawable(curve.x[i], plot.x.scale) || !drawable(curve.y[i], plot.y.scale)) continue;
       xs.hold(curve.x[i]);

@@ -1,4 +1,4 @@
-/// Plots of pages as documents of their own: for handouts, slides and papers, where a page cannot go.
+/// Plots of pages as stand-alone documents, for handouts, slides and papers.
 #pragma once
 
 #include <string>
@@ -9,12 +9,12 @@ namespace tumble::report {
 
 struct PlotDocument {
   std::string title;   // of the plot
-  std::string name;    // of a file: small letters, digits and underscores, no two alike
-  std::string svg;     // a document that stands alone, with its style, on a white ground
+  std::string name;    // of a file: lower-case letters, digits and underscores; unique
+  std::string svg;     // a complete document with its style and a white background
 };
 
 /// Every plot (svg_of) of a page, in the page's order.
-/// @param page  its HTML; of a page without plots comes nothing
+/// @param page  its HTML
 std::vector<PlotDocument> plots_in(std::string_view page);
 
 }  // namespace tumble::report

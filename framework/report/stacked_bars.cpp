@@ -12,16 +12,17 @@
 namespace tumble::report {
 namespace {
 
-// Units of the drawing, those of plot.cpp across; names stand at the left.
+// Units of the drawing, with the width of plot.cpp; names are at the left.
 constexpr double kWidth = 640, kLeft = 214, kRight = 622, kTop = 34, kRow = 24, kBar = 17, kTextHeight = 17;
-constexpr double kLetter = 6.2;         // width of a letter, on average
+constexpr double kLetter = 6.2;         // mean width of a letter
 constexpr double kLegendLetter = 6.6;
-constexpr double kRoomForNumber = 30;   // a part narrower than this bears none
+constexpr double kRoomForNumber = 30;   // a narrower part shows no number
 
-// Neighbours differ in lightness, and what is as light as another is hatched otherwise: a grey print shows them apart.
+// Neighbours differ in lightness, and parts of equal lightness in hatching, so that they are
+// distinguishable in grey.
 struct Paint {
-  const char *ground, *lines, *ink;     // lines: of a hatch, empty: none; ink: of the number
-  int turned;                           // of the hatch [deg]
+  const char *ground, *lines, *ink;     // colours: background; hatching, empty: none; number
+  int turned;                           // angle of the hatching [deg]
 };
 constexpr Paint kPaints[] = {{"#00446b", "", "#fff", 0},         {"#f0c27b", "", "#1c2733", 0},        {"#007a57", "#bfe3d6", "#fff", 45},     {"#d8e8f3", "#7fa6c4", "#1c2733", 135},
                              {"#9a4f86", "", "#fff", 0},         {"#ffffff", "#8a6d00", "#1c2733", 0}, {"#222222", "#9aa3ab", "#fff", 135},    {"#b9c3cc", "#5b6875", "#1c2733", 90}};
@@ -47,7 +48,7 @@ std::string text(double x, double y, const std::string& words, const char* ancho
   return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\"{}>{}</text>\n", x, y, anchor, more, html_escape(words));
 }
 
-/// As small as it takes to stand at the left of its bar.
+/// In a font small enough to fit at the left of its bar.
 std::string name_of(const StackedBars::Row& row, double y) {
   const double size = std::min(11.5, 11.5 * (kLeft - 12) / (kLetter * std::max<double>(1.0, static_cast<double>(row.name.size()))));
   return text(kLeft - 7, y + 0.5 * kBar + 4, row.name, "end", fmt::format(" font-size=\"{:.3g}\"", size));
@@ -89,7 +90,7 @@ std::string svg_of(const StackedBars& bars) {
   double longest = 0.0;
   for (const StackedBars::Row& row : bars.rows) {
     require(row.values.size() == bars.parts.size(), "report: a row of bars needs a value for each part");
-    for (const double value : row.values) require(std::isfinite(value) && value >= 0.0, "report: a part of a bar is a length");
+    for (const double value : row.values) require(std::isfinite(value) && value >= 0.0, "report: a part of a bar must be finite and not negative");
     longest = std::max(longest, std::accumulate(row.values.begin(), row.values.end(), 0.0));
   }
   const double bottom = kTop + kRow * static_cast<double>(bars.rows.size());

@@ -1,8 +1,9 @@
-/// What a whole is made of, as bars across: SVG that stands in a page, in the style of plot.h.
+/// Horizontal stacked bars as inline SVG, in the style of plot.h.
 ///
 ///   page.plot(StackedBars{.title = "Where the time went", .axis = {"share of the time", "%"}, .parts = {"detect", "integrate"}, .rows = {{"RK4, 1/60 s", {30.0, 70.0}}}});
 ///
-/// Parts differ in lightness and in hatching, and wide ones bear their number, so that print and colour-blind readers can tell them apart.
+/// Parts differ in lightness and hatching, and wide ones show their number, so that they are
+/// distinguishable in print and to colour-blind readers.
 #pragma once
 
 #include <string>
@@ -15,17 +16,17 @@ namespace tumble::report {
 struct StackedBars {
   struct Row {
     std::string name;
-    std::vector<double> values;   // >= 0, one for each part; all of them 0: an empty bar
+    std::vector<double> values;   // >= 0, one for each part; all 0: an empty bar
   };
   std::string title;
   Axis axis;                      // linear, from 0 to the longest row's sum
-  std::vector<std::string> parts; // told apart up to 8
+  std::vector<std::string> parts; // distinguishable up to 8
   std::vector<Row> rows;          // from the top
-  std::string caption = {};       // what to see in it
+  std::string caption = {};       // what the bars show
 };
 
-/// <svg> element of 640 units across; a row each.
-/// @pre every row has as many values as there are parts, none of them negative or not finite
+/// An <svg> element, 640 units wide.
+/// @pre every row has one finite value >= 0 for each part
 std::string svg_of(const StackedBars& bars);
 
 }  // namespace tumble::report

@@ -6,7 +6,8 @@
 
 namespace tumble::report {
 
-/// @param times  recorded by an engine; a page draws every process, so some tens of them and some ten thousand moves are what a reader can use
+/// @param times  recorded by an engine; the page draws every process, so a few dozen processes and
+///   some ten thousand moves are practical
 PlayerPanel virtual_times_panel(const VirtualTimes& times);
 
 }  // namespace tumble::report

@@ -1,6 +1,9 @@
 #include "framework/scene/check_checks.h"
 
+#include <cctype>
 #include <map>
+
+#include "framework/scene/words.h"
 
 namespace tumble::scene {
 namespace {
@@ -27,9 +30,6 @@ const std::map<std::string, CheckNeeds>& check_needs() {
       {"restitution_law", {}},
       {"side_of_wall", {.body = true, .other = true, .axis = true}},
       {"flips", {.body = true, .axis = true, .expected = 1}},
-      {"rod_length", {}},
-      {"joint_gap", {}},
-      {"joint_angle", {}},
       {"link_force", {.link = true, .expected = 1}},
       {"reaction", {.body = true, .axis = true, .expected = 1}},
       {"drift", {}},
@@ -44,31 +44,34 @@ const std::map<std::string, CheckNeeds>& check_needs() {
   return needs;
 }
 
-/// The links that a kind may name.
-struct LinkNames {
-  std::vector<std::string> springs, rods, joints;
+std::vector<std::string> names_of(const std::vector<Link>& links) {
+  std::vector<std::string> names;
+  for (const Link& link : links) names.push_back(link.name);
+  return names;
+}
 
-  explicit LinkNames(const Scene& scene) {
-    for (const auto& spring : scene.springs) springs.push_back(spring.name);
-    for (const auto& rod : scene.rods) rods.push_back(rod.name);
-    for (const auto& joint : scene.joints) joints.push_back(joint.name);
-  }
-  std::vector<std::string> all() const {
-    std::vector<std::string> names = springs;
-    names.insert(names.end(), rods.begin(), rods.end());
-    names.insert(names.end(), joints.begin(), joints.end());
-    return names;
-  }
-};
+/// The effect that brings a kind of check with it; nullptr: none.
+const Words* words_of_check(const std::string& kind) {
+  for (const Words* words : all_words())
+    for (const LinkCheck& check : words->link_checks())
+      if (check.kind == kind) return words;
+  return nullptr;
+}
 
-void check_link(const CheckSpec& check, const std::string& pointer, const LinkNames& links, const Refuse& refuse) {
-  const bool of_rods = check.kind == "rod_length", of_joints = check.kind.starts_with("joint_");
-  if (of_rods && links.rods.empty()) refuse(pointer + "/kind", "a check of kind " + check.kind + " is about rods, and the scene has none", "Delete it, or add a rod.");
-  if (of_joints && links.joints.empty()) refuse(pointer + "/kind", "a check of kind " + check.kind + " is about joints, and the scene has none", "Delete it, or add a joint.");
+void check_link(const CheckSpec& check, const std::string& pointer, const Scene& scene, const Refuse& refuse) {
+  if (const Words* words = words_of_check(check.kind)) {
+    const std::vector<std::string> names = names_of(words->links(scene));
+    if (names.empty()) refuse(pointer + "/kind", "a check of kind " + check.kind + " is about " + words->key() + ", and the scene has none", "Delete it, or add a " + words->name() + ".");
+    std::string plural = words->key();
+    plural[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(plural[0])));
+    if (!check.link.empty()) Names(words->name(), plural, names).expect(check.link, pointer + "/link", refuse);
+    return;
+  }
   if (check.link.empty()) return;
-  if (of_rods) Names("rod", "Rods", links.rods).expect(check.link, pointer + "/link", refuse);
-  else if (of_joints) Names("joint", "Joints", links.joints).expect(check.link, pointer + "/link", refuse);
-  else Names("spring, rod or joint", "Links", links.all()).expect(check.link, pointer + "/link", refuse);
+  std::vector<std::string> all;
+  for (const Words* words : all_words())
+    for (const Link& link : words->links(scene)) all.push_back(link.name);
+  Names("spring, rod or joint", "Links", all).expect(check.link, pointer + "/link", refuse);
 }
 
 void check_expected(const CheckSpec& check, const std::string& pointer, int needed, const Refuse& refuse) {
@@ -79,10 +82,10 @@ void check_expected(const CheckSpec& check, const std::string& pointer, int need
   if (needed == 1 && check.expected.size() != 1) refuse(pointer + "/expected", found + ", expected a list of one number", "");
 }
 
-void check_check(const CheckSpec& check, const std::string& pointer, const Names& bodies, const LinkNames& links, const Refuse& refuse) {
+void check_check(const CheckSpec& check, const std::string& pointer, const Names& bodies, const Scene& scene, const Refuse& refuse) {
   const auto found = check_needs().find(check.kind);
-  if (found == check_needs().end()) refuse(pointer + "/kind", "unknown kind of check '" + check.kind + "'", "");
-  const CheckNeeds& needs = found->second;
+  if (found == check_needs().end() && words_of_check(check.kind) == nullptr) refuse(pointer + "/kind", "unknown kind of check '" + check.kind + "'", "");
+  const CheckNeeds needs = found == check_needs().end() ? CheckNeeds{} : found->second;   // those about links need nothing
   const auto need = [&](bool needed, bool given, const char* key) {
     if (needed && !given) refuse(pointer, "a check of kind " + check.kind + " needs the key '" + key + "'", "Add it.");
   };
@@ -96,7 +99,7 @@ void check_check(const CheckSpec& check, const std::string& pointer, const Names
   if (!check.other.empty()) bodies.expect(check.other, pointer + "/other", refuse);
   for (std::size_t i = 0; i < check.bodies.size(); ++i) bodies.expect(check.bodies[i], pointer + "/bodies/" + std::to_string(i), refuse);
   if (check.axis && check.axis->norm() == 0.0) refuse(pointer + "/axis", "found the zero vector, expected a direction", "");
-  check_link(check, pointer, links, refuse);
+  check_link(check, pointer, scene, refuse);
   check_expected(check, pointer, needs.expected, refuse);
 }
 
@@ -104,8 +107,7 @@ void check_check(const CheckSpec& check, const std::string& pointer, const Names
 
 void check_checks(const Scene& scene, const Refuse& refuse) {
   const Names bodies = names_of_bodies(scene);
-  const LinkNames links(scene);
-  for (std::size_t i = 0; i < scene.checks.size(); ++i) check_check(scene.checks[i], "/checks/" + std::to_string(i), bodies, links, refuse);
+  for (std::size_t i = 0; i < scene.checks.size(); ++i) check_check(scene.checks[i], "/checks/" + std::to_string(i), bodies, scene, refuse);
 }
 
 }  // namespace tumble::scene

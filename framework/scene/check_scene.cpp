@@ -6,6 +6,7 @@
 #include "framework/scene/anchors.h"
 #include "framework/scene/check_checks.h"
 #include "framework/scene/check_links.h"
+#include "framework/scene/words.h"
 
 namespace tumble::scene {
 namespace {
@@ -50,31 +51,38 @@ void check_body(const BodySpec& body, const Refuse& refuse) {
 
 void check_ellipsoids(const Scene& scene, const Refuse& refuse) {
   const auto is_named = [](const auto& pair, const std::string& a, const std::string& b) { return (pair.first == a && pair.second == b) || (pair.first == b && pair.second == a); };
+  std::vector<std::pair<std::string, std::string>> apart = scene.apart;
+  for (const Words* words : all_words())
+    for (auto& pair : words->pairs_apart(scene)) apart.push_back(std::move(pair));
   for (const BodySpec& body : scene.bodies) {
     if (!body.collides || !std::holds_alternative<EllipsoidSpec>(body.shape)) continue;
     for (const BodySpec& other : scene.bodies) {
       if (&other == &body || !other.collides || std::holds_alternative<PlaneSpec>(other.shape) || (body.immovable && other.immovable)) continue;
-      if (std::any_of(scene.apart.begin(), scene.apart.end(), [&](const auto& pair) { return is_named(pair, body.name, other.name); })) continue;
-      if (std::any_of(scene.joints.begin(), scene.joints.end(), [&](const JointSpec& j) { return is_named(std::pair(j.body_a, j.body_b), body.name, other.name); })) continue;
+      if (std::any_of(apart.begin(), apart.end(), [&](const auto& pair) { return is_named(pair, body.name, other.name); })) continue;
       refuse(body.pointer, "body '" + body.name + "' is an ellipsoid and may meet '" + other.name + "', which is no plane: ellipsoids meet planes only",
              "Name the two under \"apart\", give one of them \"collides\": false, or use a convex model.");
     }
   }
 }
 
+namespace {
+
+void check_friction(const Scene& scene, const Refuse& refuse) {
+  for (const BodySpec& body : scene.bodies)
+    if (body.friction > 0.0 && !scene.contact)
+      refuse(body.pointer + "/friction", "body '" + body.name + "' has friction, which acts in lasting contact only, and the scene has none", "Add \"contact\": {} to the scene, or delete friction.");
+}
+
+}  // namespace
+
 void check_scene(const Scene& scene, const Refuse& refuse) {
   if (scene.bodies.empty()) refuse("/bodies", "the scene has no body", "Add one, here or under \"repeat\".");
   if (scene.step_s > scene.duration_s) refuse("/step_s", "the step is longer than the whole run", "Give a shorter step_s or a longer duration_s.");
   const Names names = names_of_bodies(scene);
-  for (std::size_t i = 0; i < scene.point_forces.size(); ++i) {
-    const PointForceSpec& force = scene.point_forces[i];
-    const std::string pointer = "/point_forces/" + std::to_string(i) + "/body";
-    names.expect(force.body, pointer, refuse);
-    const auto body = std::find_if(scene.bodies.begin(), scene.bodies.end(), [&](const BodySpec& b) { return b.name == force.body; });
-    if (body != scene.bodies.end() && body->immovable) refuse(pointer, "body '" + force.body + "' is immovable: no force moves it", "Name a movable body.");
-  }
   check_ellipsoids(scene, refuse);
   check_links(scene, refuse);
+  for (const Words* words : all_words()) words->check(scene, refuse);
+  check_friction(scene, refuse);
   if ((scene.camera.eye_m - scene.camera.target_m).norm() == 0.0) refuse("/camera/target_m", "the camera stands where it looks", "Move eye_m or target_m.");
   if (scene.camera.follow) names.expect(*scene.camera.follow, "/camera/follow", refuse);
   check_checks(scene, refuse);

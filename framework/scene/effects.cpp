@@ -7,58 +7,6 @@
 namespace tumble::scene {
 namespace {
 
-std::string ending(const std::string& body) { return body.empty() ? "the world" : body; }
-std::string between(const AnchorSpec& a, const AnchorSpec& b) { return ending(a.body) + " to " + ending(b.body); }
-
-Effect gravity(const Scene& scene) {
-  Effect effect{"gravity", "integration", "gravity_calls", {}, ""};
-  if (!scene.gravity_m_s2) return effect;
-  const Vector3d& g = *scene.gravity_m_s2;
-  if (g.isZero(0.0)) effect.note = "/gravity_m_s2 is zero, and is applied all the same: delete it";
-  effect.askers.push_back({"/gravity_m_s2", fmt::format("({:g}, {:g}, {:g}) m/s^2", g.x(), g.y(), g.z())});
-  return effect;
-}
-
-Effect point_force(const Scene& scene) {
-  Effect effect{"point force", "integration", "point_force_calls", {}, ""};
-  for (const auto& force : scene.point_forces)
-    effect.askers.push_back({force.pointer, fmt::format("{}: {:.4g} N from {:g} s for {:g} s", force.body, force.force_n.norm(), force.start_s, force.duration_s)});
-  return effect;
-}
-
-Effect spring(const Scene& scene) {
-  Effect effect{"spring", "forces", "spring_calls", {}, ""};
-  for (const auto& one : scene.springs)
-    effect.askers.push_back({one.pointer, fmt::format("{}: {}, {:g} N/m, {:g} N s/m, {:.4g} m at rest", one.name, between(one.a, one.b), one.stiffness_n_m, one.damping_n_s_m, one.rest_length_m)});
-  return effect;
-}
-
-Effect drag(const Scene& scene) {
-  Effect effect{"drag", "forces", "drag_calls", {}, ""};
-  for (const auto& one : scene.drags) effect.askers.push_back({one.pointer, fmt::format("{}: {:g} N s/m, {:g} N m s", one.body, one.linear_n_s_m, one.angular_n_m_s)});
-  return effect;
-}
-
-Effect rod(const Scene& scene) {
-  Effect effect{"rod", "constraints", "rod_calls", {}, ""};
-  for (const auto& one : scene.rods) effect.askers.push_back({one.pointer, fmt::format("{}: {}, {:.4g} m", one.name, between(one.a, one.b), one.length_m)});
-  return effect;
-}
-
-Effect joint(const Scene& scene) {
-  static const char* const kinds[] = {"ball joint", "hinge", "weld"};
-  Effect effect{"joint", "constraints", "joint_calls", {}, ""};
-  for (const auto& one : scene.joints)
-    effect.askers.push_back({one.pointer, fmt::format("{}: {}, {} to {}", one.name, kinds[static_cast<int>(one.kind)], one.body_a, ending(one.body_b))});
-  return effect;
-}
-
-Effect motor(const Scene& scene) {
-  Effect effect{"motor", "control", "motor_calls", {}, ""};
-  for (const auto& one : scene.motors) effect.askers.push_back({one.pointer, fmt::format("in {}, looks every {:g} s", one.joint, one.period_s)});
-  return effect;
-}
-
 /// Bodies that something may touch; none where all of them stand still or there is only one.
 std::vector<const BodySpec*> colliding_bodies(const Scene& scene) {
   std::vector<const BodySpec*> bodies;
@@ -68,15 +16,15 @@ std::vector<const BodySpec*> colliding_bodies(const Scene& scene) {
   return can_meet ? bodies : std::vector<const BodySpec*>{};
 }
 
-Effect collision(const Scene& scene) {
-  Effect effect{"collision", "collision, impacts", "candidate_pairs", {}, ""};
+EffectUse collision(const Scene& scene) {
+  EffectUse effect{"collision", "collision, impacts", "candidate_pairs", {}, ""};
   for (const BodySpec* body : colliding_bodies(scene)) effect.askers.push_back({body->pointer, fmt::format("{}: restitution {:g}", body->name, body->restitution)});
   if (!effect.is_on()) effect.note = "no two bodies can meet: one alone, immovable, or \"collides\": false";
   return effect;
 }
 
-Effect contact(const Scene& scene) {
-  Effect effect{"lasting contact", "contacts", "contact_solves", {}, ""};
+EffectUse contact(const Scene& scene) {
+  EffectUse effect{"lasting contact", "contacts", "contact_solves", {}, ""};
   if (!scene.contact) return effect;
   if (colliding_bodies(scene).empty()) {
     effect.note = "/contact asks for it, but no two bodies can meet";
@@ -88,8 +36,8 @@ Effect contact(const Scene& scene) {
   return effect;
 }
 
-Effect friction(const Scene& scene) {
-  Effect effect{"friction", "contacts", "friction_points", {}, ""};
+EffectUse friction(const Scene& scene) {
+  EffectUse effect{"friction", "contacts", "friction_points", {}, ""};
   for (const BodySpec* body : colliding_bodies(scene))
     if (body->friction > 0.0) effect.askers.push_back({body->pointer.empty() ? "" : body->pointer + "/friction", fmt::format("{}: {:g}", body->name, body->friction)});
   if (effect.askers.size() == 1) effect.note = effect.askers[0].pointer + " asks for it, but of a pair the smaller coefficient counts, and no other body has one";
@@ -98,17 +46,19 @@ Effect friction(const Scene& scene) {
   return effect;
 }
 
-Effect sleep(const Scene& scene) {
-  Effect effect{"sleep", "sleep", "bodies_put_to_sleep", {}, ""};
+EffectUse sleep(const Scene& scene) {
+  EffectUse effect{"sleep", "sleep", "bodies_put_to_sleep", {}, ""};
   if (scene.contact && scene.contact->sleep && !colliding_bodies(scene).empty()) effect.askers.push_back({"/contact/sleep", "bodies at rest are left alone"});
   return effect;
 }
 
 }  // namespace
 
-std::vector<Effect> effects_of(const Scene& scene) {
-  std::vector<Effect> effects{gravity(scene), point_force(scene), spring(scene), drag(scene), rod(scene), joint(scene), motor(scene), collision(scene), contact(scene), friction(scene), sleep(scene)};
-  for (Effect& effect : effects)
+std::vector<EffectUse> effects_of(const Scene& scene) {
+  std::vector<EffectUse> effects;
+  for (const Words* words : all_words()) effects.push_back({words->name(), words->stage(), words->counter(), words->askers(scene), words->note(scene)});
+  for (const auto& use : {collision, contact, friction, sleep}) effects.push_back(use(scene));
+  for (EffectUse& effect : effects)
     for (Asker& asker : effect.askers) asker.line = line_of(scene, asker.pointer);
   return effects;
 }

@@ -4,18 +4,12 @@
 #include <string>
 #include <vector>
 
-#include "framework/scene/scene.h"
+#include "framework/scene/words.h"
 
 namespace tumble::scene {
 
-/// Who asked for an effect.
-struct Asker {
-  std::string pointer;        // JSON pointer of the entry; empty where the scene was made in memory
-  std::string what;           // in words, such as "rod 1: ball_1 to the world, 0.5 m"
-  int line = 0;               // of the scene's file, where the entry begins; 0 where the scene was made in memory
-};
-
-struct Effect {
+/// An effect as a scene asks for it.
+struct EffectUse {
   std::string name;           // "gravity", "spring", ...
   std::string stage;          // the part of a run that its code stands in: "integration", "constraints", ...
   std::string counter;        // the count of a run that tells how often it was asked
@@ -26,6 +20,6 @@ struct Effect {
 };
 
 /// All effects that the framework knows, on or off, always in the same order.
-std::vector<Effect> effects_of(const Scene& scene);
+std::vector<EffectUse> effects_of(const Scene& scene);
 
 }  // namespace tumble::scene

@@ -7,7 +7,9 @@
 #include "framework/core/shortest_turn.h"
 #include "framework/scene/load_body.h"
 #include "framework/scene/load_links.h"
+#include "framework/scene/read_entry.h"
 #include "framework/scene/read_json.h"
+#include "framework/scene/words.h"
 
 namespace tumble::scene {
 namespace {
@@ -102,32 +104,33 @@ class ChainWriter {
   void tie(const AnchorSpec& a, const AnchorSpec& b, int k, const std::string& name) {
     const double distance_m = (anchors_.place_at_start(b) - anchors_.place_at_start(a)).norm();
     if (kind_ == "rods") {
-      scene_.rods.push_back({name, a, b, distance_m, pointer_});
+      add_entry("rods", {{"name", name}, {"a", json_of(a)}, {"b", json_of(b)}, {"length_m", distance_m}});
     } else if (kind_ == "springs") {
-      SpringSpec spring{name, a, b, value_.at("stiffness_n_m"), 0.0, distance_m, pointer_};
-      read(value_, "damping_n_s_m", spring.damping_n_s_m);
-      read(value_, "rest_length_m", spring.rest_length_m);
-      scene_.springs.push_back(spring);
+      json entry{{"name", name}, {"a", json_of(a)}, {"b", json_of(b)}, {"rest_length_m", distance_m}};
+      for (const char* key : {"stiffness_n_m", "damping_n_s_m", "rest_length_m"})
+        if (value_.contains(key)) entry[key] = value_.at(key);
+      add_entry("springs", entry);
     } else {
       add_joint(a, b, k, name);
     }
     if (value_.value("neighbours_apart", false) && !a.body.empty() && !b.body.empty()) scene_.apart.emplace_back(a.body, b.body);
   }
 
+  /// What a file would say under a key, with the chain's own place for messages.
+  void add_entry(const char* key, const json& entry) {
+    const Words* words = words_of(key);
+    if (words == nullptr) document_.refuse(pointer_ + "/kind", std::string("this program is built without \"") + key + "\"");
+    EntrySource source{entry, document_, anchors_};
+    Entry read(source, pointer_, 1);
+    words->read(read, scene_);
+  }
+
   void add_joint(const AnchorSpec& a, const AnchorSpec& b, int k, const std::string& name) {
-    JointSpec joint;
-    joint.pointer = pointer_;
-    joint.name = name;
-    joint.kind = kind_ == "hinges" ? JointKind::kHinge : JointKind::kBall;
-    joint.body_a = a.body.empty() ? b.body : a.body;   // the world is always the second
-    joint.body_b = a.body.empty() ? "" : b.body;
-    joint.point_m = line_.start_m + (k - 1) * line_.spacing_m * line_.direction;
-    if (kind_ == "hinges") {
-      joint.axis = read_vector(value_.at("axis"));
-      if (joint.axis.isZero(0.0)) document_.refuse(pointer_ + "/axis", "found the zero vector, expected a direction");
-      joint.axis.normalize();
-    }
-    scene_.joints.push_back(joint);
+    json entry{{"name", name}, {"kind", kind_ == "hinges" ? "hinge" : "ball"}, {"body_a", a.body.empty() ? b.body : a.body},   // the world is always the second
+               {"point_m", json_of(Vector3d(line_.start_m + (k - 1) * line_.spacing_m * line_.direction))}};
+    if (!a.body.empty() && !b.body.empty()) entry["body_b"] = b.body;
+    if (kind_ == "hinges") entry["axis"] = value_.at("axis");
+    add_entry("joints", entry);
   }
 
   const json& value_;

@@ -1,4 +1,4 @@
-/// What ties, slows and drives bodies, from JSON: springs, rods, joints, drag, motors, contact. For the .cpp files of this folder only.
+/// Chains, and what a scene says of contact, of how constraints are kept, and of pairs apart, from JSON. For the .cpp files of this folder only.
 #pragma once
 
 #include "framework/scene/anchors.h"
@@ -8,7 +8,7 @@ namespace tumble::scene {
 /// Adds the links and bodies of "chains". The bodies that chains begin and end at must be there.
 void read_chains(const Document& document, Anchors& anchors, Scene& scene);
 
-/// Adds all other effects between bodies. All bodies must be there.
+/// Adds contact, stabilisation and pairs apart. All bodies and effects must be there.
 /// @throws UserError at the entry that names what is not there or cannot be
 void read_links(const Document& document, Anchors& anchors, Scene& scene);
 

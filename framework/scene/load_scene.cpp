@@ -4,27 +4,19 @@
 #include <map>
 #include <sstream>
 
+#include "framework/core/digest.h"
 #include "framework/scene/check_scene.h"
 #include "framework/scene/load_body.h"
 #include "framework/scene/load_links.h"
+#include "framework/scene/read_entry.h"
 #include "framework/scene/read_json.h"
 #include "framework/scene/scene_schema.h"
+#include "framework/scene/words.h"
 
 namespace tumble::scene {
 namespace {
 
 using nlohmann::json;
-
-PointForceSpec point_force(const json& value, const std::string& pointer) {
-  PointForceSpec spec;
-  spec.pointer = pointer;
-  spec.body = value.at("body");
-  spec.force_n = read_vector(value.at("force_n"));
-  spec.point_m = read_vector(value.at("point_m"));
-  read(value, "start_s", spec.start_s);
-  spec.duration_s = value.at("duration_s");
-  return spec;
-}
 
 CheckSpec check(const json& value) {
   CheckSpec spec;
@@ -53,8 +45,11 @@ void read_bodies(const Document& document, Scene& scene) {
   const json& bodies = entries(document.json, "bodies");
   const json& repeats = entries(document.json, "repeat");
   for (std::size_t i = 0; i < bodies.size(); ++i) scene.bodies.push_back(read_body(bodies.at(i), document, "/bodies/" + std::to_string(i)));
-  for (std::size_t i = 0; i < repeats.size(); ++i)
-    for (auto& copy : write_out(read_repeat(repeats.at(i), document, "/repeat/" + std::to_string(i)))) scene.bodies.push_back(std::move(copy));
+  for (std::size_t i = 0; i < repeats.size(); ++i) {
+    const RepeatSpec repeat = read_repeat(repeats.at(i), document, "/repeat/" + std::to_string(i));
+    if (repeats.at(i).contains("seed")) scene.seeds.push_back(repeat.seed);
+    for (auto& copy : write_out(repeat)) scene.bodies.push_back(std::move(copy));
+  }
 }
 
 void check_names(const Document& document, const Scene& scene) {
@@ -62,6 +57,35 @@ void check_names(const Document& document, const Scene& scene) {
   for (const BodySpec& body : scene.bodies) {
     const auto [at, is_new] = first.emplace(body.name, body.pointer);
     if (!is_new) document.refuse(body.pointer + "/name", "the name '" + body.name + "' is taken by " + at->second, "Give every body a name of its own.");
+  }
+}
+
+/// scene.schema.json, and what each effect adds to it.
+const json& scene_schema() {
+  static const json schema = [] {
+    json whole = json::parse(kSceneSchema);
+    json& check_kinds = whole["definitions"]["check"]["properties"]["kind"]["enum"];
+    for (const Words* words : all_words()) {
+      const json said = json::parse(words->schema());
+      for (const auto& [part, entries] : said.items()) whole[part].update(entries);
+      for (const LinkCheck& check : words->link_checks()) check_kinds.push_back(check.kind);
+    }
+    return whole;
+  }();
+  return schema;
+}
+
+void read_effects(const Document& document, Anchors& anchors, Scene& scene) {
+  for (const Words* words : all_words()) {
+    const std::string key = words->key();
+    if (!document.json.contains(key)) continue;
+    const json& value = document.json.at(key);
+    const bool is_list = scene_schema().at("properties").at(key).value("type", "") == "array";
+    for (std::size_t i = 0; i < (is_list ? value.size() : 1); ++i) {
+      EntrySource source{is_list ? value.at(i) : value, document, anchors};
+      Entry entry(source, "/" + key + (is_list ? "/" + std::to_string(i) : ""), static_cast<int>(i) + 1);
+      words->read(entry, scene);
+    }
   }
 }
 
@@ -79,30 +103,18 @@ void read_view(const json& root, Scene& scene) {
   }
 }
 
-/// FNV-1a, 64 bit: names a file's bytes in records; no defence against malice is needed here.
-std::string digest(const std::string& bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325ULL;
-  for (const char c : bytes) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-  std::ostringstream text;
-  text << std::hex;
-  text.width(16);
-  text.fill('0');
-  text << hash;
-  return text.str();
-}
-
 }  // namespace
 
 Scene parse_scene(const std::string& text, const std::filesystem::path& file) {
   const Document document = parse_document(text, file);
-  check_against_schema(document, json::parse(kSceneSchema));
+  check_against_schema(document, scene_schema());
   const json& root = document.json;
 
   Scene scene;
   scene.name = file.stem().string();
   scene.file = file;
   scene.lines = document.lines;
-  scene.hash = digest(text);
+  scene.digest = digest(text);
   scene.title = root.at("title");
   read(root, "about", scene.about);
   read(root, "needs", scene.needs);
@@ -110,13 +122,12 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& file) {
   scene.duration_s = root.at("duration_s");
   read(root, "step_s", scene.step_s);
   read(root, "rest_speed_m_s", scene.rest_speed_m_s);
-  read(root, "gravity_m_s2", scene.gravity_m_s2);
   read_bodies(document, scene);
   Anchors anchors(document, scene);
   read_chains(document, anchors, scene);
   check_names(document, scene);   // before anything is looked up by name
+  read_effects(document, anchors, scene);
   read_links(document, anchors, scene);
-  for (std::size_t i = 0; i < entries(root, "point_forces").size(); ++i) scene.point_forces.push_back(point_force(entries(root, "point_forces").at(i), "/point_forces/" + std::to_string(i)));
   read_view(root, scene);
   for (const auto& entry : entries(root, "checks")) scene.checks.push_back(check(entry));
 

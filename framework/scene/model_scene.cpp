@@ -12,6 +12,7 @@
 #include "framework/geometry/load_3ds.h"
 #include "framework/geometry/mass_properties.h"
 #include "framework/geometry/solid.h"
+#include "framework/scene/write_entries.h"
 
 namespace tumble::scene {
 namespace {
@@ -102,7 +103,7 @@ void set_free(const std::vector<Object>& objects, const ModelSceneOptions& optio
 /// It falls by its own radius, lands and comes to rest in about fifteen times the time of a fall by its radius.
 void set_dropped(double radius, Scene& scene) {
   const double fall = std::sqrt(radius / kGravity);   // s: the scale of all times here
-  scene.gravity_m_s2 = Vector3d(0, 0, -kGravity);
+  EntryWriter{scene}("gravity_m_s2", Vector3d(0, 0, -kGravity));
   scene.contact = ContactSpec{};
   scene.needs = {"a1", "a3"};
   scene.duration_s = 15.0 * fall;

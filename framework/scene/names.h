@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,5 +28,25 @@ class Names {
   std::vector<std::string> names_;
 };
 Names names_of_bodies(const Scene& scene);
+
+/// The bodies of a scene, which must outlive it.
+class BodiesByName {
+ public:
+  explicit BodiesByName(const Scene& scene) {
+    for (const BodySpec& body : scene.bodies) bodies_.emplace(body.name, &body);
+  }
+  /// nullptr where no body has that name, and for the world, whose name is empty.
+  const BodySpec* find(const std::string& name) const {
+    const auto found = bodies_.find(name);
+    return found == bodies_.end() ? nullptr : found->second;
+  }
+  bool can_move(const std::string& name) const {
+    const BodySpec* body = find(name);
+    return body != nullptr && !body->immovable;
+  }
+
+ private:
+  std::map<std::string, const BodySpec*> bodies_;
+};
 
 }  // namespace tumble::scene

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <limits>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 #include <vector>
 
 #include "framework/core/math.h"
+#include "framework/core/typed_lists.h"
 
 namespace tumble::scene {
 
@@ -60,69 +62,10 @@ struct BodySpec {
   std::string pointer{};                           // JSON pointer of its entry, for messages; empty: made in memory
 };
 
-/// A force on a point of a body for a while (what a user's click makes). The point is fixed in the body.
-struct PointForceSpec {
-  std::string body;
-  Vector3d force_n;                 // world frame, constant
-  Vector3d point_m;                 // world position of the point at start_s
-  double start_s = 0.0;
-  double duration_s = 0.0;
-  std::string pointer{};            // JSON pointer of the entry that asked for it, for messages; empty: made in memory
-};
-
 /// A point fixed in a body or, with an empty name, in the world. Of a body it may be given as a vertex of its model.
 struct AnchorSpec {
   std::string body;                 // "": the world
   Vector3d point_m = Vector3d::Zero();   // body frame (origin at the centre of mass); world frame for the world
-};
-
-/// A damped spring between two anchors.
-struct SpringSpec {
-  std::string name;
-  AnchorSpec a, b;
-  double stiffness_n_m = kUnset;
-  double damping_n_s_m = 0.0;
-  double rest_length_m = kUnset;    // load_scene fills the distance at the start where the file leaves it out
-  std::string pointer{};            // JSON pointer of the entry that asked for it, for messages; empty: made in memory
-};
-
-/// A rod without mass: keeps two anchors at a distance.
-struct RodSpec {
-  std::string name;
-  AnchorSpec a, b;
-  double length_m = kUnset;         // load_scene fills the distance at the start where the file leaves it out
-  std::string pointer{};            // JSON pointer of the entry that asked for it, for messages; empty: made in memory
-};
-
-enum class JointKind { kBall, kHinge, kWeld };
-
-/// Two bodies (or a body and the world) that share a point, an axis, or are one.
-struct JointSpec {
-  std::string name;
-  JointKind kind = JointKind::kBall;
-  std::string body_a, body_b;       // body_b "": the world
-  Vector3d point_m = Vector3d::Zero();   // world, at the start
-  Vector3d axis = Vector3d::UnitZ();     // unit, world, at the start; of a hinge
-  std::string pointer{};            // JSON pointer of the entry that asked for it, for messages; empty: made in memory
-};
-
-/// Resistance of a medium at low speed: force -linear v, torque -angular omega.
-struct DragSpec {
-  std::string body;
-  double linear_n_s_m = 0.0;
-  double angular_n_m_s = 0.0;
-  std::string pointer{};            // JSON pointer of the entry that asked for it, for messages; empty: made in memory
-};
-
-/// A control law (callback): every period a motor in a hinge looks at its angle and sets its torque, which it holds until the next look.
-///   torque = stiffness (target(t) - angle) - damping rate,   target(t) = offset + amplitude sin(2 pi frequency t + phase)
-struct MotorSpec {
-  std::string joint;                // a hinge's name
-  double offset_rad = 0.0, amplitude_rad = 0.0, frequency_hz = 0.0, phase_rad = 0.0;
-  double stiffness_n_m_rad = 0.0, damping_n_m_s_rad = 0.0;
-  double largest_torque_n_m = std::numeric_limits<double>::infinity();
-  double period_s = 0.01;
-  std::string pointer{};            // JSON pointer of the entry that asked for it, for messages; empty: made in memory
 };
 
 enum class ImpactLaw { kSequential, kSimultaneous };      // several impacts at one instant: one after the other, or together
@@ -170,20 +113,15 @@ struct Scene {
   std::string about;                // what a viewer should notice
   std::filesystem::path file;
   std::map<std::string, int> lines; // by JSON pointer: the line of the file where the value or its key begins; empty: made in memory
-  std::string hash;                 // hex digest of the file's bytes, for records
+  std::string digest;               // of the file's bytes (core/digest.h), or a name and size, for records
+  std::vector<std::uint64_t> seeds; // of what was drawn by lot when the scene was made
   double duration_s = 0.0;
   double step_s = 1.0 / 60.0;
   double rest_speed_m_s = 1e-3;     // an impact that separates more slowly than this ends in rest
-  std::optional<Vector3d> gravity_m_s2;
   std::vector<BodySpec> bodies;
-  std::vector<PointForceSpec> point_forces;
-  std::vector<SpringSpec> springs;
-  std::vector<RodSpec> rods;
-  std::vector<JointSpec> joints;
-  std::vector<DragSpec> drags;
-  std::vector<MotorSpec> motors;
+  TypedLists effects;               // what it says of effects: lists of the types in framework/effects/NAME/NAME.h, such as effects.of<SpringSpec>()
   std::optional<ContactSpec> contact;     // absent: bodies bounce until they rest, nothing lies, slides or rolls
-  std::optional<StabilisationSpec> stabilisation;   // present exactly where there are rods or joints
+  std::optional<StabilisationSpec> stabilisation;   // present exactly where something constrains (words.h: rods, joints)
   std::vector<std::pair<std::string, std::string>> apart;   // pairs that do not collide (links of a chain); joined bodies never do
   CameraSpec camera;
   std::optional<double> grid_spacing_m;   // drawn on the ground plane z = grid_height_m

@@ -8,6 +8,8 @@
 
 #include "framework/core/random.h"
 #include "framework/core/shortest_turn.h"
+#include "framework/scene/lots.h"
+#include "framework/scene/write_entries.h"
 
 namespace tumble::scene {
 namespace {
@@ -45,7 +47,7 @@ CheckSpec no_overlap() {
 
 Scene scene_of(double duration, double step) {
   Scene scene;
-  scene.gravity_m_s2 = Vector3d(0, 0, -9.81);
+  EntryWriter{scene}("gravity_m_s2", Vector3d(0, 0, -9.81));
   scene.needs = {"a1", "a2", "a3"};
   scene.duration_s = duration;
   scene.step_s = step;
@@ -66,7 +68,7 @@ constexpr double kBob = 0.12;            // [m]
 constexpr double kBay = 1.8;             // between vehicles side by side or behind each other [m]: one is 1.54 m wide and 1.28 m long
 
 // A motor asks for a turn that is never reached: full torque at a standstill, none at 10 rad/s.
-void add_vehicle(int number, const Vector3d& at, Scene& scene) {
+void add_vehicle(int number, const Vector3d& at, Scene& scene, EntryWriter& write) {
   const auto part = [&](const char* what) { return fmt::format("{}_{}", what, number); };
   BodySpec chassis = body_at(part("car"), BoxSpec{{0.6, 0.3, 0.08}}, 20.0, at + Vector3d(0, 0, 0.36), number);
   chassis.restitution = 0.5;
@@ -79,21 +81,9 @@ void add_vehicle(int number, const Vector3d& at, Scene& scene) {
       ball.restitution = 0.0;
       ball.friction = 0.8;
       scene.bodies.push_back(ball);
-      JointSpec hinge;
-      hinge.name = "axle of " + name;
-      hinge.kind = JointKind::kHinge;
-      hinge.body_a = chassis.name;
-      hinge.body_b = name;
-      hinge.point_m = ball.position_m;
-      hinge.axis = Vector3d::UnitY();
-      scene.joints.push_back(hinge);
-      MotorSpec motor;
-      motor.joint = hinge.name;
-      motor.offset_rad = 1000.0;
-      motor.stiffness_n_m_rad = 1.0;
-      motor.damping_n_m_s_rad = 100.0;
-      motor.largest_torque_n_m = 3.0;
-      scene.motors.push_back(motor);
+      const std::string axle = "axle of " + name;
+      write("joints", {{"name", axle}, {"kind", "hinge"}, {"body_a", chassis.name}, {"body_b", name}, {"point_m", ball.position_m}, {"axis", Vector3d(Vector3d::UnitY())}});
+      write("motors", {{"joint", axle}, {"offset_rad", 1000.0}, {"stiffness_n_m_rad", 1.0}, {"damping_n_m_s_rad", 100.0}, {"largest_torque_n_m", 3.0}});
     }
 }
 
@@ -103,16 +93,17 @@ Scene cars(int n) {
   Scene scene = scene_of(2.0, 1.0 / 240.0);
   scene.contact = ContactSpec{};
   scene.stabilisation = StabilisationSpec{};
-  Random random(21);
+  Random random = lots(21, scene);
   const int across = std::max(1, static_cast<int>(std::lround(std::sqrt(n)))), vehicles = std::max(1, n / 100);
   BodySpec floor = ground("floor", Vector3d::Zero(), Vector3d::UnitZ(), 0.6 * kLane * across + 3.0);
   floor.restitution = 0.5;
   floor.friction = 1.0;
   scene.bodies.push_back(floor);
+  EntryWriter write(scene);
   std::vector<Vector3d> bobs;   // where they begin: two that swing towards each other must not begin in each other
   // Vehicles stand in front of the pendula, spread over their width; in ranks where one is too short.
   const int most_abreast = std::max(1, static_cast<int>(kLane * across / kBay)), ranks = (vehicles - 1) / most_abreast + 1, abreast = (vehicles - 1) / ranks + 1;
-  for (int v = 0; v < vehicles; ++v) add_vehicle(v + 1, {-0.5 * kLane * across - 0.9 - kBay * (v / abreast), ((v % abreast + 0.5) / abreast - 0.5) * kLane * across, 0}, scene);
+  for (int v = 0; v < vehicles; ++v) add_vehicle(v + 1, {-0.5 * kLane * across - 0.9 - kBay * (v / abreast), ((v % abreast + 0.5) / abreast - 0.5) * kLane * across, 0}, scene, write);
   for (int i = 0; i < n; ++i) {
     const Vector3d pivot((i / across - 0.5 * (across - 1)) * kLane, (i % across - 0.5 * (across - 1)) * kLane, 0.42 + kRod);
     Vector3d place;
@@ -123,8 +114,8 @@ Scene cars(int n) {
     bobs.push_back(place);
     BodySpec bob = body_at(fmt::format("bob_{}", i + 1), SphereSpec{kBob}, 0.5, place, i);
     bob.restitution = 0.9;
-    scene.rods.push_back({fmt::format("rod_{}", i + 1), {"", pivot}, {bob.name, Vector3d::Zero()}, kRod});
     scene.bodies.push_back(bob);
+    write("rods", {{"name", fmt::format("rod_{}", i + 1)}, {"a", AnchorSpec{"", pivot}}, {"b", AnchorSpec{bob.name}}, {"length_m", kRod}});
   }
   scene.camera.eye_m = {-0.9 * kLane * across - 2, -0.9 * kLane * across - 2, 0.5 * kLane * across + 1.5};
   scene.camera.target_m = {0, 0, 0.3};
@@ -173,23 +164,17 @@ double weight_on(int hinge) {
 }
 
 // From rest, carrying its weight, to the far end and back: target = weight / stiffness + a (1 - cos(2 pi f t)).
-MotorSpec motor_of(const std::string& hinge, int k, double turn, double rate) {
+void add_motor(const std::string& hinge, int k, double turn, double rate, EntryWriter& write) {
   const double share = std::pow(static_cast<double>(kLinks - k) / kLinks, 2.5);   // as stiff as what hangs on it is heavy
-  MotorSpec motor;
-  motor.joint = hinge;
-  motor.amplitude_rad = 0.5 * turn;
-  motor.frequency_hz = rate;
-  motor.phase_rad = -0.5 * std::numbers::pi;
-  motor.stiffness_n_m_rad = 6000.0 * share;
-  motor.damping_n_m_s_rad = 4.0 * std::sqrt(share);   // more would shake the links: a torque is held until the motor looks again
-  motor.offset_rad = 0.5 * turn + (turns_aside(k) ? 0.0 : weight_on(k) / motor.stiffness_n_m_rad);
-  motor.period_s = 1.0 / 960.0;   // held longer, such a torque would throw the light links about
-  return motor;
+  const double stiffness = 6000.0 * share, damping = 4.0 * std::sqrt(share);      // more would shake the links: a torque is held until the motor looks again
+  const double period = 1.0 / 960.0;   // s: held longer, such a torque would throw the light links about
+  write("motors", {{"joint", hinge}, {"amplitude_rad", 0.5 * turn}, {"frequency_hz", rate}, {"phase_rad", -0.5 * std::numbers::pi}, {"stiffness_n_m_rad", stiffness},
+                   {"damping_n_m_s_rad", damping}, {"offset_rad", 0.5 * turn + (turns_aside(k) ? 0.0 : weight_on(k) / stiffness)}, {"period_s", period}});
 }
 
 // Stretched out backward along -x, its hand a scoop with a block in it. The hinges that lift swing it up and over: where the hand is slowed
 // down again the block flies on. The other two turn the arm to its sides.
-void add_arm(int number, const Vector3d& foot, Random& random, Scene& scene) {
+void add_arm(int number, const Vector3d& foot, Random& random, Scene& scene, EntryWriter& write) {
   const double rate = random.between(0.55, 0.7), side = random.between(-0.2, 0.2);   // swings a second; how far it turns aside [rad]
   const Vector3d shoulder = foot + Vector3d(0, 0, kShoulder);
   std::vector<std::string> names;
@@ -201,15 +186,12 @@ void add_arm(int number, const Vector3d& foot, Random& random, Scene& scene) {
     link.friction = 0.5;
     link.restitution = 0.0;
     scene.bodies.push_back(link);
-    JointSpec hinge;
-    hinge.name = fmt::format("hinge_{}_{}", number, k + 1);
-    hinge.kind = JointKind::kHinge;
-    hinge.body_a = names[static_cast<std::size_t>(std::max(0, k - 1))];
-    if (k > 0) hinge.body_b = names.back();
-    hinge.point_m = shoulder - Vector3d(k * kLink, 0, 0);
-    hinge.axis = turns_aside(k) ? Vector3d::UnitZ() : Vector3d::UnitY();
-    scene.joints.push_back(hinge);
-    scene.motors.push_back(motor_of(hinge.name, k, turns_aside(k) ? side : kSwing * kShares[k], rate));
+    const std::string hinge = fmt::format("hinge_{}_{}", number, k + 1);
+    std::vector<std::pair<std::string, EntryWriter::Value>> entry{{"name", hinge}, {"kind", "hinge"}, {"body_a", names[static_cast<std::size_t>(std::max(0, k - 1))]},
+                                                                  {"point_m", Vector3d(shoulder - Vector3d(k * kLink, 0, 0))}, {"axis", Vector3d(turns_aside(k) ? Vector3d::UnitZ() : Vector3d::UnitY())}};
+    if (k > 0) entry.emplace_back("body_b", names.back());
+    write("joints", entry);
+    add_motor(hinge, k, turns_aside(k) ? side : kSwing * kShares[k], rate, write);
   }
   for (std::size_t i = 0; i < names.size(); ++i)
     for (std::size_t j = i + 1; j < names.size(); ++j) scene.apart.emplace_back(names[i], names[j]);
@@ -221,10 +203,11 @@ void add_arm(int number, const Vector3d& foot, Random& random, Scene& scene) {
 
 Scene robots(int n) {
   Scene scene = scene_of(2.0, 1.0 / 240.0);
+  EntryWriter write(scene);
   scene.stabilisation = StabilisationSpec{};
   scene.contact = ContactSpec{};
   scene.contact->plastic_impacts = PlasticImpacts::kInStep;
-  Random random(22);
+  Random random = lots(22, scene);
   const int across = std::max(1, static_cast<int>(std::lround(std::sqrt(n))));
   BodySpec floor = ground("floor", Vector3d::Zero(), Vector3d::UnitZ(), 0.6 * kCell * across + 2);
   floor.friction = 0.6;
@@ -232,7 +215,7 @@ Scene robots(int n) {
   scene.bodies.push_back(floor);
   for (int i = 0; i < n; ++i) {
     const Vector3d foot((i / across - 0.5 * (across - 1)) * kCell, (i % across - 0.5 * (across - 1)) * kCell, 0);
-    add_arm(i + 1, foot, random, scene);
+    add_arm(i + 1, foot, random, scene, write);
     scene.bodies.push_back(block_at(fmt::format("block_{}_2", i + 1), foot + Vector3d(random.between(1.6, 2.2), random.between(-0.3, 0.3), kBlock), i + 3));   // where the first one flies
   }
   const int rows = (n - 1) / across + 1;
@@ -274,7 +257,7 @@ void add_mountain(double width, Scene& scene) {
 Scene avalanche(int n) {
   Scene scene = scene_of(4.0, 1.0 / 240.0);
   scene.contact = ContactSpec{};
-  Random random(23);
+  Random random = lots(23, scene);
   const int along = std::clamp(static_cast<int>(std::lround(std::sqrt(0.5 * n))), 1, 10), across = (n + along - 1) / along;
   const double width = kRockApart * across;
   BodySpec valley = ground("valley", Vector3d::Zero(), Vector3d::UnitZ(), 0.5 * width + 12.0);
@@ -316,7 +299,7 @@ Scene dominoes(int n) {
     domino.friction = 0.6;
     scene.bodies.push_back(domino);
   }
-  scene.point_forces.push_back({"domino_1", {40, 0, 0}, {first - 0.04, 0, 0.48}, 0.0, 0.04});
+  EntryWriter{scene}("point_forces", {{"body", "domino_1"}, {"force_n", Vector3d(40, 0, 0)}, {"point_m", Vector3d(first - 0.04, 0, 0.48)}, {"duration_s", 0.04}});
   scene.camera.eye_m = {0.3 * kApart * n, -0.7 * kApart * n - 2, 0.3 * kApart * n + 1};
   scene.camera.target_m = {0, 0, 0.15};
   return scene;
@@ -326,15 +309,16 @@ Scene cradle(int n) {
   Scene scene = scene_of(2.0, 1.0 / 480.0);
   scene.stabilisation = StabilisationSpec{};
   constexpr double kBall = 0.1, kGap = 1e-6, kSide = 0.4, kDrop = 1.0, kLift = 0.7;   // m; rad
+  EntryWriter write(scene);
   for (int i = 0; i < n; ++i) {
     const double x = (i - 0.5 * (n - 1)) * (2 * kBall + kGap), lift = i == 0 ? kLift : 0.0;
     const Vector3d place(x - kDrop * std::sin(lift), 0, -kDrop * std::cos(lift));
     const BodySpec ball = body_at(fmt::format("ball_{}", i + 1), SphereSpec{kBall}, 1.0, place, i == 0 ? 1 : 2);
+    scene.bodies.push_back(ball);
     for (const double side : {-kSide, kSide}) {
       const Vector3d pivot(x, side, 0);
-      scene.rods.push_back({fmt::format("rod_{}_{}", i + 1, side < 0 ? "near" : "far"), {"", pivot}, {ball.name, Vector3d::Zero()}, (place - pivot).norm()});
+      write("rods", {{"name", fmt::format("rod_{}_{}", i + 1, side < 0 ? "near" : "far")}, {"a", AnchorSpec{"", pivot}}, {"b", AnchorSpec{ball.name}}, {"length_m", (place - pivot).norm()}});
     }
-    scene.bodies.push_back(ball);
   }
   scene.camera.eye_m = {0.1 * n, -0.25 * n - 3, -0.3};
   scene.camera.target_m = {0, 0, -0.7};

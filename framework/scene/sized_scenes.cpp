@@ -11,6 +11,7 @@
 #include "framework/core/nearest_word.h"
 #include "framework/core/random.h"
 #include "framework/core/shortest_turn.h"
+#include "framework/scene/lots.h"
 #include "framework/scene/sized_process_scenes.h"
 
 namespace tumble::scene {
@@ -121,7 +122,7 @@ void add_gas_checks(Scene& scene) {
 
 Scene gas(int n) {
   Scene scene;
-  Random random(11);
+  Random random = lots(11, scene);
   const Block block{0.0, across_for(n)};
   const double length = block.length(n);
   const Vector3d half(0.5 * length, 0.5 * kApart * block.across, 0.5 * kApart * block.across);
@@ -137,7 +138,7 @@ Scene gas(int n) {
 // Two thirds balls on the left of the dividing wall, one third molecules on its right.
 Scene atoms(int n) {
   Scene scene;
-  Random random(12);
+  Random random = lots(12, scene);
   const int molecules = n / 3, balls = n - molecules, across = across_for(n);
   const double left = Block{0.0, across}.length(balls), right = Block{0.0, across}.length(molecules);
   const double length = left + right + 2 * kDivider;
@@ -170,7 +171,7 @@ constexpr double kPongApart = 0.41;   // [m]
 
 Scene pong(int n, bool pass) {
   Scene scene;
-  Random random(13);
+  Random random = lots(13, scene);
   const int across = std::max(1, static_cast<int>(std::lround(std::sqrt(0.5 * n)))), along = (n + across - 1) / across;
   const double x = 0.5 * kPongApart * (along + 1), y = 0.5 * kPongApart * (across + 1);
   const auto side = [&](const char* name, const Vector3d& half, const Vector3d& at) {
@@ -249,7 +250,7 @@ Scene make_sized_scene(const std::string& name, int n) {
   scene.name = name;
   scene.about = sized.about;
   scene.title = fmt::format("{} (n = {})", sized.title, n);
-  scene.hash = fmt::format("{} n={}", name, n);
+  scene.digest = fmt::format("{} n={}", name, n);
   if (scene.duration_s > 0) return scene;   // one that chose its own
   scene.duration_s = 2.0;
   scene.step_s = 1.0 / 30.0;

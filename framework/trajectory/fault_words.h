@@ -1,4 +1,4 @@
-/// What makes a run one that cannot be trusted, in words.
+/// The faults of a run in words.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace tumble {
 
 /// "link_open of 'wire', 161 where 1e-06 is allowed, first at t = 0.25 s, 12 times in all".
 std::string in_words(const RunFault& fault);
-/// All of them, with semicolons between; empty where there is none.
+/// All of them, separated by semicolons; empty where there is none.
 std::string in_words(const std::vector<RunFault>& faults);
 
 }  // namespace tumble

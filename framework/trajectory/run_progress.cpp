@@ -11,7 +11,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) { return std::
 
 }  // namespace
 
-RunProgress::RunProgress(TrajectorySink& sink, double duration_s, Pace pace) : sink_(sink), duration_(duration_s), pace_(pace), teller_([this] { tell_until_done(); }) {}
+RunProgress::RunProgress(TrajectorySink& sink, double duration_s, Pace pace) : sink_(sink), duration_(duration_s), pace_(pace), reporter_([this] { report_until_done(); }) {}
 
 RunProgress::~RunProgress() {
   {
@@ -19,7 +19,7 @@ RunProgress::~RunProgress() {
     is_over_ = true;
   }
   ended_.notify_all();
-  teller_.join();
+  reporter_.join();
 }
 
 void RunProgress::frame(const Frame& frame) {
@@ -31,23 +31,23 @@ void RunProgress::frame(const Frame& frame) {
   sink_.frame(frame);
 }
 
-void RunProgress::tell_until_done() {
+void RunProgress::report_until_done() {
   std::unique_lock lock(mutex_);
   for (double next = pace_.first_s;; next += pace_.every_s) {
     if (ended_.wait_until(lock, begun_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(next)), [this] { return is_over_; })) return;
-    tell(next);
+    report(next);
   }
 }
 
-void RunProgress::tell(double now_s) {
+void RunProgress::report(double now_s) {
   std::string line = fmt::format("tumble: {:.4g} of {:.4g} s simulated", time_, duration_);
-  if (time_ == told_time_) {
+  if (time_ == reported_time_) {
     line += fmt::format(", for {:.0f} s no frame has come: steps have become very short there. Ctrl-C ends the run", now_s - came_s_);
     if (time_ > 0) line += fmt::format("; --duration-s {:.4g} shows what came before", time_);
   } else if (time_ > 0) {
     line += fmt::format(", about {:.0f} s left", came_s_ / time_ * (duration_ - time_));
   }
-  told_time_ = time_;
+  reported_time_ = time_;
   fmt::print(stderr, "{}\n", line);
 }
 

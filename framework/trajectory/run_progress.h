@@ -1,4 +1,5 @@
-/// Words on stderr about a run that takes long: how far it is, how long it will take, and whether it stands still.
+/// Progress of a long run on stderr: how far it is, how long it will take, and whether it has
+/// stopped advancing.
 #pragma once
 
 #include <chrono>
@@ -10,12 +11,13 @@
 
 namespace tumble {
 
-/// Hands everything on to another sink. A run of less than `first_s` says nothing; then there is a line every `every_s`, also while no
-/// frame comes: a run that stands still says where.
+/// Passes everything on to another sink. Nothing is printed before `first_s`; then a line every
+/// `every_s`, also while no frame arrives, so that a run that no longer advances shows at which
+/// time.
 class RunProgress final : public TrajectorySink {
  public:
   struct Pace {
-    double first_s = 5.0, every_s = 10.0;   // of wall clock
+    double first_s = 5.0, every_s = 10.0;   // of wall-clock time
   };
   /// @param duration_s  of the run, simulated
   RunProgress(TrajectorySink& sink, double duration_s, Pace pace);
@@ -32,19 +34,19 @@ class RunProgress final : public TrajectorySink {
 
  private:
   using Clock = std::chrono::steady_clock;
-  void tell_until_done();
-  void tell(double now_s);
+  void report_until_done();
+  void report(double now_s);
 
   TrajectorySink& sink_;
   double duration_;                      // [s]
   Pace pace_;
   Clock::time_point begun_ = Clock::now();
-  std::mutex mutex_;                     // of what follows
+  std::mutex mutex_;                     // guards the members below
   std::condition_variable ended_;
   bool is_over_ = false;
-  double time_ = 0.0, came_s_ = 0.0;     // of the last frame: simulated, and when it came
-  double told_time_ = -1.0;              // simulated, in the last line
-  std::thread teller_;
+  double time_ = 0.0, came_s_ = 0.0;     // of the last frame: simulated time, and arrival
+  double reported_time_ = -1.0;              // simulated time in the last line
+  std::thread reporter_;
 };
 
 }  // namespace tumble

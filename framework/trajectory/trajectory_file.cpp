@@ -1,9 +1,9 @@
-// The one file format of a run. Little-endian; IEEE 754 doubles, so that a run comes back bit for bit:
+// The file format of a run. Little-endian; IEEE 754 doubles, so that a run is restored bit for bit:
 //
-//   "TUMBLE\r\n"                8 bytes: a transfer that touches line ends spoils them, and is noticed
-//   version                     u32, 2
-//   info                        strings command, version, scene_name, scene_hash, engine, impulse_source, integrator_source;
-//                               f64 step_s, frame_rate_hz; u64 seed; string constraint_source
+//   "TUMBLE\r\n"                8 bytes: a transfer that converts line ends damages them, and is detected
+//   version                     u32, 3
+//   info                        strings command, version, scene_name, scene_digest, engine, impulse_source, integrator_source;
+//                               f64 step_s, frame_rate_hz; seeds: u64 count, u64 each; string constraint_source
 //   bodies                      u64 count; each: string name, u8 immovable
 //   frames                      u64 count; each: f64 time; a body: com (3), quaternion x y z w, velocity (3), omega (3);
 //                               f64 kinetic, potential; momentum (3), angular momentum (3); f64 smallest gap;
@@ -31,10 +31,10 @@
 namespace tumble {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "the format is little-endian and written as the memory has it");
+static_assert(std::endian::native == std::endian::little, "the format is little-endian, a copy of memory");
 
 constexpr std::string_view kMagic = "TUMBLE\r\n", kEnd = "end\n";
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 
 class Writer {
  public:
@@ -70,7 +70,7 @@ class Reader {
   void operator()(bool& value) {
     std::uint8_t byte = 0;
     (*this)(byte);
-    if (byte > 1) fail(1, "a truth value of " + std::to_string(byte) + ", expected 0 or 1");
+    if (byte > 1) fail(1, "a boolean of " + std::to_string(byte) + ", expected 0 or 1");
     value = byte == 1;
   }
   void operator()(EventKind& kind) {
@@ -88,9 +88,10 @@ class Reader {
   }
   void word(std::string_view word) {
     if (std::string_view(take(word.size()), word.size()) != word)
-      fail(word.size(), at_ == word.size() ? "not a recorded run: its first bytes are others" : "expected the end of the run");
+      fail(word.size(), at_ == word.size() ? "not a recorded run: its first bytes differ" : "expected the end of the run");
   }
-  /// How many things follow, each of at least `least_bytes`: a count that the file cannot hold is refused before memory is taken.
+  /// Number of items that follow, each of at least `least_bytes`: a count that the file cannot hold
+  /// is refused before memory is allocated.
   std::uint64_t size(std::uint64_t, std::size_t least_bytes) {
     std::uint64_t count = 0;
     (*this)(count);
@@ -119,7 +120,7 @@ class Reader {
   std::size_t at_ = 0;
 };
 
-// One walk serves both ways, so that what is written is what is read.
+// One traversal for writing and reading, so that both always agree.
 template <class Archive, class... Fields>
 void pass(Archive& archive, Fields&... fields) { (archive(fields), ...); }
 
@@ -150,8 +151,10 @@ void pass_frames(Archive& archive, Run& run) {
 template <class Archive, class Run>
 void pass_run(Archive& archive, Run& run) {
   auto& info = run.info;
-  pass(archive, info.command, info.version, info.scene_name, info.scene_hash, info.engine, info.impulse_source, info.integrator_source,
-       info.step_s, info.frame_rate_hz, info.seed, info.constraint_source);
+  pass(archive, info.command, info.version, info.scene_name, info.scene_digest, info.engine, info.impulse_source, info.integrator_source,
+       info.step_s, info.frame_rate_hz);
+  pass_list(archive, info.seeds, sizeof(std::uint64_t), [&](auto& seed) { archive(seed); });
+  archive(info.constraint_source);
   pass_list(archive, run.bodies, 9, [&](auto& body) { pass(archive, body.name, body.immovable); });
   pass_frames(archive, run);
   pass_list(archive, run.events, 9 + 10 * sizeof(double), [&](auto& event) {
@@ -184,7 +187,7 @@ Trajectory read_trajectory(const std::filesystem::path& file) {
   std::uint32_t version = 0;
   reader(version);
   if (version != kVersion)
-    reader.fail(4, std::string(version < kVersion ? "recorded by an older version of this program" : "recorded by a newer version of this program, or spoilt") +
+    reader.fail(4, std::string(version < kVersion ? "recorded by an older version of this program" : "recorded by a newer version of this program, or damaged") +
                        ": format version " + std::to_string(version) + ", this program reads " + std::to_string(kVersion));
   Trajectory run;
   pass_run(reader, run);

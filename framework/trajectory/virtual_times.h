@@ -1,4 +1,5 @@
-/// What a timewarp scheduler did, in the order in which it did it: the way of every local virtual time. An engine may record it; pages draw it.
+/// The moves of a timewarp scheduler in execution order: the history of every local virtual time.
+/// An engine may record it; pages draw it.
 #pragma once
 
 #include <string>
@@ -7,12 +8,12 @@
 namespace tumble {
 
 struct VirtualTimes {
-  /// One process (body, group, multibody) integrated on, or rolled back where `to_s` is not later than `from_s`
-  /// (equal: it forgets what it did at that very time).
+  /// One logical process (body, island, multibody) advances, or rolls back where `to_s` is not
+  /// later than `from_s` (equal: it undoes its events at exactly that time).
   struct Move {
     int process;
     double from_s, to_s;              // its local virtual time before and after
-    double global_virtual_time_s;     // after the move; never falls
+    double global_virtual_time_s;     // after the move; never decreases
   };
   std::vector<std::string> processes;
   std::vector<Move> moves;

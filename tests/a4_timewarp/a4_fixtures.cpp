@@ -5,6 +5,7 @@
 #include "framework/core/error.h"
 #include "framework/core/random.h"
 #include "framework/core/shortest_turn.h"
+#include "framework/effects/gravity/gravity.h"
 #include "framework/engines/run.h"
 
 namespace tumble::a4_testing {
@@ -149,7 +150,7 @@ scene::Scene heap_of_balls(const Vector3d& last_at, double duration_s) {
     body.friction = 0.3;
   }
   scene::Scene scene = scene_of(std::move(bodies), duration_s, 1.0 / 60.0);
-  scene.gravity_m_s2 = Vector3d(0, 0, -9.81);
+  effects::set_gravity(scene, Vector3d(0, 0, -9.81));
   scene.contact = scene::ContactSpec{};
   return scene;
 }

@@ -1,14 +1,10 @@
 # One program a left-out effect, and one with all of them: for absent_effects.sh (ninja bench_absent_effects).
-# Of the engines only the files that know the effect are compiled again; the linker takes these before the library's.
+# Of an effect that is a folder the program gets a list of effects without it; of the others those files of the engines that know the effect are
+# compiled again. The linker takes these before the library's.
 set(engine_files ${CMAKE_SOURCE_DIR}/framework/engines)
-set(gravity_files stepping/moving_world rd/retroactive)
-set(point_force_files stepping/moving_world stepping/path_turning rd/retroactive)
-foreach(link spring drag rod joint motor)
-  set(${link}_files stepping/linked_bodies)
-endforeach()
 set(collision_files stepping/moving_world rd/retroactive rd/recorder)
 set(contact_files stepping/moving_world rd/retroactive rd/recorder)
-set(friction_files contact/lasting_contacts contact/sequential_impacts rd/retroactive)
+set(friction_files contact/contact_geometry contact/sequential_impacts rd/retroactive)
 set(callback_files events/advancement events/ordered)
 set(sleep_files stepping/moving_world stepping/path_turning rd/retroactive contact/meetings rd/recorder contact/lasting_contacts contact/contact_steps contact/contact_landings contact/contact_modes contact/sequential_impacts contact/sleeping)
 
@@ -24,7 +20,13 @@ endfunction()
 
 add_custom_target(bench_absent_effects)
 absent_effect_program(bench_all_effects)
-foreach(effect gravity point_force spring drag rod joint motor collision contact friction sleep callback)
+get_property(folders GLOBAL PROPERTY TUMBLE_EFFECTS)
+foreach(effect ${folders})
+  set(effects_list ${CMAKE_BINARY_DIR}/generated/effects/all_effects_without_${effect}.cpp)
+  tumble_effects_list(${effects_list} WITHOUT ${effect})
+  absent_effect_program(bench_without_${effect} ${effects_list})
+endforeach()
+foreach(effect collision contact friction sleep callback)
   list(TRANSFORM ${effect}_files REPLACE "(.+)" "${engine_files}/\\1.cpp" OUTPUT_VARIABLE files)
   absent_effect_program(bench_without_${effect} ${files})
   target_compile_definitions(bench_without_${effect} PRIVATE TUMBLE_WITHOUT="${effect}")

@@ -5,6 +5,11 @@
 #include <cstdio>
 #include <iostream>
 
+#include "framework/core/error.h"
+#include "framework/effects/drag/drag.h"
+#include "framework/effects/joint/joint.h"
+#include "framework/effects/rod/rod.h"
+#include "framework/effects/spring/spring.h"
 #include "tests/engines/effect_scenes.h"
 #include "tests/engines/reference_laws.h"
 
@@ -34,10 +39,10 @@ scene::Scene tied(double duration, const std::string& link) {
   scene::Scene scene = flying(duration);
   for (int i = 0; i < 6; ++i) {
     const std::string a = "ball " + std::to_string(i), b = "box " + std::to_string(i), name = "link " + std::to_string(i);
-    if (link == "spring") scene.springs.push_back({name, {a, Vector3d::Zero()}, {b, Vector3d::Zero()}, 10.0, 0.1, 2.0});
-    if (link == "drag") scene.drags.push_back({a, 0.1, 0.1});
-    if (link == "rod") scene.rods.push_back({name, {a, Vector3d::Zero()}, {b, Vector3d::Zero()}, 2.0});
-    if (link == "joint") scene.joints.push_back({name, scene::JointKind::kHinge, a, b, {1.0 * i, 1, 0}, Vector3d::UnitZ()});
+    if (link == "spring") scene.effects.of<effects::SpringSpec>().push_back({name, {a, Vector3d::Zero()}, {b, Vector3d::Zero()}, 10.0, 0.1, 2.0});
+    if (link == "drag") scene.effects.of<effects::DragSpec>().push_back({a, 0.1, 0.1});
+    if (link == "rod") scene.effects.of<effects::RodSpec>().push_back({name, {a, Vector3d::Zero()}, {b, Vector3d::Zero()}, 2.0});
+    if (link == "joint") scene.effects.of<effects::JointSpec>().push_back({name, effects::JointKind::kHinge, a, b, {1.0 * i, 1, 0}, Vector3d::UnitZ()});
   }
   if (link == "rod" || link == "joint") scene.stabilisation.emplace();
   return scene;
@@ -68,7 +73,7 @@ scene::Scene scene_without(const std::string& effect) {
   if (effect == "contact" || effect == "callback") return stack(5.0, 0.0, false);
   if (effect == "friction") return stack(1.0, 0.0, true);
   if (effect == "sleep") return stack(1.0, 0.5, true);
-  throw std::invalid_argument("no effect '" + effect + "'");
+  return tied(4.0, "spring");   // of an effect that acts on groups
 }
 
 /// Callbacks come from a program, to the engines that go from event to event; other effects from the scene, in steps.
@@ -89,7 +94,12 @@ std::uint64_t calls_of(std::string effect) {
   std::replace(effect.begin(), effect.end(), '_', ' ');
   scene::Scene scene = bare();
   kEffects.at(effect)(scene);
-  const Trajectory result = run(scene, reference_laws());
+  Trajectory result;
+  try {
+    result = run(scene, reference_laws());
+  } catch (const UserError&) {
+    return 0;   // nobody here knows the effect
+  }
   std::uint64_t calls = 0;
   for (const std::string& counter : kCountersOf.at(effect)) calls += result.counters.counts.at(counter);
   return calls;

@@ -17,7 +17,7 @@ instructions() {
 
 failed=0
 printf '%-12s %16s %16s %10s   %s\n' effect 'instructions' 'built without' ratio 'calls where asked for: as it is, without'
-for effect in gravity point_force spring drag rod joint motor collision contact friction sleep callback; do
+for effect in $(ninja -C "$build" -t targets all | sed -n 's/^bench_without_\([a-z_]*\): phony$/\1/p'); do
   with=$(instructions "$build/bin/bench_all_effects" cost $effect)
   without=$(instructions "$build/bin/bench_without_$effect" cost $effect)
   # Left out it must be: asked for it, the one calls it and the other does not.

@@ -6,8 +6,10 @@
 #include <ctime>
 
 #include "framework/core/error.h"
-#include "framework/engines/run.h"
+#include "framework/effects/joint/joint.h"
+#include "framework/effects/rod/rod.h"
 #include "framework/engines/base/run_counters.h"
+#include "framework/engines/run.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/scene/sized_scenes.h"
 #include "tests/engines/reference_laws.h"
@@ -31,7 +33,7 @@ double seconds_by(clockid_t clock) {
 // Springs, rods and contacts need a3.
 const Laws& laws_for(const scene::Scene& scene) {
   static const Laws plain = test_laws();
-  if (!scene.contact && scene.joints.empty() && scene.rods.empty()) return plain;
+  if (!scene.contact && scene.effects.of<effects::JointSpec>().empty() && scene.effects.of<effects::RodSpec>().empty()) return plain;
   static const Laws reference = reference_laws();
   return reference;
 }

@@ -110,7 +110,7 @@ TEST(Check, APatternThatChoosesNothingIsAnsweredWithTheNearestNames) {
   const File file(stub());
   const ProgramOutcome outcome = check({file.path.string(), "ColisionImpuls.*"});
   EXPECT_EQ(outcome.code, 2) << outcome.printed;
-  EXPECT_NE(outcome.printed.find("ColisionImpuls.*: no test has such a name. Nearest: CollisionImpulse."), std::string::npos) << outcome.printed;
+  EXPECT_NE(outcome.printed.find("ColisionImpuls.*: no test has this name. Nearest: CollisionImpulse."), std::string::npos) << outcome.printed;
 }
 
 TEST(Check, AFileThatIsNotThereAndAnUnknownAssignmentAreToldWithWhatToDo) {

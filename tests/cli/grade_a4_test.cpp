@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "framework/core/files.h"
 #include "framework/grading/course/run_program.h"
 
 namespace tumble::grading {
@@ -21,19 +22,14 @@ const fs::path kSolutions = fs::path(TUMBLE_SOURCE_DIR) / "solutions_private/a4_
 class GradingOfTimewarp : public ::testing::Test {
  protected:
   GradingOfTimewarp() {
-    std::string name = (fs::temp_directory_path() / "tumble-grade-a4-XXXXXX").string();
-    root = ::mkdtemp(name.data());
     ::setenv("TUMBLE_ROOT", TUMBLE_SOURCE_DIR, 1);
-  }
-  ~GradingOfTimewarp() override {
-    std::error_code ignored;
-    fs::remove_all(root, ignored);
   }
   ProgramOutcome type(std::vector<std::string> words) const {
     words.insert(words.begin(), std::string(TUMBLE_BINARY_DIR) + "/bin/tumble");
     return run_program(words, Output::kCaptured, 200.0);
   }
-  fs::path root;
+  PrivateFolder scratch_;
+  fs::path root = scratch_.path();
 };
 
 // Half right: some points and not all; each lost one by a test whose story is kept.
@@ -85,6 +81,37 @@ TEST_F(GradingOfTimewarp, AnAuditCatchesASlipByNameAndAccusesNobodyElse) {
   }
   EXPECT_EQ(wrong, 1);
   EXPECT_GE(right, 2);   // the reference, and one that goes about it otherwise
+}
+
+// The first slip by name, with the first line of a block that `mark` begins written anew: its text, and the number of that line.
+std::pair<std::string, int> spoilt_slip(char mark, const std::string& line) {
+  std::vector<fs::path> slips;
+  for (const auto& entry : fs::directory_iterator(kSolutions / "mutants"))
+    if (entry.path().extension() == ".slip") slips.push_back(entry.path());
+  std::ifstream in(*std::min_element(slips.begin(), slips.end()));
+  std::string text;
+  int number = 0, spoilt = 0;
+  for (std::string read; std::getline(in, read);) {
+    ++number;
+    if (spoilt == 0 && number > 3 && read.starts_with(mark)) spoilt = number;
+    text += (spoilt == number ? mark + line : read) + '\n';
+  }
+  return {text, spoilt};
+}
+
+// A slip that does not compile, and one that its base has left behind, are told at their own lines.
+TEST_F(GradingOfTimewarp, AnAuditTellsWhichLineOfASlipIsAmiss) {
+  const auto [broken, at] = spoilt_slip('+', "  undeclared;");
+  write_whole(root / "wrong/s.slip", broken);
+  const ProgramOutcome refused = type({"audit", "a4", "--mutants", (root / "wrong").string(), "--only", "s"});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_NE(refused.printed.find("does not compile: s.slip:" + std::to_string(at) + ":3: error: "), std::string::npos) << refused.printed;
+
+  const auto [stale, gone] = spoilt_slip('-', "  what the base does not hold;");
+  write_whole(root / "wrong/s.slip", stale);
+  const ProgramOutcome left_behind = type({"audit", "a4", "--mutants", (root / "wrong").string(), "--only", "s"});
+  EXPECT_EQ(left_behind.code, 2);
+  EXPECT_NE(left_behind.printed.find("s.slip:" + std::to_string(gone) + ": this line stands nowhere in "), std::string::npos) << left_behind.printed;
 }
 
 }  // namespace

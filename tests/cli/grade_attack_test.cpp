@@ -62,7 +62,7 @@ TEST_F(GradeAttack, ARecordThatThisMachineDidNotSignIsGradedAgainAndSaidSo) {
   record["score"] = 100.0;
   write_whole(root / "out/alice/record.json", record.dump());
   const ProgramOutcome again = grade("out");
-  EXPECT_TRUE(says(again, "alice: the earlier result is not taken over, its record is not signed by this machine's key; graded again")) << again.printed;
+  EXPECT_TRUE(says(again, "alice: the earlier result is not reused, because its record is not signed by this machine's key; graded again")) << again.printed;
   EXPECT_EQ(files("out"), before);
   // The key lost: no result is trusted, and that is said; the results are the same.
   fs::remove(root / "grader.key");

@@ -27,15 +27,9 @@ namespace fs = std::filesystem;
 class Folder : public ::testing::Test {
  protected:
   Folder() {
-    std::string name = (fs::temp_directory_path() / "tumble-grade-XXXXXX").string();
-    root = ::mkdtemp(name.data());
     kind.id = "a9";
     kind.folder = "a9_thing";
     kind.title = "Thing";
-  }
-  ~Folder() override {
-    std::error_code ignored;
-    fs::remove_all(root, ignored);
   }
   void put(const std::string& file, const std::string& text = "int x;\n") const { write_whole(root / file, text); }
   Submission only() const {
@@ -43,7 +37,8 @@ class Folder : public ::testing::Test {
     EXPECT_EQ(all.size(), 1u);
     return all.at(0);
   }
-  fs::path root;
+  PrivateFolder scratch_;
+  fs::path root = scratch_.path();
   modules::ModuleKind kind;
 };
 using FindSubmissions = Folder;
@@ -164,7 +159,7 @@ TEST_F(FindSubmissions, AFolderThatIsALinkToItsParentEnds) {
 TEST_F(FindSubmissions, APipeIsNotWaitedFor) {
   fs::create_directory(root / "adam");
   ASSERT_EQ(::mkfifo((root / "adam/a9_thing.cpp").c_str(), 0600), 0);
-  EXPECT_NE(only().problem.find("no ordinary file"), std::string::npos) << only().problem;
+  EXPECT_NE(only().problem.find("not an ordinary file"), std::string::npos) << only().problem;
 }
 
 TEST_F(FindSubmissions, HugeAndEmptySourcesAreRefused) {

@@ -11,7 +11,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
-#include "framework/grading/course/digest.h"
+#include "framework/core/digest.h"
 #include "framework/grading/grades/grade_files.h"
 #include "framework/grading/course/machine_key.h"
 #include "framework/grading/grades/output_folder.h"
@@ -107,7 +107,7 @@ TEST_F(Key, ThatIsALinkOrNoKeyIsRefusedAndStays) {
   fs::remove(file());
   write_whole(file(), "short");
   fs::permissions(file(), fs::perms::owner_read | fs::perms::owner_write);
-  expect_refused(file(), "is no key");
+  expect_refused(file(), "is not a key");
   EXPECT_EQ(text_of(file()), "short");
 }
 
@@ -301,7 +301,7 @@ TEST_F(Record, OfOtherFilesOrAnotherFolderIsNotTrusted) {
   EXPECT_FALSE(read_earlier_run(folder_.path() / "y", "a9", key).record) << "a copy under another student's name";
   EXPECT_FALSE(read_earlier_run(place(), "a8", key).record);
   write_whole(place() / "index.html", "all right");
-  EXPECT_EQ(read(key).problem, "its files are not those that were written");
+  EXPECT_EQ(read(key).problem, "its files have changed");
 }
 
 }  // namespace

@@ -126,7 +126,7 @@ TEST_F(Grading, EndlessLoopsUseUpABudgetAndNoMore) {
 TEST_F(Grading, NoFolderIsToldWithWhatToDo) {
   const ProgramOutcome outcome = grade("out");
   EXPECT_EQ(outcome.code, 2);
-  EXPECT_NE(outcome.printed.find("one sub-folder a submission"), std::string::npos) << outcome.printed;
+  EXPECT_NE(outcome.printed.find("one sub-folder per submission"), std::string::npos) << outcome.printed;
 }
 
 }  // namespace

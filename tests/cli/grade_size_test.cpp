@@ -38,7 +38,7 @@ TEST_F(GradeSizes, OfStatesAndDerivativesOfA2) {
   put("ann/a2_integration.cpp", text);
   const ProgramOutcome outcome = grade("out");
   EXPECT_EQ(outcome.code, 0) << outcome.printed;
-  expect_wrong({{"Rk4Step.", "the derivative was asked with 0 numbers"}, {"EulerStep.", "euler_step answered with 0 numbers, 2 are needed"}, {"RigidBodyDerivative.", "rigid_body_derivative answered with 1000000 numbers, 13 are needed"}});
+  expect_wrong({{"Rk4Step.", "the derivative was called with 0 numbers"}, {"EulerStep.", "euler_step returned 0 numbers, but 2 are needed"}, {"RigidBodyDerivative.", "rigid_body_derivative returned 1000000 numbers, but 13 are needed"}});
   int right = 0;
   const auto all = results("ann");   // named: a range over a part of a temporary would outlive it
   for (const auto& test : all["tests"]) right += test["extra_data"]["verdict"] == "right";
@@ -61,14 +61,14 @@ TEST_F(GradeSizes, OfMultipliersAndForcesOfA3) {
   put("ann/a3_constraints.cpp", text);
   const ProgramOutcome outcome = grade("out");
   EXPECT_EQ(outcome.code, 0) << outcome.printed;
-  expect_wrong({{"ConstraintMultipliers.", "constraint_multipliers answered with 0 numbers"}, {"ConstraintCorrection.", "constraint_correction answered with 5 numbers, 12 are needed"}, {"ContactForces.", "contact_forces answered with 100000 numbers"}});
+  expect_wrong({{"ConstraintMultipliers.", "constraint_multipliers returned 0 numbers"}, {"ConstraintCorrection.", "constraint_correction returned 5 numbers, but 12 are needed"}, {"ContactForces.", "contact_forces returned 100000 numbers"}});
 }
 
 TEST_F(GradeSizes, AreSaidByCheckToo) {
   put("a2_integration.cpp", with_slip(text_of(solution("a2_integration")), "rk4_step", "{ VectorXd unset; f(t, unset); }"));
   const ProgramOutcome outcome = run_program({kProgram.string(), "check", "a2", (root / "in/a2_integration.cpp").string(), "Rk4Step.*"}, Output::kCaptured, 580.0);
   EXPECT_EQ(outcome.code, 1) << outcome.printed;
-  EXPECT_TRUE(says(outcome, "the derivative was asked with 0 numbers")) << outcome.printed;
+  EXPECT_TRUE(says(outcome, "the derivative was called with 0 numbers")) << outcome.printed;
   EXPECT_FALSE(says(outcome, "crashed")) << outcome.printed;
 }
 

@@ -42,14 +42,8 @@ inline bool says(const ProgramOutcome& outcome, const std::string& words) { retu
 class Grading : public ::testing::Test {
  protected:
   Grading() {
-    std::string name = (fs::temp_directory_path() / "tumble-grade-run-XXXXXX").string();
-    root = ::mkdtemp(name.data());
     ::setenv("TUMBLE_ROOT", TUMBLE_SOURCE_DIR, 1);
     ::setenv("TUMBLE_GRADER_KEY", (root / "grader.key").c_str(), 1);
-  }
-  ~Grading() override {
-    std::error_code ignored;
-    fs::remove_all(root, ignored);
   }
   void put(const std::string& file, const std::string& text) const { write_whole(root / "in" / file, text); }
   std::vector<std::string> words_for(const std::string& out, const std::vector<std::string>& more) const {
@@ -68,7 +62,8 @@ class Grading : public ::testing::Test {
       if (entry.is_regular_file() && entry.path().filename() != "times.json") all[entry.path().lexically_relative(root / out).string()] = text_of(entry.path());
     return all;
   }
-  fs::path root;
+  PrivateFolder scratch_;
+  fs::path root = scratch_.path();
   std::string id = "a1";
 };
 

@@ -1,4 +1,5 @@
-// Two edges that lie along each other have a range of normals: the one that is taken must not hang on the last digit of where they are.
+// Two edges that lie along each other have a range of contact normals: the one returned must not
+// depend on the last digit of their position.
 #include <cmath>
 #include <random>
 
@@ -18,7 +19,7 @@ constexpr double kEps = 2.220446049250313e-16;
 constexpr double kLean = 0.4;        // rad, of each card from upright
 constexpr double kReach = 1e-4;      // m
 const Vector3d kHalf(0.005, 0.5, 0.5);
-// Angles are of sums and products of a few numbers of size 1.
+// Angles are computed from sums and products of a few numbers of size 1.
 constexpr double kRoundOff = 64 * kEps;
 
 /// A card whose upper inner edge lies along y through `top`, leaning to the side of `side` x.
@@ -32,13 +33,13 @@ std::vector<NearPoint> points_of_tent(const Vector3d& right_from_left, double le
   return collision::near_points(shape, card(1, right_from_left, lean_right), shape, card(-1, Vector3d::Zero()), kReach);
 }
 
-TEST(EdgeOnEdge, TheNormalIsTheMiddleOneWhereverTheEdgesLieWithinTheirShell) {
+TEST(EdgeOnEdge, NormalIsTheMiddleOneWhereverTheEdgesLieWithinTheMargin) {
   for (const double apart : {1e-12, 1e-10, 1e-8})
     for (const double direction : {-1.5, -0.8, 0.0, 0.3, 1.2}) {   // rad above the horizontal
       const std::vector<NearPoint> points = points_of_tent(apart * Vector3d(std::cos(direction), 0, std::sin(direction)));
       ASSERT_EQ(points.size(), 2u) << "the two ends of the edge; " << apart << " m apart, at " << direction << " rad";
       for (const NearPoint& p : points) {
-        // From the left card to the right one; both cones reach kLean to either side of it.
+        // From the left card to the right one; both normal cones extend by kLean to either side.
         EXPECT_LE((p.normal_b_to_a_world - Vector3d::UnitX()).norm(), kRoundOff);
         EXPECT_NEAR(p.gap, apart * std::cos(direction), kRoundOff);
         EXPECT_NEAR(std::abs(p.point_a_world.y()), 0.5, kRoundOff);
@@ -46,50 +47,53 @@ TEST(EdgeOnEdge, TheNormalIsTheMiddleOneWhereverTheEdgesLieWithinTheirShell) {
     }
 }
 
-// One card turned a little about the vertical: one end of its edge may be in the other card while the other end is away from it.
+// One card rotated slightly about the vertical: one end of its edge may penetrate the other card
+// while the other end is apart from it.
 TEST(EdgeOnEdge, EachEndHasItsOwnGap) {
   const CollisionShape shape{Box{kHalf}};
   for (const double turn : {-8e-7, -1e-8, 3e-7, 8e-7})   // rad
-    for (const double apart : {-1e-7, 1e-10, 1e-7}) {    // m, half way
+    for (const double apart : {-1e-7, 1e-10, 1e-7}) {    // m, at the middle of the edge
       Pose right = card(1, Vector3d(apart, 0, 3e-8));
       const Quaterniond about_z(Eigen::AngleAxisd(turn, Vector3d::UnitZ()));
       right = {about_z * right.com_world, about_z * right.world_from_body};
       const std::vector<NearPoint> points = collision::near_points(shape, right, shape, card(-1, Vector3d::Zero()), kReach);
       ASSERT_EQ(points.size(), 2u) << turn << " rad, " << apart << " m";
       EXPECT_LT(points[0].point_a_world.y() * points[1].point_a_world.y(), 0.0);
-      for (const NearPoint& p : points) EXPECT_NEAR(p.gap, apart - turn * p.point_a_world.y(), 1e-12) << "turn times lengths of 1e-7: " << turn << " rad, " << apart << " m";
+      for (const NearPoint& p : points) EXPECT_NEAR(p.gap, apart - turn * p.point_a_world.y(), 1e-12) << "error: rotation times lengths of 1e-7; " << turn << " rad, " << apart << " m";
     }
 }
 
-TEST(EdgeOnEdge, CardsThatLeanDifferentlyPushAlongTheMiddleOfWhatBothAllow) {
-  // The left card's edge allows normals from -0.4 to pi/2 - 0.4 about y, the right one's from 0.1 - pi/2 to 0.1: both from -0.4 to 0.1.
+TEST(EdgeOnEdge, NormalOfCardsAtDifferentAnglesIsTheMiddleOfBothCones) {
+  // The left card's edge has normals from -0.4 to pi/2 - 0.4 about y, the right one's from 0.1 -
+  // pi/2 to 0.1: the intersection is from -0.4 to 0.1.
   const std::vector<NearPoint> points = points_of_tent({1e-10, 0, 0}, 0.1);
   ASSERT_EQ(points.size(), 2u);
   EXPECT_LE((points[0].normal_b_to_a_world - Vector3d(std::cos(-0.15), 0, std::sin(-0.15))).norm(), kRoundOff);
 }
 
-TEST(EdgeOnEdge, FartherThanAMillionthApartTheNearestPointsSayIt) {
+TEST(EdgeOnEdge, BeyondAMillionthTheNearestPointsDefineTheNormal) {
   const double direction = 0.3;
   const std::vector<NearPoint> points = points_of_tent(1e-5 * Vector3d(std::cos(direction), 0, std::sin(direction)));
   ASSERT_FALSE(points.empty());
-  // A difference of 1e-5 m of coordinates of size 1.
+  // The difference of coordinates of size 1 is 1e-5 m.
   EXPECT_LE((points[0].normal_b_to_a_world - Vector3d(std::cos(direction), 0, std::sin(direction))).norm(), kRoundOff / 1e-5);
 }
 
-TEST(EdgeOnEdge, WhicheverWayTheTwoLieAboutTheirEdgeNoGapIsMeasuredThroughThem) {
+TEST(EdgeOnEdge, GapIsNeverMeasuredThroughTheSolids) {
   std::mt19937_64 random(27);
   const auto between = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
-  constexpr double kApart = 1e-10, kRight = M_PI / 2;   // m, rad: what a box takes of the turn about its edge
+  constexpr double kApart = 1e-10, kRight = M_PI / 2;   // m; rad: the angle that a box occupies about its edge
   int of_edges = 0;
   for (int k = 0; k < 400; ++k) {
-    // Edge of each along y through the origin, from where the box takes up a right angle; nowhere the same.
+    // Each box has an edge along y through the origin and occupies a right angle from of_a or of_b;
+    // the two never overlap.
     const double of_a = between(-M_PI, M_PI), of_b = of_a + between(1.02 * kRight, 2.98 * kRight);
     const auto placed = [&](const Vector3d& half, double angle, const Vector3d& edge) {
-      const Quaterniond turn(Eigen::AngleAxisd(-angle, Vector3d::UnitY()));   // x over z
+      const Quaterniond turn(Eigen::AngleAxisd(-angle, Vector3d::UnitY()));   // from x towards z
       return Pose{edge + turn * Vector3d(half.x(), 0, half.z()), turn};
     };
     const Vector3d half_a(between(0.005, 0.5), 0.5, between(0.005, 0.5)), half_b(between(0.005, 0.5), 0.4, between(0.005, 0.5));
-    const double middle = 0.5 * (of_a + of_b + kRight);   // of the free angle from A to B
+    const double middle = 0.5 * (of_a + of_b + kRight);   // middle of the free angle from A to B
     const CollisionShape a{Box{half_a}}, b{Box{half_b}};
     for (const double shift : {kApart, -kApart, 1e-8, -1e-8, 3e-7, -3e-7}) {   // apart or overlapping
       const Pose pose_a = placed(half_a, of_a, shift * Vector3d(std::cos(middle), 0, std::sin(middle))), pose_b = placed(half_b, of_b, Vector3d::Zero());
@@ -101,12 +105,12 @@ TEST(EdgeOnEdge, WhicheverWayTheTwoLieAboutTheirEdgeNoGapIsMeasuredThroughThem) 
       }
     }
   }
-  EXPECT_GT(of_edges, 400);   // the two ends of most
+  EXPECT_GT(of_edges, 400);   // two ends for most boxes
 }
 
-TEST(EdgeOnEdge, BoxesThatLieFlushOnEachOtherPushAlongTheirFaces) {
+TEST(EdgeOnEdge, FlushBoxesHaveTheNormalOfTheirFaces) {
   const CollisionShape box{Box{Vector3d(0.5, 0.4, 0.1)}};
-  for (const double aside : {0.0, 1e-9, 1.0}) {   // m: flush, nearly so, and only edge above edge
+  for (const double aside : {0.0, 1e-9, 1.0}) {   // m: flush, nearly flush, and with only an edge in contact
     const std::vector<NearPoint> points = collision::near_points(box, {Vector3d(aside, 0, 0.2 + 1e-10)}, box, {}, kReach);
     ASSERT_FALSE(points.empty());
     for (const NearPoint& p : points)
@@ -116,7 +120,7 @@ TEST(EdgeOnEdge, BoxesThatLieFlushOnEachOtherPushAlongTheirFaces) {
   }
 }
 
-TEST(EdgeOnEdge, ABoxThatTipsOnAFlushEdgeShowsTheEdgeThatComesDown) {
+TEST(EdgeOnEdge, TippingBoxHasContactPointsAtTheDescendingEdge) {
   const CollisionShape box{Box{Vector3d(0.5, 0.4, 0.1)}};
   const double tilt = 1e-5;   // rad, about its lower edge at x = -0.5
   const Quaterniond turn(Eigen::AngleAxisd(-tilt, Vector3d::UnitY()));
@@ -126,10 +130,10 @@ TEST(EdgeOnEdge, ABoxThatTipsOnAFlushEdgeShowsTheEdgeThatComesDown) {
   for (const NearPoint& p : points) (p.point_a_world.x() < 0 ? down : coming) += 1;
   EXPECT_EQ(down, 2);
   EXPECT_EQ(coming, 2);
-  for (const NearPoint& p : points) EXPECT_NEAR(p.gap, p.point_a_world.x() < 0 ? 1e-10 : tilt, 0.6 * tilt) << "the normal leans by half the tilt";
+  for (const NearPoint& p : points) EXPECT_NEAR(p.gap, p.point_a_world.x() < 0 ? 1e-10 : tilt, 0.6 * tilt) << "the normal is tilted by half the angle";
 }
 
-TEST(EdgeOnEdge, EdgesThatCrossPushAcrossBoth) {
+TEST(EdgeOnEdge, NormalOfCrossingEdgesIsPerpendicularToBoth) {
   const CollisionShape box{Box{Vector3d(0.5, 0.5, 0.5)}};
   const Quaterniond on_edge(Eigen::AngleAxisd(0.25 * 3.14159265358979323846, Vector3d::UnitY()));
   for (const double angle : {1e-3, 0.5}) {

@@ -1,4 +1,5 @@
-// An ellipsoid over a plane: gap, nearest point and time of impact against closed forms and against its own surface.
+// Ellipsoid against plane: gap, nearest point and time of impact, compared with closed forms and
+// with the surface itself.
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -51,7 +52,7 @@ TEST(EllipsoidOverAPlane, TouchesAtAPointOfItsSurfaceWhoseNormalIsThePlanes) {
   }
 }
 
-TEST(EllipsoidOverAPlane, OfEqualAxesIsABall) {
+TEST(EllipsoidOverAPlane, WithEqualAxesIsABall) {
   const CollisionShape round{Shape(Ellipsoid{Vector3d::Constant(0.3)})}, ball{Shape(Sphere{0.3})}, plane{Shape(HalfSpace{})};
   Random random(2);
   for (int k = 0; k < 50; ++k) {
@@ -61,9 +62,9 @@ TEST(EllipsoidOverAPlane, OfEqualAxesIsABall) {
   }
 }
 
-TEST(EllipsoidOverAPlane, HasOnePointOfContactHoweverFlatItLies) {
+TEST(EllipsoidOverAPlane, HasOneContactPointEvenWhenItLiesFlat) {
   const CollisionShape egg{Shape(kEgg)}, plane{Shape(HalfSpace{})};
-  const Pose lying{{0.0, 0.0, 0.1}, Quaterniond::Identity()};   // its middle at 0.2 = c
+  const Pose lying{{0.0, 0.0, 0.1}, Quaterniond::Identity()};   // its centre at 0.2 = c
   const collision::Gap gap = collision::compute_gap(egg, lying, plane, Pose{});
   EXPECT_NEAR(gap.distance, 0.0, kRounding);
   EXPECT_EQ(collision::contact_patch(egg, lying, plane, Pose{}, gap, 1e-3).corners.size(), 1u);
@@ -88,8 +89,9 @@ Motion flight(const Vector3d& x, const Vector3d& v, double g, const Vector3d& om
   return motion;
 }
 
-// Its middle held at a height between its semi-axes c and a, it turns about y and touches where sqrt(a^2 sin^2 + c^2 cos^2) is that height.
-TEST(EllipsoidOverAPlane, IsMetWhenItTurnsIntoThePlane) {
+// Its centre is fixed at a height between the semi-axes c and a. It rotates about y and touches
+// where sqrt(a^2 sin^2 + c^2 cos^2) equals that height.
+TEST(EllipsoidOverAPlane, HasAnImpactWhenItRotatesIntoThePlane) {
   const Ellipsoid centred{{0.5, 0.3, 0.2}};
   const CollisionShape shape{Shape(centred)}, plane{Shape(HalfSpace{})};
   constexpr double height = 0.4, omega = 3.0;
@@ -97,15 +99,16 @@ TEST(EllipsoidOverAPlane, IsMetWhenItTurnsIntoThePlane) {
   const auto impact = collision::first_impact(shape, flight({0, 0, height}, Vector3d::Zero(), 0.0, {0, omega, 0}, Quaterniond::Identity()), plane,
                                               flight(Vector3d::Zero(), Vector3d::Zero(), 0.0, Vector3d::Zero(), Quaterniond::Identity()), 0.0, 1.0);
   ASSERT_TRUE(impact);
-  EXPECT_NEAR(impact->time, angle / omega, 1e-14);   // rounding of the height over the rate, 0.3 m/s
+  EXPECT_NEAR(impact->time, angle / omega, 1e-14);   // rounding of the height divided by the rate, 0.3 m/s
   EXPECT_GE(impact->gap.distance, 0.0);
   const auto none = collision::first_impact(shape, flight({0, 0, 0.5001}, Vector3d::Zero(), 0.0, {0, omega, 0}, Quaterniond::Identity()), plane,
                                             flight(Vector3d::Zero(), Vector3d::Zero(), 0.0, Vector3d::Zero(), Quaterniond::Identity()), 0.0, 10.0);
   EXPECT_FALSE(none);   // higher than its longest semi-axis
 }
 
-// The bound promises that nothing touches before: looked at in a thousand instants. It is worth something: conservative advancement gets on.
-TEST(EllipsoidOverAPlane, StaysApartAsLongAsTheBoundSays) {
+// No contact within the bound, tested at a thousand instants; and the bound is not trivial:
+// conservative advancement makes progress.
+TEST(EllipsoidOverAPlane, StaysApartWithinTheTimeBound) {
   const CollisionShape egg{Shape(kEgg)}, plane{Shape(HalfSpace{})};
   const Motion ground = flight(Vector3d::Zero(), Vector3d::Zero(), 0.0, Vector3d::Zero(), Quaterniond::Identity());
   Random random(3);

@@ -1,5 +1,6 @@
-/// The slow way to a gap: every corner, edge and face of one convex solid against every one of the other, with 33 digits. Edges that
-/// are parallel to 1e-9 rad need them: a direction across both has lost nine.
+/// The exhaustive method for a gap: every corner, edge and face of one convex solid against all of
+/// the other, with 33 digits. Edges parallel to 1e-9 rad need them, because their cross product
+/// loses nine digits.
 #pragma once
 
 #include <algorithm>
@@ -37,14 +38,14 @@ struct Exact {
   friend Exact operator*(Real k, const Exact& a) { return {k * a.x, k * a.y, k * a.z}; }
 };
 
-/// A convex surface where it stands.
+/// A convex surface in its pose.
 struct PlacedSurface {
   std::vector<Exact> vertices;
   std::vector<std::array<int, 3>> faces;
 };
 
 inline PlacedSurface placed_exactly(const TriangleMesh& mesh, const collision::Pose& pose, const Vector3d& origin) {
-  const Matrix3d rotation = pose.world_from_body.toRotationMatrix();   // as rounded as the solid's own
+  const Matrix3d rotation = pose.world_from_body.toRotationMatrix();   // rounded like the solid's own
   const Exact offset = Exact::of(pose.com_world) - Exact::of(origin);
   PlacedSurface surface;
   for (const Vector3d& v : mesh.vertices)
@@ -66,7 +67,7 @@ inline Real exact_point_to_triangle(const Exact& p, const Exact& a, const Exact&
   return std::min({exact_point_to_segment(p, a, b), exact_point_to_segment(p, b, c), exact_point_to_segment(p, c, a)});
 }
 
-/// Crossing lines only: where the feet are beyond an end, the distance is that of a corner.
+/// Only for nearest points inside both segments: beyond an end the distance is that of a corner.
 inline Real exact_line_to_line(const Exact& p, const Exact& q, const Exact& r, const Exact& s) {
   const Exact u = q - p, v = s - r, w = p - r, n = u.cross(v);
   const Real squared = n.squared();
@@ -105,14 +106,14 @@ inline Real exact_separation(const PlacedSurface& a, const PlacedSurface& b) {
         }
     }
   }
-  const Real kParallel = 1e-20;   // rad: a direction across has thirteen digits left
+  const Real kParallel = 1e-20;   // rad: the cross product has thirteen digits left
   for (const Exact& u : edges[0])
     for (const Exact& v : edges[1])
       if (const Exact across = u.cross(v); across.norm() > kParallel) offer(across);
   return best;
 }
 
-/// Of two convex solids: their distance; where they touch or overlap, minus the smallest way that parts them.
+/// Distance of two convex solids; where they touch or overlap, the negative penetration depth.
 inline Real exact_gap(const PlacedSurface& a, const PlacedSurface& b) {
   const Real separation = exact_separation(a, b);
   if (!(separation > 0)) return separation;

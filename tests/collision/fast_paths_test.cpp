@@ -1,5 +1,5 @@
-// What is found fast against what is found slowly: gaps of convex solids with 33 digits, pairs of boxes by trying all, answers that
-// are given from what a caller kept against answers without.
+// Fast methods against slow ones: gaps of convex solids against 33 digits, the broad phase against
+// testing all pairs, queries with a cache against queries without.
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -62,7 +62,8 @@ std::vector<Convex> convex_solids(double scale) {
   return solids;
 }
 
-/// Two solids as they meet in heaps and stacks: any way, edges along each other, face to face, nearly so.
+/// Relative orientations as in heaps and stacks: arbitrary, edge along edge, face to face, and
+/// nearly so.
 struct Placing {
   Quaterniond turn_a, turn_b;
   Vector3d line;
@@ -75,7 +76,7 @@ struct Placing {
     if (kind >= 3) turn_a = Eigen::AngleAxisd(std::pow(10.0, chance.in(-16, -3)), chance.vector().normalized());
     const int way = chance.below(3);
     if (way == 0) line = Vector3d(0.3 * chance.in(-1, 1), 0.2 * chance.in(-1, 1), 1).normalized();
-    if (way == 1) line = Vector3d::Unit(chance.below(3));   // edges and corners exactly over each other
+    if (way == 1) line = Vector3d::Unit(chance.below(3));   // edges and corners exactly above each other
   }
 };
 
@@ -94,13 +95,14 @@ Pose brought_to(double goal, const CollisionShape& a, const CollisionShape& b, c
   return pose;
 }
 
-// Coordinates up to 2 times the scale, each vertex and each height rounded a few times: 100 roundings are 2e-14. An axis between edges that
-// are parallel to less than 1e-9 rad may be passed over, which costs no more. Nearest points whose direction is rounded are off by up to 1e-8.
+// Coordinates are up to 2 times the scale, each vertex and height rounded a few times: 100
+// roundings are 2e-14. The axis of edges at an angle below 1e-9 rad may be skipped, which adds no
+// more. Nearest points with a rounded direction are off by up to 1e-8.
 constexpr double kRoundings = 100 * 2.220446049250313e-16;
 
 class ConvexGap : public ::testing::TestWithParam<double> {};
 
-TEST_P(ConvexGap, HasAllItsDigitsHoweverTheSolidsLie) {
+TEST_P(ConvexGap, IsAccurateInEveryRelativePose) {
   const double scale = GetParam();
   const std::vector<Convex> solids = convex_solids(scale);
   Chance chance(21);
@@ -112,7 +114,7 @@ TEST_P(ConvexGap, HasAllItsDigitsHoweverTheSolidsLie) {
     const Pose pose_b{Vector3d::Zero(), placing.turn_b}, pose_a = brought_to(goal, a, b, placing, pose_b, scale);
     const Gap found = collision::compute_gap(a, pose_a, b, pose_b);
     const double truth = static_cast<double>(exact_gap(placed_exactly(one.mesh, pose_a, pose_b.com_world), placed_exactly(other.mesh, pose_b, pose_b.com_world)));
-    EXPECT_NEAR(found.distance, truth, kRoundings * scale) << one.name << " and " << other.name << " brought to " << goal << ", try " << k;
+    EXPECT_NEAR(found.distance, truth, kRoundings * scale) << one.name << " and " << other.name << " at gap " << goal << ", sample " << k;
     EXPECT_NEAR(found.normal_b_to_a_world.norm(), 1.0, 1e-14);
     EXPECT_NEAR((found.point_a_world - found.point_b_world).dot(found.normal_b_to_a_world), found.distance, kRoundings * scale);
   }
@@ -120,7 +122,7 @@ TEST_P(ConvexGap, HasAllItsDigitsHoweverTheSolidsLie) {
 
 INSTANTIATE_TEST_SUITE_P(Scales, ConvexGap, ::testing::Values(1e-6, 1.0, 1e6), [](const auto& info) { return std::string(info.param < 1 ? "Tiny" : info.param > 1 ? "Huge" : "Metres"); });
 
-TEST(ConvexGaps, FarFromTheOriginAreThoseNearIt) {
+TEST(ConvexGaps, FarFromTheOriginEqualThoseNearIt) {
   const std::vector<Convex> solids = convex_solids(1.0);
   Chance chance(22);
   const Vector3d far(1048576.0, -524288.0, 262144.0);
@@ -129,7 +131,7 @@ TEST(ConvexGaps, FarFromTheOriginAreThoseNearIt) {
     const Placing placing(chance);
     Pose pose_b{far + chance.vector(), placing.turn_b};
     const Pose pose_a = brought_to(kGaps[chance.below(static_cast<int>(std::size(kGaps)))], a, b, placing, pose_b, 1.0);
-    // The difference of two places is exact: what is asked near the origin is the very same question.
+    // The difference of the positions is exact: the query near the origin is identical.
     const Gap there = collision::compute_gap(a, pose_a, b, pose_b);
     const Gap here = collision::compute_gap(a, {pose_a.com_world - pose_b.com_world, pose_a.world_from_body}, b, {Vector3d::Zero(), pose_b.world_from_body});
     EXPECT_EQ(there.distance, here.distance);
@@ -137,7 +139,7 @@ TEST(ConvexGaps, FarFromTheOriginAreThoseNearIt) {
   }
 }
 
-TEST(NearPoints, OfBoxesFaceToFaceAreTheirCornersHoweverSmallTheGap) {
+TEST(NearPoints, OfBoxesFaceToFaceAreTheirCornersAtEveryGap) {
   const CollisionShape a{Box{{0.5, 0.4, 0.3}}}, b{Box{{0.6, 0.6, 0.2}}};
   Chance chance(23);
   for (int k = 0; k < 400; ++k) {
@@ -145,7 +147,7 @@ TEST(NearPoints, OfBoxesFaceToFaceAreTheirCornersHoweverSmallTheGap) {
     const Pose pose_a{{0.05 * chance.in(-1, 1), 0.05 * chance.in(-1, 1), 0.5 + gap}, Quaterniond(Eigen::AngleAxisd(chance.in(-0.1, 0.1), Vector3d::UnitZ()))};
     const double exact = pose_a.com_world.z() - 0.3 - 0.2;
     const std::vector<NearPoint> points = collision::near_points(a, pose_a, b, {}, 1e-5);
-    ASSERT_EQ(points.size(), 4u) << "gap " << gap;   // the upper box's corners: they are inside the lower one's face
+    ASSERT_EQ(points.size(), 4u) << "gap " << gap;   // the upper box's corners, which are inside the lower one's face
     for (const NearPoint& p : points) {
       EXPECT_NEAR(p.gap, exact, 1e-15);
       EXPECT_NEAR(p.normal_b_to_a_world.z(), 1.0, 1e-15);
@@ -154,12 +156,13 @@ TEST(NearPoints, OfBoxesFaceToFaceAreTheirCornersHoweverSmallTheGap) {
   }
 }
 
-TEST(NearPoints, OfABoxAgainstAWallAndAFloorOfOneMeshPushBothWays) {
-  // An L of three cubes: its inner corner holds a box by two faces at once.
+TEST(NearPoints, OfABoxAgainstAWallAndAFloorOfOneMeshHaveBothNormals) {
+// An L of three cubes: a box in its inner corner touches two faces at once.
   const Shape l_shape = model("l_shape");
   const CollisionShape l(l_shape), box{Box{{0.2, 0.2, 0.2}}};
   const TriangleMesh& mesh = std::get<MeshSolid>(l_shape).mesh_body;
-  // The inner edge: the vertices at which a small ball about them is three quarters solid lie in the middle of the two long axes.
+  // The inner edge: its vertices, around which three quarters of a small ball are solid, lie in the
+  // middle of the two long axes.
   Vector3d low = mesh.vertices[0], high = low;
   for (const Vector3d& v : mesh.vertices) {
     low = low.cwiseMin(v);
@@ -174,7 +177,7 @@ TEST(NearPoints, OfABoxAgainstAWallAndAFloorOfOneMeshPushBothWays) {
       pose.com_world = 0.5 * (low + high);
       pose.com_world[u] += side_u * (0.2 + 1e-7);
       pose.com_world[v] += side_v * (0.2 + 1e-7);
-      if (collision::overlapping(box, pose, l, {}, 0.0)) continue;   // the solid quarters
+      if (collision::overlapping(box, pose, l, {}, 0.0)) continue;   // the three solid quarters
       const auto points = collision::near_points(box, pose, l, {}, 1e-5);
       int push_u = 0, push_v = 0;
       for (const NearPoint& p : points) {
@@ -188,7 +191,8 @@ TEST(NearPoints, OfABoxAgainstAWallAndAFloorOfOneMeshPushBothWays) {
 }
 
 TEST(NearPoints, OfABallAgainstTwoEdgesThatMeetInACornerAreOneOnEach) {
-  // Under the bar of a T, beside its stem: an edge of each is met, and both edges end in the inner corner, where the other part stands out.
+// Under the bar of a T, beside its stem: the ball touches an edge of each, and both edges end in
+// the inner corner, where the other part protrudes.
   const Shape t_shape = model("t_handle");
   const CollisionShape t(t_shape), ball{Sphere{0.1}};
   const std::vector<Vector3d>& vertices = std::get<MeshSolid>(t_shape).mesh_body.vertices;
@@ -213,16 +217,17 @@ void expect_same_bits(const Gap& a, const Gap& b) {
   EXPECT_EQ(a.point_b_world, b.point_b_world);
 }
 
-// Asked up to limits, narrow before wide and wide before narrow, where the two stood last and after they stood elsewhere: within a limit the distance, to the bit; beyond
-// it a bound from below that is beyond it too.
-void expect_limits_keep_what_is_within(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double distance, double some, PairCache& cache) {
+// Queries with limits, small before large and large before small, in the same poses and after other
+// poses: within the limit the exact distance, bit for bit; beyond it a lower bound that is beyond
+// the limit too.
+void expect_exact_within_limits(const CollisionShape& a, const Pose& pose_a, const CollisionShape& b, const Pose& pose_b, double distance, double some, PairCache& cache) {
   const Pose aside{pose_a.com_world + Vector3d(0, 0, some), pose_a.world_from_body};
   for (const double limit : {0.5 * distance, some, 2 * distance, 0.0, distance, std::nextafter(distance, -1e300)}) {
-    collision::gap_distance(a, some < 0 ? aside : pose_a, b, pose_b, &cache, 0.0);   // a narrow answer must not stand for a wide question
+    collision::gap_distance(a, some < 0 ? aside : pose_a, b, pose_b, &cache, 0.0);   // the result for a small limit must not be used for a large one
     for (PairCache* const kept : {&cache, &cache, static_cast<PairCache*>(nullptr)}) {
       const double found = collision::gap_distance(a, pose_a, b, pose_b, kept, limit);
-      if (distance <= limit) EXPECT_EQ(found, distance) << "up to " << limit;
-      else EXPECT_TRUE(found > limit && found <= distance) << found << " for " << distance << " up to " << limit;
+      if (distance <= limit) EXPECT_EQ(found, distance) << "limit " << limit;
+      else EXPECT_TRUE(found > limit && found <= distance) << found << " for " << distance << ", limit " << limit;
     }
   }
 }
@@ -237,7 +242,7 @@ TEST(PairCache, ChangesNoBitOfAnyAnswer) {
       Pose pose_b{Vector3d::Zero(), chance.turn()};
       const double size = std::min(first->bounding_radius(), b.bounding_radius());
       for (int step = 0; step < 60; ++step) {
-        // Mostly as in a heap, seldom far; towards each other until they touch.
+        // Mostly small moves, as in a heap, rarely large ones; towards each other until they touch.
         const double stride = step % 20 == 19 ? 0.5 : std::pow(10.0, chance.in(-9, -1.5));
         pose_a.com_world += stride * size * chance.vector() - 0.1 * stride * pose_a.com_world;
         pose_a.world_from_body = (pose_a.world_from_body * Quaterniond(Eigen::AngleAxisd(stride, chance.vector().normalized()))).normalized();
@@ -245,7 +250,7 @@ TEST(PairCache, ChangesNoBitOfAnyAnswer) {
         expect_same_bits(gap, collision::compute_gap(*first, pose_a, b, pose_b, &cache));
         EXPECT_EQ(gap.distance, collision::gap_distance(*first, pose_a, b, pose_b));
         EXPECT_EQ(gap.distance, collision::gap_distance(*first, pose_a, b, pose_b, &cache));
-        expect_limits_keep_what_is_within(*first, pose_a, b, pose_b, gap.distance, chance.in(-1, 1) * size, cache);
+        expect_exact_within_limits(*first, pose_a, b, pose_b, gap.distance, chance.in(-1, 1) * size, cache);
         const double reach = size * std::pow(10.0, chance.in(-9, -1));
         const auto points = collision::near_points(*first, pose_a, b, pose_b, reach), kept = collision::near_points(*first, pose_a, b, pose_b, reach, &cache);
         ASSERT_EQ(points.size(), kept.size());
@@ -274,18 +279,18 @@ TEST(PairCache, ChangesNoBitOfAnyAnswer) {
   }
 }
 
-TEST(PairCache, OfConvexSolidsAsWell) {
+TEST(PairCache, ChangesNoBitForConvexSolidsEither) {
   Chance chance(26);
   const CollisionShape a(random_hull(14, 3)), b(random_hull(9, 4));
   PairCache cache;
   const double size = std::min(a.bounding_radius(), b.bounding_radius());
   for (int k = 0; k < 300; ++k) {
     const Pose pose_a{chance.in(0.3, 1.6) * size * chance.vector(), chance.turn()}, pose_b{Vector3d::Zero(), chance.turn()};
-    expect_limits_keep_what_is_within(a, pose_a, b, pose_b, collision::gap_distance(a, pose_a, b, pose_b), chance.in(-1, 1) * size, cache);
+    expect_exact_within_limits(a, pose_a, b, pose_b, collision::gap_distance(a, pose_a, b, pose_b), chance.in(-1, 1) * size, cache);
   }
 }
 
-TEST(BroadPhase, FindsThePairsThatTryingAllFinds) {
+TEST(BroadPhase, FindsTheSamePairsAsTestingAll) {
   Chance chance(25);
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const int n : {0, 1, 2, 5, 17, 64, 300}) {
@@ -297,7 +302,7 @@ TEST(BroadPhase, FindsThePairsThatTryingAllFinds) {
         boxes.push_back({middle - half, middle + half, chance.below(3) > 0});
         if (chance.below(40) == 0) boxes.back() = {Vector3d::Constant(-kInfinity), Vector3d::Constant(kInfinity), chance.below(2) > 0};
         if (chance.below(40) == 0) boxes.back().high.z() = kInfinity;
-        if (i > 0 && chance.below(10) == 0) boxes.back().low = boxes[static_cast<std::size_t>(chance.below(i))].high.cwiseMin(boxes.back().high);   // that just touch
+        if (i > 0 && chance.below(10) == 0) boxes.back().low = boxes[static_cast<std::size_t>(chance.below(i))].high.cwiseMin(boxes.back().high);   // boxes that just touch
       }
       std::vector<std::pair<int, int>> expected;
       for (int i = 0; i < n; ++i)

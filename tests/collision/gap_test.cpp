@@ -1,5 +1,6 @@
-// Gaps of every pair of kinds of solid, convex or not, against a second way of finding them: all faces against all faces, with
-// segments and corners by closed forms, and a count of crossings for what lies inside.
+// Gaps of every pair of kinds of solid, convex or not, against a second method: all faces against
+// all faces, with closed forms for segments and corners, and a count of crossings for points
+// inside.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,8 +20,9 @@ using Triangle3 = std::array<Vector3d, 3>;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Source: C. Ericson, Real-Time Collision Detection, 2005, sec. 5.1.5, written with barycentric clamping instead of regions:
-/// the foot on the plane where it falls inside, else the nearest of the three sides.
+/// Source: C. Ericson, Real-Time Collision Detection, 2005, sec. 5.1.5, without its Voronoi
+/// regions: the projection onto the plane where it is inside the triangle, else the nearest of the
+/// three sides.
 double point_to_segment(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
   const Vector3d ab = b - a;
   const double t = std::clamp((p - a).dot(ab) / ab.squaredNorm(), 0.0, 1.0);
@@ -71,7 +73,7 @@ Surface placed(const TriangleMesh& mesh, const Pose& pose) {
 }
 
 bool inside(const Vector3d& p, const Surface& surface) {
-  const Vector3d far = p + Vector3d(97.3, 41.7, 63.1);   // in no model's plane
+  const Vector3d far = p + Vector3d(97.3, 41.7, 63.1);   // not in a plane of any model
   return std::count_if(surface.begin(), surface.end(), [&](const Triangle3& t) { return segment_crosses(p, far, t); }) % 2 == 1;
 }
 
@@ -118,8 +120,9 @@ class Poses {
   std::mt19937_64 random_;
 };
 
-// Both ways take a few roundings of the models' size, about 1 m; a segment that runs along another costs the closed form half its
-// digits only where that closed form is not the smallest. A face that the tree of balls skipped would be off by centimetres.
+// Both methods have errors of a few roundings of the models' size, about 1 m. For nearly parallel
+// segments the closed form loses half its digits, but only where it is not the smallest distance. A
+// face skipped by the bounding-volume tree would change the gap by centimetres.
 constexpr double kRounding = 1e-12;
 
 void expect_same(const BruteForce& expected, const collision::Gap& found, const std::string& what) {
@@ -127,13 +130,13 @@ void expect_same(const BruteForce& expected, const collision::Gap& found, const 
     EXPECT_LT(found.distance, 0.0) << what << ": surfaces cross";
     return;
   }
-  if (expected.one_in_other) return;   // `overlapping` tells; gaps are asked of bodies that were apart
+  if (expected.one_in_other) return;   // detected by `overlapping` only: gaps are for bodies that were apart before
   EXPECT_NEAR(found.distance, expected.distance, kRounding) << what;
   EXPECT_NEAR((found.point_a_world - found.point_b_world).norm(), found.distance, kRounding) << what << ": witness points";
   EXPECT_NEAR(found.normal_b_to_a_world.norm(), 1.0, kRounding) << what;
 }
 
-TEST(Gap, OfAnyTwoModelsIsThatOfAllTheirFaces) {
+TEST(Gap, OfAnyTwoModelsIsTheSmallestOverAllFaces) {
   std::vector<Solid> solids;
   for (const char* name : {"torus", "l_shape", "t_handle", "wedge", "rock_1"}) solids.push_back(model(name));
   Poses random(11);
@@ -155,7 +158,7 @@ TEST(Gap, OfAnyTwoModelsIsThatOfAllTheirFaces) {
   EXPECT_GT(apart, 8);
 }
 
-TEST(Gap, OfAModelAndABoxIsThatOfAllTheirFaces) {
+TEST(Gap, OfAModelAndABoxIsTheSmallestOverAllFaces) {
   const Box box{Vector3d(0.3, 0.2, 0.1)};
   const CollisionShape box_shape{Shape(box)};
   const TriangleMesh box_mesh = surface_of(box);
@@ -193,7 +196,7 @@ TEST(Gap, OfAModelAndABallOrAPlaneIsThatOfItsNearestPoint) {
   }
 }
 
-TEST(Gap, IsTheSameSeenFromTheOtherBody) {
+TEST(Gap, IsSymmetricInTheTwoBodies) {
   const Solid torus = model("torus"), handle = model("t_handle");
   Poses random(14);
   for (int k = 0; k < 100; ++k) {
@@ -206,7 +209,7 @@ TEST(Gap, IsTheSameSeenFromTheOtherBody) {
   }
 }
 
-TEST(Gap, KeepsItsDigitsFarFromTheOriginAndAtEveryScale) {
+TEST(Gap, StaysAccurateFarFromTheOriginAndAtEveryScale) {
   const Solid torus = model("torus");
   Poses random(15);
   for (const double scale : {1e-6, 1e6}) {
@@ -217,7 +220,7 @@ TEST(Gap, KeepsItsDigitsFarFromTheOriginAndAtEveryScale) {
       Pose p = random.pose(1.5), q = random.pose(1.5);
       const double expected = collision::compute_gap(torus.shape, p, torus.shape, q).distance;
       if (expected < 0) continue;
-      const Vector3d shift(1048576.0, -524288.0, 262144.0);   // m: what it costs is one rounding of it, 1.2e-10 m
+      const Vector3d shift(1048576.0, -524288.0, 262144.0);   // m: one rounding of it is 1.2e-10 m
       const double far = collision::compute_gap(torus.shape, {p.com_world + shift, p.world_from_body}, torus.shape, {q.com_world + shift, q.world_from_body}).distance;
       EXPECT_NEAR(far, expected, 4 * 1.2e-10);
       p.com_world *= scale;

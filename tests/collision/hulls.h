@@ -1,4 +1,4 @@
-/// Convex rocks with a wished number of vertices, for tests and figures.
+/// Convex rocks with a given number of vertices, for tests and figures.
 #pragma once
 
 #include <random>
@@ -8,7 +8,7 @@
 
 namespace tumble::testing {
 
-/// The hull of points in general position, by trying every triple. Cost: O(n^4).
+/// The hull of points in general position, by testing every triple. Cost: O(n^4).
 inline TriangleMesh hull_mesh(const std::vector<Vector3d>& points) {
   TriangleMesh mesh;
   mesh.vertices = points;
@@ -28,7 +28,8 @@ inline TriangleMesh hull_mesh(const std::vector<Vector3d>& points) {
   return mesh;
 }
 
-/// A rock: `vertices` corners on an ellipsoid with half axes 0.5, 0.45 and 0.35 m. Same seed, same rock.
+/// A rock: `vertices` corners on an ellipsoid with semi-axes 0.5, 0.45 and 0.35 m. The same seed
+/// gives the same rock.
 inline Shape random_hull(int vertices, unsigned seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;

@@ -1,4 +1,5 @@
-// What judges whether solids overlap (tests/support/overlap.h), against the same with 33 digits.
+// The test oracle for overlaps (tests/support/overlap.h), against the same computation with 33
+// digits.
 #include <gtest/gtest.h>
 
 #include "framework/core/random.h"
@@ -25,8 +26,9 @@ Quaterniond some_turn(Random& random) {
   return Quaterniond(a, b, c, d).normalized();
 }
 
-TEST(DeepestOverlap, OfTwoRocksIsThatOfTheSlowWay) {
-  // Dot products of lengths below 2 m, some twenty roundings: 40 eps. An axis that is left out shows as more than 1e-3 m somewhere.
+TEST(DeepestOverlap, OfTwoRocksEqualsTheExhaustiveMethod) {
+// Dot products of lengths below 2 m, some twenty roundings: 40 eps. A missing axis changes some
+// depth by more than 1e-3 m.
   Random random(5);
   int overlapping = 0;
   for (int k = 0; k < 60; ++k) {
@@ -44,7 +46,7 @@ TEST(DeepestOverlap, OfTwoRocksIsThatOfTheSlowWay) {
   EXPECT_LT(overlapping, 60);
 }
 
-TEST(DeepestOverlap, OfBallsAndFloorsIsTheClosedForm) {
+TEST(DeepestOverlap, OfBallsAndFloorsEqualsTheClosedForm) {
   World world;
   world.bodies = {solid(Sphere{0.5}), solid(Sphere{0.25}), solid(Box{Vector3d(0.5, 0.5, 0.5)}), solid(HalfSpace{})};
   world.bodies[3].inertia = infinite_inertia();
@@ -53,8 +55,8 @@ TEST(DeepestOverlap, OfBallsAndFloorsIsTheClosedForm) {
   std::vector<BodyPose> poses{placed_at(Vector3d(0, 0, 0), Quaterniond::Identity()), placed_at(Vector3d(0.7, 0, 0), Quaterniond::Identity()),
                               placed_at(Vector3d(20, 0, 0), Quaterniond::Identity()), placed_at(Vector3d(0, 0, -10), Quaterniond::Identity())};
   EXPECT_NEAR(deepest_overlap(world, poses), 0.05, 4 * kEpsilon);   // 0.5 + 0.25 - 0.7
-  poses[2].com_world.z() = -9.6;                                     // the box reaches 0.1 m into the floor
-  EXPECT_NEAR(deepest_overlap(world, poses), 0.1, 40 * kEpsilon);    // of heights of 10 m
+  poses[2].com_world.z() = -9.6;                                     // the box penetrates the floor by 0.1 m
+  EXPECT_NEAR(deepest_overlap(world, poses), 0.1, 40 * kEpsilon);    // eps times heights of 10 m
   poses[1].com_world.x() = 0.75;
   poses[2].com_world.z() = 0.0;
   EXPECT_EQ(deepest_overlap(world, poses), 0.0);

@@ -1,4 +1,5 @@
-// A solid with a feature that is small against how far the other one flies while it comes near: the nearest part is not the first hit.
+// A solid with a feature that is small compared with the other's path during its approach: the
+// nearest part is not hit first.
 #include <cmath>
 #include <limits>
 
@@ -27,7 +28,8 @@ struct Brick {
   }
 };
 
-/// A ball that skims a slab and may meet a ridge 1 mm wide on it. Times count from where the ball is half a metre before x = 0.
+/// A ball that skims a slab and may hit a ridge on it, 1 mm wide. At t = 0 the ball is half a metre
+/// before x = 0.
 struct Flight {
   double radius, height, sinking, ridge_x, ridge_top;   // [m], [m], [m/s], [m], [m]
   static constexpr double kSpeed = 300.0, kStep = 1.0 / 60;
@@ -36,7 +38,8 @@ struct Flight {
   Brick ridge() const { return {{ridge_x, -5, -0.5}, {ridge_x + 0.001, 5, ridge_top}}; }
   Vector3d place(double t) const { return {-0.5 + kSpeed * t, 0.1, radius + height - sinking * t}; }
 
-  /// By closed form: a distance never shrinks faster than the ball flies, so that going on by distance over speed never steps over.
+  /// By sphere tracing with the closed-form distance: it never shrinks faster than the ball's
+  /// speed, so an advance by distance / speed never passes an impact.
   double truth() const {
     const double speed = std::hypot(kSpeed, sinking);
     for (double t = 0.0; t < kStep;) {
@@ -64,7 +67,7 @@ struct Flight {
   }
 };
 
-TEST(Ridge, ABallThatSkimsASlabMeetsTheRidgeOnItFirst) {
+TEST(Ridge, BallThatSkimsASlabHitsTheRidgeFirst) {
   int on_ridge = 0, cases = 0;
   for (const double radius : {0.0005, 0.01, 0.1})
     for (const double height : {0.0005, 0.002, 0.01})
@@ -75,8 +78,9 @@ TEST(Ridge, ABallThatSkimsASlabMeetsTheRidgeOnItFirst) {
             const double truth = flight.truth(), found = flight.found();
             ++cases;
             if (truth < kNever && flight.ridge().distance(flight.place(truth)) - radius < 1e-9) ++on_ridge;
-            // The truth stops within 1e-13 m of touching; seen at an angle of 1e-2 or more that is 1e-11 m of the way, at 300 m/s.
-            if (found == truth) continue;   // also where neither sees a hit
+            // The reference stops within 1e-13 m of touching; at an angle of incidence of 1e-2 or
+            // more that is 1e-11 m along the path, at 300 m/s.
+            if (found == truth) continue;   // also where neither finds an impact
             EXPECT_NEAR(found, truth, 1e-11) << "radius " << radius << ", height " << height << ", sinking " << sinking << ", ridge at " << ridge_x
                                              << " up to " << flight.ridge_top;
           }

@@ -1,4 +1,5 @@
-// Times of impact against independently computed truths, at 100 times the floor of double precision.
+// Times of impact against independent reference values, with a tolerance of 100 times the error
+// floor of double precision.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -72,10 +73,10 @@ TEST_P(TimeOfImpact, RodPlane) {
   for (const std::string name : {"fast_spin", "no_gravity_sweep", "slow_spin"}) {
     const auto truth = read_truth("toi_rod_plane/" + name);
     const double half = 0.5 * number(input(truth, "L"));
-    TriangleMesh mesh;  // a rod is its two ends
+    TriangleMesh mesh;  // the rod's two ends
     mesh.vertices = {{half, 0, 0}, {-half, 0, 0}};
     const CollisionShape rod{MeshSolid{mesh, true}}, plane{HalfSpace{}};
-    // The angle phi turns x towards z: about -y.
+    // The angle phi rotates x towards z: about -y.
     const double phi = number(input(truth, "phi0")), omega = number(input(truth, "omega"));
     const Motion motion = flight({0, 0, number(input(truth, "h"))}, {0, 0, number(input(truth, "v_up"))}, {0, 0, -number(input(truth, "g"))},
                                  {0, -omega, 0}, Quaterniond(Eigen::AngleAxisd(phi, -Vector3d::UnitY())));

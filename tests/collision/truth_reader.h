@@ -1,4 +1,4 @@
-/// Reads a truth of tests/truths: numbers are decimal strings.
+/// Reads a reference value of tests/truths; numbers are decimal strings.
 #pragma once
 
 #include <cstdlib>
@@ -17,7 +17,7 @@ inline nlohmann::json read_truth(const std::string& id) {
   std::string name = id;
   name.replace(name.find('/'), 1, "__");
   std::ifstream file(std::string(TUMBLE_SOURCE_DIR) + "/tests/truths/" + name + ".json");
-  if (!file) throw std::runtime_error("no truth " + id);
+  if (!file) throw std::runtime_error("no reference value " + id);
   return nlohmann::json::parse(file);
 }
 
@@ -32,7 +32,7 @@ inline std::vector<double> numbers(const nlohmann::json& value) {
 }
 inline nlohmann::json input(const nlohmann::json& truth, const std::string& name) { return truth.at("inputs").at(name).at("value"); }
 inline nlohmann::json output(const nlohmann::json& truth, const std::string& name) { return truth.at("outputs").at(name).at("value"); }
-/// 100 times what double precision itself forces.
+/// Tolerance: 100 times the error floor of double precision.
 inline double pass_mark(const nlohmann::json& truth, const std::string& name) {
   return 100 * number(truth.at("outputs").at(name).at("tolerance_floor"));
 }

@@ -1,4 +1,4 @@
-// Which word a person meant.
+// The nearest known word to a mistyped one.
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
@@ -13,7 +13,7 @@ TEST(NearestWord, DistancesCountLetters) {
   EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
 }
 
-TEST(NearestWord, FewSlipsAreForgiven) {
+TEST(NearestWord, FewTypingErrorsAreCorrected) {
   const std::vector<std::string> verbs = {"run", "watch", "check", "inspect"};
   EXPECT_EQ(nearest_word("chek", verbs), "check");
   EXPECT_EQ(nearest_word("wacht", verbs), "watch");
@@ -21,20 +21,20 @@ TEST(NearestWord, FewSlipsAreForgiven) {
   EXPECT_EQ(nearest_word("rn", verbs), "run");
 }
 
-TEST(NearestWord, AnotherUnitIsOneSlip) {
+TEST(NearestWord, AnotherUnitIsOneError) {
   const std::vector<std::string> keys = {"radius_m", "mass_kg", "velocity_m_s"};
   EXPECT_EQ(nearest_word("mass", keys), "mass_kg");
   EXPECT_EQ(nearest_word("mass_pounds", keys), "mass_kg");
 }
 
-TEST(NearestWord, WhatIsFarOrEmptyIsNotGuessed) {
+TEST(NearestWord, FarOrEmptyWordHasNoSuggestion) {
   EXPECT_EQ(nearest_word("simulate", {"run", "check"}), "");
-  EXPECT_EQ(nearest_word("xy", {"ab", "cd"}), "") << "no letter in common is no slip";
+  EXPECT_EQ(nearest_word("xy", {"ab", "cd"}), "") << "no letter in common";
   EXPECT_EQ(nearest_word("", {"a"}), "");
   EXPECT_EQ(nearest_word("word", {}), "");
 }
 
-TEST(NearestWord, TheQuestionStandsInASentence) {
+TEST(NearestWord, QuestionIsAppendedToASentence) {
   EXPECT_EQ(did_you_mean("chek", {"check"}), " Did you mean 'check'?");
   EXPECT_EQ(did_you_mean("chek", {"run"}), "");
   EXPECT_STREQ(UserError("chek", "no verb." + did_you_mean("chek", {"check"}), "Known: check.").what(), "chek: no verb. Did you mean 'check'? Known: check.");

@@ -1,4 +1,4 @@
-// The turn that carries one direction onto another.
+// The rotation that takes one direction to another.
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ constexpr double kRoundings = 2e-15;  // a dozen operations on numbers of size 1
 
 Vector3d direction(double angle) { return {std::cos(angle), std::sin(angle), 0.0}; }
 
-TEST(ShortestTurn, CarriesOneDirectionOntoTheOther) {
+TEST(ShortestTurn, TakesOneDirectionToTheOther) {
   for (const double angle : {0.0, 1e-9, 0.3, 1.5, 3.0, 3.1, std::numbers::pi - 1e-3, std::numbers::pi - 1e-6, std::numbers::pi - 1e-10, std::numbers::pi}) {
     const Quaterniond turn = shortest_turn(2.0 * direction(0.7), 3.0 * direction(0.7 + angle));
     EXPECT_NEAR(turn.norm(), 1.0, kRoundings) << angle;

@@ -1,4 +1,5 @@
-// Shares of CPU time by samples of the stack, against the times that the same work took by the clock of the process.
+// Shares of CPU time by stack samples, against the times for which the same functions are made to
+// run.
 #include <cmath>
 #include <thread>
 
@@ -10,7 +11,7 @@
 
 namespace tumble::testing {
 
-// Not put into their callers, and with names of their own: what the samples are asked for.
+// Not inlined, and with external names, so that samples can be attributed to them.
 [[gnu::noinline]] double spin_for_samples(double seconds) {
   double x = 1.0;
   for (const double until = thread_seconds() + seconds; thread_seconds() < until;)
@@ -26,13 +27,13 @@ namespace {
 const std::vector<StackSamples::Part> kParts = {{"quick", {"tumble::testing::quick_part_of_samples"}}, {"slow", {"tumble::testing::slow_part_of_samples"}}};
 constexpr double kSigmas = 5.0;
 
-// One in six by construction; N samples are N draws at worst, and evenly spaced ones err by less.
+// The standard error of N independent samples; evenly spaced samples have a smaller one.
 void expect_share(const StackSamples::Shares& shares, std::size_t part, double expected) {
   ASSERT_GT(shares.samples, 20U) << "0.6 s at 10 ms or less";
   EXPECT_NEAR(shares.of_part[part], expected, kSigmas * std::sqrt(expected * (1 - expected) / static_cast<double>(shares.samples)));
 }
 
-TEST(StackSamples, TellHowLongEachPartTook) {
+TEST(StackSamples, MeasureTheShareOfEachPart) {
   StackSamples samples;
   samples.begin();
   quick_part_of_samples();
@@ -54,7 +55,7 @@ TEST(StackSamples, BelongToTheInnermostPart) {
   EXPECT_GT(shares.of_part[1], 0.9);
 }
 
-TEST(StackSamples, BelongToThePartThatNamesThemAtGreaterLength) {
+TEST(StackSamples, BelongToThePartWithTheLongestMatchingPrefix) {
   StackSamples samples;
   samples.begin();
   slow_part_of_samples();
@@ -62,7 +63,7 @@ TEST(StackSamples, BelongToThePartThatNamesThemAtGreaterLength) {
   EXPECT_GT(samples.shares({{"all", {"tumble::testing::s"}}, {"this", {"tumble::testing::spin_for"}}}, {}).of_part[1], 0.9);
 }
 
-TEST(StackSamples, LeaveOutWhatIsNotAsked) {
+TEST(StackSamples, LeaveOutExcludedFunctions) {
   StackSamples samples;
   samples.begin();
   quick_part_of_samples();
@@ -83,7 +84,7 @@ TEST(StackSamples, SeeAllThreads) {
   expect_share(samples.shares(kParts, {}), 1, 5.0 / 6.0);
 }
 
-TEST(StackSamples, TakenBySomebodyElseAreRefusedAndAfterTheEndThereAreNone) {
+TEST(StackSamples, TakenTwiceAtOnceAreRefusedAndAfterTheEndThereAreNone) {
   StackSamples first, second;
   first.begin();
   EXPECT_THROW(second.begin(), PreconditionError);

@@ -1,7 +1,9 @@
 // A world is what its scene asks for, and nothing else.
-#include "framework/dynamics/build_world.h"
-#include "framework/dynamics/invariants.h"
 #include "framework/dynamics/world.h"
+#include "framework/effects/build_world.h"
+#include "framework/effects/drag/drag.h"
+#include "framework/effects/gravity/gravity.h"
+#include "framework/effects/invariants.h"
 
 #include <cmath>
 #include <numbers>
@@ -10,6 +12,11 @@
 
 #include "framework/core/error.h"
 #include "framework/dynamics/anchors.h"
+#include "framework/effects/joint/joint.h"
+#include "framework/effects/motor/motor.h"
+#include "framework/effects/point_force/point_force.h"
+#include "framework/effects/rod/rod.h"
+#include "framework/effects/spring/spring.h"
 #include "tests/dynamics/tops.h"
 
 namespace tumble::testing {
@@ -34,7 +41,7 @@ scene::Scene scene_of(std::vector<scene::BodySpec> bodies) {
 TEST(World, HasNoEffectThatTheSceneDoesNotAskFor) {
   const World world = build_world(scene_of({ball("a", 2.0)}));
   EXPECT_FALSE(world.gravity_world.has_value());
-  EXPECT_TRUE(world.point_forces.empty());
+  EXPECT_TRUE(world.effects.of<effects::PointForce>().empty());
 }
 
 TEST(World, StartsWithTheMomentaOfTheVelocitiesGiven) {
@@ -61,7 +68,7 @@ TEST(World, RefusesWhatCannotBe) {
   plane.inertia_body_kg_m2 = Matrix3d::Identity();
   EXPECT_THROW(build_world(scene_of({plane})), UserError);
   scene::Scene pushed = scene_of({ball("a", 1.0)});
-  pushed.point_forces = {{.body = "b", .force_n = {1, 0, 0}, .point_m = {0, 0, 0}, .start_s = 0, .duration_s = 1}};
+  pushed.effects.of<effects::PointForceSpec>() = {{.body = "b", .force_n = {1, 0, 0}, .point_m = {0, 0, 0}, .start_s = 0, .duration_s = 1}};
   EXPECT_THROW(build_world(pushed), UserError);
 }
 
@@ -96,7 +103,7 @@ TEST(World, MovesAWallAsPrescribedWithTheRateOfItsPosition) {
 
 TEST(World, SumsInvariantsOverMovableBodiesAboutTheOrigin) {
   scene::Scene scene = scene_of({ball("a", 2.0), ball("b", 3.0)});
-  scene.gravity_m_s2 = Vector3d(0, 0, -10);
+  effects::set_gravity(scene, Vector3d(0, 0, -10));
   scene.bodies[0].position_m = {1, 0, 4};
   scene.bodies[0].velocity_m_s = {0, 1, 0};
   scene.bodies[1].immovable = true;
@@ -112,7 +119,7 @@ TEST(World, SumsInvariantsOverMovableBodiesAboutTheOrigin) {
 
 TEST(World, HasNoLinksThatTheSceneDoesNotAskFor) {
   const World world = build_world(scene_of({ball("a", 2.0), ball("b", 2.0)}));
-  EXPECT_TRUE(world.springs.empty() && world.rods.empty() && world.joints.empty() && world.drags.empty() && world.motors.empty() && world.apart.empty());
+  EXPECT_TRUE(world.effects.of<effects::SpringLink>().empty() && world.effects.of<effects::RodLink>().empty() && world.effects.of<effects::JointLink>().empty() && world.effects.of<effects::Drag>().empty() && world.effects.of<effects::Motor>().empty() && world.apart.empty());
   EXPECT_FALSE(world.contact.has_value());
   EXPECT_FALSE(world.stabilisation.has_value());
 }
@@ -127,9 +134,9 @@ scene::Scene two_balls() {
 
 TEST(World, AnchorsMoveWithTheirBodies) {
   scene::Scene scene = two_balls();
-  scene.springs.push_back({"coil", {"b", {1, 0, 0}}, {"", {4, 7, 0}}, 10.0, 1.0, 2.0, ""});
+  scene.effects.of<effects::SpringSpec>().push_back({"coil", {"b", {1, 0, 0}}, {"", {4, 7, 0}}, 10.0, 1.0, 2.0, ""});
   World world = build_world(scene);
-  const SpringLink& link = world.springs[0];
+  const effects::SpringLink& link = world.effects.of<effects::SpringLink>()[0];
   EXPECT_EQ(link.a.body, 1);
   EXPECT_EQ(link.b.body, -1);
   std::vector<RigidBodyState> states = {world.bodies[0].state, world.bodies[1].state};
@@ -148,9 +155,9 @@ TEST(World, AnchorOfAMovingWallFollowsIt) {
   scene.bodies[0].immovable = true;
   scene.bodies[0].mass_kg.reset();
   scene.bodies[0].motion = scene::PrescribedMotion{{0, 0, 2}, {0, 0, 0}, 0.0};
-  scene.rods.push_back({"stick", {"a", {0, 1, 0}}, {"b", {0, 0, 0}}, std::sqrt(17.0), ""});
+  scene.effects.of<effects::RodSpec>().push_back({"stick", {"a", {0, 1, 0}}, {"b", {0, 0, 0}}, std::sqrt(17.0), ""});
   const World world = build_world(scene);
-  const AnchorState moved = anchor_state(world.rods[0].a, world, {world.bodies[0].state, world.bodies[1].state}, 3.0);
+  const AnchorState moved = anchor_state(world.effects.of<effects::RodLink>()[0].a, world, {world.bodies[0].state, world.bodies[1].state}, 3.0);
   EXPECT_EQ(moved.point_world, Vector3d(0, 1, 6));
   EXPECT_EQ(moved.velocity_world, Vector3d(0, 0, 2));
   EXPECT_TRUE(world.stabilisation.has_value());
@@ -158,31 +165,31 @@ TEST(World, AnchorOfAMovingWallFollowsIt) {
 
 TEST(World, BothBodiesOfAJointSeeItsPointAndAxisInTheSamePlace) {
   scene::Scene scene = two_balls();
-  scene::JointSpec hinge;
+  effects::JointSpec hinge;
   hinge.name = "elbow";
-  hinge.kind = scene::JointKind::kHinge;
+  hinge.kind = effects::JointKind::kHinge;
   hinge.body_a = "b";
   hinge.body_b = "a";
   hinge.point_m = {2, 0.5, -1};
   hinge.axis = Vector3d(0.6, 0, -0.8);
-  scene.joints.push_back(hinge);
-  scene::MotorSpec motor;
+  scene.effects.of<effects::JointSpec>().push_back(hinge);
+  effects::MotorSpec motor;
   motor.joint = "elbow";
-  scene.motors.push_back(motor);
+  scene.effects.of<effects::MotorSpec>().push_back(motor);
   const World world = build_world(scene);
-  const JointLink& link = world.joints[0];
+  const effects::JointLink& link = world.effects.of<effects::JointLink>()[0];
   const std::vector<RigidBodyState> states = {world.bodies[0].state, world.bodies[1].state};
   EXPECT_LE((anchor_point(link.a, states) - hinge.point_m).norm(), 10 * kEps * 4);
   EXPECT_LE((anchor_point(link.b, states) - hinge.point_m).norm(), 10 * kEps * 4);
   EXPECT_LE((states[1].world_from_body * link.a_from_joint * Vector3d::UnitZ() - hinge.axis).norm(), 20 * kEps);
   EXPECT_LE((states[0].world_from_body * link.b_from_joint * Vector3d::UnitZ() - hinge.axis).norm(), 20 * kEps);
-  EXPECT_EQ(world.motors[0].joint, 0);
+  EXPECT_EQ(world.effects.of<effects::Motor>()[0].hinge.name, link.name);
   EXPECT_EQ(world.apart, (std::vector<std::pair<int, int>>{{0, 1}})) << "joined bodies never collide";
 }
 
 TEST(World, RodsDoNotKeepFromCollidingAndPairsApartAreSortedOnce) {
   scene::Scene scene = two_balls();
-  scene.rods.push_back({"stick", {"a", {0, 0, 0}}, {"b", {0, 0, 0}}, 4.0, ""});
+  scene.effects.of<effects::RodSpec>().push_back({"stick", {"a", {0, 0, 0}}, {"b", {0, 0, 0}}, 4.0, ""});
   EXPECT_TRUE(build_world(scene).apart.empty());
   scene.apart = {{"b", "a"}, {"a", "b"}};
   EXPECT_EQ(build_world(scene).apart, (std::vector<std::pair<int, int>>{{0, 1}}));
@@ -190,13 +197,13 @@ TEST(World, RodsDoNotKeepFromCollidingAndPairsApartAreSortedOnce) {
 
 TEST(World, RefusesLinksThatCannotBe) {
   scene::Scene scene = two_balls();
-  scene.springs.push_back({"coil", {"c", {0, 0, 0}}, {"", {0, 0, 0}}, 1, 0, 1, ""});
+  scene.effects.of<effects::SpringSpec>().push_back({"coil", {"c", {0, 0, 0}}, {"", {0, 0, 0}}, 1, 0, 1, ""});
   EXPECT_THROW(build_world(scene), UserError);
-  scene.springs.clear();
-  scene.rods.push_back({"stick", {"", {0, 0, 0}}, {"", {1, 0, 0}}, 1, ""});
+  scene.effects.of<effects::SpringSpec>().clear();
+  scene.effects.of<effects::RodSpec>().push_back({"stick", {"", {0, 0, 0}}, {"", {1, 0, 0}}, 1, ""});
   EXPECT_THROW(build_world(scene), UserError);
-  scene.rods.clear();
-  scene.motors.emplace_back();
+  scene.effects.of<effects::RodSpec>().clear();
+  scene.effects.of<effects::MotorSpec>().emplace_back();
   EXPECT_THROW(build_world(scene), UserError);
 }
 

@@ -8,10 +8,12 @@
 
 #include "framework/core/decompositions.h"
 #include "framework/core/random.h"
-#include "framework/dynamics/build_world.h"
-#include "framework/engines/judging/judge.h"
+#include "framework/effects/build_world.h"
+#include "framework/effects/joint/joint.h"
+#include "framework/effects/rod/rod.h"
 #include "framework/engines/contact/meetings.h"
 #include "framework/engines/contact/sequential_impacts.h"
+#include "framework/engines/judging/judge.h"
 #include "tests/engines/event_scenes.h"
 #include "tests/engines/reference_laws.h"
 
@@ -78,7 +80,7 @@ TEST(ImpactsOnLinks, ABobOnARodYieldsAcrossItOnly) {
       const double angle = degrees * std::numbers::pi / 180;
       const Vector3d way(std::sin(angle), 0, std::cos(angle));   // of the ball, to the bob
       scene::Scene scene = linked_scene({ball("bob", r, M, {0, 0, -1}, Vector3d::Zero()), ball("ball", r, m, Vector3d(0, 0, -1) - (2 * r + kSoon * v) * way, v * way)}, e);
-      scene.rods.push_back({"rod", {"bob", Vector3d::Zero()}, {"", Vector3d::Zero()}, 1.0});
+      scene.effects.of<effects::RodSpec>().push_back({"rod", {"bob", Vector3d::Zero()}, {"", Vector3d::Zero()}, 1.0});
       const double K = 1 / m + way.x() * way.x() / M, j = (1 + e) * v / K;
       in_all_engines(scene, [&](const Trajectory& run) {
         const Event& event = first_collision(run);
@@ -99,7 +101,7 @@ TEST(ImpactsOnLinks, AHingedBarTurnsAsItsMomentAboutTheHingeSays) {
   for (const double d : {0.05, 0.3, 2.0 / 3, 0.9})
     for (const double e : {1.0, 0.5, 0.0}) {
       scene::Scene scene = linked_scene({box("bar", {0.5, 0.05, 0.05}, M, {0.5, 0, 0}, Vector3d::Zero()), ball("ball", 0.1, m, {d, 0.15 + kSoon * v, 0}, {0, -v, 0})}, e);
-      scene.joints.push_back({"hinge", scene::JointKind::kHinge, "bar", "", Vector3d::Zero(), Vector3d::UnitZ()});
+      scene.effects.of<effects::JointSpec>().push_back({"hinge", effects::JointKind::kHinge, "bar", "", Vector3d::Zero(), Vector3d::UnitZ()});
       const double j = (1 + e) * v / (1 / m + d * d / I);
       in_all_engines(scene, [&](const Trajectory& run) {
         EXPECT_NEAR(first_collision(run).impulse, j, kRounding) << d << ' ' << e;
@@ -123,7 +125,7 @@ TEST(ImpactsOnLinks, ADoorComesBackFromItsStopAsRestitutionSays) {
       stop.immovable = true;
       stop.mass_kg.reset();
       scene::Scene scene = linked_scene({door, stop}, e, friction);
-      scene.joints.push_back({"hinge", scene::JointKind::kHinge, "door", "", Vector3d::Zero(), Vector3d::UnitZ()});
+      scene.effects.of<effects::JointSpec>().push_back({"hinge", effects::JointKind::kHinge, "door", "", Vector3d::Zero(), Vector3d::UnitZ()});
       in_all_engines(scene, [&](const Trajectory& run) {
         const Frame& end = run.frames.back();
         const double hop = e == 0.0 ? 1e-9 + scene.rest_speed_m_s : 0.0;   // what does not bounce may be sent off at the rest speed
@@ -223,7 +225,7 @@ TEST(ImpactsOnLinks, AChainAnswersWithAllItsBobs) {
       const double v = 2.0;
       scene::Scene scene = linked_scene({ball("bob0", 0.1, 1.0, places[0], Vector3d::Zero()), ball("bob1", 0.1, 2.0, places[1], Vector3d::Zero()), ball("bob2", 0.1, 0.5, places[2], Vector3d::Zero()),
                                          ball("ball", 0.1, 1.5, places[1] - (0.2 + kSoon * v) * way, v * way)}, e);
-      scene.rods = {{"a", {"", Vector3d::Zero()}, {"bob0", Vector3d::Zero()}, places[0].norm()}, {"b", {"bob0", Vector3d::Zero()}, {"bob1", Vector3d::Zero()}, (places[1] - places[0]).norm()},
+      scene.effects.of<effects::RodSpec>() = {{"a", {"", Vector3d::Zero()}, {"bob0", Vector3d::Zero()}, places[0].norm()}, {"b", {"bob0", Vector3d::Zero()}, {"bob1", Vector3d::Zero()}, (places[1] - places[0]).norm()},
                     {"c", {"bob1", Vector3d::Zero()}, {"bob2", Vector3d::Zero()}, (places[2] - places[1]).norm()}};
       OneImpact still(scene);
       engines::LinkedBodies& chain = still.moving.linked_groups().front();
@@ -243,7 +245,7 @@ TEST(ImpactsOnLinks, TwoLinkedPairsThatMeetYieldAsBothRodsLetThem) {
   for (const double e : {1.0, 0.3}) {
     const Vector3d at = Vector3d::Zero(), there(0.2 + kSoon * v, 0, 0);
     scene::Scene scene = linked_scene({ball("a1", 0.1, m, at, v * n), ball("a2", 0.1, m, at - r1, v * n), ball("b1", 0.1, M, there, Vector3d::Zero()), ball("b2", 0.1, M, there + r2, Vector3d::Zero())}, e);
-    scene.rods = {{"a", {"a1", Vector3d::Zero()}, {"a2", Vector3d::Zero()}, 1.0}, {"b", {"b1", Vector3d::Zero()}, {"b2", Vector3d::Zero()}, 1.0}};
+    scene.effects.of<effects::RodSpec>() = {{"a", {"a1", Vector3d::Zero()}, {"a2", Vector3d::Zero()}, 1.0}, {"b", {"b1", Vector3d::Zero()}, {"b2", Vector3d::Zero()}, 1.0}};
     const double K = (1 - 0.5 * 0.36) / m + (1 - 0.5 * 0.28 * 0.28) / M;
     in_all_engines(scene, [&](const Trajectory& run) {
       EXPECT_NEAR(first_collision(run).impulse, (1 + e) * v / K, kRounding * 10);
@@ -262,7 +264,7 @@ TEST(ImpactsOnLinks, FrictionOnABobSlidesOrSticksWithItsRod) {
   for (const double mu : {0.05, 2.0}) {
     const Vector3d bob(0, 0, -1);
     scene::Scene scene = linked_scene({ball("bob", r, 1.0, bob, Vector3d::Zero()), ball("ball", r, 1.0, bob - 2 * r * n_to_bob - kSoon * velocity, velocity)}, e, mu);
-    scene.rods.push_back({"rod", {"bob", Vector3d::Zero()}, {"", Vector3d::Zero()}, 1.0});
+    scene.effects.of<effects::RodSpec>().push_back({"rod", {"bob", Vector3d::Zero()}, {"", Vector3d::Zero()}, 1.0});
     // Of the bob against the ball: both turn (5/2 each), the ball yields in both directions, the bob along x only.
     const double Knn = 1 + n_to_bob.x() * n_to_bob.x(), Knt = n_to_bob.x() * t.x(), Ktt = 1 + 5 + t.x() * t.x(), rise = (1 + e) * v;
     double normal, tangential;
@@ -323,10 +325,10 @@ scene::Scene random_tree(Random& random, bool is_free, bool loop, double e, doub
   bodies.push_back(ball("ball", 0.15, std::exp(random.between(-2, 2)), body.position_m + surface + 0.15 * out, Vector3d::Zero()));
   scene::Scene scene = linked_scene(bodies, e, friction);
   const auto link = [&](const std::string& a, const std::string& b, const Vector3d& at, const Vector3d& from) {
-    const std::string name = "l" + std::to_string(scene.rods.size() + scene.joints.size());
+    const std::string name = "l" + std::to_string(scene.effects.of<effects::RodSpec>().size() + scene.effects.of<effects::JointSpec>().size());
     const double kind = random.unit();
-    if (kind < 0.3) scene.rods.push_back({name, {a, Vector3d::Zero()}, {b, b.empty() ? from : Vector3d(Vector3d::Zero())}, (at - from).norm()});
-    else scene.joints.push_back({name, kind < 0.55 ? scene::JointKind::kHinge : kind < 0.85 ? scene::JointKind::kBall : scene::JointKind::kWeld, a, b, 0.5 * (at + from), direction(random)});
+    if (kind < 0.3) scene.effects.of<effects::RodSpec>().push_back({name, {a, Vector3d::Zero()}, {b, b.empty() ? from : Vector3d(Vector3d::Zero())}, (at - from).norm()});
+    else scene.effects.of<effects::JointSpec>().push_back({name, kind < 0.55 ? effects::JointKind::kHinge : kind < 0.85 ? effects::JointKind::kBall : effects::JointKind::kWeld, a, b, 0.5 * (at + from), direction(random)});
   };
   for (int i = 1; i < n; ++i) {
     int nearest = 0;   // the one it was set beside
@@ -337,9 +339,9 @@ scene::Scene random_tree(Random& random, bool is_free, bool loop, double e, doub
   if (!is_free) link("b0", "", places[0], Vector3d(0.1, 0, 0));
   if (loop && n > 2) {
     link("b" + std::to_string(n - 1), "b0", places.back(), places[0]);
-    if (!scene.joints.empty()) {
-      scene.joints.push_back(scene.joints.front());   // the same twice: its rows are redundant
-      scene.joints.back().name = "again";
+    if (!scene.effects.of<effects::JointSpec>().empty()) {
+      scene.effects.of<effects::JointSpec>().push_back(scene.effects.of<effects::JointSpec>().front());   // the same twice: its rows are redundant
+      scene.effects.of<effects::JointSpec>().back().name = "again";
     }
   }
   return scene;
@@ -404,7 +406,7 @@ TEST(ImpactsOnLinks, WhereRodsHoldBothNothingCanPartThemAndTheRunSaysSo) {
   driver.motion = scene::PrescribedMotion{{1, 0, 0}, Vector3d::Zero(), 0.0};
   scene::Scene scene = linked_scene({driver, ball("bob", 0.1, 1.0, {1.0, 0, 0}, {1, 0, 0}), wall}, 0.5);
   scene.duration_s = 0.3;
-  scene.rods.push_back({"rod", {"driver", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 1.0});
+  scene.effects.of<effects::RodSpec>().push_back({"rod", {"driver", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 1.0});
   for (const auto& [law, asked] : under_all_laws(scene)) {
     if (law == "simultaneous") continue;
     for (const char* engine : kEngines) {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/dynamics/world.h"
+#include "framework/effects/rod/rod.h"
 #include "tests/engines/event_scenes.h"
 #include "tests/engines/reference_laws.h"
 
@@ -161,7 +162,7 @@ TEST(DrivenBodies, ATrainMovesAsTheStation) {
   scene::Scene scene = with_contact({plane("floor", Vector3d::Zero(), Vector3d::UnitZ()), hook({0, 0, 1.5}), ball("bob", 0.1, 1.0, {0, 0, 0.5}, Vector3d::Zero()),
                                      ball("ball", 0.1, 0.7, {-1.0, 0.02, 1.0}, {3.0, 0, 0}), box("box", {0.1, 0.1, 0.1}, 1.0, {1.0, 0, 0.3}, {0.5, 0, 0})},
                                     0.6, 0.3, 0.5);
-  scene.rods.push_back({"rod", {"hook", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 1.0});
+  scene.effects.of<effects::RodSpec>().push_back({"rod", {"hook", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 1.0});
   scene.stabilisation = scene::StabilisationSpec{};
   for (const Vector3d& V : {Vector3d(0.5, 0, 0), Vector3d(0.25, -0.5, 1.0)})
     for (const char* engine : kEngines) {

@@ -5,6 +5,14 @@
 #include <string>
 #include <vector>
 
+#include "framework/effects/drag/drag.h"
+#include "framework/effects/gravity/gravity.h"
+#include "framework/effects/joint/joint.h"
+#include "framework/effects/motor/motor.h"
+#include "framework/effects/point_force/point_force.h"
+#include "framework/effects/rod/rod.h"
+#include "framework/effects/spring/spring.h"
+#include "framework/effects/water/water.h"
 #include "tests/engines/scenes.h"
 
 namespace tumble::testing {
@@ -17,6 +25,7 @@ inline const std::map<std::string, std::vector<std::string>> kCountersOf = {
     {"joint", {"joint_calls"}},
     {"drag", {"drag_calls"}},
     {"motor", {"motor_calls"}},
+    {"water", {"water_calls"}},
     {"contact", {"contact_solves", "contact_points", "contacts_begun"}},
     {"friction", {"friction_points"}},
     {"point force", {"point_force_calls"}},
@@ -42,26 +51,31 @@ inline scene::Scene bare() {
 }
 
 inline const std::map<std::string, AddsEffect> kEffects = {
-    {"gravity", [](scene::Scene& s) { s.gravity_m_s2 = Vector3d(0, 0, -1); }},
-    {"spring", [](scene::Scene& s) { s.springs.push_back({"s", {"", {0, 0, 2}}, {"a", Vector3d::Zero()}, 10.0, 0.1, 1.0}); }},
+    {"gravity", [](scene::Scene& s) { effects::set_gravity(s, Vector3d(0, 0, -1)); }},
+    {"spring", [](scene::Scene& s) { s.effects.of<effects::SpringSpec>().push_back({"s", {"", {0, 0, 2}}, {"a", Vector3d::Zero()}, 10.0, 0.1, 1.0}); }},
     {"rod",
      [](scene::Scene& s) {
-       s.rods.push_back({"r", {"", {0, 0, 2}}, {"a", Vector3d::Zero()}, 1.0});
+       s.effects.of<effects::RodSpec>().push_back({"r", {"", {0, 0, 2}}, {"a", Vector3d::Zero()}, 1.0});
        s.stabilisation.emplace();
      }},
     {"joint",
      [](scene::Scene& s) {
-       s.joints.push_back({"j", scene::JointKind::kHinge, "b", "", {1, 0, 2}, Vector3d::UnitY()});
+       s.effects.of<effects::JointSpec>().push_back({"j", effects::JointKind::kHinge, "b", "", {1, 0, 2}, Vector3d::UnitY()});
        s.stabilisation.emplace();
      }},
-    {"drag", [](scene::Scene& s) { s.drags.push_back({"a", 0.1, 0.1}); }},
+    {"drag", [](scene::Scene& s) { s.effects.of<effects::DragSpec>().push_back({"a", 0.1, 0.1}); }},
     {"motor",
      [](scene::Scene& s) {
        kEffects.at("joint")(s);
-       scene::MotorSpec motor;
+       effects::MotorSpec motor;
        motor.joint = "j";
        motor.stiffness_n_m_rad = motor.offset_rad = 1.0;
-       s.motors.push_back(motor);
+       s.effects.of<effects::MotorSpec>().push_back(motor);
+     }},
+    {"water",
+     [](scene::Scene& s) {
+       kEffects.at("gravity")(s);
+       s.effects.of<effects::WaterSpec>().emplace_back().surface_m.z() = 1.0;
      }},
     {"contact",
      [](scene::Scene& s) {
@@ -75,7 +89,7 @@ inline const std::map<std::string, AddsEffect> kEffects = {
        kEffects.at("contact")(s);
        for (scene::BodySpec& body : s.bodies) body.friction = 0.5;
      }},
-    {"point force", [](scene::Scene& s) { s.point_forces.push_back({"a", {1, 0, 0}, {0, 0, 1}, 0.0, 0.1}); }},
+    {"point force", [](scene::Scene& s) { s.effects.of<effects::PointForceSpec>().push_back({"a", {1, 0, 0}, {0, 0, 1}, 0.0, 0.1}); }},
     {"collision",
      [](scene::Scene& s) {
        s.bodies[0].velocity_m_s = {5, 0, 0};

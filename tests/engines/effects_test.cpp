@@ -22,7 +22,7 @@ const std::map<std::string, std::vector<EventKind>> kEventsOf = {
 TEST(Effects, OnlyWhatASceneAsksForRuns) {
   const Laws laws = reference_laws();
   // Effects that stand on others.
-  const std::map<std::string, std::vector<std::string>> brings = {{"motor", {"joint"}}, {"contact", {"gravity"}}, {"friction", {"contact", "gravity"}}, {"sleep", {"contact", "gravity"}}};
+  const std::map<std::string, std::vector<std::string>> brings = {{"motor", {"joint"}}, {"water", {"gravity"}}, {"contact", {"gravity"}}, {"friction", {"contact", "gravity"}}, {"sleep", {"contact", "gravity"}}};
   for (const auto& [effect, add] : kEffects) {
     scene::Scene scene = bare();
     add(scene);

@@ -1,6 +1,10 @@
 /// Scenes of bodies that links and lasting contacts hold together, among others that fly.
 #pragma once
 
+#include "framework/effects/drag/drag.h"
+#include "framework/effects/gravity/gravity.h"
+#include "framework/effects/point_force/point_force.h"
+#include "framework/effects/rod/rod.h"
 #include "framework/scene/load_scene.h"
 #include "tests/engines/event_scenes.h"
 
@@ -15,7 +19,7 @@ inline scene::Scene pendula_and_balls(int pendula, double duration) {
   for (int i = 0; i < pendula; ++i) {
     const std::string bob = "bob" + std::to_string(i);
     bodies.push_back(ball(bob, 0.1, 1.0, {0.45 * i, 0, 0}, {0.8 - 0.2 * i, 0, 0}));
-    scene.rods.push_back({"rod" + std::to_string(i), {"", {0.45 * i, 0, 1}}, {bob, Vector3d::Zero()}, 1.0});
+    scene.effects.of<effects::RodSpec>().push_back({"rod" + std::to_string(i), {"", {0.45 * i, 0, 1}}, {bob, Vector3d::Zero()}, 1.0});
     bodies.push_back(ball("ball" + std::to_string(i), 0.08, 0.5, {0.45 * i + 0.05, 0.35, 0.02 * i + 0.3}, {0.0, -1.0, 0.6}));
   }
   bodies.push_back(plane("wall", {0, -0.8, 0}, {0, 1, 0}));
@@ -24,10 +28,10 @@ inline scene::Scene pendula_and_balls(int pendula, double duration) {
   scene.name = "pendula";
   scene.bodies = std::move(bodies);
   scene.duration_s = duration;
-  scene.gravity_m_s2 = kEarth;
+  effects::set_gravity(scene, kEarth);
   scene.stabilisation = scene::StabilisationSpec{};
-  scene.drags.push_back({"bob0", 0.2, 0.0});
-  scene.point_forces.push_back({"ball0", {0.5, 0, 1.0}, {0.05, 0.35, 0.38}, 0.1, 0.3});
+  scene.effects.of<effects::DragSpec>().push_back({"bob0", 0.2, 0.0});
+  scene.effects.of<effects::PointForceSpec>().push_back({"ball0", {0.5, 0, 1.0}, {0.05, 0.35, 0.38}, 0.1, 0.3});
   return scene;
 }
 

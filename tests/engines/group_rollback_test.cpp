@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/effects/point_force/point_force.h"
 #include "tests/engines/event_process_scenes.h"
 #include "tests/engines/taught_laws.h"
 
@@ -36,7 +37,7 @@ scene::Scene tower(double hit_s) {
   }
   scene::Scene scene = scene_of(bodies, kEnd, kEarth);
   scene.contact = scene::ContactSpec{};
-  scene.point_forces.push_back({"block2", {0, 0, 25.0}, {0, 0, 0.5}, kPulled, 0.1});
+  scene.effects.of<effects::PointForceSpec>().push_back({"block2", {0, 0, 25.0}, {0, 0, 0.5}, kPulled, 0.1});
   return scene;
 }
 

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "framework/effects/gravity/gravity.h"
+#include "framework/effects/point_force/point_force.h"
 #include "tests/engines/scenes.h"
 #include "tests/support/story.h"
 
@@ -82,12 +84,12 @@ TEST(Invariance, LengthsOfMicrometresAndMegametresMoveAlike) {
 scene::Scene far_meeting(const Vector3d& shift) {
   auto scene = meeting();
   scene.duration_s = 10.0;
-  scene.gravity_m_s2 = Vector3d(0, 0.01, -0.02);
+  effects::set_gravity(scene, Vector3d(0, 0.01, -0.02));
   for (scene::BodySpec& body : scene.bodies) {
     for (double& x : body.position_m) x = std::round(std::ldexp(x, 30)) / std::ldexp(1.0, 30);
     body.position_m += shift;
   }
-  scene.point_forces = {{"ball", {0.1, 0, 0.05}, scene.bodies[2].position_m, 0.25, 0.5}};
+  scene.effects.of<effects::PointForceSpec>() = {{"ball", {0.1, 0, 0.05}, scene.bodies[2].position_m, 0.25, 0.5}};
   return scene;
 }
 

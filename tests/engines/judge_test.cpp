@@ -8,6 +8,10 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
+#include "framework/effects/gravity/gravity.h"
+#include "framework/effects/joint/joint.h"
+#include "framework/effects/rod/rod.h"
+#include "framework/effects/spring/spring.h"
 
 namespace tumble::engines {
 namespace {
@@ -76,12 +80,24 @@ void expect_value(const HandMade& made, CheckSpec check, double value) {
 TEST(Judge, ARodIsAsLongAsItsEndsAreFarApart) {
   // The second body turns about its centre: the end of the rod goes from 1 m to 2 m.
   HandMade made(stays({0, 0, 0}), [](double t) { return at({1.5, 0, 0}, turned(kPi * t, Vector3d::UnitZ())); });
-  made.scene.rods.push_back({"stick", {"first", {0, 0, 0}}, {"second", {-0.5, 0, 0}}, 1.0, ""});
+  made.scene.effects.of<effects::RodSpec>().push_back({"stick", {"first", {0, 0, 0}}, {"second", {-0.5, 0, 0}}, 1.0, ""});
   expect_value(made, check_of("rod_length", 1e-6), 1.0);
   made.run.frames.resize(1);
   expect_value(made, check_of("rod_length", 1e-6), 0.0);
-  made.scene.rods.clear();
+  made.scene.effects.of<effects::RodSpec>().clear();
   EXPECT_FALSE(judged(made, check_of("rod_length", 1e-6)).passed) << "nothing to judge is not right";
+}
+
+TEST(Judge, RestitutionIsAskedOfImpactsNotOfBodiesThatTouchWithoutApproach) {
+  HandMade made(stays({0, 0, 0}), stays({2, 0, 0}));
+  for (scene::BodySpec& body : made.scene.bodies) body.restitution = 0.5;
+  const Event touch{0.5, EventKind::kCollision, 0, 1, Vector3d::Zero(), Vector3d::UnitX(), 0.0, 0.0, 0.0};
+  made.run.events = {touch};
+  EXPECT_FALSE(judged(made, check_of("restitution_law", 1e-9)).passed) << "nothing to judge is not right";
+  made.run.events.push_back({0.6, EventKind::kCollision, 0, 1, Vector3d::Zero(), Vector3d::UnitX(), 3.0, -2.0, 1.0});
+  expect_value(made, check_of("restitution_law", 1e-9), 0.0);
+  made.run.events.back().normal_velocity_after = 1.5;
+  expect_value(made, check_of("restitution_law", 1e-9), 0.25);
 }
 
 TEST(Judge, AHingeOpensByTheDistanceOfItsPointsAndTheAngleOfItsAxes) {
@@ -91,27 +107,27 @@ TEST(Judge, AHingeOpensByTheDistanceOfItsPointsAndTheAngleOfItsAxes) {
     const Quaterniond lean = turned(0.3 * t, Vector3d::UnitX());
     return at(point + 0.02 * t * Vector3d::UnitY() + lean * Vector3d(0.5, 0, 0), lean);
   });
-  scene::JointSpec hinge;
+  effects::JointSpec hinge;
   hinge.name = "hinge";
-  hinge.kind = scene::JointKind::kHinge;
+  hinge.kind = effects::JointKind::kHinge;
   hinge.body_a = "first";
   hinge.body_b = "second";
   hinge.point_m = point;
-  made.scene.joints.push_back(hinge);
+  made.scene.effects.of<effects::JointSpec>().push_back(hinge);
   expect_value(made, check_of("joint_gap", 1e-6), 0.02);
   expect_value(made, check_of("joint_angle", 1e-6), 0.3);
-  made.scene.joints[0].axis = Vector3d::UnitX();   // turning about its own axis is what a hinge is for
+  made.scene.effects.of<effects::JointSpec>()[0].axis = Vector3d::UnitX();   // turning about its own axis is what a hinge is for
   expect_value(made, check_of("joint_angle", 1e-6), 0.0);
-  made.scene.joints[0].kind = scene::JointKind::kWeld;
+  made.scene.effects.of<effects::JointSpec>()[0].kind = effects::JointKind::kWeld;
   expect_value(made, check_of("joint_angle", 1e-6), 0.3);
-  made.scene.joints[0].body_b = "";                // to the world: the first body does not move
+  made.scene.effects.of<effects::JointSpec>()[0].body_b = "";                // to the world: the first body does not move
   expect_value(made, check_of("joint_gap", 1e-6), 0.0);
 }
 
 TEST(Judge, TheForceInALinkIsComparedAsAPartOfTheTruth) {
   HandMade made(stays({0, 0, 0}), stays({1, 0, 0}));
-  made.scene.springs.push_back({"coil", {}, {}, 1, 0, 1, ""});
-  made.scene.rods.push_back({"stick", {}, {}, 1, ""});
+  made.scene.effects.of<effects::SpringSpec>().push_back({"coil", {}, {}, 1, 0, 1, ""});
+  made.scene.effects.of<effects::RodSpec>().push_back({"stick", {}, {}, 1, ""});
   for (Frame& frame : made.run.frames) {
     frame.spring_forces = {-3.0};
     frame.rod_tensions = {20.0 * frame.time};
@@ -245,7 +261,7 @@ TEST(Judge, DominoesFallInTheirOrder) {
 /// At rest a hundred metres up: its energy trembles by roundings of m g z = 1962 J, and nothing else is there to compare that with.
 HandMade at_rest_high_up(double tremble_j) {
   HandMade made(stays({0, 0, 100}), stays({0, 0, 50}));
-  made.scene.gravity_m_s2 = Vector3d(0, 0, -9.81);
+  effects::set_gravity(made.scene, Vector3d(0, 0, -9.81));
   made.scene.step_s = 0.01;
   for (std::size_t k = 0; k < made.run.frames.size(); ++k) {
     made.run.frames[k].kinetic_energy = 0.0;

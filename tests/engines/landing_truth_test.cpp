@@ -1,6 +1,7 @@
 // What lands has a truth.
 #include <gtest/gtest.h>
 
+#include "framework/effects/spring/spring.h"
 #include "framework/engines/cost/cost.h"
 #include "framework/engines/truths/memory_scene.h"
 #include "framework/scene/load_scene.h"
@@ -35,7 +36,7 @@ TEST(CostTruth, ATruthWithImpactsIsAsGoodAsTheRunsThatItJudges) {
   wall.position_m = Vector3d(-0.3, 0, 0);
   wall.world_from_body = Quaterniond(Eigen::AngleAxisd(1.5707963267948966, Vector3d::UnitY()));
   scene.bodies = {wall, ball};
-  scene.springs.push_back({"spring", {"ball", Vector3d::Zero()}, {"", Vector3d(3, 0, 0)}, 50.0, 0.0, 3.0});
+  scene.effects.of<effects::SpringSpec>().push_back({"spring", {"ball", Vector3d::Zero()}, {"", Vector3d(3, 0, 0)}, 50.0, 0.0, 3.0});
   engines::CostOptions options;
   options.frame_rate_hz = 60.0;
   const engines::CostTruth truth = engines::find_truth(scene, reference_laws(), options);

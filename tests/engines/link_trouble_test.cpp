@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/effects/drag/drag.h"
+#include "framework/effects/rod/rod.h"
+#include "framework/effects/spring/spring.h"
 #include "framework/engines/truths/memory_scene.h"
 #include "tests/engines/effect_scenes.h"
 #include "tests/engines/reference_laws.h"
@@ -27,10 +30,10 @@ void expect_stopped(const Trajectory& result, const std::vector<std::string>& wo
 /// A bob on a spring or on a rod, under gravity, for a second.
 scene::Scene swinging(const std::string& link) {
   scene::Scene scene = scene_of({ball("bob", 0.1, 1.0, {1.0, 0, 0}, Vector3d::Zero())}, 1.0, Vector3d(0, 0, -9.81));
-  if (link == "spring") scene.springs.push_back({"coil", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 50.0, 0.0, 0.8});
-  if (link == "drag") scene.drags.push_back({"bob", 0.5, 0.0});
+  if (link == "spring") scene.effects.of<effects::SpringSpec>().push_back({"coil", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 50.0, 0.0, 0.8});
+  if (link == "drag") scene.effects.of<effects::DragSpec>().push_back({"bob", 0.5, 0.0});
   if (link == "rod" || link == "stabilised rod") {
-    scene.rods.push_back({"wire", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 1.0});
+    scene.effects.of<effects::RodSpec>().push_back({"wire", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 1.0});
     scene.stabilisation.emplace();
     if (link == "stabilised rod") scene.stabilisation->kind = scene::StabilisationKind::kBaumgarte;
   }

@@ -6,6 +6,8 @@
 
 #include "assignments/a2_integration/a2_binding.h"
 #include "assignments/a3_constraints/a3_binding.h"
+#include "framework/effects/gravity/gravity.h"
+#include "framework/effects/spring/spring.h"
 #include "framework/engines/run.h"
 #include "framework/engines/truths/memory_scene.h"
 #include "framework/modules/load.h"
@@ -47,9 +49,9 @@ scene::Scene chain(const std::vector<double>& masses, double length, const Vecto
 
 scene::Scene spring(double k) {
   scene::Scene scene = truths::empty_scene("spring", 1.0, 1e-9);
-  scene.gravity_m_s2 = kGravity;
+  effects::set_gravity(scene, kGravity);
   scene.bodies = {truths::point_mass("bob", 1.0, Vector3d(1.1, 0, -0.2), Vector3d(0, 0.5, 0))};
-  scene.springs = {{"spring", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, k, 0.4, 1.0}};
+  scene.effects.of<effects::SpringSpec>() = {{"spring", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, k, 0.4, 1.0}};
   return scene;
 }
 
@@ -110,7 +112,7 @@ TEST(Links, EnergyOfAnUndampedSpringFallsAsRk4Says) {
   for (const long steps : {200L, 400L, 800L}) {
     scene::Scene scene = truths::empty_scene("spring", 1.0, 1e-9);
     scene.bodies = {truths::point_mass("bob", 1.0, Vector3d(0.3, 0, 0), Vector3d::Zero())};
-    scene.springs = {{"spring", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, k, 0.0, 0.0}};
+    scene.effects.of<effects::SpringSpec>() = {{"spring", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, k, 0.0, 0.0}};
     const double t = 2.0, z = w * t / static_cast<double>(steps), factor = -std::pow(z, 6) / 72 + std::pow(z, 8) / 576;
     const Frame end = truths::run_in_steps(scene, rk4(), t, steps, 1).frames.back();
     const double energy = 0.5 * k * 0.09, expected = energy * std::expm1(static_cast<double>(steps) * std::log1p(factor));

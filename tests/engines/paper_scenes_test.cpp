@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/effects/motor/motor.h"
 #include "framework/scene/sized_scenes.h"
 #include "tests/engines/event_scenes.h"
 #include "tests/engines/reference_laws.h"
@@ -302,7 +303,7 @@ TEST(Robots, ComeToOneMotionAtEveryStep) {
 // A torque held for 1/960 s that brakes an eighth of the arm's inertia by 60 N m s/rad turns it round, faster each time.
 TEST(Robots, WhoseMotorsOvershootAreStoppedAtOnceAndNamed) {
   scene::Scene scene = robot_with_located_impacts();
-  for (scene::MotorSpec& motor : scene.motors) motor.damping_n_m_s_rad = 60.0 * motor.stiffness_n_m_rad / 6000.0;
+  for (effects::MotorSpec& motor : scene.effects.of<effects::MotorSpec>()) motor.damping_n_m_s_rad = 60.0 * motor.stiffness_n_m_rad / 6000.0;
   for (const char* engine : {"rd", "tw"}) {
     const Trajectory run = run_by(engine, scene, {}, 60.0, reference_laws());
     for (const char* word : {"at t = ", "_1_", "period_s"}) EXPECT_NE(run.stopped_by.find(word), std::string::npos) << engine << ": " << run.stopped_by;

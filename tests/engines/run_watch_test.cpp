@@ -6,9 +6,14 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/random.h"
-#include "framework/dynamics/build_world.h"
-#include "framework/engines/judging/judge.h"
+#include "framework/effects/build_world.h"
+#include "framework/effects/drag/drag.h"
+#include "framework/effects/joint/joint.h"
+#include "framework/effects/point_force/point_force.h"
+#include "framework/effects/rod/rod.h"
+#include "framework/effects/spring/spring.h"
 #include "framework/engines/base/run_watch.h"
+#include "framework/engines/judging/judge.h"
 #include "framework/engines/stepping/stability.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/scene/load_scene.h"
@@ -62,7 +67,7 @@ double energy_rise(const Trajectory& run) {
 double worst_rod(const scene::Scene& scene, const Trajectory& run) {
   double worst = 0.0;
   for (const Frame& frame : run.frames)
-    for (const scene::RodSpec& rod : scene.rods) {
+    for (const effects::RodSpec& rod : scene.effects.of<effects::RodSpec>()) {
       const auto at = [&](const scene::AnchorSpec& end) -> Vector3d {
         for (std::size_t i = 0; i < run.bodies.size(); ++i)
           if (run.bodies[i].name == end.body) return frame.poses[i].com_world + frame.poses[i].world_from_body * end.point_m;
@@ -113,6 +118,34 @@ TEST(RunWatch, AFaultIsACheckThatFailed) {
   EXPECT_NE(checks[0].detail.find("first at t = 0.1 s, 3 times in all"), std::string::npos) << checks[0].detail;
 }
 
+// ---- What energy is compared with -------------------------------------------------------------------------------------------
+
+/// A ball at a height that moves sideways first at one speed, then at another, and has gone `lift` up between two looks 1/60 s apart.
+std::vector<RunFault> told_of_ball(double radius, double mass, double height, double speed, double then, double lift) {
+  const World world = build_world(scene_of({ball("ball", radius, mass, {0, 0, height}, Vector3d::Zero())}, 1.0, kGravity));
+  const auto states = [&](double z, double v) { return std::vector<RigidBodyState>{{Vector3d(0, 0, z), Quaterniond::Identity(), Vector3d(mass * v, 0, 0), Vector3d::Zero()}}; };
+  engines::EnergyWatch watch(1e-5, 1.0 / 60, true);   // a rest speed far below what moves here
+  EXPECT_FALSE(watch.look(0.0, world, states(height, speed)));
+  EXPECT_FALSE(watch.look(1.0 / 60, world, states(height, speed)));
+  EXPECT_FALSE(watch.look(2.0 / 60, world, states(height + lift, then)));
+  engines::RunCounters counters;
+  watch.tell(world, counters);
+  return counters.watch.faults();
+}
+
+// 10 t that move with 50 J and then with 60: a thousandth of their weight over their size would be 31 J.
+TEST(EnergyRises, IsComparedWithWhatMovesNotWithWeight) {
+  EXPECT_EQ(told_of_ball(0.5, 1e4, 0.0, 0.1, 0.1, 0.0).size(), 0u);
+  ASSERT_EQ(told_of_ball(0.5, 1e4, 0.0, 0.1, 0.11, 0.0).size(), 1u);
+  EXPECT_EQ(told_of_ball(0.5, 1e4, 0.0, 0.1, 0.11, 0.0)[0].kind, "energy_rises");
+}
+
+// The same wherever its heights are counted from, up to where they are rounded to more than it moves by: a million kilometres up to 1.2e-7 m.
+TEST(EnergyRises, IsNotHiddenByAFarOriginNorMadeByItsRounding) {
+  EXPECT_EQ(told_of_ball(0.5, 1e4, 1e4, 0.1, 0.11, 0.0).size(), 1u);
+  EXPECT_EQ(told_of_ball(1e-3, 1e-3, 1e9, 1e-3, 1e-3, std::nextafter(1e9, 2e9) - 1e9).size(), 0u);
+}
+
 // ---- Runs that cannot be trusted -------------------------------------------------------------------------------------------
 
 /// A light bob on a rod above one `ratio` times as heavy, held out sideways. Rods of 1 m. The seed draws the angles.
@@ -123,8 +156,8 @@ scene::Scene light_above_heavy(double ratio, unsigned seed) {
   for (scene::BodySpec& body : scene.bodies) body.collides = false;
   scene.step_s = 1.0 / 60;
   scene.stabilisation.emplace();
-  scene.rods.push_back({"upper", {"light", Vector3d::Zero()}, {"", Vector3d::Zero()}, 1.0});
-  scene.rods.push_back({"lower", {"light", Vector3d::Zero()}, {"heavy", Vector3d::Zero()}, 1.0});
+  scene.effects.of<effects::RodSpec>().push_back({"upper", {"light", Vector3d::Zero()}, {"", Vector3d::Zero()}, 1.0});
+  scene.effects.of<effects::RodSpec>().push_back({"lower", {"light", Vector3d::Zero()}, {"heavy", Vector3d::Zero()}, 1.0});
   return scene;
 }
 
@@ -146,7 +179,7 @@ TEST(RunWatch, EnergyThatAMethodMakesIsAFault) {
   scene.bodies[0].collides = false;
   scene.step_s = 0.01;
   scene.stabilisation.emplace();
-  scene.rods.push_back({"wire", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 1.0});
+  scene.effects.of<effects::RodSpec>().push_back({"wire", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 1.0});
   Laws laws = reference_laws();
   laws.integrator_source = "explicit Euler";
   laws.integrate_step = [](const OdeFunction& f, double t, const VectorXd& y, double h) -> VectorXd { return y + h * f(t, y); };
@@ -157,13 +190,13 @@ TEST(RunWatch, EnergyThatAMethodMakesIsAFault) {
 // A ball on a spring, pushed by a constant force: what the force brings in is no fault, what the method makes beside it is. The first step counts.
 TEST(RunWatch, WhatAForceBringsInIsNoFault) {
   scene::Scene scene = scene_of({ball("ball", 0.1, 1.0, {1, 0, 0}, Vector3d::Zero())}, 1.0, Vector3d::Zero());
-  scene::SpringSpec spring;
+  effects::SpringSpec spring;
   spring.a.body = "ball";
   spring.b.point_m = Vector3d(0, 0, 0);
   spring.stiffness_n_m = 100.0;
   spring.rest_length_m = 0.5;
-  scene.springs.push_back(spring);
-  scene.point_forces.push_back({"ball", {50, 0, 0}, {1, 0, 0}, 0.0, 0.5});
+  scene.effects.of<effects::SpringSpec>().push_back(spring);
+  scene.effects.of<effects::PointForceSpec>().push_back({"ball", {50, 0, 0}, {1, 0, 0}, 0.0, 0.5});
   scene.step_s = 0.01;
   EXPECT_FALSE(has_fault(run_by("rd", scene), "energy_rises"));
   Laws laws = reference_laws();
@@ -174,7 +207,7 @@ TEST(RunWatch, WhatAForceBringsInIsNoFault) {
     const VectorXd next = right.integrate_step(f, t, y, h);
     return t == 0.0 ? VectorXd(next + 2.0 * (next - y)) : next;
   };
-  scene.point_forces.clear();
+  scene.effects.of<effects::PointForceSpec>().clear();
   EXPECT_TRUE(has_fault(run_by("rd", scene, laws), "energy_rises"));
 }
 
@@ -200,7 +233,7 @@ scene::Scene heavy_on_light_links(double ratio, int links, double angle) {
   for (int k = 1; k <= links + 1; ++k) {
     scene.bodies.push_back(ball(k > links ? "ball" : fmt::format("link_{}", k), 0.0, k > links ? ratio : 1.0, 0.5 * k * along, Vector3d::Zero()));
     scene.bodies.back().collides = false;
-    scene.rods.push_back({fmt::format("rod {}", k), {k == 1 ? "" : fmt::format("link_{}", k - 1), Vector3d::Zero()}, {scene.bodies.back().name, Vector3d::Zero()}, 0.5});
+    scene.effects.of<effects::RodSpec>().push_back({fmt::format("rod {}", k), {k == 1 ? "" : fmt::format("link_{}", k - 1), Vector3d::Zero()}, {scene.bodies.back().name, Vector3d::Zero()}, 0.5});
   }
   scene.stabilisation.emplace();
   return scene;
@@ -258,7 +291,7 @@ scene::Scene touching_boxes(unsigned seed) {
   for (double& velocity : scene.bodies.back().velocity_m_s) velocity = random.between(-0.5, 0.3);
   scene.contact.emplace();
   scene.contact->plastic_impacts = scene::PlasticImpacts::kInStep;
-  scene.drags.push_back({scene.bodies[1].name, random.between(0.0, 0.2), 0.0});
+  scene.effects.of<effects::DragSpec>().push_back({scene.bodies[1].name, random.between(0.0, 0.2), 0.0});
   scene.step_s = seed % 3 == 0 ? 1.0 / 1000 : 1.0 / 60;
   return scene;
 }
@@ -325,7 +358,7 @@ constexpr double kForce = 1e-5;
 
 TEST(LinkForces, ARodHoldsWhatLiesOnItsBlock) {
   scene::Scene scene = at_rest({slab("block", {0.3, 0.3, 0.05}, 4.0, {0, 0, 1}), slab("box", {0.1, 0.1, 0.1}, 1.0, {0, 0, 1.15}), slab("second", {0.05, 0.05, 0.05}, 2.0, {0, 0, 1.30})});
-  scene.rods.push_back({"rod", {"", Vector3d(0, 0, 2)}, {"block", Vector3d(0, 0, 0.05)}, 0.95});
+  scene.effects.of<effects::RodSpec>().push_back({"rod", {"", Vector3d(0, 0, 2)}, {"block", Vector3d(0, 0, 0.05)}, 0.95});
   for (const std::string& engine : kEngines) EXPECT_NEAR(run_by(engine, scene).frames.back().rod_tensions.at(0), 7.0 * 9.81, kForce) << engine;
   scene.bodies.pop_back();
   for (const std::string& engine : kEngines) EXPECT_NEAR(run_by(engine, scene).frames.back().rod_tensions.at(0), 5.0 * 9.81, kForce) << engine;
@@ -336,7 +369,7 @@ TEST(LinkForces, AWeldHoldsABoxThatStandsOnASlope) {
   const Vector3d normal(std::sin(angle), 0, std::cos(angle));
   scene::Scene scene = at_rest({slab("shelf", {0.4, 0.4, 0.05}, 3.0, Vector3d::Zero(), 0.8), slab("box", {0.1, 0.1, 0.1}, 1.5, 0.15 * normal, 0.8)});
   for (scene::BodySpec& body : scene.bodies) body.world_from_body = Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitY()));
-  scene.joints.push_back({"weld", scene::JointKind::kWeld, "shelf", "", Vector3d::Zero(), Vector3d::UnitZ()});
+  scene.effects.of<effects::JointSpec>().push_back({"weld", effects::JointKind::kWeld, "shelf", "", Vector3d::Zero(), Vector3d::UnitZ()});
   // Friction and the normal force add up to the box's weight.
   for (const std::string& engine : kEngines) EXPECT_NEAR(run_by(engine, scene).frames.back().joint_forces.at(0), 4.5 * 9.81, kForce) << engine;
 }
@@ -345,8 +378,8 @@ TEST(LinkForces, AWeldHoldsABoxThatStandsOnASlope) {
 TEST(LinkForces, AHingeAndARodShareABoxByItsLever) {
   const double half = 0.5, lever = 0.8;
   scene::Scene scene = at_rest({slab("beam", {half, 0.1, 0.02}, 2.0, {half, 0, 0}), slab("box", {0.05, 0.05, 0.05}, 1.0, {lever, 0, 0.07})});
-  scene.joints.push_back({"hinge", scene::JointKind::kHinge, "beam", "", Vector3d::Zero(), Vector3d::UnitY()});
-  scene.rods.push_back({"rod", {"", Vector3d(2 * half, 0, 1)}, {"beam", Vector3d(half, 0, 0)}, 1.0});
+  scene.effects.of<effects::JointSpec>().push_back({"hinge", effects::JointKind::kHinge, "beam", "", Vector3d::Zero(), Vector3d::UnitY()});
+  scene.effects.of<effects::RodSpec>().push_back({"rod", {"", Vector3d(2 * half, 0, 1)}, {"beam", Vector3d(half, 0, 0)}, 1.0});
   for (const std::string& engine : kEngines) {
     const Frame frame = run_by(engine, scene).frames.back();
     const double rod = 9.81 * (2.0 * half + 1.0 * lever) / (2 * half);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "framework/core/shortest_turn.h"
+#include "framework/effects/gravity/gravity.h"
 #include "framework/engines/run.h"
 #include "tests/support/test_laws.h"
 
@@ -39,7 +40,7 @@ inline scene::Scene scene_of(std::vector<scene::BodySpec> bodies, double duratio
   scene::Scene scene;
   scene.name = "test";
   scene.duration_s = duration;
-  scene.gravity_m_s2 = gravity;
+  if (gravity) effects::set_gravity(scene, *gravity);
   scene.bodies = std::move(bodies);
   return scene;
 }

@@ -4,6 +4,11 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/effects/gravity/gravity.h"
+#include "framework/effects/joint/joint.h"
+#include "framework/effects/motor/motor.h"
+#include "framework/effects/point_force/point_force.h"
+#include "framework/effects/rod/rod.h"
 #include "tests/engines/reference_laws.h"
 
 namespace tumble::testing {
@@ -121,7 +126,7 @@ TEST(Sleeping, WhatOnlyPassesByWakesNobody) {
   scene::Scene scene = block_on_floor(3.0);
   auto passer = ball("passer", 0.2, 1.0, {0.75, -4, 0.5}, {0, 3, 0});   // 5 cm beside the block, at t = 1.3 s
   passer.collides = true;
-  scene.gravity_m_s2 = kGravity;
+  effects::set_gravity(scene, kGravity);
   passer.position_m.z() = 0.5;
   scene.bodies.push_back(passer);
   scene.bodies.push_back(rough(box("rail", {0.3, 6, 0.1}, 1.0, {0.85, 0, 0.2 - 1e-9}, Vector3d::Zero()), 0.0));
@@ -157,7 +162,7 @@ TEST(Sleeping, WhatTrulySlidesIsAwakeHoweverSlow) {
 
 TEST(Sleeping, AForceThatIsSwitchedOnWakes) {
   scene::Scene scene = block_on_floor(4.0);
-  scene.point_forces.push_back({"box 0", {8, 0, 0}, {-0.5, 0, 0.5}, 1.5, 1.0});
+  scene.effects.of<effects::PointForceSpec>().push_back({"box 0", {8, 0, 0}, {-0.5, 0, 0.5}, 1.5, 1.0});
   const Trajectory result = run_it(scene);
   ASSERT_EQ(times_of(result, EventKind::kWake, 0).size(), 1u);
   EXPECT_EQ(times_of(result, EventKind::kWake, 0).front(), 1.5);
@@ -172,7 +177,7 @@ TEST(Sleeping, AForceThatIsSwitchedOffWakes) {
   scene::Scene scene = creeping_block(0.0, 0.0);
   const double angle = 0.4;
   const Vector3d up(-std::cos(angle), 0, std::sin(angle));
-  scene.point_forces.push_back({"block", kG * std::sin(angle) * up, scene.bodies[0].position_m, 0.0, 2.0});
+  scene.effects.of<effects::PointForceSpec>().push_back({"block", kG * std::sin(angle) * up, scene.bodies[0].position_m, 0.0, 2.0});
   const Trajectory result = run_it(scene);
   EXPECT_TRUE(falls_asleep(result, 0));
   EXPECT_EQ(times_of(result, EventKind::kWake, 0), std::vector<double>{2.0});
@@ -184,18 +189,18 @@ TEST(Sleeping, AControlLawThatChangesItsMindWakes) {
   auto bar = rough(box("bar", {0.5, 0.05, 0.05}, 1.0, {0.5, 0, 1}, Vector3d::Zero())), stop = rough(box("stop", {0.1, 0.1, 0.1}, 1.0, {0.9, 0, 0.85 - 1e-9}, Vector3d::Zero()));
   stop.immovable = true;
   scene::Scene scene = sleepy({bar, stop}, 2.5, std::nullopt);
-  scene.joints.push_back({"hinge", scene::JointKind::kHinge, "bar", "", {0, 0, 1}, Vector3d::UnitY()});
+  scene.effects.of<effects::JointSpec>().push_back({"hinge", effects::JointKind::kHinge, "bar", "", {0, 0, 1}, Vector3d::UnitY()});
   scene.stabilisation.emplace();
-  scene::MotorSpec motor;
+  effects::MotorSpec motor;
   motor.joint = "hinge";
   motor.amplitude_rad = 100.0;
   motor.frequency_hz = 0.25;
   motor.phase_rad = 0.1;
   motor.stiffness_n_m_rad = 1e3;
   motor.largest_torque_n_m = 0.5;
-  scene.motors.push_back(motor);
+  scene.effects.of<effects::MotorSpec>().push_back(motor);
   for (const double sign : {1.0, -1.0}) {   // which way a positive torque turns is not the test's business
-    scene.motors[0].amplitude_rad = sign * 100.0;
+    scene.effects.of<effects::MotorSpec>()[0].amplitude_rad = sign * 100.0;
     const Trajectory result = run_it(scene);
     if (!falls_asleep(result, 0)) continue;
     ASSERT_EQ(times_of(result, EventKind::kWake, 0).size(), 1u);
@@ -229,7 +234,7 @@ TEST(Sleeping, ABodyThatHangsStillSleepsUntilItIsHit) {
   auto bob = rough(ball("bob", 0.1, 1.0, {0, 0, 1}, Vector3d::Zero())), hammer = rough(ball("hammer", 0.1, 1.0, {-2.9, 0, 1}, {2, 0, 0}));
   scene::Scene scene = sleepy({bob, hammer}, 2.0, kGravity);
   scene.bodies[1].position_m.z() = 1 + 0.5 * kG * 1.4 * 1.4 - 0.02;   // falls past it at 1.4 s
-  scene.rods.push_back({"rod", {"", {0, 0, 2}}, {"bob", Vector3d::Zero()}, 1.0});
+  scene.effects.of<effects::RodSpec>().push_back({"rod", {"", {0, 0, 2}}, {"bob", Vector3d::Zero()}, 1.0});
   scene.stabilisation.emplace();
   const Trajectory slept = run_it(scene), awake = run_awake(scene);
   ASSERT_TRUE(falls_asleep(slept, 0));
@@ -240,7 +245,7 @@ TEST(Sleeping, ABodyThatHangsStillSleepsUntilItIsHit) {
 TEST(Sleeping, WhatHangsCostsNothingAsleep) {
   const auto counts = [](double duration) {
     scene::Scene scene = sleepy({rough(ball("bob", 0.1, 1.0, {0, 0, 1}, Vector3d::Zero()))}, duration);
-    scene.rods.push_back({"rod", {"", {0, 0, 2}}, {"bob", Vector3d::Zero()}, 1.0});
+    scene.effects.of<effects::RodSpec>().push_back({"rod", {"", {0, 0, 2}}, {"bob", Vector3d::Zero()}, 1.0});
     scene.stabilisation.emplace();
     return run_it(scene).counters.counts;
   };

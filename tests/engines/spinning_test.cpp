@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "framework/core/random.h"
-#include "framework/dynamics/build_world.h"
+#include "framework/effects/build_world.h"
 #include "framework/engines/stepping/moving_world.h"
 #include "tests/engines/scenes.h"
 #include "tests/support/story.h"

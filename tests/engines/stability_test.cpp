@@ -5,8 +5,11 @@
 
 #include "framework/core/decompositions.h"
 #include "framework/core/error.h"
-#include "framework/dynamics/build_world.h"
 #include "framework/dynamics/methods.h"
+#include "framework/effects/build_world.h"
+#include "framework/effects/drag/drag.h"
+#include "framework/effects/joint/joint.h"
+#include "framework/effects/spring/spring.h"
 #include "framework/engines/stepping/stability.h"
 #include "framework/engines/truths/memory_scene.h"
 #include "tests/engines/reference_laws.h"
@@ -51,7 +54,7 @@ scene::Scene dragged(double linear, double angular) {
   body.inertia_body_kg_m2 = Vector3d(1, 2, 3).asDiagonal();
   body.omega_world_rad_s = {0.1, 0, 0};
   scene::Scene scene = scene_of({body}, 1.0);
-  scene.drags.push_back({"spoon", linear, angular});
+  scene.effects.of<effects::DragSpec>().push_back({"spoon", linear, angular});
   return scene;
 }
 
@@ -88,10 +91,10 @@ TEST(LargestStep, OfATurningThatAJointHoldsIsNone) {
   bar.inertia_body_kg_m2 = Vector3d(6.67e-5, 0.0833667, 0.0833667).asDiagonal();
   bar.collides = false;
   scene::Scene scene = scene_of({bar}, 1.0, Vector3d(0, 0, -9.81));
-  scene.joints.push_back({"pin", scene::JointKind::kHinge, "bar", "", Vector3d::Zero(), Vector3d::UnitY()});
-  scene.drags.push_back({"bar", 0.0, 0.05});
+  scene.effects.of<effects::JointSpec>().push_back({"pin", effects::JointKind::kHinge, "bar", "", Vector3d::Zero(), Vector3d::UnitY()});
+  scene.effects.of<effects::DragSpec>().push_back({"bar", 0.0, 0.05});
   EXPECT_EQ(answer(scene, reference_laws(), 1.0 / 120), "");
-  scene.joints.clear();
+  scene.effects.of<effects::JointSpec>().clear();
   EXPECT_TRUE(holds(answer(scene, reference_laws(), 1.0 / 120), "refused"));
 }
 
@@ -100,7 +103,7 @@ TEST(LargestStep, OfATurningThatAJointHoldsIsNone) {
 /// A ball of 0.5 kg on a spring of no length to the world, pulled 1 m along it.
 scene::Scene on_springs(const std::vector<std::pair<double, double>>& stiffness_and_damping) {
   scene::Scene scene = scene_of({ball("weight", 0.1, 0.5, Vector3d::UnitX(), Vector3d::Zero())}, 1.0);
-  for (const auto& [k, c] : stiffness_and_damping) scene.springs.push_back({"spring " + std::to_string(scene.springs.size() + 1), {"", Vector3d::Zero()}, {"weight", Vector3d::Zero()}, k, c, 0.0});
+  for (const auto& [k, c] : stiffness_and_damping) scene.effects.of<effects::SpringSpec>().push_back({"spring " + std::to_string(scene.effects.of<effects::SpringSpec>().size() + 1), {"", Vector3d::Zero()}, {"weight", Vector3d::Zero()}, k, c, 0.0});
   return scene;
 }
 
@@ -129,19 +132,19 @@ TEST(LargestStep, OfWhatADamperTakesIsItsFasterRoot) {
 // A door's spring beside its hinge: w^2 = k d^2 / I there, though the door alone would swing on it with k (1/m + r^2 / I_com), 1e6 times that.
 TEST(LargestStep, OfASpringOnAHingedBodyIsThatOfTheSwingItsHingeAllows) {
   const double m = 2.0, r = 0.5, d = 1e-3, k = 1e7, moment = 0.2, frequency = std::sqrt(k * d * d / (moment + m * r * r));
-  for (const scene::JointKind kind : {scene::JointKind::kHinge, scene::JointKind::kBall}) {
+  for (const effects::JointKind kind : {effects::JointKind::kHinge, effects::JointKind::kBall}) {
     scene::BodySpec door = ball("door", 0.1, m, {r, 0, 0}, Vector3d::Zero());
     door.inertia_body_kg_m2 = moment * Matrix3d::Identity();
     door.collides = false;
     scene::Scene scene = scene_of({door}, 1.0);
-    scene.joints.push_back({"pin", kind, "door", "", Vector3d::Zero(), Vector3d::UnitY()});
-    scene.springs.push_back({"closer", {"", Vector3d(d, 0, 1.0)}, {"door", Vector3d(d - r, 0, 0)}, k, 0.0, 1.0});
+    scene.effects.of<effects::JointSpec>().push_back({"pin", kind, "door", "", Vector3d::Zero(), Vector3d::UnitY()});
+    scene.effects.of<effects::SpringSpec>().push_back({"closer", {"", Vector3d(d, 0, 1.0)}, {"door", Vector3d(d - r, 0, 0)}, k, 0.0, 1.0});
     const auto judged = engines::judge_springs(build_world(scene), reference_laws(), 0.1);
     ASSERT_TRUE(judged);
     EXPECT_NEAR(judged->angular_frequency, frequency, 1e-6 * frequency);   // rounding of 1e-6 of what the hinge holds
     EXPECT_EQ(answer(scene, reference_laws(), kUnder * kRk4Swing / frequency), "");
     EXPECT_TRUE(holds(answer(scene, reference_laws(), kOver * kRk4Swing / frequency), "refused"));
-    scene.joints.clear();
+    scene.effects.of<effects::JointSpec>().clear();
     EXPECT_TRUE(holds(answer(scene, reference_laws(), kUnder * kRk4Swing / frequency), "refused"));
   }
 }
@@ -152,9 +155,9 @@ TEST(LargestStep, OfManySpringsIsThatOfTheRow) {
     scene::Scene scene = scene_of({}, 1.0);
     for (int i = 0; i < n; ++i) {
       scene.bodies.push_back(ball("bead" + std::to_string(i), 0.01, 0.5, Vector3d(i + 1, 0, 0), Vector3d::Zero()));
-      scene.springs.push_back({"spring" + std::to_string(i), {i == 0 ? "" : scene.bodies[static_cast<std::size_t>(i) - 1].name, Vector3d::Zero()}, {scene.bodies.back().name, Vector3d::Zero()}, 200.0, 0.0, 1.0});
+      scene.effects.of<effects::SpringSpec>().push_back({"spring" + std::to_string(i), {i == 0 ? "" : scene.bodies[static_cast<std::size_t>(i) - 1].name, Vector3d::Zero()}, {scene.bodies.back().name, Vector3d::Zero()}, 200.0, 0.0, 1.0});
     }
-    scene.springs.push_back({"last", {scene.bodies.back().name, Vector3d::Zero()}, {"", Vector3d(n + 1, 0, 0)}, 200.0, 0.0, 1.0});
+    scene.effects.of<effects::SpringSpec>().push_back({"last", {scene.bodies.back().name, Vector3d::Zero()}, {"", Vector3d(n + 1, 0, 0)}, 200.0, 0.0, 1.0});
     const auto judged = engines::judge_springs(build_world(scene), reference_laws(), 0.1);
     ASSERT_TRUE(judged);
     const double exact = 40.0 * std::sin(M_PI * n / (2.0 * n + 2.0));

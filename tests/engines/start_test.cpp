@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
+#include "framework/effects/joint/joint.h"
+#include "framework/effects/rod/rod.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "tests/engines/event_process_scenes.h"
 #include "tests/engines/reference_laws.h"
@@ -73,7 +75,7 @@ TEST(Start, ABodyWedgedBetweenTwoWallsIsRefused) {
 /// A bob on a rod along x, thrown with (1, 2, 0): what it can have is (0, 2, 0).
 scene::Scene thrown_bob(const Vector3d& velocity) {
   scene::Scene scene = scene_of({ball("bob", 0.1, 1.0, {1, 0, 0}, velocity)}, 0.1, std::nullopt);
-  scene.rods.push_back({"rod", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 1.0});
+  scene.effects.of<effects::RodSpec>().push_back({"rod", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 1.0});
   scene.stabilisation = scene::StabilisationSpec{};
   return scene;
 }
@@ -89,7 +91,7 @@ TEST(Start, VelocitiesThatARodDoesNotAllowAreToldWithWhatTheyBecame) {
 
 TEST(Start, VelocitiesThatAJointDoesNotAllowAreToldByBody) {
   scene::Scene scene = scene_of({box("door", {0.5, 0.05, 1.0}, 20.0, {0.5, 0, 0}, {0, 0, 1})}, 0.05, std::nullopt);
-  scene.joints.push_back({"hinge", scene::JointKind::kHinge, "door", "", Vector3d::Zero(), Vector3d::UnitZ()});
+  scene.effects.of<effects::JointSpec>().push_back({"hinge", effects::JointKind::kHinge, "door", "", Vector3d::Zero(), Vector3d::UnitZ()});
   scene.stabilisation = scene::StabilisationSpec{};
   for (const std::string& engine : kEngines) {
     const std::string told = notices_of(run_in(engine, scene));

@@ -5,6 +5,8 @@
 
 #include "framework/core/error.h"
 #include "framework/core/not_implemented.h"
+#include "framework/core/version.h"
+#include "framework/engines/run.h"
 #include "tests/engines/scenes.h"
 #include "tests/support/story.h"
 
@@ -22,6 +24,29 @@ void expect_stopped(const Trajectory& result, std::initializer_list<const char*>
   EXPECT_GE(result.frames.size(), frames_kept);
   for (const Frame& frame : result.frames)
     for (const BodyPose& pose : frame.poses) EXPECT_TRUE(pose.com_world.allFinite() && pose.velocity_world.allFinite()) << frame.time;
+}
+
+// Every engine's record: pages, pictures and files are made of it.
+TEST(Records, ARunNamesItsVersionItsSceneItsSeedsAndTheSourceOfEachLaw) {
+  scene::Scene scene = head_on();
+  scene.digest = "ab12";
+  scene.seeds = {7, 11};
+  Laws laws = test_laws();
+  laws.constraint_source = "a3 student";
+  for (const char* engine : {"rd", "ca", "ordered"}) {
+    engines::RunOptions options;
+    options.engine = engine;
+    options.command = "tumble run x";
+    TrajectoryRecorder recorder;
+    engines::run_scene(scene, laws, options, recorder);
+    const TrajectoryInfo& info = recorder.trajectory().info;
+    EXPECT_EQ(info.version, kProgramVersion) << engine;
+    EXPECT_EQ(info.command, "tumble run x") << engine;
+    EXPECT_EQ(info.scene_digest, "ab12") << engine;
+    EXPECT_EQ(info.seeds, scene.seeds) << engine;
+    EXPECT_EQ(info.constraint_source, "a3 student") << engine;
+    EXPECT_EQ(info.integrator_source, laws.integrator_source) << engine;
+  }
 }
 
 // The balls meet at 0.9 s: 54 frames before it.

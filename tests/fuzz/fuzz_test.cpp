@@ -45,6 +45,16 @@ TEST(Fuzz, ARunIsJudgedFromItsPlaces) {
   EXPECT_EQ(verdict_of(odd, "rd").outcome, Outcome::kRefused);
 }
 
+// Found by lot: heavy bodies on light and small ones, and boxes that rock. Their contacts brought energy in, and the runs ended with 0.
+TEST(Fuzz, ContactsThatGainedEnergyGainNoneNow) {
+  for (const char* name : {"slab_on_small_balls", "light_balls_under_a_heavy_one", "rocking_boxes"}) {
+    const PrivateFolder folder;
+    const std::filesystem::path file = std::filesystem::path(TUMBLE_SOURCE_DIR) / "tests/engines/broken_scenes" / (std::string(name) + ".json");
+    const Verdict verdict = run_scene_file(file, {"", "rd", folder.path()});
+    EXPECT_EQ(verdict.outcome, Outcome::kRight) << name << ": " << verdict.words;
+  }
+}
+
 TEST(Fuzz, AFailingSceneShrinksToWhatMatters) {
   Json scene = draw_scene(3);
   scene["bodies"].push_back(Json::parse(R"({"name": "culprit", "shape": {"sphere": {"radius_m": 0.1}}, "mass_kg": 1})"));

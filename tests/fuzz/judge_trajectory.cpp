@@ -7,8 +7,13 @@
 #include <fmt/format.h>
 
 #include "framework/collision/gap.h"
-#include "framework/dynamics/build_world.h"
 #include "framework/dynamics/world.h"
+#include "framework/effects/build_world.h"
+#include "framework/effects/joint/joint.h"
+#include "framework/effects/motor/motor.h"
+#include "framework/effects/point_force/point_force.h"
+#include "framework/effects/rod/rod.h"
+#include "framework/effects/spring/spring.h"
 
 namespace tumble::fuzz {
 namespace {
@@ -88,7 +93,7 @@ Energy energy_of(const Judge& judge, const Frame& frame) {
     add(energy.kinetic, 0.5 * omega_body.dot(body.inertia.inertia_body * omega_body));
     if (world.gravity_world) add(energy.potential, -body.inertia.mass * world.gravity_world->dot(at.com_world));
   }
-  for (const SpringLink& spring : world.springs) {
+  for (const effects::SpringLink& spring : world.effects.of<effects::SpringLink>()) {
     const double stretch = (judge.place(frame, spring.a) - judge.place(frame, spring.b)).norm() - spring.spring.rest_length;
     add(energy.potential, 0.5 * spring.spring.stiffness * stretch * stretch);
     energy.in_springs += 0.5 * spring.spring.stiffness * stretch * stretch;
@@ -99,7 +104,7 @@ Energy energy_of(const Judge& judge, const Frame& frame) {
 /// What constant forces have done from one frame to the next: force times the way of their point. Forces switch at frames.
 double work_of_point_forces(const Judge& judge, const Frame& from, const Frame& to) {
   double work = 0.0;
-  for (const PointForce& force : judge.world.point_forces) {
+  for (const effects::PointForce& force : judge.world.effects.of<effects::PointForce>()) {
     if (!(to.time <= force.end + 1e-9 && from.time >= force.start - 1e-9)) continue;
     const BodyPose &start = judge.pose(judge.run.frames.front(), force.body), &a = judge.pose(from, force.body), &b = judge.pose(to, force.body);
     const Vector3d point_body = start.world_from_body.conjugate() * (force.point_world - start.com_world);   // all begin at 0
@@ -111,8 +116,8 @@ double work_of_point_forces(const Judge& judge, const Frame& from, const Frame& 
 /// The most that motors can have done: their largest torque times how far the joint turned, twice for what frames do not show.
 double work_of_motors(const Judge& judge, const Frame& from, const Frame& to) {
   double work = 0.0;
-  for (const Motor& motor : judge.world.motors) {
-    const JointLink& joint = judge.world.joints[static_cast<std::size_t>(motor.joint)];
+  for (const effects::Motor& motor : judge.world.effects.of<effects::Motor>()) {
+    const effects::JointLink& joint = motor.hinge;
     const auto rate = [&](const Frame& frame) {
       Vector3d omega = judge.pose(frame, joint.a.body).omega_world;
       if (joint.b.body >= 0) omega -= judge.pose(frame, joint.b.body).omega_world;
@@ -167,7 +172,7 @@ void Judge::check_gaps() {
   for (const WorldBody& body : world.bodies) shapes.emplace_back(body.shape);
   double worst = 0.0;
   std::string words;
-  const bool has_links = !world.rods.empty() || !world.joints.empty();
+  const bool has_links = !world.effects.of<effects::RodLink>().empty() || !world.effects.of<effects::JointLink>().empty();
   for (int i = 0; i < static_cast<int>(world.bodies.size()); ++i)
     for (int j = i + 1; j < static_cast<int>(world.bodies.size()); ++j) {
       const WorldBody &a = world.bodies[static_cast<std::size_t>(i)], &b = world.bodies[static_cast<std::size_t>(j)];
@@ -202,11 +207,11 @@ void Judge::check_links() {
   };
   const auto arm_of = [&](const Anchor& anchor) { return anchor.body < 0 ? 0.0 : anchor.point_body.norm() + std::min(1e300, bounding_radius(world.bodies[static_cast<std::size_t>(anchor.body)].shape)); };
   for (const Frame& frame : run.frames) {
-    for (const RodLink& rod : world.rods) {
+    for (const effects::RodLink& rod : world.effects.of<effects::RodLink>()) {
       const Vector3d a = place(frame, rod.a), b = place(frame, rod.b);
       look(rod.name, std::abs((a - b).norm() - rod.length), rod.length, a.norm() + b.norm(), frame.time);
     }
-    for (const JointLink& joint : world.joints) {
+    for (const effects::JointLink& joint : world.effects.of<effects::JointLink>()) {
       const Vector3d a = place(frame, joint.a), b = place(frame, joint.b);
       look(joint.name, (a - b).norm(), arm_of(joint.a) + arm_of(joint.b), a.norm() + b.norm(), frame.time);
     }

@@ -1,4 +1,5 @@
-// What a solid is not: one test for each refusal, with the words that a user reads; and what is repaired.
+// The closed check: one test for each refusal, with the words that a user reads, and for each
+// repair.
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -36,7 +37,7 @@ TriangleMesh turned_inside_out(TriangleMesh mesh) {
   return mesh;
 }
 
-/// The first defect has this kind, says these words, and has a remedy.
+/// The first defect has this kind, contains these words, and has a remedy.
 void expect_refused(const TriangleMesh& mesh, DefectKind kind, const std::string& words, const std::string& place) {
   const ClosedReport report = check_closed(mesh);
   ASSERT_FALSE(report.is_closed()) << "accepted, but should say: " << words;
@@ -63,8 +64,9 @@ TEST(Closed, OneTriangleMissingOfASphereIsAHole) {
   expect_refused(mesh, DefectKind::kMissingFace, "a hole (a face is missing): 3 open edges", "first at (");
 }
 
-TEST(Closed, LayersOnEachOtherAreALampshade) {
-  // Both sides modelled as faces on the same corners: closed by count, without thickness.
+TEST(Closed, CoincidentLayersAreALampshade) {
+  // Both sides modelled as faces on the same corners: every edge is in two faces, but there is no
+  // thickness.
   TriangleMesh mesh = broken("lampshade");
   const std::vector<Face> outside = mesh.faces;
   for (const Face& f : outside) mesh.faces.push_back({f[0], f[2], f[1]});
@@ -86,17 +88,17 @@ TEST(Closed, InfinityIsRefusedAtItsVertex) {
 TEST(Closed, IndexWithoutVertexIsRefused) {
   TriangleMesh mesh = unit_box();
   mesh.faces[7][1] = 8;
-  expect_refused(mesh, DefectKind::kBadIndex, "face 7 names vertex 8, and there are vertices 0 to 7", "");
+  expect_refused(mesh, DefectKind::kBadIndex, "face 7 refers to vertex 8, but the vertices are 0 to 7", "");
 }
 
 TEST(Closed, MoebiusStripClosedByADiscHasOneSide) {
-  // The projective plane on six vertices: every edge in two faces, and no choice of sides.
+  // The projective plane on six vertices: every edge is in two faces, and no orientation exists.
   TriangleMesh mesh{{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 0}, {0, 1, 1}, {1, 0, 1}},
                     {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 5}, {0, 5, 1}, {1, 2, 4}, {2, 3, 5}, {3, 4, 1}, {4, 5, 2}, {5, 1, 3}}};
   expect_refused(mesh, DefectKind::kOneSided, "one-sided", "faces");
 }
 
-TEST(Closed, PartInsideAnotherThatIsNoCavityIsRefused) {
+TEST(Closed, PartInsideAnotherThatIsNotACavityIsRefused) {
   const TriangleMesh mesh = joined(models::box({0, 0, 0}, {4, 4, 4}), models::box({1, 1, 1}, {2, 2, 2}));
   expect_refused(mesh, DefectKind::kNestedOutward, "its volume would count twice", "(1.5, 1.5, 1.5)");
 }
@@ -108,15 +110,15 @@ TEST(Closed, SolidIsAcceptedWithoutNotice) {
   EXPECT_EQ(report.parts, 1);
 }
 
-TEST(Closed, WhollyInvertedSurfaceIsTurnedWithANotice) {
+TEST(Closed, InvertedSurfaceIsFlippedWithANotice) {
   const ClosedReport report = check_closed(turned_inside_out(unit_box()));
   ASSERT_TRUE(report.is_closed());
   EXPECT_DOUBLE_EQ(signed_volume(report.mesh), 1.0);
   ASSERT_EQ(report.notices.size(), 1u);
-  EXPECT_EQ(report.notices[0], "the surface was inside out: all its faces were turned");
+  EXPECT_EQ(report.notices[0], "the surface was inside out: all its faces were flipped");
 }
 
-TEST(Closed, OneInvertedPartOfTwoIsTurnedWithItsPlace) {
+TEST(Closed, OneInvertedPartOfTwoIsFlippedWithItsPlace) {
   const ClosedReport report = check_closed(joined(unit_box(), turned_inside_out(models::box({2, 0, 0}, {3, 1, 1}))));
   ASSERT_TRUE(report.is_closed());
   EXPECT_DOUBLE_EQ(signed_volume(report.mesh), 2.0);
@@ -131,7 +133,7 @@ TEST(Closed, CavityIsKept) {
   EXPECT_EQ(report.parts, 2);
 }
 
-TEST(Closed, TwoConesTouchingAtTheirTipsArePartedThere) {
+TEST(Closed, TwoConesTouchingAtTheirTipsAreSeparatedThere) {
   const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 1}, {0, 1, 1}, {-1, -1, 1}, {1, 0, -1}, {0, 1, -1}, {-1, -1, -1}},
                     {{0, 2, 1}, {0, 3, 2}, {0, 1, 3}, {1, 2, 3}, {0, 4, 5}, {0, 5, 6}, {0, 6, 4}, {4, 6, 5}}};
   const ClosedReport report = check_closed(mesh);
@@ -141,7 +143,7 @@ TEST(Closed, TwoConesTouchingAtTheirTipsArePartedThere) {
   EXPECT_NE(report.notices[0].find("touches itself at 1 corner, the first at (0, 0, 0)"), std::string::npos) << report.notices[0];
 }
 
-TEST(Closed, SolidFromABrokenMeshSaysFileProblemAndRemedy) {
+TEST(Closed, SolidFromABrokenMeshNamesFileProblemAndRemedy) {
   try {
     solid_from_mesh(broken("missing_face"), "box.3ds: object 'lid'");
     FAIL() << "accepted";
@@ -165,8 +167,8 @@ TEST(Closed, VertexFarFromTheOthersMakesANeedle) {
   EXPECT_TRUE(check_closed(models::box({0, 0, 0}, {1e5, 1, 1})).is_closed());
 }
 
-/// A prism over a curve like three links of a chain, seen from the side: the middle one counts, the outer two, up to x = +-reach, are
-/// turned inside out. By symmetry its centre of mass is in the middle.
+/// A prism over a curve like three links of a chain: the middle link has positive area, the outer
+/// two, up to x = +-reach, are inverted. By symmetry its centre of mass is in the middle.
 TriangleMesh three_links(double reach) {
   const double y = reach - 4;
   return models::extrude({{-reach, y}, {-1, -3}, {1, -3}, {reach, y}, {reach, -y}, {1, 3}, {-1, 3}, {-reach, -y}},
@@ -174,20 +176,24 @@ TriangleMesh three_links(double reach) {
 }
 
 TEST(Closed, InertiaThatNoSolidHasIsRefused) {
-  // int x^2 over the links: 85 - 2 * 2 (reach^4 / 4 - 4 reach^3 / 3 + 64 / 3) a metre of height: negative at 5.5, where all three moments of
-  // inertia are still positive and the centre of mass is inside.
-  // At 4.5 it is 70, and nothing that is measured is impossible. Both are refused where their faces cross, before anything is measured.
+  // int x^2 over the links is 85 - 2 * 2 (reach^4 / 4 - 4 reach^3 / 3 + 64 / 3) per metre of
+  // height: negative at 5.5, where all three moments of inertia are still positive and the centre
+  // of mass is inside.
+  // At 4.5 it is 70, and no mass property is impossible. Both are refused because their faces
+  // cross, before mass properties are computed.
   for (const double reach : {4.5, 5.5}) expect_refused(three_links(reach), DefectKind::kSelfCrossing, "passes through itself", "faces ");
 }
 
 TEST(Closed, ShellsThatPassThroughEachOtherAreRefusedByName) {
-  // Two unit boxes, 0.28 m^3 of which lie in both: their volumes add up to 2, the solid has 1.72.
+  // Two unit boxes with a common volume of 0.28 m^3: their volumes add up to 2 m^3, the solid has
+  // 1.72 m^3.
   const TriangleMesh mesh = joined(unit_box(), models::box({0.3, 0.2, 0.5}, {1.3, 1.2, 1.5}));
   expect_refused(mesh, DefectKind::kSelfCrossing, "two shells pass through each other: the part of 12 faces about (0.5, 0.5, 0.5) and the part of 12 faces about (0.8, 0.7, 1)", "faces ");
 }
 
 TEST(Closed, BoxesPushedIntoEachOtherAlongTheirFacesAreRefusedToo) {
-  // Faces lie on each other and pass through nothing: the second box is half in the first, sides in the planes of its sides.
+  // Faces lie on each other, and none passes through another: half of the second box is in the
+  // first, with sides in common planes.
   expect_refused(joined(unit_box(), models::box({0.5, 0, 0}, {1.5, 1, 1})), DefectKind::kSelfCrossing, "two shells pass through each other", "(0.5, ");
   expect_refused(joined(unit_box(), models::box({0.5, 0.5, 0}, {1.5, 1.5, 1})), DefectKind::kSelfCrossing, "two shells pass through each other", "");
 }
@@ -202,8 +208,9 @@ TEST(Closed, ABarThroughABallIsRefusedAtAnySizeAndPlace) {
 }
 
 TEST(Closed, PartsThatTouchAreNotCrossing) {
-  // Face on face, edge on face, a corner on a face, edge on edge: apart by nothing, but not through each other.
-  const TriangleMesh diamond = [] {   // a corner down at the origin
+  // Face on face, edge on face, corner on face, edge on edge: in contact, but not through each
+  // other.
+  const TriangleMesh diamond = [] {   // its lowest corner at the origin
     TriangleMesh mesh = subdivided_sphere(0);
     const Quaterniond down = Quaterniond::FromTwoVectors(mesh.vertices[0], -Vector3d::UnitZ());
     for (Vector3d& vertex : mesh.vertices) vertex = down * vertex + Vector3d(0.4, 0.4, 2.0);
@@ -215,20 +222,20 @@ TEST(Closed, PartsThatTouchAreNotCrossing) {
   }
 }
 
-TEST(Closed, AFaceThatIsThereTwiceIsDroppedWithItsPlace) {
+TEST(Closed, DuplicateFaceIsDroppedWithItsPlace) {
   TriangleMesh mesh = unit_box();
   mesh.faces.push_back({mesh.faces[4][1], mesh.faces[4][2], mesh.faces[4][0]});
   const ClosedReport report = check_closed(mesh);
   ASSERT_TRUE(report.is_closed()) << report.defects.front().problem;
   EXPECT_DOUBLE_EQ(signed_volume(report.mesh), 1.0);
   ASSERT_EQ(report.notices.size(), 1u);
-  EXPECT_NE(report.notices[0].find("dropped 1 face that was there twice, the first: face 12, which is face 4"), std::string::npos) << report.notices[0];
+  EXPECT_NE(report.notices[0].find("dropped 1 duplicate face, the first: face 12, which repeats face 4"), std::string::npos) << report.notices[0];
 }
 
-TEST(Closed, AFaceThatIsThereTwiceOnAnOpenSurfaceIsNamedAsThat) {
+TEST(Closed, DuplicateFaceOnAnOpenSurfaceIsNamed) {
   TriangleMesh mesh = broken("missing_face");
   mesh.faces.push_back(mesh.faces[2]);
-  expect_refused(mesh, DefectKind::kRepeatedFace, "1 face is there twice: face 10 is face 2 once more", "at (");
+  expect_refused(mesh, DefectKind::kRepeatedFace, "1 duplicate face: face 10 repeats face 2", "at (");
 }
 
 TEST(Closed, AFinWithoutThicknessIsDroppedWithItsPlace) {
@@ -243,26 +250,28 @@ TEST(Closed, AFinWithoutThicknessIsDroppedWithItsPlace) {
   EXPECT_NE(report.notices.at(0).find("back to back"), std::string::npos);
 }
 
-TEST(Closed, CornersThatSinglePrecisionHasMergedAreNamedAsThat) {
-  // A plate 1 cm thick, 200 km from the origin: float32 numbers are 16 mm apart there, so its two sides fall together.
+TEST(Closed, CornersMergedBySinglePrecisionAreNamed) {
+  // A plate 1 cm thick, 200 km from the origin: float32 numbers are 16 mm apart there, so its two
+  // sides coincide.
   TriangleMesh mesh = models::box({0, 0, 0}, {1, 1, 0});
   for (Face& face : mesh.faces)   // corners of the upper side are those of the lower
     for (int& corner : face)
       for (int v = 0; v < corner; ++v)
         if (mesh.vertices[v] == mesh.vertices[corner]) corner = v;
   for (Vector3d& vertex : mesh.vertices) vertex.z() += 2e5;
-  expect_refused(mesh, DefectKind::kMergedCorners, "corners have become one: 8 faces have lost their area", "2e+05 m tells no less than 0.024 m apart");
+  expect_refused(mesh, DefectKind::kMergedCorners, "corners have merged: 8 faces have no area left", "2e+05 m cannot resolve less than 0.024 m");
 }
 
-TEST(Closed, APlateAsThinAsARoundingIsNotTakenForACrossing) {
+TEST(Closed, PlateAsThinAsRoundingIsNotACrossing) {
   for (const double thickness : {1e-6, 1e-9, 1e-12}) {
     const ClosedReport report = check_closed(models::box({0, 0, 0}, {1, 1, thickness}));
     for (const Defect& defect : report.defects) EXPECT_NE(defect.kind, DefectKind::kSelfCrossing) << thickness << ": " << defect.problem;
   }
 }
 
-TEST(Closed, VolumeThatIsAllRoundingIsRefused) {
-  // A spike to 1e31 m on a stone of 1 m: the sum for its volume leaves nothing but the rounding of numbers of 1e62.
+TEST(Closed, VolumeLostInRoundingIsRefused) {
+  // A spike to 1e31 m on a stone of 1 m: its volume is a sum of numbers of 1e62, and the result is
+  // only their rounding.
   TriangleMesh mesh = models::rounded(subdivided_sphere(1));
   mesh.vertices[0] = {2.7e31, 0, 0};
   mesh.vertices[3] = {0, 0, -2.9e31};

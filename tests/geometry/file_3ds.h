@@ -1,4 +1,4 @@
-/// Chunks that models/write_3ds.h has no use for: frames of objects, nodes, pivots.
+/// Chunks that models/write_3ds.h does not write: frames of objects, nodes, pivots.
 #pragma once
 
 #include <initializer_list>
@@ -16,7 +16,7 @@ inline std::string numbers(std::initializer_list<double> values) {
   return data;
 }
 
-/// Axes (rows) and origin of an object's own frame in the file's world.
+/// Axes (rows) and origin of an object's frame in the file's world.
 inline std::string matrix_chunk(const Eigen::Affine3d& world_from_mesh) {
   std::string data;
   for (int column = 0; column < 4; ++column) {

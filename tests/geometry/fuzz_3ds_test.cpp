@@ -1,5 +1,6 @@
-// 20 000 damaged files, from a seed: none may crash the loader, hang it for 2 s, or make it take 512 MiB; whatever is accepted
-// must be usable. Files are read in child processes, a batch each, so that a crash costs one file and names it.
+// 20 000 damaged files from one seed: none may crash the loader, hang it for 2 s, or make it take
+// 512 MiB, and every accepted file must be usable. Child processes read the files in batches, so
+// that a crash costs one file and names it.
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -25,11 +26,12 @@ namespace {
 
 constexpr int kFiles = 20'000;
 constexpr int kBatch = 2'000;
-constexpr int kHang = 2;                          // s, of wall clock, a file
+constexpr int kHang = 2;                          // s of wall-clock time per file
 constexpr long kMostKilobytes = 512 * 1024;       // of memory in use at once
-constexpr rlim_t kMostAddresses = rlim_t{4} << 30;  // a stop for what would take the machine down; sanitizers need more
+constexpr rlim_t kMostAddresses = rlim_t{4} << 30;  // limit of address space, to protect the machine; sanitizers need more
 
-/// A file with everything the checker looks into: materials, smoothing groups, matrices, nodes with parents, a camera.
+/// A file with everything that check_3ds inspects: materials, smoothing groups, matrices, nodes
+/// with parents, a camera.
 std::string rich_file() {
   const TriangleMesh box = models::catalogue().front().objects.front().mesh;
   std::string groups, material = std::string("red") + '\0' + u16(6);
@@ -64,14 +66,14 @@ void overwrite(std::string& bytes, std::size_t at, const std::string& with) {
   for (std::size_t i = 0; i < with.size() && at + i < bytes.size(); ++i) bytes[at + i] = with[i];
 }
 
-/// Numbers at which programs break.
+/// Numbers that often break programs.
 std::string odd_number(Random& random) {
   const std::uint32_t odd[] = {0, 1, 5, 6, 7, 0x7F, 0xFF, 0x7FFF, 0xFFFF, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF, 0x7F800000, 0x7FC00000, 0xFF7FFFFF, 0x00000001};
   const std::uint32_t value = odd[random.below(std::size(odd))];
   return random.below(2) == 0 ? u16(static_cast<std::uint16_t>(value)) : u32(value);
 }
 
-/// The ids of chunks, where lengths and counts follow.
+/// The place of a chunk's id, which its length and count follow.
 std::size_t place_of_a_chunk(const std::string& bytes, Random& random) {
   static const std::uint16_t ids[] = {0x4D4D, 0x3D3D, 0x4000, 0x4100, 0x4110, 0x4120, 0x4130, 0x4150, 0x4160, 0xB000, 0xB002, 0xB010, 0xB013, 0xB020, 0xB021, 0xB030};
   const std::size_t at = bytes.find(u16(ids[random.below(std::size(ids))]), random.below(bytes.size()));
@@ -104,12 +106,12 @@ std::string damaged_file(int number, const std::vector<std::string>& seeds) {
   std::string bytes = seeds[random.below(seeds.size())];
   const std::uint64_t mutations = 1 + random.below(4);
   for (std::uint64_t i = 0; i < mutations; ++i) mutate_once(bytes, random);
-  // Half of the files say their true length again, so that damage deeper in is reached.
+  // Half of the files get a correct length again, so that the loader reaches damage deeper inside.
   if (bytes.size() >= 6 && random.below(2) == 0) overwrite(bytes, 2, u32(static_cast<std::uint32_t>(bytes.size())));
   return bytes;
 }
 
-/// How many files ended in which way; shared between the processes.
+/// How many files had which outcome; shared between the processes.
 struct Tally {
   volatile int next;                 // the file being read
   volatile int accepted, refused, unusable;
@@ -147,7 +149,7 @@ void read_files(Tally& tally, int end, const std::vector<std::string>& seeds) {
   tally.next = end;
 }
 
-TEST(Fuzz3ds, TwentyThousandDamagedFilesNeitherCrashNorHangNorEatMemory) {
+TEST(Fuzz3ds, TwentyThousandDamagedFilesNeitherCrashNorHangNorExhaustMemory) {
   const std::vector<std::string> files = seeds();
   if (const char* only = std::getenv("TUMBLE_FUZZ_FILE")) {  // one file, written out and read in this process: for a debugger
     std::ofstream("damaged.3ds", std::ios::binary) << damaged_file(std::atoi(only), files);
@@ -184,7 +186,8 @@ TEST(Fuzz3ds, TwentyThousandDamagedFilesNeitherCrashNorHangNorEatMemory) {
   }
   EXPECT_EQ(tally.unusable, 0) << "the first is file " << tally.first_unusable;
   EXPECT_LT(peak_kilobytes, kMostKilobytes);
-  // The damage reaches both ends: a mutator that spoils nothing, or all, tests nothing.
+  // Files are accepted and refused: a mutator that damages no file, or every file, would test
+  // nothing.
   EXPECT_GT(tally.accepted, kFiles / 20);
   EXPECT_GT(tally.refused, kFiles / 4);
   std::printf("%d files: %d accepted, %d refused; peak memory %ld MiB\n", kFiles, tally.accepted + 0, tally.refused + 0, peak_kilobytes / 1024);

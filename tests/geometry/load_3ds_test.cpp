@@ -1,4 +1,5 @@
-// Files put together chunk by chunk: several objects, nodes and pivots, welding, scale; and each way in which a file is refused.
+// Files assembled chunk by chunk: several objects, nodes and pivots, welding, scale; and each
+// reason to refuse a file.
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -71,7 +72,8 @@ TEST(Load3ds, MasterScaleOfTheFileIsLeftToTheCaller) {
 }
 
 TEST(Load3ds, CornersSplitForSmoothingAreWeldedWhereExactlyEqual) {
-  // Every face with three vertices of its own, as programs write that keep a normal a corner; -0 and 0 are one place.
+  // Every face has three vertices of its own, as written by programs with a normal per corner; -0
+  // and 0 are the same coordinate.
   TriangleMesh split;
   for (const Face& face : unit_box().faces) {
     for (int v : face) split.vertices.push_back(unit_box().vertices[v]);
@@ -105,9 +107,10 @@ TEST(Load3ds, SmoothingGroupsAndMaterialsDoNotSplitAnObject) {
   EXPECT_EQ(file.objects[0].report.mesh.vertices.size(), 8u);
 }
 
-// A file holds an object's vertices in world coordinates as modelled; its matrix says where its own frame stood then, and its node where
-// it stands at frame 0: world = position * rotation * (matrix^-1 * vertex - pivot).
-TEST(Load3ds, NodeMovesTheObjectFromItsModelledPlaceToItsKeyedOne) {
+// A file stores an object's vertices in world coordinates as modelled; the matrix is the object's
+// frame at that time, the node its frame at animation frame 0: world = position * rotation *
+// (matrix^-1 * vertex - pivot).
+TEST(Load3ds, NodeMovesTheObjectFromItsModelledToItsKeyedPlace) {
   const Eigen::Affine3d modelled(Eigen::Translation3d(5, 0, 0));
   const std::string object = models::object_chunk("box", lists(models::moved(unit_box(), {5, 0, 0})) + matrix_chunk(modelled));
   Node node{"box"};
@@ -118,7 +121,7 @@ TEST(Load3ds, NodeMovesTheObjectFromItsModelledPlaceToItsKeyedOne) {
   expect_box(file.objects[0], {0, 0, 7}, {1, 1, 8});
 }
 
-TEST(Load3ds, PivotIsTakenOffBeforeTheNodePlacesTheObject) {
+TEST(Load3ds, PivotIsSubtractedBeforeTheNodePlacesTheObject) {
   Node node{"box"};
   node.pivot = {1, 0, 0};
   node.position = {10, 0, 0};
@@ -126,7 +129,7 @@ TEST(Load3ds, PivotIsTakenOffBeforeTheNodePlacesTheObject) {
   expect_box(parse_3ds(models::file_3ds(object, keyframer(node_chunk(node))), "f").objects[0], {9, 0, 0}, {10, 1, 1});
 }
 
-TEST(Load3ds, NodeTurnsAboutThePivotAndTheSolidKeepsItsVolume) {
+TEST(Load3ds, NodeRotatesAboutThePivotAndTheSolidKeepsItsVolume) {
   Node node{"box"};
   node.pivot = {1, 0, 0};
   node.angle = 3.14159265358979 / 2;
@@ -134,13 +137,14 @@ TEST(Load3ds, NodeTurnsAboutThePivotAndTheSolidKeepsItsVolume) {
   const LoadedObject loaded = parse_3ds(models::file_3ds(object, keyframer(node_chunk(node))), "f").objects[0];
   ASSERT_TRUE(loaded.report.is_closed());
   EXPECT_NEAR(signed_volume(loaded.report.mesh), 1.0, 10 * kFloat);
-  // [-1, 0] x [0, 1] about the pivot, turned a quarter about z: [0, 1] or [-1, 0] along x, by the sense of the turn.
+  // [-1, 0] x [0, 1] about the pivot, rotated by 90 degrees about z: [0, 1] or [-1, 0] along x,
+  // depending on the sense of rotation.
   const Bounds found = box_of(loaded);
   EXPECT_NEAR((found.high - found.low).x(), 1.0, kFloat);
   EXPECT_NEAR(std::abs(0.5 * (found.high + found.low).x()), 0.5, kFloat);
 }
 
-TEST(Load3ds, MirroringMatrixStillGivesASolidThatLooksOutward) {
+TEST(Load3ds, MirroringMatrixStillGivesAnOutwardSolid) {
   Eigen::Affine3d mirror = Eigen::Affine3d::Identity();
   mirror.linear()(0, 0) = -1;
   const std::string object = models::object_chunk("box", lists(unit_box()) + matrix_chunk(mirror));
@@ -149,7 +153,7 @@ TEST(Load3ds, MirroringMatrixStillGivesASolidThatLooksOutward) {
   EXPECT_NEAR(signed_volume(report.mesh), 1.0, kFloat);
 }
 
-TEST(Load3ds, InvertedObjectIsTurnedWithANotice) {
+TEST(Load3ds, InvertedObjectIsFlippedWithANotice) {
   TriangleMesh mesh = unit_box();
   for (Face& face : mesh.faces) std::swap(face[0], face[1]);
   const ClosedReport report = parse_3ds(models::write_3ds({{"box", mesh}}), "f").objects[0].report;
@@ -168,7 +172,7 @@ TEST(Refused3ds, Folder) { EXPECT_THROW(load_3ds("/"), UserError); }
 TEST(Refused3ds, TruncatedAnywhere) {
   const std::string whole = box_file();
   for (std::size_t length = 6; length < whole.size(); ++length) {
-    expect_refused(whole.substr(0, length), {"truncated: it says it has 256 bytes, and there are", std::to_string(length).c_str()});
+    expect_refused(whole.substr(0, length), {"truncated: it declares 256 bytes, but has", std::to_string(length).c_str()});
   }
 }
 
@@ -176,27 +180,27 @@ TEST(Refused3ds, CountOfVerticesThatTheFileCannotHold) {
   std::string bytes = box_file();
   const std::size_t list = bytes.find(u16(0x4110) + u32(6 + 2 + 8 * 12));
   bytes.replace(list + 6, 2, u16(60000));
-  expect_refused(bytes, {"mesh 'box' says it has 60000 vertices, and its chunk holds at most 8", "at byte"});
+  expect_refused(bytes, {"mesh 'box' declares 60000 vertices, but its chunk holds at most 8", "at byte"});
 }
 
 TEST(Refused3ds, CountOfFacesThatTheFileCannotHold) {
   std::string bytes = box_file();
   const std::size_t list = bytes.find(u16(0x4120) + u32(6 + 2 + 12 * 8));
   bytes.replace(list + 6, 2, u16(13));
-  expect_refused(bytes, {"mesh 'box' says it has 13 faces, and its chunk holds at most 12"});
+  expect_refused(bytes, {"mesh 'box' declares 13 faces, but its chunk holds at most 12"});
 }
 
-TEST(Refused3ds, ChunkLongerThanItsHolder) {
+TEST(Refused3ds, ChunkLongerThanItsParent) {
   std::string bytes = box_file();
   const std::size_t list = bytes.find(u16(0x4120) + u32(6 + 2 + 12 * 8));
   bytes.replace(list + 2, 4, u32(0x7FFFFFFF));
-  expect_refused(bytes, {"chunk 4120 (face list) says it is 2147483647 bytes long, and its holder has 104 left"});
+  expect_refused(bytes, {"chunk 4120 (face list) declares 2147483647 bytes, but its parent has 104 left"});
 }
 
-TEST(Refused3ds, FaceThatNamesAVertexThatIsNotThere) {
+TEST(Refused3ds, FaceThatRefersToAMissingVertex) {
   TriangleMesh mesh = unit_box();
   mesh.faces[3][2] = 8;
-  expect_refused(models::write_3ds({{"box", mesh}}), {"mesh 'box': a face names vertex 8, and there are 8 vertices"});
+  expect_refused(models::write_3ds({{"box", mesh}}), {"mesh 'box': a face refers to vertex 8, but there are 8 vertices"});
 }
 
 TEST(Refused3ds, NotANumber) {
@@ -211,7 +215,7 @@ TEST(Refused3ds, Infinity) {
   expect_refused(models::write_3ds({{"box", mesh}}), {"mesh 'box': coordinate z of vertex 0 is infinite"});
 }
 
-TEST(Refused3ds, MatrixThatFlattensSpace) {
+TEST(Refused3ds, SingularMatrix) {
   Eigen::Affine3d flat = Eigen::Affine3d::Identity();
   flat.linear()(2, 2) = 0;
   expect_refused(models::file_3ds(models::object_chunk("box", lists(unit_box()) + matrix_chunk(flat))), {"mesh 'box': its matrix is singular"});
@@ -220,7 +224,7 @@ TEST(Refused3ds, MatrixThatFlattensSpace) {
 TEST(Refused3ds, CountOfKeysThatATrackCannotHold) {
   const std::string track_of_many = chunk(0xB020, u16(0) + u32(0) + u32(0) + u32(0x40000000) + u32(0) + u16(0) + numbers({1, 2, 3}));
   const std::string bytes = models::file_3ds(models::object_chunk("box", lists(unit_box())), keyframer(chunk(0xB002, track_of_many)));
-  expect_refused(bytes, {"animation track B020 says it has 1073741824 keys, and its chunk holds at most 1"});
+  expect_refused(bytes, {"animation track B020 declares 1073741824 keys, but its chunk holds at most 1"});
 }
 
 TEST(Refused3ds, FileWithoutAnyMesh) { expect_refused(models::file_3ds(""), {"holds no mesh"}); }

@@ -1,4 +1,5 @@
-// Volume, centre of mass and inertia against exact rationals (tests/truths), and how they behave under moves, turns and scales.
+// Volume, centre of mass and inertia against exact rationals (tests/truths), and under translation,
+// rotation and scaling.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -14,7 +15,7 @@ namespace tumble::testing {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
-constexpr double kRelative = 1e-12;  // 4500 roundings: sums over 2304 faces pass, a term forgotten (1e-2 and more) does not
+constexpr double kRelative = 1e-12;  // 4500 roundings: sums over 2304 faces pass, a missing term (1e-2 and more) does not
 
 TriangleMesh mesh_of(const nlohmann::json& truth) {
   TriangleMesh mesh;
@@ -31,7 +32,7 @@ Matrix3d matrix(const nlohmann::json& value) {
   return m;
 }
 
-/// Largest component of the error over the largest component of the truth.
+/// Largest component of the error over the largest component of the expected value.
 template <class A, class B>
 double relative_error(const A& found, const B& expected) {
   return (found - expected).cwiseAbs().maxCoeff() / expected.cwiseAbs().maxCoeff();
@@ -46,7 +47,8 @@ TEST_P(MassTruth, HoldsToTwelveDigits) {
   const double volume = number(output(truth, "volume")), mass = number(output(truth, "mass"));
   EXPECT_NEAR(found.volume, volume, kRelative * volume);
   EXPECT_NEAR(found.mass, mass, kRelative * mass);
-  // A centre of mass may be 0: its error is measured by the body's size, or by its distance where that is larger.
+  // A centre of mass may be 0: its error is relative to the body's size, or to its distance from
+  // the origin where that is larger.
   const Vector3d com = vector(output(truth, "com"));
   const Bounds bounds = bounds_of(mesh);
   EXPECT_LE((found.com_mesh - com).norm(), kRelative * std::max(com.norm(), (bounds.high - bounds.low).norm()));
@@ -64,7 +66,8 @@ INSTANTIATE_TEST_SUITE_P(All, MassTruth,
                          });
 
 TEST(MassProperties, UnitBoxAMillionMetresAwayKeepsNineDigits) {
-  // Corners at multiples of 1/2 are exact at 1e6. Sums about the world's origin lose (1e6)^2 * eps = 1e-4 of the inertia.
+  // Corners at multiples of 1/2 are exact at 1e6. Sums about the world's origin would lose (1e6)^2
+  // * eps = 1e-4 of the inertia.
   const Vector3d far(1e6, -1e6, 1e6);
   const MassProperties found = compute_mass_properties(models::box(far - Vector3d::Constant(0.5), far + Vector3d::Constant(0.5)));
   EXPECT_NEAR(found.volume, 1.0, 1e-9);
@@ -73,7 +76,8 @@ TEST(MassProperties, UnitBoxAMillionMetresAwayKeepsNineDigits) {
 }
 
 TEST(MassProperties, UnitBoxAMillionMetresAwayOffTheGridKeepsNineDigitsOfItsRoundedCorners) {
-  // Corners that are rounded at 1e6 (spacing 1.2e-10 m) bound a slightly different box: its sides are known from the corners.
+  // Corners rounded at 1e6 (spacing 1.2e-10 m) bound a slightly different box, whose sides are
+  // known from the corners.
   const Vector3d low = Vector3d::Constant(1e6 + 0.1), high = Vector3d::Constant(1e6 + 1.1);
   const Vector3d side = high - low;
   const MassProperties found = compute_mass_properties(models::box(low, high));
@@ -81,7 +85,7 @@ TEST(MassProperties, UnitBoxAMillionMetresAwayOffTheGridKeepsNineDigitsOfItsRoun
   EXPECT_NEAR(found.inertia_com_mesh(2, 2), side.prod() * (side.x() * side.x() + side.y() * side.y()) / 12.0, 1e-9);
 }
 
-TEST(MassProperties, TurnedBodyHasTurnedInertiaAndTheSameMoments) {
+TEST(MassProperties, RotatedBodyHasRotatedInertiaAndTheSameMoments) {
   const TriangleMesh mesh = models::extrude({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 5}, {3, 4, 5}}, 0, 1);
   const Quaterniond turn = Quaterniond(0.3, -0.5, 0.7, 0.1).normalized();
   const MassProperties before = compute_mass_properties(mesh), after = compute_mass_properties(models::turned(mesh, turn));
@@ -92,7 +96,7 @@ TEST(MassProperties, TurnedBodyHasTurnedInertiaAndTheSameMoments) {
   EXPECT_LE((before.principal_moments - after.principal_moments).norm(), kRoundOff);
 }
 
-TEST(MassProperties, PrincipalAxesAreARotationThatMakesTheInertiaDiagonal) {
+TEST(MassProperties, PrincipalAxesAreARotationThatDiagonalisesTheInertia) {
   const MassProperties found = compute_mass_properties(models::extrude({{0, 0}, {3, 0}, {0, 1}}, {{0, 1, 2}}, 0, 0.5));
   const Matrix3d& axes = found.mesh_from_principal;
   EXPECT_NEAR(axes.determinant(), 1.0, 20 * kEps);
@@ -102,7 +106,7 @@ TEST(MassProperties, PrincipalAxesAreARotationThatMakesTheInertiaDiagonal) {
   EXPECT_LT(found.principal_moments[1], found.principal_moments[2]);
 }
 
-TEST(MassProperties, ScaleGivesPowersThreeAndFive) {
+TEST(MassProperties, MassAndInertiaScaleWithPowersThreeAndFive) {
   const TriangleMesh mesh = models::star_shaped([](const Vector3d& d) { return 1.0 + 0.3 * d.x(); }, 2);
   TriangleMesh large = mesh;
   for (Vector3d& v : large.vertices) v *= 4.0;  // a power of 2: exact
@@ -117,8 +121,9 @@ TEST(MassProperties, InsideOutSurfaceHasNegativeVolume) {
   EXPECT_NEAR(signed_volume(mesh), -6.0, 20 * kEps * 6.0);
 }
 
-TEST(MassProperties, SphereOfTrianglesConvergesToTheBallFromBelow) {
-  // An inscribed surface loses volume in proportion to its edges squared: a factor 4 a subdivision.
+TEST(MassProperties, TriangulatedSphereConvergesToTheBallFromBelow) {
+  // The volume error of an inscribed surface is proportional to its edge length squared: a factor 4
+  // per subdivision.
   const double ball = 4.0 / 3.0 * 3.14159265358979323846;
   const double coarse = ball - signed_volume(subdivided_sphere(3)), fine = ball - signed_volume(subdivided_sphere(4));
   EXPECT_GT(fine, 0.0);

@@ -1,4 +1,5 @@
-// A scene's body that is a model: found, weighed, scaled, and refused with the body's name.
+// A scene's body from a model file: found, with its mass properties, scaled, and refused with the
+// body's name.
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
@@ -17,14 +18,14 @@ scene::BodySpec body_of(const std::string& file, const std::string& object = "",
 
 const std::filesystem::path kScene = std::filesystem::path(TUMBLE_SOURCE_DIR) / "assignments/a1_impulse/scenes/any.json";
 
-TEST(ModelBody, CubeWeighsAndTurnsLikeACube) {
+TEST(ModelBody, CubeHasTheMassAndInertiaOfACube) {
   const scene::Solid solid = scene::build_solid(body_of("box.3ds"), kScene, TUMBLE_SOURCE_DIR);
   EXPECT_NEAR(solid.mass_kg, 500.0, 1e-10);
   EXPECT_LE((solid.inertia_body_kg_m2 - Matrix3d(Matrix3d::Identity() * 500.0 / 6.0)).cwiseAbs().maxCoeff(), 1e-10);
   EXPECT_TRUE(std::get<MeshSolid>(solid.shape).is_convex);
 }
 
-TEST(ModelBody, ScaleGoesIntoTheMassWithItsThirdPower) {
+TEST(ModelBody, MassScalesWithTheThirdPower) {
   EXPECT_NEAR(scene::build_solid(body_of("box.3ds", "", 0.5), kScene, TUMBLE_SOURCE_DIR).mass_kg, 62.5, 1e-10);
 }
 
@@ -38,7 +39,7 @@ TEST(ModelBody, GivenMassOverridesTheDensity) {
   EXPECT_NEAR(solid.inertia_body_kg_m2(2, 2), 3 * 2.0 / 6.0 + 2.0 * (2.0 / 9.0 + 5.0 / 9.0 + 5.0 / 9.0), 1e-10);
 }
 
-TEST(ModelBody, ModelIsFoundFromTheScenesFolderWithoutBeingToldTheRoot) {
+TEST(ModelBody, ModelIsFoundFromTheScenesFolderWithoutTheProjectsRoot) {
   EXPECT_NO_THROW(scene::build_solid(body_of("rock_1.3ds"), kScene));
 }
 

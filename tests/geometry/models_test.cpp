@@ -1,4 +1,5 @@
-// The files of models/ are what the generator makes, byte for byte, and are what their folder says: solids, or refused.
+// The files of models/ equal the generator's output byte for byte; those in models/broken are
+// refused, all others are solids.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -31,30 +32,30 @@ std::vector<models::Model> all_models() {
   return all;
 }
 
-TEST(Models, FilesAreWhatTheGeneratorMakesByteForByte) {
+TEST(Models, FilesEqualTheGeneratorsOutput) {
   for (const models::Model& model : all_models()) {
     EXPECT_TRUE(bytes_of(kModels / model.file) == models::write_3ds(model.objects))
         << "models/" << model.file << " differs from what build/bin/make_models writes";
   }
 }
 
-TEST(Models, EveryFileHasItsMaker) {
+TEST(Models, EveryFileIsGenerated) {
   std::set<std::string> made;
   for (const models::Model& model : all_models()) made.insert(model.file);
   for (const auto& entry : std::filesystem::recursive_directory_iterator(kModels)) {
     if (entry.path().extension() != ".3ds") continue;
-    EXPECT_TRUE(made.contains(entry.path().lexically_relative(kModels).string())) << entry.path() << " is made by nothing: add it to catalogue.cpp";
+    EXPECT_TRUE(made.contains(entry.path().lexically_relative(kModels).string())) << entry.path() << " is not generated: add it to catalogue.cpp";
   }
 }
 
-TEST(Models, EveryFileStandsInTheReadme) {
+TEST(Models, EveryFileIsInTheReadme) {
   const std::string readme = bytes_of(kModels / "README.md");
   for (const models::Model& model : all_models()) {
     EXPECT_NE(readme.find("`" + model.file + "`"), std::string::npos) << model.file << " is not in models/README.md";
   }
 }
 
-TEST(Models, AllAreSolidsAndReadBackAsMade) {
+TEST(Models, AllAreSolidsAndReadBackAsGenerated) {
   const auto catalogue = models::catalogue();
   EXPECT_GE(catalogue.size(), 12u);
   for (const models::Model& model : catalogue) {
@@ -67,14 +68,14 @@ TEST(Models, AllAreSolidsAndReadBackAsMade) {
       EXPECT_TRUE(report.notices.empty()) << model.file << ": " << report.notices.front();
       EXPECT_EQ(report.mesh.vertices.size(), model.objects[i].mesh.vertices.size()) << model.file;
       EXPECT_EQ(report.mesh.faces.size(), model.objects[i].mesh.faces.size()) << model.file;
-      // float32 coordinates: 6e-8 of the size, three of them in a volume
+      // float32 coordinates: relative error 6e-8 each, three of them in a volume
       const double volume = signed_volume(model.objects[i].mesh);
       EXPECT_NEAR(signed_volume(report.mesh), volume, 1e-6 * volume) << model.file;
     }
   }
 }
 
-TEST(Models, WeighWhatTheirShapesWeigh) {
+TEST(Models, HaveTheVolumesOfTheirShapes) {
   const auto volume = [](const char* file) { return load_solid(kModels / file).volume; };
   constexpr double kFloat = 1e-6;  // coordinates are float32
   EXPECT_DOUBLE_EQ(volume("box.3ds"), 1.0);
@@ -85,13 +86,13 @@ TEST(Models, WeighWhatTheirShapesWeigh) {
   EXPECT_NEAR(volume("rod.3ds"), 16 * 0.05 * 0.05 * std::sin(2 * 3.14159265358979 / 32), kFloat);
 }
 
-TEST(Models, ThreePrincipalMomentsOfTheHandleAreFarApart) {
+TEST(Models, HandleHasThreeDistinctPrincipalMoments) {
   const MassProperties mass = compute_mass_properties(load_3ds(kModels / "t_handle.3ds").objects.front().report.mesh);
   EXPECT_GT(mass.principal_moments[1], 1.3 * mass.principal_moments[0]);
   EXPECT_GT(mass.principal_moments[2], 1.3 * mass.principal_moments[1]);
 }
 
-TEST(Models, BrokenOnesAreRefusedExceptTheOneThatIsOnlyInsideOut) {
+TEST(Models, BrokenOnesAreRefusedExceptTheInvertedOne) {
   for (const models::Model& model : models::broken_catalogue()) {
     const ClosedReport report = load_3ds(kModels / model.file).objects.front().report;
     if (model.file == "broken/inside_out.3ds") {
@@ -104,11 +105,11 @@ TEST(Models, BrokenOnesAreRefusedExceptTheOneThatIsOnlyInsideOut) {
   }
 }
 
-TEST(Models, FileOfTwoObjectsWantsAName) {
+TEST(Models, FileWithTwoObjectsNeedsAName) {
   EXPECT_DOUBLE_EQ(load_solid(kModels / "two_objects.3ds", "box").volume, 1.0);
   try {
     load_solid(kModels / "two_objects.3ds");
-    FAIL() << "chose one by itself";
+    FAIL() << "chose an object without a name";
   } catch (const UserError& error) {
     EXPECT_NE(std::string(error.what()).find("holds 2 objects: 'box', 'ball'"), std::string::npos) << error.what();
   }

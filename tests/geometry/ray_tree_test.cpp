@@ -1,4 +1,5 @@
-// The nearest face along a ray: against trying every face, and aimed exactly at edges and corners, where a hole would show.
+// The nearest face along a ray, compared with a search over every face, and for rays aimed exactly
+// at edges and corners, where a gap would show.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -29,7 +30,8 @@ Vector3d on_sphere(Random& random, double radius) {
   }
 }
 
-/// Moeller and Trumbore's test of every face (J. Graphics Tools 2(1), 1997): another method, without a tree.
+/// Moeller and Trumbore's test on every face (J. Graphics Tools 2(1), 1997): another method,
+/// without a tree.
 std::optional<double> nearest_by_trying_all(const TriangleMesh& mesh, const Vector3d& origin, const Vector3d& direction) {
   std::optional<double> best;
   for (const auto& [i, j, k] : mesh.faces) {
@@ -44,7 +46,8 @@ std::optional<double> nearest_by_trying_all(const TriangleMesh& mesh, const Vect
 }
 
 TEST(RayTree, FindsTheSameDistanceAsTryingEveryFace) {
-  // Random rays pass an edge within round-off with a probability of about 1e-12: both methods must agree on every one.
+  // A random ray passes an edge within round-off with a probability of about 1e-12: both methods
+  // must agree on every ray.
   Random random(1);
   int hits = 0;
   for (const char* name : {"torus", "gear", "chess_pawn", "rock_1", "t_handle"}) {
@@ -56,7 +59,8 @@ TEST(RayTree, FindsTheSameDistanceAsTryingEveryFace) {
       ASSERT_EQ(found.has_value(), expected.has_value()) << name << ", ray " << i;
       if (!expected) continue;
       ++hits;
-      // A face met at a slant of 1e-3 or more: its distance is good to 1e3 roundings.
+      // The ray meets the face at an angle of 1e-3 or more: its distance is accurate to 1e3
+      // roundings.
       EXPECT_NEAR(found->t, *expected, 1e4 * kEps) << name << ", ray " << i;
     }
   }
@@ -78,8 +82,8 @@ TEST(RayTree, HitLiesOnItsFaceAndOnItsRay) {
   }
 }
 
-/// Rays from inside a solid never get out without a hit: each is aimed at a corner, at an edge's middle, or at a random place on an
-/// edge. 0 misses.
+/// Number of rays from inside a solid that hit nothing. Each is aimed at a corner, at an edge's
+/// midpoint, or at a random point of an edge.
 int misses_from_inside(const TriangleMesh& mesh, const Vector3d& inside, int origins) {
   const RayTree tree(mesh);
   Random random(3);
@@ -102,13 +106,15 @@ TEST(RayTree, NoRayLeavesABallThroughItsEdgesAndCorners) { EXPECT_EQ(misses_from
 TEST(RayTree, NoRayLeavesAPawnThroughItsEdgesAndCorners) { EXPECT_EQ(misses_from_inside(model("chess_pawn"), {0, 0, 0.8}, 5), 0); }
 
 TEST(RayTree, NoRayLeavesARockFarFromTheOrigin) {
-  // At 1e6 m coordinates are 1e-10 m apart: slopes and boxes round by that much, and nothing may open.
+  // At 1e6 m coordinates are 1e-10 m apart: shears and boxes are rounded by that much, and no gap
+  // may open.
   const Vector3d far(1e6, -2e6, 3e6);
   EXPECT_EQ(misses_from_inside(models::moved(model("rock_1"), far), far, 100), 0);
 }
 
 TEST(RayTree, RaysAlongTheAxesAtCornersOfABoxHit) {
-  // Directions with two zeros lie in the planes of four walls: 0 / 0 in the boxes of the tree, edge-on faces beside.
+  // A direction with two zeros is parallel to four walls: 0 / 0 in the boxes of the tree, and faces
+  // parallel to the ray.
   const RayTree tree(models::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
   for (double x : {-0.5, -0.25, 0.0, 0.5}) {
     for (double y : {-0.5, 0.0, 0.125, 0.5}) {
@@ -130,7 +136,7 @@ TEST(RayTree, RaysAlongTheAxesAtCornersOfABoxHit) {
 
 TEST(RayTree, RayBesideABoxMisses) {
   const RayTree tree(models::box({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5}));
-  constexpr double kBeside = 0.5 + 1e-12;  // more than the boxes are widened by (16 eps * 5 m = 2e-14 m)
+  constexpr double kBeside = 0.5 + 1e-12;  // more than the widening of the boxes (16 eps * 5 m = 2e-14 m)
   EXPECT_FALSE(tree.nearest({kBeside, 0, -2}, {0, 0, 1}));
   EXPECT_FALSE(tree.nearest({0, 0, -2}, {0, 0, -1})) << "behind the ray";
   EXPECT_FALSE(tree.nearest({0, 0, -2}, {0, 0, 1}, 1.4)) << "beyond t_most";
@@ -144,14 +150,14 @@ TEST(RayTree, LengthOfTheDirectionOnlyScalesT) {
   EXPECT_EQ(one->t, 4.0 * four->t);
 }
 
-TEST(RayTree, OfTwoFacesAtTheSameDistanceTheLowerIndexIsNamed) {
+TEST(RayTree, OfTwoFacesAtTheSameDistanceTheLowerIndexIsReturned) {
   const TriangleMesh quad{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
   const auto hit = RayTree(quad).nearest({0.5, 0.5, 1}, {0, 0, -1});
   ASSERT_TRUE(hit);
   EXPECT_EQ(hit->face, 0);
 }
 
-TEST(RayTree, RayWithoutDirectionIsTheCallersMistake) {
+TEST(RayTree, RayWithoutDirectionBreaksAPrecondition) {
   EXPECT_THROW(RayTree(model("box")).nearest({0, 0, 0}, {0, 0, 0}), PreconditionError);
   EXPECT_THROW(RayTree(TriangleMesh{}), PreconditionError);
 }

@@ -1,5 +1,6 @@
-// Files that other programs wrote. They are not part of the project: set TUMBLE_REAL_MODELS to a folder that has them; without it
-// the folder shared/models_real beside the checkout is tried, and the tests are skipped where neither is there.
+// Files written by other programs. They are not part of the project: set TUMBLE_REAL_MODELS to a
+// folder that has them. Without it the folder shared/models_real beside the checkout is tried, and
+// the tests are skipped where neither exists.
 #include <cstdlib>
 #include <filesystem>
 
@@ -13,12 +14,12 @@ namespace tumble::testing {
 namespace {
 
 std::filesystem::path real(const std::string& file) {
-  const char* told = std::getenv("TUMBLE_REAL_MODELS");
-  return (told != nullptr ? std::filesystem::path(told) : std::filesystem::path(TUMBLE_SOURCE_DIR).parent_path() / "shared/models_real") / file;
+  const char* folder = std::getenv("TUMBLE_REAL_MODELS");
+  return (folder != nullptr ? std::filesystem::path(folder) : std::filesystem::path(TUMBLE_SOURCE_DIR).parent_path() / "shared/models_real") / file;
 }
 
 #define SKIP_WITHOUT(file)                                                                                                            \
-  if (!std::filesystem::exists(real(file))) GTEST_SKIP() << real(file).string() << " is not there: set TUMBLE_REAL_MODELS to a folder that has " << file
+  if (!std::filesystem::exists(real(file))) GTEST_SKIP() << real(file).string() << " does not exist: set TUMBLE_REAL_MODELS to a folder that has " << file
 
 void expect_all_closed(const LoadedFile& file) {
   for (const LoadedObject& object : file.objects) {
@@ -45,11 +46,12 @@ TEST(RealModels, NineBoxesSplitBySmoothingGroupsAreClosedAfterTheWeld) {
   EXPECT_EQ(file.objects[0].name, "Box01");
 }
 
-TEST(RealModels, NodesPutBoxesWhereTheirVerticesStoodWhenModelled) {
-  // Nothing is animated before frame 0 in this file: matrix and node cancel, up to float32, for a box turned and scaled to 0.1.
+TEST(RealModels, NodesKeepBoxesAtTheirModelledPlaces) {
+  // At frame 0 of this file matrix and node cancel, up to float32, for a box rotated and scaled to
+  // 0.1.
   SKIP_WITHOUT("test1.3ds");
   const Bounds found = bounds_of(load_3ds(real("test1.3ds")).objects[0].report.mesh);
-  constexpr double kFloat = 1e-4;  // m: of coordinates of 10, through a matrix of 0.1 and back
+  constexpr double kFloat = 1e-4;  // m: coordinates of 10, through a matrix of 0.1 and its inverse
   EXPECT_LE((found.low - Vector3d(-10.3385, -0.1942, -10.1436)).norm(), kFloat);  // read off the file's vertex list
   EXPECT_LE((found.high - Vector3d(9.8509, 0.0019, 10.2417)).norm(), kFloat);
 }

@@ -1,6 +1,6 @@
 #!/bin/sh
-# The sandbox without root: the attacks once more, as a user who owns nothing. For root only (77: skipped); whoever is an
-# ordinary user has run them as one already.
+# Runs the attacks again as an ordinary user without any files, to test the sandbox without root. For root only (77: skipped);
+# for other users the tests have already run that way.
 #   as_ordinary_user.sh TEST_PROGRAM GOOGLETEST_FILTER
 skip() { echo "skipped: $1"; exit 77; }
 [ "$(id -u)" = 0 ] || skip "not root"

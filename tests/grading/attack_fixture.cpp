@@ -8,32 +8,17 @@
 #include <map>
 #include <sstream>
 
+#include "framework/core/files.h"
+
 namespace tumble::grading {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Gone with the program.
-struct Scratch {
-  fs::path path;
-  Scratch() {
-    char name[] = "/tmp/tumble-attacks-XXXXXX";
-    path = ::mkdtemp(name);
-  }
-  ~Scratch() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-};
-
 const fs::path& scratch() {
-  static const Scratch folder;
-  return folder.path;
-}
-
-std::string text_of(const fs::path& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+  static const PrivateFolder folder;   // removed at the end of the program
+  static const fs::path path = folder.path();
+  return path;
 }
 
 WorkerOptions options_for(const fs::path& object) {

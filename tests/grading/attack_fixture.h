@@ -1,4 +1,5 @@
-/// Submissions that attack: compiled and run as a grader does, and what the judge makes of them.
+/// Submissions that attack the grader, compiled and run as by a grader, and the judge's verdicts on
+/// them.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,16 +17,16 @@ namespace tumble::grading {
 
 /// A source compiled in the sandbox against the test module's header. One that does not compile fails the test.
 Compiled compile_source(const std::string& text, const std::filesystem::path& object, const CompileLimits& limits = {});
-/// The file of this folder's attacks/, its text preceded by `defines`; compiled once a program.
+/// A file of attacks/, with `defines` before its text; compiled once per program.
 std::filesystem::path attack_object(const std::string& file, const std::string& defines = "");
-/// Processes below this one, however they came there, after those that are ending have had a second to end.
+/// Number of descendants of this process, after a second in which ending ones may end.
 int descendants_left();
 
-/// A worker with an attack in it, with limits small enough for a test.
+/// A worker that runs an attack, with limits small enough for a test.
 class Victim {
  public:
   explicit Victim(const std::filesystem::path& object);
-  /// What the function said. Empty where it did not answer; then verdict() and story() tell.
+  /// The answer of the function. Empty if it did not answer; then see verdict() and story().
   std::string attack(const std::string& what);
 
   Verdict verdict() const { return call_log().noted ? call_log().verdict : Verdict::kRight; }
@@ -38,7 +39,7 @@ class Victim {
   waist::Module module_;
 };
 
-/// Skips where the machine has no sandbox; makes orphans our own, so that descendants_left sees them.
+/// Skips on machines without a sandbox; adopts orphans, so that descendants_left counts them.
 class Attack : public ::testing::Test {
  protected:
   void SetUp() override;

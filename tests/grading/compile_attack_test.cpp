@@ -1,4 +1,4 @@
-// Attacks on the compiler: what a source may not read, and how much it may cost.
+// Attacks on the compiler: files that a source must not read, and limits on its cost.
 #include <unistd.h>
 
 #include <fstream>
@@ -25,7 +25,7 @@ class CompileAttack : public Attack {
   fs::path object_;
 };
 
-// The rest of a module, so that only what a test adds can be at fault.
+// A right module, so that only the text that a test adds can cause an error.
 const std::string kModule = R"(
 #include "tests/modules/waist.h"
 namespace tumble::waist {
@@ -44,7 +44,7 @@ TEST_F(CompileAttack, ErrorsNameTheStudentsFileAndLine) {
   EXPECT_EQ(compiled.said.substr(0, 20), "waist.cpp:2:12: erro") << compiled.said;
 }
 
-TEST_F(CompileAttack, FunctionsThatAreMissingAreNamed) {
+TEST_F(CompileAttack, MissingFunctionsAreNamed) {
   const Compiled compiled = compile("#include \"tests/modules/waist.h\"\ndouble tumble::waist::twice(double x) { return x; }\n");
   EXPECT_EQ(compiled.outcome, Outcome::kRefused);
   EXPECT_NE(compiled.said.find("tumble::waist::echo"), std::string::npos) << compiled.said;
@@ -72,7 +72,7 @@ TEST_F(CompileAttack, PrivateFilesCannotBeSeenOrEmbedded) {
   EXPECT_EQ(environment.outcome, Outcome::kRefused) << environment.said;
 }
 
-TEST_F(CompileAttack, LinkForASourceIsRefused) {
+TEST_F(CompileAttack, LinkAsASourceIsRefused) {
   const fs::path link = fs::temp_directory_path() / ("tumble-link-" + std::to_string(::getpid()) + ".cpp");
   fs::create_symlink(fs::path(TUMBLE_SOURCE_DIR) / "tests/modules/waist.cpp", link);
   const Compiled compiled = compile_submission({TUMBLE_SOURCE_DIR, "tests/modules/waist.h", link, object_, {}});
@@ -81,12 +81,12 @@ TEST_F(CompileAttack, LinkForASourceIsRefused) {
   EXPECT_NE(compiled.said.find("is a link"), std::string::npos) << compiled.said;
 }
 
-TEST_F(CompileAttack, SourcesThatAreNoFilesAreRefused) {
+TEST_F(CompileAttack, SourcesThatAreNotFilesAreRefused) {
   for (const char* path : {"/dev/zero", "/tmp", "/nowhere.cpp"})
     EXPECT_EQ(compile_submission({TUMBLE_SOURCE_DIR, "tests/modules/waist.h", path, object_, {}}).outcome, Outcome::kRefused) << path;
 }
 
-TEST_F(CompileAttack, NamesThatLookLikeOptionsAreNames) {
+TEST_F(CompileAttack, NamesThatLookLikeOptionsAreTreatedAsNames) {
   for (const char* name : {"-o.cpp", "@x.cpp", "a b;c'$(id).cpp"}) {
     const fs::path file = fs::temp_directory_path() / name;
     std::ofstream(file) << kModule;
@@ -96,7 +96,7 @@ TEST_F(CompileAttack, NamesThatLookLikeOptionsAreNames) {
   }
 }
 
-TEST_F(CompileAttack, BombsCostTheirLimitsOnly) {
+TEST_F(CompileAttack, BombsAreStoppedByTheirLimits) {
   CompileLimits limits;
   limits.cpu_s = 3;
   limits.wall_s = 12.0;
@@ -115,15 +115,15 @@ TEST_F(CompileAttack, BombsCostTheirLimitsOnly) {
   }
 }
 
-TEST_F(CompileAttack, TimeSpentShowsAsTime) {
+TEST_F(CompileAttack, CpuTimeIsALimitAndWallTimeAloneIsABusyMachine) {
   CompileLimits limits;
   limits.cpu_s = 1;
-  // Two to the thirtieth of lines: more than a second on any machine.
+  // 2^30 lines: more than a second on any machine.
   std::string text = "#define A0 int;\n";
   for (int i = 1; i <= 30; ++i) text += "#define A" + std::to_string(i) + " A" + std::to_string(i - 1) + " A" + std::to_string(i - 1) + "\n";
   const Compiled compiled = compile(text + "A30\n", limits);
   EXPECT_EQ(compiled.outcome, Outcome::kOutOfResources) << compiled.said;
-  // The wall clock alone says nothing of the file: it is to be compiled again.
+  // Wall time alone is not the file's fault: it is to be compiled again.
   limits.cpu_s = 100;
   limits.wall_s = 1.0;
   const Compiled busy = compile(text + "A30\n", limits);
@@ -131,14 +131,14 @@ TEST_F(CompileAttack, TimeSpentShowsAsTime) {
   EXPECT_NE(busy.said.find("machine was too busy"), std::string::npos) << busy.said;
 }
 
-TEST_F(CompileAttack, ACompilerThatWaitsForNothingIsOutOfTime) {
+TEST_F(CompileAttack, CompilerThatWaitsForeverIsOutOfTime) {
   CompileLimits limits;
   limits.stall_s = 2.0;
-  const Compiled compiled = compile(std::string("#include \"/dev/stdout\"\n") + kModule, limits);   // the pipe that the compiler itself holds open
+  const Compiled compiled = compile(std::string("#include \"/dev/stdout\"\n") + kModule, limits);   // a pipe that the compiler itself keeps open
   EXPECT_TRUE(compiled.outcome == Outcome::kRefused || compiled.outcome == Outcome::kOutOfResources) << compiled.said;
 }
 
-TEST_F(CompileAttack, BytesThatAreNoTextAreNamedWithWhatToDo) {
+TEST_F(CompileAttack, BytesThatAreNotTextAreNamedWithARemedy) {
   std::string wide = "\xff\xfe";
   for (const char c : std::string("int x;\n")) wide += c, wide += '\0';
   const Compiled compiled = compile(wide);

@@ -1,4 +1,4 @@
-// What is shown of what a compiler or a linker said: the student's own line first.
+// The shown part of a compiler's or linker's output: the student's own line first.
 #include <fstream>
 
 #include <unistd.h>
@@ -22,7 +22,7 @@ class CompilerWords : public ::testing::Test {
   PrivateFolder folder_;
 };
 
-// As GCC 12 says it, shortened.
+// Output of GCC 12, shortened.
 constexpr const char* kEigen = R"(In file included from /usr/include/eigen3/Eigen/Core:164,
                  from mine.cpp:1:
 /usr/include/eigen3/Eigen/src/Core/CwiseBinaryOp.h: In instantiation of 'Eigen::CwiseBinaryOp<...>':
@@ -37,7 +37,7 @@ mine.cpp:3:12:   required from here
 /usr/include/eigen3/Eigen/src/Core/AssignEvaluator.h:887:3: error: static assertion failed: YOU_MIXED_MATRICES_OF_DIFFERENT_SIZES
 )";
 
-TEST_F(CompilerWords, AnErrorInsideALibraryBeginsWithTheStudentsLine) {
+TEST_F(CompilerWords, ErrorInsideALibraryBeginsWithTheStudentsLine) {
   const fs::path mine = write("mine.cpp", "// 1\n// 2\n  return a + b;\n");
   EXPECT_EQ(compiler_story(kEigen, mine),
             "mine.cpp:3:12: error: required from here\n"
@@ -46,7 +46,7 @@ TEST_F(CompilerWords, AnErrorInsideALibraryBeginsWithTheStudentsLine) {
             "      Eigen/src/Core/CwiseBinaryOp.h:115:7: static assertion failed: YOU_MIXED_MATRICES_OF_DIFFERENT_SIZES\n");
 }
 
-TEST_F(CompilerWords, AMissingFunctionIsNamedWithWhatIsExpectedAndWhere) {
+TEST_F(CompilerWords, MissingFunctionIsNamedWithItsDeclaration) {
   const fs::path header = write("a9.h", "namespace tumble::a9 {\n/// What it does.\ndouble speed(double way,\n             double time);\n}\n");
   const fs::path mine = write("mine.cpp", "#include \"a9.h\"\n");
   for (const char* said : {"mold: error: undefined symbol: tumble::a9::speed(double, double)\n>>> referenced by check.cpp\n",
@@ -55,14 +55,14 @@ TEST_F(CompilerWords, AMissingFunctionIsNamedWithWhatIsExpectedAndWhere) {
               "mine.cpp: error: speed is missing: the file does not define it\n  expected: double speed(double way, double time)\n  declared in a9.h:3\n");
 }
 
-TEST_F(CompilerWords, AFunctionWithOtherArgumentsIsShownBesideWhatIsExpected) {
+TEST_F(CompilerWords, FunctionWithOtherArgumentsIsShownBesideItsDeclaration) {
   const fs::path header = write("a9.h", "namespace tumble::a9 {\ndouble speed(double way, double time);\n}\n");
   const fs::path mine = write("mine.cpp", "namespace tumble::a9 {\n\ndouble speed(double way) {\n  return way;\n}\n}\n");
   const std::string story = compiler_story("mold: error: undefined symbol: tumble::a9::speed(double, double)\n", mine, header);
   EXPECT_EQ(story.find("mine.cpp:3: error: speed is written here, but not as the header declares it\n  here:     double speed(double way)\n  expected: double speed(double way, double time)\n"), 0u) << story;
 }
 
-TEST_F(CompilerWords, WarningsOfTheStudentsOwnFileAreShownAndNoOthers) {
+TEST_F(CompilerWords, OnlyWarningsOfTheStudentsFileAreShown) {
   const fs::path mine = write("mine.cpp", "");
   const std::string said = "mine.cpp: In function 'double f(double)':\n"
                            "mine.cpp:3:78: warning: control reaches end of non-void function [-Wreturn-type]\n    3 | double f(double a) {}\n      |      ^\n"
@@ -72,8 +72,8 @@ TEST_F(CompilerWords, WarningsOfTheStudentsOwnFileAreShownAndNoOthers) {
   EXPECT_EQ(compiler_warnings("", mine), "");
 }
 
-// A hostile file prints lines without end: they are cut, not recursed into.
-TEST_F(CompilerWords, LinesOfAMegabyteAreSurvived) {
+// A hostile file causes very long lines: they are cut, because a regex would recurse too deep.
+TEST_F(CompilerWords, LinesOfAMegabyteDoNoHarm) {
   const std::string longest(1u << 20, 'a');
   const fs::path header = write("a9.h", "double speed(double way);\n"), mine = write("mine.cpp", "double " + longest + "speed(" + longest + "\n");
   EXPECT_NE(compiler_story("mine.cpp:1:1: error: " + longest + "\n    1 | " + longest + "\n", mine).find("mine.cpp:1:1: error: aaa"), std::string::npos);

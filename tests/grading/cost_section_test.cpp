@@ -1,10 +1,11 @@
-// What accuracy costs, as a part of a graded report: sentences, counts, and what a module that hangs costs.
+// The cost section of a graded report: sentences, counts, and the time for a module that hangs.
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
 
 #include <gtest/gtest.h>
 
+#include "framework/core/files.h"
 #include "framework/grading/course/build_submission.h"
 #include "framework/grading/grades/cost_section.h"
 #include "framework/grading/grades/measure_cost.h"
@@ -17,17 +18,11 @@ namespace fs = std::filesystem;
 class CostInAReport : public ::testing::Test {
  protected:
   CostInAReport() {
-    std::string name = (fs::temp_directory_path() / "tumble-cost-section-XXXXXX").string();
-    folder_ = ::mkdtemp(name.data());
     register_assignments(registry_);
     course_ = {TUMBLE_SOURCE_DIR, TUMBLE_BINARY_DIR, &registry_, "test"};
   }
-  ~CostInAReport() override {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
 
-  /// The stub with another function in place of one of its own.
+  /// The stub with one of its functions replaced.
   CostSection of_stub(const std::string& function = "", const std::string& body = "") const {
     std::ifstream in(fs::path(TUMBLE_SOURCE_DIR) / "assignments/a2_integration/a2_integration.cpp");
     std::string text{std::istreambuf_iterator<char>(in), {}};
@@ -42,12 +37,13 @@ class CostInAReport : public ::testing::Test {
     return measure_cost(course_, "a2", object);
   }
 
-  fs::path folder_;
+  PrivateFolder scratch_;
+  fs::path folder_ = scratch_.path();
   modules::Registry registry_;
   Course course_;
 };
 
-TEST_F(CostInAReport, WhatIsNotWrittenIsSaidAndNotJudged) {
+TEST_F(CostInAReport, StubIsReportedAndNotJudged) {
   const CostSection section = of_stub();
   ASSERT_EQ(section.lines.size(), 3u);   // Euler, RK4, the module as a whole
   for (const CostLine& line : section.lines) {
@@ -56,18 +52,18 @@ TEST_F(CostInAReport, WhatIsNotWrittenIsSaidAndNotJudged) {
   }
 }
 
-TEST_F(CostInAReport, AModuleThatHangsCostsItsOwnCurveAndLittleTime) {
+TEST_F(CostInAReport, ModuleThatHangsLosesOnlyItsCurveAndTakesLittleTime) {
   const auto begun = std::chrono::steady_clock::now();
   const CostSection section = of_stub("rk4_step", "for (volatile int k = 0; k < 1;) {}\n  return y + h * f(t, y);");
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
   ASSERT_EQ(section.lines.size(), 3u);
   EXPECT_NE(section.lines[1].reading.find("no answer within"), std::string::npos) << section.lines[1].reading;
   EXPECT_FALSE(section.lines[1].is_right);
-  EXPECT_FALSE(section.lines[0].is_attempted) << section.lines[0].reading;   // what comes before stands
-  EXPECT_LT(seconds, 60.0);   // two curves of 3 s, compiler and reference beside; without a limit it would be for ever
+  EXPECT_FALSE(section.lines[0].is_attempted) << section.lines[0].reading;   // earlier curves are kept
+  EXPECT_LT(seconds, 60.0);   // two curves of 3 s, the compiler and the reference; without a limit it would not end
 }
 
-TEST_F(CostInAReport, ASchedulerThatIsNotWrittenIsSaidAndNotJudged) {
+TEST_F(CostInAReport, StubOfASchedulerIsReportedAndNotJudged) {
   if (!fs::exists(fs::path(TUMBLE_BINARY_DIR) / "modules" / "a4_reference.so")) GTEST_SKIP() << "measured beside the reference, which this tree does not have";
   const fs::path stub = folder_ / "a4.so";
   const BuiltSubmission built = build_submission(course_, "a4", fs::path(TUMBLE_SOURCE_DIR) / "assignments/a4_timewarp/a4_timewarp.cpp", stub);
@@ -78,7 +74,7 @@ TEST_F(CostInAReport, ASchedulerThatIsNotWrittenIsSaidAndNotJudged) {
   EXPECT_FALSE(section.lines[0].is_attempted);
 }
 
-TEST_F(CostInAReport, ASchedulerIsMeasuredByWorkForEachEventItCommits) {
+TEST_F(CostInAReport, SchedulerIsMeasuredByWorkPerCommittedEvent) {
   const fs::path reference = fs::path(TUMBLE_BINARY_DIR) / "modules" / "a4_reference.so";
   if (!fs::exists(reference)) GTEST_SKIP() << "measured beside the reference, which this tree does not have";
   const CostSection section = measure_cost(course_, "a4", reference);
@@ -87,7 +83,7 @@ TEST_F(CostInAReport, ASchedulerIsMeasuredByWorkForEachEventItCommits) {
   EXPECT_NE(section.lines[1].reading.find("pays what the reference pays"), std::string::npos) << section.lines[1].reading;
   EXPECT_EQ(section.plots.size(), 3u);   // error against work, work against the step, work against the number of processes
   ASSERT_EQ(section.tables.size(), 1u);
-  const auto& rows = section.tables[0].rows;   // of the submission, then of the reference: the same decisions, across the sandbox and not
+  const auto& rows = section.tables[0].rows;   // of the submission, then of the reference: the same decisions, in the sandbox and in this process
   ASSERT_EQ(rows.size() % 2, 0u);
   for (std::size_t k = 0; k < rows.size() / 2; ++k)
     for (std::size_t cell = 1; cell < rows[k].size(); ++cell) EXPECT_EQ(rows[k][cell].text, rows[k + rows.size() / 2][cell].text) << "row " << k << ", column " << section.tables[0].columns[cell].name;
@@ -100,10 +96,10 @@ TEST_F(CostInAReport, LawsOfImpactAreMeasuredAsAWhole) {
   ASSERT_EQ(right.lines.size(), 1u);
   ASSERT_EQ(stub.lines.size(), 1u);
   EXPECT_TRUE(right.lines[0].is_right) << right.lines[0].reading;
-  EXPECT_FALSE(stub.lines[0].is_right) << stub.lines[0].reading;   // whether it is attempted is the student's
+  EXPECT_FALSE(stub.lines[0].is_right) << stub.lines[0].reading;   // whether it is attempted depends on the student's file
 }
 
-TEST_F(CostInAReport, AStepOfHalfTheLengthIsNoEulerAndReadsTheSameTwice) {
+TEST_F(CostInAReport, StepOfHalfTheLengthIsNotEulerAndReadsTheSameTwice) {
   const std::string half = "return y + 0.5 * h * f(t, y);";
   const CostSection one = of_stub("euler_step", half), two = of_stub("euler_step", half);
   EXPECT_FALSE(one.lines[0].is_right) << one.lines[0].reading;
@@ -113,7 +109,7 @@ TEST_F(CostInAReport, AStepOfHalfTheLengthIsNoEulerAndReadsTheSameTwice) {
   EXPECT_EQ(one.lines[0].reading, two.lines[0].reading);
 }
 
-TEST_F(CostInAReport, AnEulerStepShowsOrderOne) {   // the lecture's own formula: nothing is given away
+TEST_F(CostInAReport, EulerStepHasOrderOne) {   // the lecture's formula, which is not secret
   const CostSection section = of_stub("euler_step", "return y + h * f(t, y);");
   EXPECT_TRUE(section.lines[0].is_right) << section.lines[0].reading;
   EXPECT_NE(section.lines[0].reading.find("as it should (1)"), std::string::npos) << section.lines[0].reading;

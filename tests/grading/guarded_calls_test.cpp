@@ -1,4 +1,5 @@
-// A person's own module in this process: what ends a call without an answer ends the program with words.
+// The user's own module in this process: a call that ends without an answer ends the program with a
+// message.
 #include <stdexcept>
 
 #include <gtest/gtest.h>
@@ -12,7 +13,7 @@ namespace {
 
 using waist::Module;
 
-void fall(const volatile char* deeper) {   // a recursion without end: no stack is left for its own handler
+void fall(const volatile char* deeper) {   // endless recursion: no stack is left for the signal handler
   volatile char room[4096];
   room[0] = deeper[0];
   fall(room);
@@ -25,7 +26,7 @@ Module faulty() {
   module.attack = [](const std::string& what) -> std::string {
     if (what == "null") *static_cast<volatile int*>(nullptr) = 1;
     if (what == "deep") fall("");
-    if (what == "size") std::abort();   // as a failed assertion of Eigen does
+    if (what == "size") std::abort();   // like a failed assertion of Eigen
     if (what == "loop") for (volatile int i = 0;; i = i + 1) {}
     if (what == "throw") throw std::out_of_range("index 7");
     return what;
@@ -48,24 +49,24 @@ TEST(GuardedCalls, RightCallsPass) {
   EXPECT_EQ(guarded_module().attack("nothing"), "nothing");
 }
 
-TEST(GuardedCalls, ACrashEndsWithItsSignalFileAndFunction) {
+TEST(GuardedCalls, CrashEndsWithItsSignalFileAndFunction) {
   ::testing::GTEST_FLAG(death_test_style) = "threadsafe";
   EXPECT_EXIT(guarded_module().attack("null"), ::testing::ExitedWithCode(1), "mine.cpp: SIGSEGV.*in attack");
-  EXPECT_EXIT(guarded_module().attack("deep"), ::testing::ExitedWithCode(1), "mine.cpp: SIGSEGV.*recursion without end.*in attack");
+  EXPECT_EXIT(guarded_module().attack("deep"), ::testing::ExitedWithCode(1), "mine.cpp: SIGSEGV.*endless recursion.*in attack");
   EXPECT_EXIT(guarded_module().attack("size"), ::testing::ExitedWithCode(1), "mine.cpp: SIGABRT.*in attack");
 }
 
-TEST(GuardedCalls, ALoopWithoutEndEndsWithWords) {
+TEST(GuardedCalls, EndlessLoopEndsWithAMessage) {
   ::testing::GTEST_FLAG(death_test_style) = "threadsafe";
   EXPECT_EXIT(guarded_module().attack("loop"), ::testing::ExitedWithCode(1), "mine.cpp: out of time: no answer within 10 s.*in attack");
 }
 
-TEST(GuardedCalls, ACrashElsewhereIsNobodys) {
+TEST(GuardedCalls, CrashElsewhereIsNotTheModules) {
   ::testing::GTEST_FLAG(death_test_style) = "threadsafe";
   EXPECT_EXIT({ guarded_module().twice(1.0); std::abort(); }, ::testing::KilledBySignal(SIGABRT), "");
 }
 
-TEST(GuardedCalls, AnExceptionOfTheModulesOwnStopsARunWithItsReason) {
+TEST(GuardedCalls, ExceptionOfTheModuleStopsARunWithItsReason) {
   try {
     guarded_module().attack("throw");
     FAIL() << "nothing was thrown";
@@ -74,13 +75,13 @@ TEST(GuardedCalls, AnExceptionOfTheModulesOwnStopsARunWithItsReason) {
   }
 }
 
-// What we throw through a function that we gave to the module is not the module's.
-TEST(GuardedCalls, OurOwnExceptionsPassThroughAModule) {
+// Exceptions thrown by a callback are not the module's.
+TEST(GuardedCalls, ExceptionsOfCallbacksPassThroughAModule) {
   EXPECT_THROW(guarded_module().call_back([](double) -> double { throw UserError("scene", "odd"); }, 1), UserError);
   EXPECT_THROW(guarded_module().call_back([](double) -> double { throw NotImplemented("f", "handout"); }, 1), NotImplemented);
 }
 
-TEST(GuardedCalls, AnInitialValueThatDoesNotEndIsNamed) {
+TEST(GuardedCalls, CrashOfAStaticInitialiserIsNamed) {
   ::testing::GTEST_FLAG(death_test_style) = "threadsafe";
   EXPECT_EXIT(guarded_load("mine.cpp", []() -> modules::AnyModule { std::abort(); }), ::testing::ExitedWithCode(1), "mine.cpp: SIGABRT.*in its global and static variables");
 }

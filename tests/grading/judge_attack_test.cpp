@@ -1,4 +1,5 @@
-// Attacks on a judge with real tests: what a submission does in its static initialisers, seen from a record of results.
+// Attacks on a judge with real tests, from a submission's static initialisers, observed in the
+// record of results.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -25,7 +26,7 @@ class JudgeAttack : public Attack {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  // The starter of the assignment with something before it, judged.
+  // Results of the assignment's starter file with `evil` before it.
   std::vector<TestResult> judged(const std::string& evil) {
     const fs::path root = TUMBLE_SOURCE_DIR, starter = root / "assignments/a1_impulse/a1_impulse.cpp";
     std::ifstream in(starter);
@@ -55,7 +56,8 @@ TEST_F(JudgeAttack, ExitAndFakeLinesFromAStaticInitialiserEarnNothing) {
 }
 
 TEST_F(JudgeAttack, OwnMainAndOperatorNewEarnNothing) {
-  // The stub's throw needs memory too: what a submission breaks in its own process can cost its own verdicts only.
+  // The stub's throw allocates memory too: a submission that damages its own process can lose only
+  // its own verdicts.
   const auto results = judged("#include <cstdlib>\n#include <new>\nint main() { std::exit(0); }\nvoid* operator new(std::size_t n) { return std::malloc(n); }");
   EXPECT_TRUE(all(results, Verdict::kNotAttempted));
   EXPECT_EQ(code_, 4);

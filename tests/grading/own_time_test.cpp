@@ -1,4 +1,4 @@
-// The time that a process takes for itself: computing and sleeping count, waiting for a core does not.
+// Own time of a process: computing and sleeping count, waiting for a core does not.
 #include <sched.h>
 #include <signal.h>
 #include <sys/wait.h>
@@ -15,7 +15,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A child that does something for ever, on the first core alone.
+// A child that runs `does` forever, on the first core only.
 pid_t child_that(void (*does)()) {
   const pid_t child = ::fork();
   if (child != 0) return child;
@@ -58,8 +58,9 @@ TEST(OwnTime, SleepCountsInFull) {
   EXPECT_LE(measured.own_s, measured.wall_s + 0.02);
 }
 
-TEST(OwnTime, WaitingForACoreDoesNot) {
-  // Four that spin on one core get a quarter of it each at most, whatever else runs; each is ready all the time.
+TEST(OwnTime, WaitingForACoreDoesNotCount) {
+  // Four busy processes on one core get at most a quarter of it each, whatever else runs; each is
+  // always ready.
   pid_t children[4];
   for (pid_t& child : children) child = child_that(spin);
   ::usleep(100'000);

@@ -1,4 +1,5 @@
-// Attacks while a submission is judged: none gains a point, none outlives its call, each gets its verdict and its story.
+// Attacks during judging: none gains a point, none outlives its call, each gets its verdict and
+// story.
 #include <unistd.h>
 
 #include "tests/grading/attack_fixture.h"
@@ -12,7 +13,8 @@ Victim in_call() { return Victim(attack_object("in_call.cpp")); }
 
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-// One attack, one fresh worker; afterwards the judge must be able to go on, and nothing may be left.
+// One attack in a new worker; afterwards the judge must be able to continue, and no process may be
+// left.
 void expect_end(const std::string& what, Verdict verdict, const std::string& story_part) {
   SCOPED_TRACE(what);
   Victim victim(attack_object("in_call.cpp"));
@@ -20,14 +22,14 @@ void expect_end(const std::string& what, Verdict verdict, const std::string& sto
   EXPECT_STREQ(words(victim.verdict()), words(verdict)) << victim.story();
   EXPECT_TRUE(holds(victim.story(), story_part)) << victim.story();
   EXPECT_TRUE(holds(victim.story(), "attack")) << "the story names the call: " << victim.story();
-  EXPECT_TRUE(holds(victim.story(), "called with: \"" + what + '"')) << "and what it was asked: " << victim.story();
+  EXPECT_TRUE(holds(victim.story(), "called with: \"" + what + '"')) << "and its arguments: " << victim.story();
   call_log() = CallLog{};
-  EXPECT_EQ(victim.module().twice(21.0), 42.0) << "the next test gets a fresh worker";
+  EXPECT_EQ(victim.module().twice(21.0), 42.0) << "the next test gets a new worker";
   victim.connection().reset();
   EXPECT_EQ(descendants_left(), 0);
 }
 
-// One attack that returns: what it managed to do.
+// The answer of an attack that returns.
 std::string reached(const std::string& what) {
   Victim victim(attack_object("in_call.cpp"));
   const std::string said = victim.attack(what);
@@ -53,20 +55,21 @@ TEST_F(RunAttack, ExceptionsAreQuoted) {
   expect_end("throw int", Verdict::kCrashed, "not a std::exception");
 }
 
-TEST_F(RunAttack, CallsWithoutEndAreOutOfTime) {
+TEST_F(RunAttack, EndlessCallsAreOutOfTime) {
   for (const char* what : {"loop", "sleep"}) expect_end(what, Verdict::kOutOfResources, "no answer within 1.5 s");
 }
 
-TEST_F(RunAttack, ForkBombIsOutOfTimeAndLeavesNobody) { expect_end("fork bomb", Verdict::kOutOfResources, "no answer"); }
+TEST_F(RunAttack, ForkBombIsOutOfTimeAndLeavesNoProcess) { expect_end("fork bomb", Verdict::kOutOfResources, "no answer"); }
 
 TEST_F(RunAttack, ProcessesAreFew) {
-  // Process 1 and the worker, whoever else runs as this user: memory is limited for each, so this bounds the sum; and what a second one
-  // takes from the worker would look like a busy machine.
+  // Only process 1 and the worker, independent of other processes of this user. Memory is limited
+  // per process, so this limits the sum; and a second process would delay the worker like a busy
+  // machine.
   EXPECT_EQ(reached("children"), "0");
 }
 
-TEST_F(RunAttack, AWorkerCannotSlowItself) {
-  // Time without a core is not charged: a worker must not choose to have none.
+TEST_F(RunAttack, WorkerCannotSlowItselfDown) {
+  // Waiting for a core is not charged, so a worker must not be able to choose it.
   for (const char* what : {"own core", "idle class", "nice"}) EXPECT_EQ(reached(what), "Operation not permitted") << what;
 }
 
@@ -74,17 +77,17 @@ TEST_F(RunAttack, WaitingForAWorkerThatHungUpIsCharged) {
   Victim victim(attack_object("in_call.cpp"));
   victim.attack("hang up");
   EXPECT_STREQ(words(victim.verdict()), "crashed") << victim.story();
-  EXPECT_TRUE(holds(victim.story(), "closed its line")) << victim.story();
-  EXPECT_GE(call_log().own_s, 1.9);   // s: the grace that is given to a process that dies is 2 s
+  EXPECT_TRUE(holds(victim.story(), "closed its channel")) << victim.story();
+  EXPECT_GE(call_log().own_s, 1.9);   // s: the grace period of a dying process is 2 s
 }
 
-TEST_F(RunAttack, MemoryBlowUpIsOutOfMemory) {
+TEST_F(RunAttack, ExcessiveMemoryIsOutOfMemory) {
   for (const char* what : {"100 GB by new", "memory in pieces"}) expect_end(what, Verdict::kOutOfResources, "more memory");
 }
 
 TEST_F(RunAttack, FloodOfOutputIsCutOff) { expect_end("flood", Verdict::kOutOfResources, "printed more than"); }
 
-TEST_F(RunAttack, AnswerTooLongToReadIsRefused) { expect_end("long answer", Verdict::kCrashed, "an argument or answer of 6710"); }
+TEST_F(RunAttack, TooLongAnswerIsRefused) { expect_end("long answer", Verdict::kCrashed, "an argument or answer of 6710"); }
 
 TEST_F(RunAttack, ForgedFramesAreAnswersOrRefused) {
   for (const char* what : {"kind", "size", "callback", "count"}) expect_end(std::string("forge:") + what, Verdict::kCrashed, "answered");
@@ -97,14 +100,14 @@ TEST_F(RunAttack, ForgedStubIsAStub) {
   EXPECT_EQ(victim.verdict(), Verdict::kNotAttempted) << victim.story();
 }
 
-TEST_F(RunAttack, CallbackThatThrowsLeavesTheNextCallAFreshWorker) {
+TEST_F(RunAttack, AfterACallbackThatThrowsTheNextCallGetsANewWorker) {
   Victim victim = in_call();
   EXPECT_THROW(victim.module().call_back([](double) -> double { throw std::runtime_error("judge's own"); }, 1), std::runtime_error);
   EXPECT_EQ(victim.module().twice(1.0), 2.0);
 }
 
 TEST_F(RunAttack, CallInsideACallbackDiesWithItsStory) {
-  // An integrator's derivative is a function of the same submission: when that one dies, both calls are over.
+  // An integrator's derivative is a function of the same submission: if it crashes, both calls end.
   Victim victim = in_call();
   EXPECT_THROW(victim.module().call_back([&](double) { return static_cast<double>(victim.module().attack("abort").size()); }, 2), CallEnded);
   EXPECT_EQ(victim.verdict(), Verdict::kCrashed);
@@ -116,16 +119,17 @@ TEST_F(RunAttack, CallInsideACallbackDiesWithItsStory) {
 }
 
 TEST_F(RunAttack, ForgedAnswerIsWorthNoMoreThanAnAnswer) {
-  // The frame says 42 and the process is gone: the caller gets 42, to be compared with the truth as any answer is.
+  // A forged frame with 42, then the process ends: the caller gets 42, which is compared with the
+  // expected value like any answer.
   Victim victim = in_call();
   EXPECT_EQ(victim.module().missing(1.0), 42.0);
   EXPECT_EQ(victim.attack("fake lines"), "");
   EXPECT_EQ(victim.verdict(), Verdict::kCrashed) << victim.story();
 }
 
-TEST_F(RunAttack, PrintedResultsAreNoResults) { EXPECT_EQ(reached("fake lines"), "answer"); }
+TEST_F(RunAttack, PrintedResultsDoNotCount) { EXPECT_EQ(reached("fake lines"), "answer"); }
 
-TEST_F(RunAttack, WhatIsLeftBehindDiesWithTheWorker) {
+TEST_F(RunAttack, ThreadsAndChildrenDieWithTheWorker) {
   expect_end("thread left", Verdict::kCrashed, "Resource temporarily unavailable");
   EXPECT_EQ(reached("child left"), "answer");
 }
@@ -138,14 +142,15 @@ TEST_F(RunAttack, NothingOfTheProjectIsVisible) {
     EXPECT_EQ(reached("open:" + path).substr(0, 4), path.starts_with("/proc/1/") ? "Perm" : "No s") << path;
 }
 
-TEST_F(RunAttack, ProcessOneShowsAndTakesNothing) {
+TEST_F(RunAttack, ProcessOneIsNotAccessible) {
   for (const char* file : {"environ", "maps", "mem", "fd/4"}) EXPECT_EQ(reached(std::string("open:/proc/1/") + file), "Permission denied") << file;
 }
 
 TEST_F(RunAttack, OtherProcessesCannotBeSeenOrTouched) {
   EXPECT_EQ(reached("processes"), "1 2 ");
   EXPECT_EQ(reached("trace parent"), "Operation not permitted");
-  // Process 1 of a namespace gets no signal from inside that it does not ask for; what counts is that the judge goes on.
+  // Process 1 of a namespace receives no signal from inside without a handler for it; it only
+  // matters that the judge continues.
   for (const char* what : {"kill all", "kill parent", "stop parent"}) reached(what);
 }
 
@@ -155,38 +160,38 @@ TEST_F(RunAttack, NothingIsInherited) {
   EXPECT_EQ(reached("descriptors"), "0 1 2 3 ");
 }
 
-TEST_F(RunAttack, KernelObjectsOutsideOfTheLimitsAreRefused) {
+TEST_F(RunAttack, KernelObjectsOutsideTheLimitsAreRefused) {
   for (const char* what : {"connect", "memfd", "shared memory", "link", "pipe by name", "more processes"})
     EXPECT_EQ(reached(what), "Operation not permitted") << what;
 }
 
-TEST_F(RunAttack, DiskIsSmallAndForgotten) {
+TEST_F(RunAttack, DiskIsSmallAndCleared) {
   for (const char* folder : {"/dev/x", "/x", "/usr/x", "/usr/local/x"}) EXPECT_EQ(reached(std::string("write:") + folder), "0") << folder;
   const SandboxLimits limits;
   EXPECT_LE(std::stod(reached("write:/tmp/x")), static_cast<double>(limits.tmp_bytes));
   EXPECT_LE(std::stod(reached("write:/dev/shm/x")), static_cast<double>(limits.tmp_bytes) / 16);
-  EXPECT_EQ(reached("open:/tmp/x0"), "No such file or directory") << "a worker must find nothing of the one before it";
+  EXPECT_EQ(reached("open:/tmp/x0"), "No such file or directory") << "a worker must find no files of an earlier one";
 }
 
-TEST_F(RunAttack, CallbacksWithoutEndAreStopped) {
+TEST_F(RunAttack, EndlessCallbacksAreStopped) {
   Victim victim = in_call();
   EXPECT_THROW(victim.module().call_back([](double x) { return x; }, -1), CallEnded);
   EXPECT_EQ(victim.verdict(), Verdict::kOutOfResources);
   EXPECT_TRUE(holds(victim.story(), "more than 1000 times")) << victim.story();
 }
 
-TEST_F(RunAttack, WrongSizesAreWrongAnswersAndTheJudgeLives) {
+TEST_F(RunAttack, WrongSizesAreWrongAnswersAndTheJudgeContinues) {
   for (const std::string what : {"ask 0", "ask 14", "answer 0", "answer 100000"}) {
     Victim victim = in_call();
     EXPECT_THROW(victim.module().step([](double, const VectorXd& y) { return VectorXd(-y); }, VectorXd::Ones(13), what), CallEnded) << what;
     EXPECT_EQ(victim.verdict(), Verdict::kWrong) << victim.story();
-    EXPECT_TRUE(holds(victim.story(), what.substr(what.find(' ') + 1) + " numbers, 13 are needed")) << victim.story();
+    EXPECT_TRUE(holds(victim.story(), what.substr(what.find(' ') + 1) + " numbers, but 13 are needed")) << victim.story();
     call_log() = CallLog{};
-    EXPECT_EQ(victim.module().twice(21.0), 42.0) << "the next test gets a fresh worker";
+    EXPECT_EQ(victim.module().twice(21.0), 42.0) << "the next test gets a new worker";
   }
 }
 
-TEST_F(RunAttack, SizesThatWouldFillMemoryAreRefused) {
+TEST_F(RunAttack, ExcessiveSizesAreRefused) {
   for (const std::string what : {"ask 10000000", "answer 10000000", "ask 10000000000", "answer -1"}) {
     Victim victim = in_call();
     EXPECT_THROW(victim.module().step([](double, const VectorXd& y) { return VectorXd(-y); }, VectorXd::Ones(13), what), CallEnded) << what;
@@ -194,14 +199,14 @@ TEST_F(RunAttack, SizesThatWouldFillMemoryAreRefused) {
   }
 }
 
-TEST_F(RunAttack, OwnTimeOfTheWorkerIsKnown) {
+TEST_F(RunAttack, OwnTimeOfTheWorkerIsMeasured) {
   Victim victim(attack_object("in_call.cpp"));
   EXPECT_EQ(victim.attack("nap"), "0.4 s");
   EXPECT_GT(call_log().own_s, 0.3) << "sleep is charged";
   EXPECT_LT(call_log().own_s, 2.0);
 }
 
-TEST_F(RunAttack, CallsInCallbacksAreNotChargedToTheWorker) {
+TEST_F(RunAttack, TimeOfCallbacksIsNotChargedToTheWorker) {
   Victim victim = in_call();
   // 2 s of the judge's own time, within a limit of 1.5 s for a call.
   EXPECT_EQ(victim.module().call_back([](double) { ::usleep(500'000); return 1.0; }, 4), 4.0);

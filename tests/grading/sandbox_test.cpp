@@ -1,4 +1,4 @@
-// The sandbox itself: limits, endings, and who cleans up.
+// The sandbox itself: limits, endings, and clean-up.
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -37,7 +37,7 @@ class SandboxEnds : public Attack {
   std::filesystem::path init_;
 };
 
-TEST_F(SandboxEnds, ExitCodesSignalsAndOutputAreTold) {
+TEST_F(SandboxEnds, ExitCodesSignalsAndOutputAreReported) {
   const SandboxOutcome exited = run("echo out; echo err >&2; exit 7");
   EXPECT_EQ(exited.ending, Ending::kExited);
   EXPECT_EQ(exited.code, 7);
@@ -47,7 +47,7 @@ TEST_F(SandboxEnds, ExitCodesSignalsAndOutputAreTold) {
   EXPECT_EQ(killed.code, SIGBUS);
 }
 
-TEST_F(SandboxEnds, ProgramThatIsMissingIsNoFaultOfTheSandbox) {
+TEST_F(SandboxEnds, MissingProgramIsNotAFaultOfTheSandbox) {
   SandboxJob job = shell("");
   job.command = {"/no/such/program"};
   EXPECT_EQ(Sandbox::start(job).wait().code, 127);
@@ -62,7 +62,8 @@ TEST_F(SandboxEnds, SandboxThatCannotStartSaysSo) {
 }
 
 TEST_F(SandboxEnds, InitThatNeverReportsCountsAsNotStarted) {
-  // Fail-closed: a process 1 that leaves with code 0 and without its report is a fault of ours, never a result.
+  // Fail-closed: if process 1 exits with code 0 but without a report, that is a fault of the
+  // grader, never a result.
   SandboxJob job = shell("true");
   job.init = stage_->add_file("/usr/bin/true", "not_init", true);
   EXPECT_EQ(Sandbox::start(job).wait().ending, Ending::kNotStarted);
@@ -88,11 +89,12 @@ TEST_F(SandboxEnds, ManySpinningProcessesEndAtTheWallLimit) {
 
 TEST_F(SandboxEnds, DaemonsDieWithTheirParent) { EXPECT_EQ(run("setsid sleep 100 & exit 0").code, 0); }
 
-TEST_F(SandboxEnds, NewNamespacesCannotBeMade) { EXPECT_NE(run("unshare -U true").code, 0); }
+TEST_F(SandboxEnds, NewNamespacesCannotBeCreated) { EXPECT_NE(run("unshare -U true").code, 0); }
 
 TEST_F(SandboxEnds, SandboxDiesWithItsOwner) {
-  // The owner is killed without warning; its keeper, now ours, must notice and leave nothing. At any time: bubblewrap, which sets the sandbox
-  // up in some 10 ms, cannot yet take its child along when it dies before that.
+  // The owner is killed; its keeper, adopted by this process, must notice and leave no process. At
+  // any time: bubblewrap needs about 10 ms to set up the sandbox, and if it dies earlier its child
+  // does not die with it.
   constexpr int kTimes = 60, kApart = 250;   // us
   for (int i = 0; i < kTimes; ++i) {
     const pid_t owner = ::fork();
@@ -107,7 +109,7 @@ TEST_F(SandboxEnds, SandboxDiesWithItsOwner) {
   }
 }
 
-TEST_F(SandboxEnds, StagesAreReadableByTheSandboxAloneAndRemoved) {
+TEST_F(SandboxEnds, StagesAreReadableOnlyByTheSandboxAndRemoved) {
   std::filesystem::path path;
   {
     Stage stage(&*user_);
@@ -117,8 +119,8 @@ TEST_F(SandboxEnds, StagesAreReadableByTheSandboxAloneAndRemoved) {
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
-TEST_F(SandboxEnds, StagesSayWhoseTheyAre) {
-  // What lets the next process sweep what a killed one left: the maker's id in the name.
+TEST_F(SandboxEnds, StagesHaveTheirMakersProcessId) {
+  // So that the next process can remove the stages of a killed one.
   EXPECT_TRUE(stage_->path().filename().string().starts_with("tumble-stage-" + std::to_string(::getpid()) + "-")) << stage_->path();
 }
 

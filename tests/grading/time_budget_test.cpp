@@ -1,4 +1,5 @@
-// The account of a submission's time: what is charged, who is suspected, what the rest is told. And words that choose tests.
+// The time account of a submission: charges, functions with shorter limits, results of the
+// remaining tests. And patterns that select tests.
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
@@ -13,21 +14,21 @@ TestResult timed_out(const std::string& function, double limit_s) {
   result.verdict = Verdict::kOutOfResources;
   result.last_call = function;
   result.timed_out_s = limit_s;
-  result.charged_s = limit_s + 0.7;   // as measured on a loaded machine
+  result.charged_s = limit_s + 0.7;   // measured on a loaded machine
   return result;
 }
 
-TEST(TimeBudget, ATimeOutIsChargedItsLimitHoweverLongItTook) {
+TEST(TimeBudget, TimeOutIsChargedItsLimitHoweverLongItTook) {
   TimeBudget budget({.budget_s = 10.0});
   budget.charge(timed_out("f", 5.0));
   EXPECT_FALSE(budget.is_used_up());
-  budget.charge(timed_out("f", 4.0));   // 10.4 s as measured
+  budget.charge(timed_out("f", 4.0));   // 10.4 s measured
   EXPECT_FALSE(budget.is_used_up());
   budget.charge(timed_out("f", 1.0));
   EXPECT_TRUE(budget.is_used_up());
 }
 
-TEST(TimeBudget, QuickAnswersCostNothingAndSlowOnesDo) {
+TEST(TimeBudget, QuickAnswersAreFreeAndSlowOnesAreCharged) {
   TimeBudget budget({.budget_s = 4.0});
   TestResult answered;
   answered.verdict = Verdict::kRight;
@@ -39,7 +40,7 @@ TEST(TimeBudget, QuickAnswersCostNothingAndSlowOnesDo) {
   EXPECT_TRUE(budget.is_used_up());
 }
 
-TEST(TimeBudget, ALittleSleepInEachTestAddsUp) {
+TEST(TimeBudget, ShortSleepInEachTestAddsUp) {
   TimeBudget budget({.budget_s = 60.0});
   TestResult answered;
   answered.verdict = Verdict::kRight;
@@ -48,7 +49,7 @@ TEST(TimeBudget, ALittleSleepInEachTestAddsUp) {
   EXPECT_TRUE(budget.is_used_up());
 }
 
-TEST(TimeBudget, AMachineTooBusyCostsNothing) {
+TEST(TimeBudget, BusyMachineIsNotCharged) {
   TimeBudget budget({.budget_s = 4.0});
   TestResult busy = timed_out("f", 0.0);
   busy.verdict = Verdict::kMachineBusy;
@@ -57,7 +58,7 @@ TEST(TimeBudget, AMachineTooBusyCostsNothing) {
   EXPECT_FALSE(budget.is_used_up());
 }
 
-TEST(TimeBudget, AFunctionThatTimedOutTwiceGetsLess) {
+TEST(TimeBudget, FunctionThatTimedOutTwiceGetsAShorterLimit) {
   TimeBudget budget({.budget_s = 60.0, .full_timeouts = 2, .suspect_own_s = 1.0});
   budget.charge(timed_out("f", 5.0));
   budget.charge(timed_out("g", 5.0));
@@ -66,22 +67,22 @@ TEST(TimeBudget, AFunctionThatTimedOutTwiceGetsLess) {
   EXPECT_EQ(budget.suspects(), (std::map<std::string, double>{{"f", 1.0}}));
 }
 
-TEST(TimeBudget, WhoIsNotRunIsToldWhy) {
+TEST(TimeBudget, TestThatIsNotRunHasAReason) {
   TimeBudget budget({.budget_s = 5.0});
   budget.charge(timed_out("f", 5.0));
   const TestResult result = budget.not_run("S.T");
   EXPECT_EQ(result.verdict, Verdict::kOutOfResources);
   EXPECT_TRUE(result.not_run);
-  EXPECT_EQ(result.story, "not run: the time budget of all tests together, 5 s, was used up by the tests before it; out of time were f (1 test)");
+  EXPECT_EQ(result.story, "not run: the time budget of all tests together, 5 s, was used up by the tests before it; functions that ran out of time: f (1 test)");
 }
 
-TEST(TestWords, APatternThatChoosesNothingNamesTheNearest) {
+TEST(TestWords, PatternWithoutMatchNamesTheNearest) {
   const std::vector<std::string> tests = {"RayTriangle.Hits", "CollisionImpulse.Central", "ApplyImpulse.Turns"};
   EXPECT_EQ(chosen_tests(tests, "Ray*"), std::vector<std::string>{"RayTriangle.Hits"});
   EXPECT_EQ(chosen_tests(tests, ""), tests);
   try {
     chosen_tests(tests, "ColisionImpulse.*");
-    ADD_FAILURE() << "chose something";
+    ADD_FAILURE() << "selected tests";
   } catch (const UserError& error) {
     EXPECT_NE(std::string(error.what()).find("Nearest: CollisionImpulse.Central"), std::string::npos) << error.what();
   }

@@ -1,5 +1,6 @@
 // Handouts are true: what they cite exists, what cites them is answered, and the points they print are the rubric's.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -94,14 +95,59 @@ TEST(Handouts, HaveTheAnchorsThatSourcesPointTo) {
   }
 }
 
+/// Every page of the folder by its file's name: the assignments' handouts and the notation.
+std::map<std::string, std::string> pages() {
+  std::map<std::string, std::string> found;
+  for (const auto& entry : fs::directory_iterator(kRoot / "handouts"))
+    if (entry.path().extension() == ".md") found[entry.path().filename()] = contents_of(entry.path());
+  return found;
+}
+
 TEST(Handouts, LinkToWhatExists) {
-  for (const Assignment& a : assignments()) {
-    const std::set<std::string> anchors = anchors_of(a.handout);
-    for (const std::string& link : all(a.handout, "\\]\\(([^)\\s]+)\\)")) {
+  const std::map<std::string, std::string> found = pages();
+  for (const auto& [name, page] : found)
+    for (const std::string& link : all(page, "\\]\\(([^)\\s]+)\\)")) {
       if (link.starts_with("http")) continue;
-      if (link.starts_with("#")) EXPECT_TRUE(anchors.contains(link.substr(1))) << a.handout_file() << ": " << link;
-      else EXPECT_TRUE(fs::exists(kRoot / "handouts" / link)) << a.handout_file() << ": " << link;
+      const std::size_t hash = link.find('#');
+      const std::string file = link.substr(0, hash), anchor = hash == link.npos ? "" : link.substr(hash + 1);
+      const auto to = found.find(file.empty() ? name : file);
+      if (to == found.end()) EXPECT_TRUE(fs::exists(kRoot / "handouts" / file)) << name << ": " << link;
+      else EXPECT_TRUE(anchor.empty() || anchors_of(to->second).contains(anchor)) << name << ": " << link;
     }
+}
+
+TEST(Handouts, AndNotationLinkEachOther) {
+  const std::string notation = pages().at("notation.md");
+  for (const Assignment& a : assignments()) {
+    EXPECT_NE(a.handout.find("](notation.md"), std::string::npos) << a.handout_file();
+    EXPECT_NE(notation.find("](" + a.folder + ".md#eq-"), std::string::npos) << a.folder;
+  }
+}
+
+/// Whether `word` stands in the text as a whole; a suffix such as _world may end a longer name.
+bool has_word(const std::string& text, const std::string& word) {
+  const auto in_name = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+  for (std::size_t at = text.find(word); at != text.npos; at = text.find(word, at + 1)) {
+    const std::size_t end = at + word.size();
+    const bool begins = word[0] == '_' || at == 0 || !in_name(text[at - 1]);
+    if (begins && (end == text.size() || !in_name(text[end]))) return true;
+  }
+  return false;
+}
+
+// A student looks a term up in the notation to find its place in the code.
+TEST(Handouts, NotationNamesWhatTheCodeHas) {
+  const std::string code = sources_below({"assignments", "framework"});
+  const std::set<std::string> names = all(pages().at("notation.md"), "`([^`]+)`");
+  EXPECT_GT(names.size(), 100u) << "the names of the notation were not found";
+  for (const std::string& name : names) {
+    if (name.find('/') != name.npos) {
+      EXPECT_TRUE(fs::exists(kRoot / "framework" / name)) << "handouts/notation.md names framework/" << name;
+      continue;
+    }
+    const std::size_t scope = name.find("::");
+    const std::string owner = scope == name.npos ? name : name.substr(0, scope), member = scope == name.npos ? name : name.substr(scope + 2);
+    EXPECT_TRUE(has_word(code, owner) && has_word(code, member)) << name << " is in handouts/notation.md and nowhere in the code: change its row, or drop it";
   }
 }
 

@@ -1,4 +1,5 @@
-/// A module for tests of the waist itself: every kind of value that may cross it, and a function that does what it is told.
+/// A module for tests of the waist itself: every kind of value that may cross it, and functions
+/// whose behaviour an argument selects.
 #pragma once
 
 #include <functional>
@@ -33,13 +34,14 @@ struct Everything {
 
 double twice(double x);
 Everything echo(const Everything& value);
-/// f called `calls` times, the answers added.
+/// The sum of f over 0, ..., calls - 1.
 double call_back(const std::function<double(double)>& f, int calls);
-/// Does something evil, named by `what`, and says how far it came.
+/// Performs the attack named `what`, and returns how far it got.
 std::string attack(const std::string& what);
-/// A step of a method, as `what` says: "right" asks f with y and answers with as many numbers, "ask 0" and "answer 3" do not.
+/// A step of a method. `what` is "right" to call f with y and return a vector of the same size;
+/// "ask 0" calls f with 0 numbers, and "answer 3" returns 3.
 VectorXd step(const std::function<VectorXd(double, const VectorXd&)>& f, const VectorXd& y, const std::string& what);
-/// Never written.
+/// Not implemented.
 double missing(double x);
 
 }  // namespace tumble::waist

@@ -1,4 +1,4 @@
-// The waist without a sandbox: values that cross it, bytes that must not.
+// The waist without a sandbox: values that cross it, and bytes that must be refused.
 #include <gtest/gtest.h>
 #include <sys/socket.h>
 #include <unistd.h>
@@ -38,7 +38,7 @@ Bytes bytes_of(const Everything& value) {
   return writer.bytes;
 }
 
-TEST(Wire, EveryKindOfValueComesBackBitForBit) {
+TEST(Wire, EveryKindOfValueIsRestoredBitForBit) {
   const Bytes bytes = bytes_of(sample());
   modules::Reader reader(bytes);
   Everything back;
@@ -49,8 +49,8 @@ TEST(Wire, EveryKindOfValueComesBackBitForBit) {
   EXPECT_TRUE(std::signbit(back.inner[1].point.y()));
 }
 
-// What a crash's story says of its call; functions are not on the wire.
-TEST(Arguments, AreShownAsTheyWereAndAsBytesBringThemBack) {
+// The arguments in the story of a crash; functions are not on the wire.
+TEST(Arguments, AreShownAlikeDirectlyAndFromBytes) {
   const std::vector<waist::Inner> list(6, {true, waist::Colour::kBlue, 0.25, Vector3d(1, -2, 0.5)});
   const std::function<double(double)> f = [](double x) { return x; };
   const Eigen::VectorXd long_vector = Eigen::VectorXd::LinSpaced(20, 1, 20);
@@ -60,7 +60,7 @@ TEST(Arguments, AreShownAsTheyWereAndAsBytesBringThemBack) {
   modules::write_arguments(writer, f, -3, std::string("a"), Quaterniond(0.5, -0.5, 0.5, -0.5), long_vector, list);
   using Function = std::function<double(double)>;
   EXPECT_EQ((modules::show_written_arguments<const Function&, int, const std::string&, const Quaterniond&, const Eigen::VectorXd&, const std::vector<waist::Inner>&>(writer.bytes)), shown);
-  EXPECT_LT(modules::show_arguments(std::string(5000, 'x')).size(), 700u);   // a story is read by people
+  EXPECT_LT(modules::show_arguments(std::string(5000, 'x')).size(), 700u);   // a story must stay readable
 }
 
 TEST(Wire, MessageCutAnywhereIsRefused) {
@@ -83,7 +83,7 @@ TEST(Wire, CountsThatTheMessageCannotHoldAllocateNothing) {
   EXPECT_LT(text.capacity() + list.capacity(), 100u);
 }
 
-TEST(Wire, MutatedMessagesAreReadOrRefusedNeverCrash) {
+TEST(Wire, MutatedMessagesAreReadOrRefusedAndNeverCrash) {
   const Bytes right = bytes_of(sample());
   std::mt19937 random(7);
   for (int i = 0; i < 20000; ++i) {
@@ -139,7 +139,7 @@ TEST(Proxy, AnswersAsTheLinkedModuleDoes) {
   EXPECT_EQ(bytes_of(module.echo(value)), bytes_of(value));
 }
 
-TEST(Proxy, FunctionsGivenAreCalledBackHereAndCounted) {
+TEST(Proxy, CallbacksRunInTheJudgeAndAreCounted) {
   Loop loop;
   const auto module = modules::make_proxy<waist::Module>(loop);
   int seen = 0;
@@ -156,7 +156,7 @@ TEST(Proxy, CallbackMayCallTheModuleAgain) {
   EXPECT_EQ(module.twice(1.0), 2.0);
 }
 
-TEST(Proxy, StubStaysAStubAcrossTheBoundaryAndTheLineStaysOpen) {
+TEST(Proxy, StubIsNotImplementedAcrossTheBoundaryAndTheChannelStaysOpen) {
   Loop loop;
   const auto module = modules::make_proxy<waist::Module>(loop);
   EXPECT_THROW(module.missing(1.0), NotImplemented);
@@ -172,12 +172,12 @@ std::string refusal_of(const waist::Module& module, const std::string& what) {
   }
 }
 
-TEST(Proxy, WrongSizesAreRefusedWithWhatIsNeeded) {
+TEST(Proxy, WrongSizesAreRefusedWithTheSizeNeeded) {
   for (const auto& [what, words] : std::map<std::string, std::string>{
-           {"ask 0", "step step: the derivative was asked with 0 numbers, 13 are needed (a vector that was never set has none)"},
-           {"ask 14", "step step: the derivative was asked with 14 numbers, 13 are needed"},
-           {"answer 0", "step step answered with 0 numbers, 13 are needed"},
-           {"answer 100000", "step step answered with 100000 numbers, 13 are needed"}}) {
+           {"ask 0", "step step: the derivative was called with 0 numbers, but 13 are needed (a vector that was never set has none)"},
+           {"ask 14", "step step: the derivative was called with 14 numbers, but 13 are needed"},
+           {"answer 0", "step step returned 0 numbers, but 13 are needed"},
+           {"answer 100000", "step step returned 100000 numbers, but 13 are needed"}}) {
     Loop loop;
     EXPECT_EQ(refusal_of(modules::make_proxy<waist::Module>(loop), what), words);
   }
@@ -185,7 +185,7 @@ TEST(Proxy, WrongSizesAreRefusedWithWhatIsNeeded) {
   EXPECT_EQ(refusal_of(modules::make_proxy<waist::Module>(loop), "right"), "");
 }
 
-TEST(Proxy, SizesThatNoMessageHoldsAreRefusedByTheSender) {
+TEST(Proxy, MessagesAboveTheSizeLimitAreRefusedByTheSender) {
   for (const std::string what : {"ask 10000000", "answer 10000000"}) {
     Loop loop;
     const std::string words = refusal_of(modules::make_proxy<waist::Module>(loop), what);
@@ -193,7 +193,7 @@ TEST(Proxy, SizesThatNoMessageHoldsAreRefusedByTheSender) {
   }
 }
 
-TEST(Channel, ADeadlineCanBeExtendedAndThenEnds) {
+TEST(Channel, DeadlineCanBeExtendedAndThenPasses) {
   int ends[2];
   ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
   Channel channel(ends[0], ends[0]);
@@ -205,7 +205,7 @@ TEST(Channel, ADeadlineCanBeExtendedAndThenEnds) {
   ::close(ends[1]);
 }
 
-TEST(Channel, SilenceEndsAtTheDeadline) {
+TEST(Channel, WaitWithoutAMessageEndsAtTheDeadline) {
   int ends[2];
   ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, ends), 0);
   Channel channel(ends[0], ends[0]);

@@ -1,4 +1,4 @@
-// Answers calls to a body of the test module, inside the sandbox.
+// The sandboxed worker of the test module.
 #include "framework/grading/worker/worker_program.h"
 #include "tests/modules/waist.h"
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -90,11 +91,11 @@ TEST_F(Release, NamesNoHiddenTest) {
   for (const std::string& name : names) EXPECT_EQ(where(name), "") << name;
 }
 
-// A known-wrong solution says in its first line `// mutant: NAME - slip`: neither the line nor the file's name is for students.
+// A known-wrong solution, whole or a slip, says in its first line `// mutant: NAME - slip`: neither the line nor the file's name is for students.
 TEST_F(Release, NamesNoKnownWrongSolution) {
   int count = 0;
   for (const fs::path& file : files_below(kPrivate)) {
-    if (file.parent_path().filename() != "mutants" || file.extension() != ".cpp") continue;
+    if (file.parent_path().filename() != "mutants") continue;
     ++count;
     const std::string text = contents_of(file);
     EXPECT_EQ(where(text.substr(0, text.find('\n'))), "") << file;
@@ -132,6 +133,18 @@ std::vector<std::string> passages(const std::string& text) {
   return found;
 }
 
+// What a slip (NAME.slip) puts in, with the lines around it: its first column is a mark, and what it takes out is its base's.
+std::string put_in(const std::string& slip) {
+  std::istringstream in(slip);
+  std::string text;
+  bool in_block = false;
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("@@")) in_block = true;
+    else if (in_block && !line.empty() && line.front() != '-') text += line.substr(1) + '\n';
+  }
+  return text;
+}
+
 TEST_F(Release, HoldsNoPassageOfASolution) {
   std::map<std::string, std::string> released;  // passage, file
   for (const fs::path& file : files_below(folder_))
@@ -140,8 +153,9 @@ TEST_F(Release, HoldsNoPassageOfASolution) {
   int searched = 0;
   for (const fs::path& file : files_below(kPrivate)) {
     // The flawed submission is a student's file: what it left of the stub is the stub.
-    if (file.extension() != ".cpp" || file.string().find("/flawed_submission/") != std::string::npos || file.parent_path().filename() == "tests") continue;
-    for (const std::string& passage : passages(contents_of(file))) {
+    const bool is_slip = file.extension() == ".slip";
+    if ((file.extension() != ".cpp" && !is_slip) || file.string().find("/flawed_submission/") != std::string::npos || file.parent_path().filename() == "tests") continue;
+    for (const std::string& passage : passages(is_slip ? put_in(contents_of(file)) : contents_of(file))) {
       ++searched;
       const auto it = released.find(passage);
       if (it != released.end()) ADD_FAILURE() << it->second << " holds, from " << file.lexically_relative(kRoot) << ":\n" << passage;

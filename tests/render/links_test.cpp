@@ -1,6 +1,9 @@
-// Springs, rods and joints are seen where the scene puts them, in every frame.
+// Springs, rods and joints are drawn where the scene puts them, in every frame.
 #include <gtest/gtest.h>
 
+#include "framework/effects/joint/joint.h"
+#include "framework/effects/rod/rod.h"
+#include "framework/effects/spring/spring.h"
 #include "framework/render/links.h"
 #include "framework/render/stage.h"
 #include "framework/render/stage_geometries.h"
@@ -10,17 +13,18 @@
 namespace tumble::render {
 namespace {
 
-/// The falling ball, hung from (0, 0, 2.5) by a spring at its top and by a rod at its side; a hinge through its middle.
+/// The falling ball, suspended from (0, 0, 2.5) by a spring at its top and by a rod at its side; a
+/// hinge through its centre.
 scene::Scene hung_ball() {
   scene::Scene scene = falling_ball();
-  scene.springs = {{"spring", {"", {0, 0, 2.5}}, {"ball", {0, 0, 0.3}}, 10.0, 0.0, 0.5}};
-  scene.rods = {{"rod", {"", {1, 0, 2.5}}, {"ball", {0.3, 0, 0}}, 1.0}};
-  scene::JointSpec hinge;
-  hinge.kind = scene::JointKind::kHinge;
+  scene.effects.of<effects::SpringSpec>() = {{"spring", {"", {0, 0, 2.5}}, {"ball", {0, 0, 0.3}}, 10.0, 0.0, 0.5}};
+  scene.effects.of<effects::RodSpec>() = {{"rod", {"", {1, 0, 2.5}}, {"ball", {0.3, 0, 0}}, 1.0}};
+  effects::JointSpec hinge;
+  hinge.kind = effects::JointKind::kHinge;
   hinge.body_a = "ball";
   hinge.point_m = {0, 0, 2.0};
   hinge.axis = {0, 1, 0};
-  scene.joints = {hinge};
+  scene.effects.of<effects::JointSpec>() = {hinge};
   return scene;
 }
 
@@ -41,13 +45,13 @@ TEST(Links, FollowTheirBodies) {
   }
 }
 
-TEST(Links, ASceneWithoutThemDrawsNone) {
+TEST(Links, AreAbsentInASceneWithoutThem) {
   Drawing drawing;
   draw_links(links_of(falling_ball(), ball_at(2.0)).at(ball_at(2.0).frames.front()), 480, drawing);
   EXPECT_TRUE(drawing.batches.empty());
 }
 
-TEST(Links, ASpringIsACoilNearAndALineFarAway) {
+TEST(Links, SpringIsACoilNearbyAndALineFarAway) {
   const auto drawn = [](double distance) {
     Drawing drawing;
     drawing.view = view_of({{0, -distance, 0}, {0, 0, 0}, 40.0, {}});
@@ -58,7 +62,7 @@ TEST(Links, ASpringIsACoilNearAndALineFarAway) {
   EXPECT_EQ(drawn(500.0), static_cast<int>(kRod));
 }
 
-TEST(Links, ASpringWithoutLengthAndABodyLostAreLeftOut) {
+TEST(Links, SpringWithoutLengthAndBodyNotFiniteAreLeftOut) {
   Drawing drawing;
   drawing.view = view_of(falling_ball().camera);
   draw_links({{LinkKind::kSpring, {1, 1, 1}, {1, 1, 1}, 0.1, 1.0}}, 480, drawing);
@@ -69,8 +73,9 @@ TEST(Links, ASpringWithoutLengthAndABodyLostAreLeftOut) {
   EXPECT_TRUE(links.at(run.frames[1]).empty());
 }
 
-// Faces look outwards (else culling would show the inside): six times the enclosed volume, by the divergence theorem, is positive.
-TEST(Links, SurfacesAreClosedEnoughToBeSeenFromOutside) {
+// Faces are oriented outward (otherwise culling would show the inside): six times the enclosed
+// volume, by the divergence theorem, is positive.
+TEST(Links, SurfacesAreOrientedOutward) {
   for (const Geometry& geometry : {unit_coil(10), unit_coil(40), unit_rod(), unit_ball(1)}) {
     double volume = 0.0, farthest = 0.0;
     const auto at = [&](std::size_t i) {
@@ -84,7 +89,7 @@ TEST(Links, SurfacesAreClosedEnoughToBeSeenFromOutside) {
   }
 }
 
-TEST(Links, AreSeenInThePicture) {
+TEST(Links, AreVisibleInThePicture) {
   PictureOptions options = small();
   options.captions = options.paths = false;
   const Image with = make_picture(hung_ball(), ball_at(1.2), 0.0, options), without = make_picture(falling_ball(), ball_at(1.2), 0.0, options);
@@ -96,7 +101,7 @@ TEST(Links, AreSeenInThePicture) {
     return std::abs(a[0] - b[0]) > 25;
   };
   EXPECT_TRUE(differs({0.65, 0, 1.85})) << "the middle of the rod";
-  int seen = 0;   // some of the coil's turns cross its axis at each place
+  int seen = 0;   // at each point some turns of the coil cross in front of its axis
   for (double z = 1.55; z < 2.4; z += 0.02) seen += differs({0, 0, z});
   EXPECT_GT(seen, 5);
 }

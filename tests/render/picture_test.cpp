@@ -1,4 +1,4 @@
-// Pictures: the same run gives the same bytes; a place in the picture and the ray through it belong together.
+// Pictures: the same run gives the same bytes; pixel and ray are consistent.
 #include <unistd.h>
 
 #include <filesystem>
@@ -43,20 +43,20 @@ TEST(Picture, RunWithoutFramesIsRefused) {
   EXPECT_THROW(make_picture(falling_ball(), run, 0.0, small()), UserError);
 }
 
-TEST(Camera, RayThroughTheProjectionOfAPointMeetsThePoint) {
+TEST(Camera, RayThroughTheImageOfAPointHitsThePoint) {
   const View view = view_of(falling_ball().camera);
   for (const Vector3d& point : {Vector3d(0, 0, 1), Vector3d(1.3, 0.4, 0.2), Vector3d(-2, 5, 3)}) {
     const auto pixel = project(view, 640, 480, point);
     ASSERT_TRUE(pixel.has_value());
     const Ray ray = pixel_ray(view, 640, 480, pixel->x(), pixel->y());
     const Vector3d along = (point - view.eye_world).normalized();
-    // Some ten roundings of numbers near 1; a picture off by half a pixel is off by 1e-3.
+    // About ten roundings of numbers near 1; an error of half a pixel is 1e-3.
     EXPECT_LT((ray.direction_world - along).norm(), 1e-14);
     EXPECT_EQ(ray.origin_world, view.eye_world);
   }
 }
 
-TEST(Camera, PointBehindTheEyeIsNotSeen) {
+TEST(Camera, PointBehindTheEyeHasNoImage) {
   EXPECT_FALSE(project(view_of(falling_ball().camera), 640, 480, {0, -10, 3}).has_value());
 }
 

@@ -1,4 +1,4 @@
-/// A ball over a floor, as a scene and as a run made by hand: what tests of pictures draw.
+/// A ball over a floor, as a scene and as a hand-made run, for tests of pictures.
 #pragma once
 
 #include <string>

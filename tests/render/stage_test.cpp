@@ -1,4 +1,4 @@
-// What a drawing adds to the bodies: the grid's scale where it is seen, paths with their corners.
+// Marks of a drawing: the scale bar where it is visible, paths with their corners.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -21,8 +21,9 @@ PictureOptions as_shown() {
   return options;
 }
 
-// A low wall across the lower part of the picture, in front of the ground where the bar would lie without it.
-TEST(Stage, TheScaleBarLiesWhereNoWallHidesIt) {
+// A low wall across the lower part of the picture, in front of the place where the bar would be
+// without it.
+TEST(Stage, ScaleBarIsWhereNoWallHidesIt) {
   scene::Scene scene = falling_ball();
   scene.grid_spacing_m = 0.5;
   const auto middle_of_bar = [](const Stage& stage) { return stage.moment(0).labels.back().point_world; };
@@ -49,10 +50,11 @@ TEST(Stage, TheScaleBarLiesWhereNoWallHidesIt) {
   EXPECT_FALSE(hides(surface, pose, view.eye_world, middle_of_bar(stage)));
 }
 
-// A ball goes out along x and comes back after 1000 steps; of 2000 frames a path shows every twelfth, and the corner besides.
-TEST(Stage, APathTurnsWhereTheBodyDid) {
-  constexpr int kCorner = 1003;      // no multiple of the frames shown
-  constexpr double kStride = 1e-2;   // m: more than a line is wide, which is all that a path leaves out
+// A ball moves along x and reverses after 1003 steps; the path shows every twelfth of 2006 frames,
+// and the corner too.
+TEST(Stage, PathHasTheCornersOfTheMotion) {
+  constexpr int kCorner = 1003;      // not a multiple of the stride of frames
+  constexpr double kStride = 1e-2;   // m: more than the width of a line, below which a path is simplified
   const scene::Scene scene = falling_ball();
   Trajectory run = ball_at(1.0);
   const Frame first = run.frames.front();
@@ -68,9 +70,9 @@ TEST(Stage, APathTurnsWhereTheBodyDid) {
   for (const Batch& batch : Stage(scene, run, as_shown()).moment(run.frames.size() - 1).drawing.batches)
     if (batch.geometry == kTube && batch.pass == Pass::kLine)
       for (const Instance& piece : batch.instances)
-        if (piece.world_from_local[11] > 0.5f)   // at the ball's height: not the scale bar
+        if (piece.world_from_local[11] > 0.5f)   // at the ball's height, so not the scale bar
           farthest = std::max({farthest, double(piece.world_from_local[3]), double(piece.world_from_local[3]) + double(piece.world_from_local[2])});
-  // Single precision of 10 m; without the corner's own frames 5e-2 less.
+  // Single precision at 10 m; without the frames at the corner the result would be 5e-2 m less.
   EXPECT_NEAR(farthest, kStride * kCorner, 1e-5);
 }
 

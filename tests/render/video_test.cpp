@@ -1,4 +1,5 @@
-// Contact sheets, videos, views side by side; both bodies of the GL context; threads of the rasteriser change no byte.
+// Contact sheets, videos, views side by side; both implementations of the GL context; threads of
+// the rasteriser change no byte.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -21,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A folder of this test's own, gone when it ends.
+/// A temporary folder for each test.
 class Pictures : public ::testing::Test {
  protected:
   Pictures() : folder_(fs::temp_directory_path() / ("tumble_render_" + std::to_string(getpid()))) { fs::create_directories(folder_); }
@@ -46,16 +47,17 @@ class Pictures : public ::testing::Test {
   fs::path folder_;
 };
 
-TEST_F(Pictures, VideoHasAPictureForEveryInstantAndHoldsTheLast) {
+TEST_F(Pictures, VideoHasAFrameForEveryInstantAndHoldsTheLast) {
   PictureOptions options = small();
   options.video_rate_hz = 10;
   write_video(folder_ / "v.mp4", falling_ball(), ball_at(2.0), options);
-  // 0.5 s at 10 a second is six pictures with both ends; half a second more of the last is five.
+  // 0.5 s at 10 Hz are six frames with both ends; the last one is held for half a second, five
+  // more.
   EXPECT_EQ(probe(folder_ / "v.mp4", "stream=codec_name,width,height,nb_read_frames"), "h264,160,120,11\n");
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1) << "a draft was left behind";
 }
 
-TEST_F(Pictures, SlowMotionShowsMorePictures) {
+TEST_F(Pictures, SlowMotionHasMoreFrames) {
   PictureOptions options = small();
   options.video_rate_hz = 10;
   options.speed = 0.25;
@@ -63,13 +65,13 @@ TEST_F(Pictures, SlowMotionShowsMorePictures) {
   EXPECT_EQ(probe(folder_ / "v.mp4", "stream=nb_read_frames"), "26\n");
 }
 
-TEST_F(Pictures, SideBySideIsAsWideAsBothAndEachSideIsItsRun) {
+TEST_F(Pictures, SideBySideIsAsWideAsBothAndEachSideShowsItsRun) {
   const Trajectory high = ball_at(2.0), low = ball_at(1.0);
   PictureOptions options = small();
   options.captions = false;
   write_side_by_side_video(folder_ / "v.mp4", falling_ball(), {{high, "submission"}, {low, "reference"}}, options);
   EXPECT_EQ(probe(folder_ / "v.mp4", "stream=width,height"), "322,120\n");
-  // A picture of a run with itself has two equal halves only if each half is drawn from its own run.
+  // The picture changes where the second run does: each half is drawn from its own run.
   write_side_by_side_picture(folder_ / "same.png", falling_ball(), {{high, ""}, {high, ""}}, 0.0, options);
   write_side_by_side_picture(folder_ / "other.png", falling_ball(), {{high, ""}, {low, ""}}, 0.0, options);
   EXPECT_NE(bytes_of(folder_ / "same.png"), bytes_of(folder_ / "other.png"));
@@ -80,7 +82,7 @@ TEST_F(Pictures, ContactSheetIsAGridOfHalfSizeViews) {
   EXPECT_EQ(probe(folder_ / "s.png", "stream=width,height"), "244,184\n");   // 3 x 80 + 2 x 2, 3 x 60 + 2 x 2
 }
 
-TEST_F(Pictures, VideoThatCannotBeWrittenSaysWhyAndLeavesNothing) {
+TEST_F(Pictures, VideoThatCannotBeWrittenGivesAReasonAndLeavesNothing) {
   try {
     write_video("/proc/no-such-place/v.mp4", falling_ball(), ball_at(2.0), small());
     FAIL() << "was accepted";
@@ -122,12 +124,13 @@ TEST_F(Pictures, EglAndOsmesaDrawTheSamePicture) {
   ASSERT_EQ(egl.rgb.size(), osmesa.rgb.size());
   std::size_t differing = 0;
   for (std::size_t i = 0; i < egl.rgb.size(); ++i) differing += std::abs(egl.rgb[i] - osmesa.rgb[i]) > 8;
-  // The two may round colours and cut triangles' edges differently: one pixel in a hundred.
+  // They may round colours and rasterise triangles' edges differently: one pixel in a hundred.
   EXPECT_LT(differing, osmesa.rgb.size() / 100);
   EXPECT_GT(std::set<std::uint8_t>(osmesa.rgb.begin(), osmesa.rgb.end()).size(), 50u) << "the picture is blank";
 }
 
-// The rasteriser reads its number of threads once a process: the test runs itself anew for each.
+// The rasteriser reads its number of threads once per process: the test starts a process for each
+// number.
 TEST_F(Pictures, ThreadsOfTheRasteriserChangeNoByte) {
   if (const char* file = std::getenv("TUMBLE_TEST_PICTURE")) {
     write_picture(file, falling_ball(), ball_at(2.0), 0.5, small());
@@ -146,7 +149,7 @@ TEST_F(Pictures, ThreadsOfTheRasteriserChangeNoByte) {
   EXPECT_GT(pictures.begin()->size(), 1000u);
 }
 
-// The ground lies far below what throws a shadow on it: the shadow is whole all the same.
+// The ground is far below the body that casts a shadow on it; the shadow is complete.
 TEST_F(Pictures, ShadowReachesTheGroundFarBelow) {
   PictureOptions options = small();
   options.captions = options.marks = options.paths = false;

@@ -1,4 +1,5 @@
-// The battery's rows and page: what holds, what is short, what must fail, and how each is told.
+// The battery's rows and page: what holds, what is a shortfall, what must fail, and how each is
+// reported.
 #include "framework/report/battery_page.h"
 
 #include <cmath>
@@ -23,7 +24,7 @@ Measure at_most(double value, double threshold) {
   return m;
 }
 
-TEST(BatteryRows, AMarginSaysHowManyTimesBetter) {
+TEST(BatteryRows, MarginIsHowManyTimesBetter) {
   EXPECT_EQ(margin_of(at_most(1e-6, 1e-3)), 1e-3 / 1e-6);
   EXPECT_EQ(shown_margin(at_most(0.0, 1e-3)), "exact");
   EXPECT_EQ(shown_margin(at_most(0.0, 0.0)), "exact");
@@ -48,14 +49,14 @@ TEST(BatteryRows, AreDecidedByTheWorstMeasure) {
   EXPECT_TRUE(count_of({row}).good());
 }
 
-TEST(BatteryRows, WhatStopsAMethodThatMustFailIsItsFailure) {
+TEST(BatteryRows, StoppingAMethodThatMustFailIsItsFailure) {
   Measure m = at_most(std::nan(""), std::nan(""));
   m.must_fail = true;
   m.error = "runaway energy";
   EXPECT_EQ(outcome_of(m), Outcome::kFailsAsItMust);
 }
 
-TEST(BatteryRows, AShortfallThatIsReachedIsTold) {
+TEST(BatteryRows, ShortfallThatHoldsIsReported) {
   BatteryRow row;
   row.measures = {at_most(1e-9, 1e-3)};
   row.measures[0].shortfall = "was not reached";
@@ -63,7 +64,7 @@ TEST(BatteryRows, AShortfallThatIsReachedIsTold) {
   EXPECT_NE(sentence_of(count_of({row})).find("1 listed as shortfalls hold here"), std::string::npos);
 }
 
-TEST(BatteryPage, TellsEveryCaseWithItsReasons) {
+TEST(BatteryPage, ShowsEveryCaseWithItsReasons) {
   BatteryRow holds{1, "stack", "Boxes <one> on another.", {at_most(1e-9, 1e-3)}, {}}, pending{2, "timewarp", "Rollback.", {}, {}, "there is no timewarp yet"};
   holds.measures.push_back(at_most(1.0, 1e-3));
   holds.measures[1].shortfall = "edges have no normal";

@@ -1,5 +1,5 @@
-/// A page in a real browser: what it says and what it shows. Chromium is no package of the project: where it is not installed, tests that need it
-/// are skipped and say so.
+/// A page in a real browser: its elements and its picture. Chromium is not a package of the
+/// project: without it, tests that need it are skipped and say so.
 #pragma once
 
 #include <cstdint>
@@ -27,7 +27,7 @@ class Browser {
  public:
   static bool is_installed() { return std::system("command -v chromium >/dev/null 2>&1") == 0; }
 
-  /// Writes the page, with a script of the test's own at its end. @return its address
+  /// Writes the page, with a script of the test at its end. @return its address
   std::string serve(std::string page, const std::string& script = "") {
     if (!script.empty()) page.insert(page.rfind("</body>"), "<script>" + script + "</script>");
     const std::filesystem::path file = folder_.path() / "page.html";
@@ -56,7 +56,8 @@ class Browser {
   }
 
  private:
-  // Time runs as fast as the page's work allows: --virtual-time-budget is what the page takes for 4 s. WebGL is drawn by the processor.
+  // --virtual-time-budget: the page's clock advances 4 s, as fast as its work allows. WebGL is
+  // rendered in software.
   void run(const std::string& what) {
     const std::string command = "timeout 100 chromium --headless --no-sandbox --disable-quic --no-first-run --disable-background-networking --disable-component-update --disable-sync "
                                 "--use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader --hide-scrollbars --virtual-time-budget=4000 --user-data-dir=" +
@@ -67,7 +68,7 @@ class Browser {
   PrivateFolder folder_;
 };
 
-/// Value of a data attribute of the body, e.g. "ready"; empty: there is none.
+/// Value of a data attribute of the body element, e.g. "ready"; empty where there is none.
 inline std::string body_data(const std::string& elements, const std::string& name) {
   const std::size_t body = elements.find("<body"), end = elements.find('>', body), at = elements.find("data-" + name + "=\"", body);
   if (at == std::string::npos || at > end) return "";

@@ -1,4 +1,4 @@
-// The page of what accuracy costs: which curve stands on which axis.
+// The page on the cost of accuracy: which curves share an axis.
 #include "framework/report/cost_page.h"
 
 #include <fstream>
@@ -13,7 +13,7 @@ namespace {
 
 using namespace report;
 
-/// A curve of two runs, whose evaluations are counted in these words.
+/// A curve of two runs with this counted quantity.
 CostCurve counting(const std::string& name, const std::string& counted) {
   CostCurve curve;
   curve.name = name;
@@ -38,23 +38,23 @@ std::vector<std::string> drawn_in(const Plot& plot) {
   return names;
 }
 
-TEST(CostPage, NamesWhatItsCurvesCountWhereTheyAgree) {
+TEST(CostPage, NamesTheCommonCountedQuantity) {
   const std::vector<Plot> plots = plots_of_evaluations(page_of({counting("sweeps", "contact sweeps"), counting("newton", "contact sweeps")}));
   ASSERT_EQ(plots.size(), 1u);
   EXPECT_EQ(plots[0].x.name, "contact sweeps");
   EXPECT_EQ(drawn_in(plots[0]), (std::vector<std::string>{"sweeps", "newton"}));
 }
 
-TEST(CostPage, DrawsAPlotForEachThingThatIsCounted) {
+TEST(CostPage, DrawsOnePlotPerCountedQuantity) {
   const std::vector<Plot> plots = plots_of_evaluations(page_of({counting("RK4", ""), counting("bisection", "gaps looked at"), counting("Euler", "derivatives asked for")}));
   ASSERT_EQ(plots.size(), 2u);
-  EXPECT_EQ(plots[0].x.name, "derivatives asked for");   // what a page counts unless a curve says otherwise
+  EXPECT_EQ(plots[0].x.name, "derivatives asked for");   // the page's quantity, unless a curve has its own
   EXPECT_EQ(drawn_in(plots[0]), (std::vector<std::string>{"RK4", "Euler"}));
   EXPECT_EQ(plots[1].x.name, "gaps looked at");
   EXPECT_EQ(drawn_in(plots[1]), (std::vector<std::string>{"bisection"}));
 }
 
-TEST(CostPage, DrawsNoPlotOfWhatNothingAskedFor) {
+TEST(CostPage, DrawsNoPlotWithoutEvaluations) {
   CostCurve closed_form = counting("closed form", "");
   for (CostPoint& point : closed_form.points) point.evaluations = 0.0;
   EXPECT_TRUE(plots_of_evaluations(page_of({closed_form})).empty());
@@ -67,7 +67,7 @@ std::string written(const CostPage& page) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-TEST(CostPage, SaysWhatWasNotRunAndWhy) {
+TEST(CostPage, ListsWhatWasNotRunAndWhy) {
   CostPage page = page_of({counting("RK4", "")});
   EXPECT_EQ(written(page).find("Not run: "), std::string::npos);
   page.not_run = {"tw: bodies fall asleep", "Euler: the budget is used up"};
@@ -76,7 +76,7 @@ TEST(CostPage, SaysWhatWasNotRunAndWhy) {
   EXPECT_NE(html.find("Not run: Euler: the budget is used up."), std::string::npos);
 }
 
-TEST(CostPage, ShowsWhereTheTimeWentAsSharesOfAHundred) {
+TEST(CostPage, ShowsSharesOfTheTimeInPercent) {
   CostCurve curve = counting("RK4", "");
   curve.times = {0.0, 1.0};
   curve.energy_errors = {0.0, 1e-6};
@@ -84,7 +84,7 @@ TEST(CostPage, ShowsWhereTheTimeWentAsSharesOfAHundred) {
   const std::string html = written(page_of({curve}));
   EXPECT_NE(html.find(">75<"), std::string::npos);
   EXPECT_NE(html.find(">25<"), std::string::npos);
-  EXPECT_EQ(html.find(">impulses<"), std::string::npos);   // what took no time is no part
+  EXPECT_EQ(html.find(">impulses<"), std::string::npos);   // a stage without time is left out
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// The comparison of engines as a page: the model of cost in its limits, the slides' figures beside ours, and a scene that failed.
+// The comparison of engines as a page: limits of the cost model, the slides' figures beside ours,
+// and a scene that failed.
 #include "framework/report/engines_index.h"
 
 #include <cmath>
@@ -36,7 +37,8 @@ std::vector<std::vector<EngineRow>> ladder() {
           {row_of("rd", "RD-1/30", 150, 6.0, 300000), row_of("tw", "TW", 150, 0.2, 6000)}};
 }
 
-// n (1 + p) / p lambda: one integration a step while nothing happens, two a discontinuity where each step holds some.
+// n (1 + p) / p lambda: one integration per step while discontinuities are rare, two per
+// discontinuity where every step contains some.
 TEST(ModelOfCost, RetroactiveDetectionHasItsTwoLimits) {
   constexpr double kN = 10, kStep = 0.01, kRare = 1e-9, kOften = 1e6;   // w [1/s]
   EXPECT_NEAR(*modelled_integrations("rd", kN, kRare, kStep), kN / kStep, 1e-9 * kN / kStep);
@@ -61,15 +63,16 @@ TEST(ModelOfCost, TimewarpGrowsWithTheNumberOfBodiesAndTheOthersWithItsSquare) {
 
 TEST(TablesOfEngines, PutTheSlidesFiguresWhereSizesAreTheSame) {
   const Table table = table_of_slides(ladder());
-  ASSERT_EQ(table.rows.size(), 3U);   // 100 atoms; the slides have none with 150
+  ASSERT_EQ(table.rows.size(), 3U);   // 100 atoms; the slides have no row for 150
   EXPECT_EQ(table.rows[0][2].text, "0.142");
   EXPECT_EQ(table.rows[0][4].text, "0.97");   // 0.142 / 0.147
   EXPECT_EQ(table.rows[0][5].text, "30");     // 3.0 / 0.1
   EXPECT_EQ(table.rows[1][5].text, "5.00");
 }
 
-// The page says whose each figure is, and why 100 atoms differ from the slides'.
-TEST(PageOfEngines, SaysWhoseTheModelIsAndWhyTheSlidesDiffer) {
+// The page states the source of each figure, and why the ratio for 100 atoms differs from the
+// slides'.
+TEST(PageOfEngines, StatesTheSourceOfTheModelAndWhyTheSlidesDiffer) {
   const PrivateFolder folder;
   write_engines_index({{}, ladder(), {{row_of("tw", "TW", 1, 0.001, 31)}}, {}, false, "tumble engines"}, folder.path() / "index.html");
   std::ifstream file(folder.path() / "index.html");
@@ -99,23 +102,23 @@ TEST(TablesOfEngines, CountStepsAndWork) {
   const Table table = table_of_ladder(ladder());
   ASSERT_EQ(table.rows.size(), 5U);
   EXPECT_EQ(table.rows[0][3].text, "2");      // ms: 100 bodies, 2 s, 100,000 integrations
-  EXPECT_EQ(table.rows[0][4].text, "500");    // integrations a body and second
+  EXPECT_EQ(table.rows[0][4].text, "500");    // integrations per body and second
   EXPECT_EQ(table_of_model(ladder()).rows.size(), 5U);
 }
 
-TEST(BarsOfEngines, TellWhatWasKeptUndoneAndPaid) {
+TEST(BarsOfEngines, ShowKeptAndUndoneWorkAndTime) {
   std::vector<EngineRow> rows = ladder().front();
   rows[2].counts = {{"integrations", 4000}, {"undone_integrations", 1000}, {"pair_checks", 70}};
   rows[0].stopped_by = "it takes more than 60 s";
   const auto bars = bars_of_work(rows);
   ASSERT_EQ(bars.size(), 3U);
-  for (const StackedBars& of : bars) ASSERT_EQ(of.rows.size(), 2U) << "who stopped has no bar";
+  for (const StackedBars& of : bars) ASSERT_EQ(of.rows.size(), 2U) << "a stopped run has no bar";
   EXPECT_EQ(bars[0].rows[1].values, (std::vector<double>{3000, 1000}));
   EXPECT_EQ(bars[1].rows[1].values, std::vector<double>{70});
   EXPECT_EQ(bars[2].rows[1].values, std::vector<double>{100});   // 0.1 s in ms
 }
 
-TEST(BarsOfEngines, TellWhereTheTimeWentOfThoseThatWereLongEnough) {
+TEST(BarsOfEngines, ShowTheTimeOfRunsThatWereLongEnough) {
   std::vector<EngineRow> rows = ladder().front();
   EXPECT_TRUE(bars_of_time(rows).rows.empty());
   rows[1].time_parts = {{"contacts", 0.75}, {"scheduling", 0.25}};
@@ -124,10 +127,10 @@ TEST(BarsOfEngines, TellWhereTheTimeWentOfThoseThatWereLongEnough) {
   ASSERT_EQ(bars.rows.size(), 1U);
   EXPECT_EQ(bars.rows[0].values, (std::vector<double>{75, 25}));
   EXPECT_NE(bars.caption.find("75 % of CA's"), std::string::npos) << bars.caption;
-  EXPECT_NE(bars.caption.find("Too quick to tell: RD-1/30, TW."), std::string::npos) << bars.caption;
+  EXPECT_NE(bars.caption.find("Too short to measure: RD-1/30, TW."), std::string::npos) << bars.caption;
 }
 
-TEST(PageOfEngines, TellsEachSceneAndWhatFailed) {
+TEST(PageOfEngines, ShowsEachSceneAndWhatFailed) {
   EnginesScene fine;
   fine.name = "atoms";
   fine.title = "Atoms & molecules";

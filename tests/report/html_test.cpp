@@ -1,4 +1,4 @@
-// Pages: whatever a submission is named or prints is text on them, never markup.
+// Pages: names and output of submissions are text on them, never markup.
 #include "framework/report/html.h"
 
 #include <gtest/gtest.h>
@@ -12,16 +12,16 @@ TEST(HtmlEscape, MarkupBecomesText) {
   EXPECT_EQ(html_escape("<script>alert('x')</script> & \"y\""), "&lt;script&gt;alert(&#39;x&#39;)&lt;/script&gt; &amp; &quot;y&quot;");
 }
 
-TEST(HtmlEscape, TerminalCodesAndControlsGo) {
+TEST(HtmlEscape, TerminalCodesAndControlsAreDropped) {
   EXPECT_EQ(html_escape("\x1b[31mred\x1b[0m\a\tand\nnew line"), "red\tand\nnew line");
 }
 
-TEST(HtmlEscape, CharactersThatReverseTheWritingGo) {
+TEST(HtmlEscape, CharactersThatReverseTheWritingAreDropped) {
   // U+202E turns the rest of a line around: "exe.txt" would read "txt.exe".
   EXPECT_EQ(html_escape("a\u202eb\u2066c\u200bd"), "abcd");
 }
 
-TEST(HtmlEscape, BytesThatAreNoTextAreShownAsSuch) {
+TEST(HtmlEscape, BytesThatAreNotTextAreReplaced) {
   EXPECT_EQ(html_escape("a\xff" "b\xc0\xaf"), "a\xef\xbf\xbd" "b\xef\xbf\xbd\xef\xbf\xbd");
   EXPECT_EQ(html_escape("gr\u00fc\u00df \u4f60\u597d"), "gr\u00fc\u00df \u4f60\u597d");
 }

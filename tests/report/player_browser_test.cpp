@@ -1,4 +1,5 @@
-// The player's page in a real browser: bodies are drawn where the numbers say, data come back, keys work, and where there is no WebGL it says so.
+// The player's page in a real browser: bodies are drawn at their positions, data are restored, keys
+// work, and without WebGL it says so.
 #include <cmath>
 #include <sstream>
 
@@ -17,7 +18,7 @@ using report::player_page;
 class PlayerInBrowser : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!Browser::is_installed()) GTEST_SKIP() << "chromium is not installed, so no page is looked at; with it: apt-get install chromium";
+    if (!Browser::is_installed()) GTEST_SKIP() << "chromium is not installed, so no page is tested: apt-get install chromium";
   }
   Browser browser;
 };
@@ -26,7 +27,7 @@ struct Spot {
   double x = 0, y = 0, pixels = 0;
 };
 
-/// Middle and size of what is coloured: `is` tells by (r, g, b).
+/// Centre and area of the pixels for which `is(r, g, b)`.
 template <class Is>
 Spot spot_of(const Screen& screen, const Is& is) {
   Spot spot;
@@ -43,7 +44,7 @@ Spot spot_of(const Screen& screen, const Is& is) {
 bool is_red(int r, int g, int b) { return r > g + 60 && r > b + 60; }
 bool is_blue(int r, int g, int b) { return b > r + 50 && b > g + 50; }
 
-TEST_F(PlayerInBrowser, BodiesAreWhereTheNumbersSay) {
+TEST_F(PlayerInBrowser, BodiesAreDrawnAtTheirPositions) {
   constexpr int kWidth = 640, kHeight = 480;
   const scene::Scene scene = thrown_ball();
   const std::string address = browser.serve(player_page(scene, {{thrown_run(), ""}}));
@@ -54,16 +55,18 @@ TEST_F(PlayerInBrowser, BodiesAreWhereTheNumbersSay) {
     const Spot ball = spot_of(screen, is_red), box = spot_of(screen, is_blue);
     const auto expected = render::project(view, kWidth, kHeight, ball_place(t)), box_expected = render::project(view, kWidth, kHeight, box_pose(t).com_world);
     const double radius = 0.25 / render::metres_per_pixel(view, kHeight, ball_place(t));   // 21 pixels
-    // A ball off the middle of a picture is an ellipse whose middle lies some percent of its radius from the centre's image; linear between frames: 0.3 mm.
+    // The image of a ball away from the centre of the picture is an ellipse; its centre is some
+    // percent of its radius from the image of the ball's centre. Linear interpolation between
+    // frames: 0.3 mm.
     EXPECT_NEAR(ball.x, expected->x(), 0.1 * radius) << t;
     EXPECT_NEAR(ball.y, expected->y(), 0.1 * radius) << t;
-    EXPECT_NEAR(ball.pixels, M_PI * radius * radius, 0.08 * M_PI * radius * radius) << t;   // a polygon of 20 corners has 0.984 of its circle
+    EXPECT_NEAR(ball.pixels, M_PI * radius * radius, 0.08 * M_PI * radius * radius) << t;   // a polygon of 20 corners has 0.984 of the circle's area
     EXPECT_NEAR(box.x, box_expected->x(), 4.0) << t;
     EXPECT_NEAR(box.y, box_expected->y(), 4.0) << t;
   }
 }
 
-TEST_F(PlayerInBrowser, DataComeBackAsTheyWere) {
+TEST_F(PlayerInBrowser, DataAreRestored) {
   const std::string script = R"(
     const wait = () => { if (!document.body.dataset.ready) return setTimeout(wait, 20);
       const run = tumble.player.runs[0], place = new THREE.Vector3(), turn = new THREE.Quaternion(), found = [];
@@ -80,7 +83,7 @@ TEST_F(PlayerInBrowser, DataComeBackAsTheyWere) {
     found >> number;
     EXPECT_NEAR(number, value, tolerance) << what;
   };
-  constexpr double kPlaceQuantum = 8.1e-6, kTurnQuantum = 3.1e-5;   // a millionth of the sight, 8.06 m; 1/32768. Half of it is allowed, and float32 on top.
+  constexpr double kPlaceQuantum = 8.1e-6, kTurnQuantum = 3.1e-5;   // a millionth of the distance to the target, 8.06 m; 1/32768. Tolerance: half of it, and float32.
   for (const auto& [body, k] : {std::pair{0u, 0u}, {0u, 30u}, {1u, 30u}}) {
     const BodyPose& pose = run.frames[k].poses[body];
     for (int i = 0; i < 3; ++i) expect(pose.com_world[i], kPlaceQuantum, "place");
@@ -89,14 +92,14 @@ TEST_F(PlayerInBrowser, DataComeBackAsTheyWere) {
   expect(0.4, 1e-6, "time of the event");
   expect(6.0, 6e-6, "impulse");
   expect(-3.0, 3e-6, "velocity before");
-  expect(1, 0, "a velocity that is not known stays unknown");
+  expect(1, 0, "an unknown velocity stays unknown");
   expect(run.frames[30].kinetic_energy + run.frames[30].potential_energy, 1.3e-5, "energy");
   expect(kGravity, 1e-2, "contact force");
 }
 
-TEST_F(PlayerInBrowser, ABodyIsAtTheWallWhenItHitsIt) {
+TEST_F(PlayerInBrowser, BodyIsAtTheWallWhenItHitsIt) {
   Trajectory bullet = thrown_run(2 / kRate);
-  const double hit = 0.6 / kRate, speed = 300.0;   // m/s: between the first two frames it goes 3 m on and 2 m back
+  const double hit = 0.6 / kRate, speed = 300.0;   // m/s: between the first two frames it moves 3 m forward and 2 m back
   for (Frame& frame : bullet.frames) {
     const bool flies_back = frame.time > hit;
     frame.poses[0].com_world = {speed * (flies_back ? 2 * hit - frame.time : frame.time), 0, 1};
@@ -109,7 +112,8 @@ TEST_F(PlayerInBrowser, ABodyIsAtTheWallWhenItHitsIt) {
       document.body.dataset.found = [0.3, 0.6, 0.8].map(k => (run.pose(0, run.frameAt(k / 60), place, turn), place.x)).join(' '); };
     wait();)";
   std::istringstream found(body_data(browser.elements(browser.serve(player_page(thrown_ball(), {{bullet, ""}}), script) + "#t=0"), "found"));
-  // Times are kept to 5e-7 s, in which it flies 1.5e-4 m; speeds to 1.5e-5 of themselves, 5e-5 m over a frame. A straight line would be off by 2.4 m.
+  // Times are stored to 5e-7 s, 1.5e-4 m at this speed; speeds to a relative 1.5e-5, 5e-5 m over a
+  // frame. A straight line would be wrong by 2.4 m.
   for (const double expected : {1.5, 3.0, 2.0}) {
     double x = std::nan("");
     found >> x;
@@ -128,14 +132,14 @@ TEST_F(PlayerInBrowser, KeysPlayStepAndJump) {
   const std::string elements = browser.elements(browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}}), script) + "#t=0.3&speed=1");
   EXPECT_EQ(body_data(elements, "said"),
             "0.0000 false 1 "     // Home
-            "0.0167 false 1 "     // a frame on
-            "0.1833 false 1 "     // ten more
-            "0.1667 false 1 "     // one back
+            "0.0167 false 1 "     // one frame forward
+            "0.1833 false 1 "     // ten frames forward
+            "0.1667 false 1 "     // one frame back
             "0.4000 false 1 "     // next event
             "0.4000 false 1 "     // there is none before it
             "0.8000 false 1 "     // End
             "0.8000 false 0.5 "   // slower
-            "0.0000 true 0.5");   // played from the start again
+            "0.0000 true 0.5");   // plays from the start
 }
 
 TEST_F(PlayerInBrowser, TwoRunsNameTheirFirstDifference) {
@@ -143,15 +147,16 @@ TEST_F(PlayerInBrowser, TwoRunsNameTheirFirstDifference) {
   wrong.events[0].impulse = 9.0;
   const std::string elements = browser.elements(browser.serve(player_page(thrown_ball(), {{wrong, "submission"}, {thrown_run(), "reference"}})) + "#t=0.4");
   EXPECT_EQ(body_data(elements, "error"), "");
-  EXPECT_NE(elements.find("ball &lt;1&gt; – box: 9 N s, -3 → 1.5 m/s"), std::string::npos);   // beside the picture of the one,
+  EXPECT_NE(elements.find("ball &lt;1&gt; – box: 9 N s, -3 → 1.5 m/s"), std::string::npos);   // beside the picture of one run,
   EXPECT_NE(elements.find("ball &lt;1&gt; – box: 6 N s, -3 → 1.5 m/s"), std::string::npos);   // and of the other
   EXPECT_NE(elements.find("First difference at 0.4 s: collision of ball &lt;1&gt; and box: impulse 9 N s in submission, 6 N s in reference."), std::string::npos);
 }
 
-// A runs ahead to 0.4 s, B is found to hit it at 0.2 s: A goes back alone, then both are committed.
+// A runs ahead to 0.4 s; B is found to hit it at 0.2 s: A rolls back alone, then both are
+// committed.
 VirtualTimes one_rollback() { return {{"A", "B"}, {{0, 0, 0.4, 0}, {1, 0, 0.2, 0.2}, {0, 0.4, 0.2, 0.2}, {0, 0.2, 0.5, 0.2}, {1, 0.2, 0.6, 0.5}}}; }
 
-TEST_F(PlayerInBrowser, VirtualTimesStandAtTheMoveThatCommittedTheCursor) {
+TEST_F(PlayerInBrowser, VirtualTimesShowTheMoveThatCommittedTheCursor) {
   report::PlayerOptions options;
   options.panels = {report::virtual_times_panel(one_rollback())};
   const std::string address = browser.serve(player_page(thrown_ball(), {{thrown_run(), ""}}, options));
@@ -161,7 +166,7 @@ TEST_F(PlayerInBrowser, VirtualTimesStandAtTheMoveThatCommittedTheCursor) {
   EXPECT_NE(late.find("Move 5 of 5: B on from 0.2 to 0.6 s; global virtual time 0.5 s; 1 rollback so far"), std::string::npos);
 }
 
-TEST_F(PlayerInBrowser, DamagedDataLeaveThePlotsThatNeedNoScript) {
+TEST_F(PlayerInBrowser, DamagedDataLeaveTheStaticPlots) {
   std::string page = player_page(thrown_ball(), {{thrown_run(), ""}});
   page.replace(page.find("id=\"run0\">") + 10, 40, std::string(40, 'A'));
   const std::string elements = browser.elements(browser.serve(page));

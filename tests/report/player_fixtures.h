@@ -1,4 +1,5 @@
-/// A ball thrown over a floor and a turning box, as a scene and as a run by closed forms: what tests of the player's page play.
+/// A ball thrown over a floor and a rotating box, as a scene and as a run by closed forms, for
+/// tests of the player's page.
 #pragma once
 
 #include <cmath>
@@ -36,7 +37,7 @@ inline Vector3d ball_place(double t) { return {-1.5 + 2.0 * t, 0.0, 0.5 + kThrow
 inline BodyPose ball_pose(double t) { return {ball_place(t), Quaterniond::Identity(), {2.0, 0.0, kThrow - kGravity * t}, Vector3d::Zero()}; }
 
 inline BodyPose box_pose(double t) {
-  const double turn = 3.0 * t;   // rad, about z: past pi, so that a quaternion's sign comes into it
+  const double turn = 3.0 * t;   // rad, about z: beyond pi, so that the sign of the quaternion matters
   return {{1.0, 0.5, 0.8}, Quaterniond(Eigen::AngleAxisd(turn, Vector3d::UnitZ())), Vector3d::Zero(), {0, 0, 3.0}};
 }
 

@@ -1,4 +1,5 @@
-// The player's page as text: channels come back, comparisons find the first difference, the page needs nothing from outside and shows text as text.
+// The player's page as text: channels are restored, comparisons find the first difference, the page
+// is self-contained and escapes text.
 #include <bit>
 #include <cmath>
 #include <cstring>
@@ -19,7 +20,7 @@ using namespace report;
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-/// Reads one channel by its description in channels.h.
+/// Reads one channel, as described in channels.h.
 std::vector<double> read_channel(const std::string& bytes, std::size_t count, std::size_t& at) {
   const int head = bytes[at], order = head & 3;
   double quantum = 0;
@@ -44,7 +45,7 @@ std::vector<double> read_channel(const std::string& bytes, std::size_t count, st
   return values;
 }
 
-TEST(Channels, ComeBackWithinHalfAQuantum) {
+TEST(Channels, AreRestoredToHalfAQuantum) {
   const std::vector<double> values = {0.0, 1.0, -3.25, 1e6, kNan, 1e6, -1e-3, std::numeric_limits<double>::infinity(), 4.0};
   for (const int order : {0, 1, 2}) {
     ChannelWriter writer;
@@ -62,7 +63,7 @@ TEST(Channels, ComeBackWithinHalfAQuantum) {
   }
 }
 
-TEST(Channels, OfAConstantForceCostOneByteAValue) {
+TEST(Channels, OfAConstantForceTakeOneBytePerValue) {
   std::vector<double> fall;
   for (int k = 0; k < 1000; ++k) fall.push_back(10 - 0.5 * kGravity * k * k / (kRate * kRate));
   ChannelWriter writer;
@@ -76,11 +77,11 @@ TEST(Channels, CoarsenWhereANumberWouldNotFit) {
   writer.add(std::vector<double>{1e30, -1e30}, 1e-12, 2);
   std::size_t at = 0;
   const auto back = read_channel(writer.bytes(), 2, at);
-  EXPECT_NEAR(back[0], 1e30, 1e30 * 1e-14);   // 2^-52 of it, times the room of 8 that the differences need
+  EXPECT_NEAR(back[0], 1e30, 1e30 * 1e-14);   // 2^-52 of it, times a factor of 8 for the differences
   EXPECT_NEAR(back[1], -1e30, 1e30 * 1e-14);
 }
 
-TEST(Base64, IsThatOfItsStandard) {   // RFC 4648, section 10
+TEST(Base64, MatchesTheStandard) {   // RFC 4648, section 10
   EXPECT_EQ(base64(""), "");
   EXPECT_EQ(base64("f"), "Zg==");
   EXPECT_EQ(base64("fo"), "Zm8=");
@@ -115,7 +116,7 @@ TEST(Comparison, FindsTheFrameFromWhichABodyIsElsewhere) {
   EXPECT_NEAR(found.apart_m.back(), 0.01, 1e-12);
 }
 
-TEST(Comparison, SeesABodyThatOnlyTurnsOtherwise) {
+TEST(Comparison, FindsADifferenceInRotationOnly) {
   Trajectory wrong = thrown_run();
   wrong.frames.back().poses[1].world_from_body = wrong.frames.back().poses[1].world_from_body * Quaterniond(Eigen::AngleAxisd(0.1, Vector3d::UnitX()));
   const Comparison found = compare(thrown_ball(), kRadii, wrong, "submission", thrown_run(), "reference");
@@ -132,8 +133,8 @@ TEST(Comparison, NamesAnEventThatOnlyOneRunHas) {
   EXPECT_EQ(first->what, "comes to rest of box and floor only in submission");
 }
 
-// The page is made of Debian's libjs-three, which packages.txt asks for.
-TEST(PlayerPage, AsksForNothingFromOutside) {
+// The page contains Debian's libjs-three, which packages.txt lists.
+TEST(PlayerPage, IsSelfContained) {
   const std::string page = player_page(thrown_ball(), {{thrown_run(), ""}});
   EXPECT_NE(page.find("default-src 'none'"), std::string::npos);
   for (const char* word : {"src=", "href=", "@import", "fetch("}) EXPECT_EQ(page.find(word), std::string::npos) << word;
@@ -148,17 +149,17 @@ TEST(PlayerPage, ShowsNamesAsText) {
   EXPECT_NE(page.find("<td>ball &lt;1&gt;, box</td>"), std::string::npos);   // in the table for browsers without scripts
 }
 
-TEST(PlayerPage, IsTheSameBytesForTheSameRun) {
+TEST(PlayerPage, HasTheSameBytesForTheSameRun) {
   EXPECT_EQ(player_page(thrown_ball(), {{thrown_run(), ""}}), player_page(thrown_ball(), {{thrown_run(), ""}}));
 }
 
-TEST(PlayerPage, SaysWhatIsMissing) {
+TEST(PlayerPage, WithoutThreeJsIsRefused) {
   PlayerOptions elsewhere;
   elsewhere.three = "/nonexistent";
   const Trajectory run = thrown_run();
   try {
     player_page(thrown_ball(), {{run, ""}}, elsewhere);
-    FAIL() << "a page without three.js";
+    FAIL() << "accepted without three.js";
   } catch (const UserError& error) {
     EXPECT_NE(std::string(error.what()).find("libjs-three"), std::string::npos);
   }

@@ -1,4 +1,4 @@
-// Plots of a page as documents that stand alone.
+// Plots of a page as stand-alone documents.
 #include <gtest/gtest.h>
 
 #include "framework/report/html.h"
@@ -16,7 +16,7 @@ Plot plot(const std::string& title) {
   return plot;
 }
 
-TEST(PlotFiles, EveryPlotOfAPageComesOutInOrderUnderANameOfItsOwn) {
+TEST(PlotFiles, AreAllPlotsOfAPageInOrderWithUniqueNames) {
   Page page("Two");
   page.plot(plot("Energy, if w < 1 & \"h\" > 0"));
   page.plot(plot("Energy"));
@@ -29,18 +29,18 @@ TEST(PlotFiles, EveryPlotOfAPageComesOutInOrderUnderANameOfItsOwn) {
   EXPECT_EQ(plots[2].name, "energy_2");
 }
 
-TEST(PlotFiles, ADocumentStandsAloneWithItsSizeStyleAndGround) {
+TEST(PlotFiles, AreCompleteWithSizeStyleAndBackground) {
   Page page("One");
   page.plot(plot("Energy"));
   const std::string svg = plots_in(page.html()).at(0).svg;
   EXPECT_TRUE(svg.starts_with("<?xml"));
   for (const std::string part : {"xmlns=\"http://www.w3.org/2000/svg\"", "width=\"640\"", "viewBox=\"0 0 640 ", "svg.plot .grid", "fill=\"#fff\"", ">time [s]<", ">energy [J]<", "</svg>"})
     EXPECT_NE(svg.find(part), svg.npos) << part << "\n" << svg;
-  EXPECT_EQ(svg.find("var(--"), svg.npos) << "a colour that only a page knows";
+  EXPECT_EQ(svg.find("var(--"), svg.npos) << "a colour that is defined only in pages";
   EXPECT_EQ(svg.find("<svg", svg.find("<svg") + 1), svg.npos);
 }
 
-TEST(PlotFiles, APageWithoutPlotsHasNone) {
+TEST(PlotFiles, AreAbsentInAPageWithoutPlots) {
   EXPECT_TRUE(plots_in(Page("Empty").html()).empty());
   EXPECT_TRUE(plots_in("").empty());
   EXPECT_TRUE(plots_in("<svg class=\"plot\" viewBox=\"0 0 640 360\" cut short").empty());

@@ -1,4 +1,5 @@
-// Plots: ticks are round numbers, what cannot be drawn breaks a line, words are escaped, thresholds are drawn.
+// Plots: ticks are round numbers, undrawable points break a line, text is escaped, limits are
+// drawn.
 #include <cmath>
 
 #include <set>
@@ -36,12 +37,12 @@ TEST(Ticks, AreRoundNumbersWithinTheAxis) {
   EXPECT_LE(ticks_of(1e-17, 1e3, Scale::kLog).size(), 8u);
 }
 
-TEST(Ticks, OfAnAxisWithoutLengthAreABugOfTheCaller) {
+TEST(Ticks, OfAnAxisWithoutLengthBreakAPrecondition) {
   EXPECT_THROW(ticks_of(1.0, 1.0, Scale::kLinear), PreconditionError);
   EXPECT_THROW(ticks_of(0.0, 1.0, Scale::kLog), PreconditionError);
 }
 
-TEST(Plots, BreakALineWhereThereIsNothingToDraw) {
+TEST(Plots, BreakALineAtUndrawablePoints) {
   Plot plot{"t", {"x"}, {"y", "m", Scale::kLog}, {{"curve", {1, 2, 3, 4, 5}, {1.0, 2.0, std::nan(""), 0.0, 3.0}}}, {}};
   const std::string svg = svg_of(plot);
   const std::string path = svg.substr(svg.find("<path d=\"M"));
@@ -50,17 +51,17 @@ TEST(Plots, BreakALineWhereThereIsNothingToDraw) {
   EXPECT_EQ(svg.find("inf"), std::string::npos);
 }
 
-TEST(Plots, OfOneValueShowTheDecadeAboutIt) {
+TEST(Plots, OfOneValueShowTheDecadesAroundIt) {
   Plot plot{"flat", {"time", "s"}, {"error", "m", Scale::kLog}, {{"a", {1, 2, 3}, {7e-15, 7e-15, 7e-15}}}, {}};
   const std::string svg = svg_of(plot);
   EXPECT_EQ(count(svg, ">1e-15<"), 1u) << svg;
   EXPECT_EQ(count(svg, ">1e-14<"), 1u) << svg;
 }
 
-TEST(Plots, OfNothingSaySo) {
+TEST(Plots, WithoutPointsSaySo) {
   EXPECT_NE(svg_of(Plot{"t", {"x"}, {"y"}, {}, {}}).find("nothing to draw"), std::string::npos);
   EXPECT_NE(svg_of(Plot{"t", {"x"}, {"y"}, {{"c", {1.0}, {std::nan("")}}}, {}}).find("nothing to draw"), std::string::npos);
-  EXPECT_EQ(svg_of(Plot{"t", {"x"}, {"y"}, {{"c", {1.0, 2.0}, {5.0, 5.0}}}, {}}).find("nothing to draw"), std::string::npos);   // a level line is something
+  EXPECT_EQ(svg_of(Plot{"t", {"x"}, {"y"}, {{"c", {1.0, 2.0}, {5.0, 5.0}}}, {}}).find("nothing to draw"), std::string::npos);   // a horizontal line can be drawn
 }
 
 TEST(Plots, WriteAUnitAtEveryAxis) {
@@ -70,7 +71,7 @@ TEST(Plots, WriteAUnitAtEveryAxis) {
   EXPECT_EQ(count(svg_of(StackedBars{"t", {"share"}, {"a"}, {{"row", {1.0}}}}), ">share [-]<"), 1u);
 }
 
-/// The widths of a drawing's rectangles that stand in the bars' column.
+/// The widths of a drawing's bars.
 std::vector<double> widths_of(const std::string& svg) {
   std::vector<double> widths;
   for (std::size_t at = svg.find("<rect x="); at != std::string::npos; at = svg.find("<rect x=", at + 1))
@@ -78,19 +79,19 @@ std::vector<double> widths_of(const std::string& svg) {
   return widths;
 }
 
-TEST(StackedBars, AreAsLongAsTheirPartsAndNumberTheWideOnes) {
+TEST(StackedBars, HaveTheLengthsOfTheirPartsAndNumberTheWideOnes) {
   const std::string svg = svg_of(StackedBars{"t", {"share", "%"}, {"a", "b", "c"}, {{"first", {60, 39, 1}}, {"second", {0, 50, 0}}}});
   const std::vector<double> widths = widths_of(svg);
-  ASSERT_EQ(widths.size(), 4u) << svg;   // what is nothing is not drawn
-  // 408 units are the longest row, 100; a width is written to a tenth of a unit.
+  ASSERT_EQ(widths.size(), 4u) << svg;   // a part of 0 is not drawn
+  // The longest row, 100, has 408 units; widths are written to a tenth of a unit.
   for (const auto& [k, value] : {std::pair{0, 60.0}, {1, 39.0}, {2, 1.0}, {3, 50.0}}) EXPECT_NEAR(widths[static_cast<std::size_t>(k)], 4.08 * value, 0.05 + 1e-9) << k;
   for (const char* number : {">60<", ">39<", ">50<"}) EXPECT_GE(count(svg, number), 1u) << number;
   EXPECT_EQ(count(svg, ">1<"), 0u);
-  EXPECT_EQ(count(svg, ">0<"), 1u);   // where the axis begins: not -0
+  EXPECT_EQ(count(svg, ">0<"), 1u);   // the first tick: 0, not -0
   EXPECT_THROW(svg_of(StackedBars{"t", {"share"}, {"a", "b"}, {{"row", {1.0}}}}), PreconditionError);
 }
 
-TEST(StackedBars, EightPartsArePaintedInEightWays) {
+TEST(StackedBars, EightPartsHaveEightFills) {
   StackedBars bars{"t", {"share"}, {}, {{"row", {}}}};
   for (int k = 0; k < 8; ++k) bars.parts.push_back("part " + std::to_string(k)), bars.rows[0].values.push_back(1.0);
   const std::string svg = svg_of(bars);
@@ -99,12 +100,12 @@ TEST(StackedBars, EightPartsArePaintedInEightWays) {
   EXPECT_EQ(fills.size(), 8u);
 }
 
-TEST(Plots, EscapeWhatTheyAreTold) {
+TEST(Plots, EscapeAllText) {
   const std::string svg = svg_of(Plot{"<script>", {"<a>", "<b>"}, {"y"}, {{"<c>", {1, 2}, {1, 2}}}, {{1.5, "<d>"}}});
   for (const char* bad : {"<script>", "<a>", "<b>", "<c>", "<d>"}) EXPECT_EQ(svg.find(bad), std::string::npos) << bad;
 }
 
-TEST(Plots, KeepTheExtremesOfLongCurves) {
+TEST(Plots, KeepTheExtremaOfLongCurves) {
   Curve curve{"long", {}, {}};
   for (int i = 0; i < 100000; ++i) curve.x.push_back(i), curve.y.push_back(i == 54321 ? 100.0 : 0.0);
   const std::string svg = svg_of(Plot{"t", {"x"}, {"y"}, {curve}, {}});
@@ -112,14 +113,14 @@ TEST(Plots, KeepTheExtremesOfLongCurves) {
   EXPECT_NE(svg.find(" 48.6"), std::string::npos);   // the peak, 6 of 112 parts of 272 units below the top at 34
 }
 
-TEST(Plots, StandInAPageWithTheirCaption) {
+TEST(Plots, AreInAPageWithTheirCaption) {
   Page page("t");
   page.plot(Plot{"title", {"x"}, {"y"}, {{"c", {1, 2}, {1, 2}}}, {}, "what to see"});
   EXPECT_EQ(count(page.html(), "<svg"), 1u);
   EXPECT_NE(page.html().find("<figcaption>what to see</figcaption>"), std::string::npos);
 }
 
-TEST(Plot, SixteenCurvesLookDifferentInTheLegend) {
+TEST(Plot, SixteenCurvesDifferInTheLegend) {
   Plot plot{"Sixteen", {"x"}, {"y"}, {}, {}, ""};
   for (int i = 0; i < 16; ++i) plot.curves.push_back({"curve " + std::to_string(i), {0.0, 1.0}, {0.0, 1.0 + i}, true});
   const std::string svg = svg_of(plot);
@@ -136,7 +137,7 @@ TEST(Plot, SixteenCurvesLookDifferentInTheLegend) {
   EXPECT_EQ(marks.size(), 16u);
 }
 
-TEST(Plot, LongCurvesBearAFewMarksWhereColoursRepeat) {
+TEST(Plot, LongCurvesHaveAFewMarksWhereColoursRepeat) {
   Plot few{"Few", {"x"}, {"y"}, {}, {}, ""}, many = few;
   Curve curve{"c", {}, {}};
   for (int i = 0; i < 100; ++i) curve.x.push_back(i), curve.y.push_back(i);

@@ -5,6 +5,7 @@
 
 #include "assignments/a3_constraints/a3_binding.h"
 #include "assignments/a4_timewarp/a4_binding.h"
+#include "framework/effects/point_force/point_force.h"
 #include "framework/engines/judging/judge.h"
 #include "framework/engines/run.h"
 #include "framework/modules/load.h"
@@ -134,7 +135,7 @@ TEST(DemoScenes, AForgottenArmIsJudgedWrong) {
   scene.checks.clear();
   scene::CheckSpec check;   // torque times time, to what a push of 1 ms leaves
   check.kind = "angular_momentum";
-  auto& push = scene.point_forces.front();
+  auto& push = scene.effects.of<effects::PointForceSpec>().front();
   push.duration_s = 1e-3;
   const Vector3d exact = push.point_m.cross(push.force_n) * push.duration_s;
   check.expected = {exact.x(), exact.y(), exact.z()};

@@ -16,7 +16,7 @@ Scene scene_with(const std::string& ball_more, const std::string& more) {
 
 std::vector<std::string> names_on(const Scene& scene) {
   std::vector<std::string> names;
-  for (const Effect& effect : effects_of(scene))
+  for (const EffectUse& effect : effects_of(scene))
     if (effect.is_on()) names.push_back(effect.name);
   return names;
 }
@@ -36,7 +36,7 @@ TEST(Effects, OnlyWhatAnEntryAsksForIsOn) {
 
 TEST(Effects, AnAskerIsNamedByItsEntry) {
   const auto effects = effects_of(scene_with("", R"(, "rods": [{ "a": { "body": "ball" }, "b": { "point_world_m": [0, 0, 2] } }])"));
-  for (const Effect& effect : effects)
+  for (const EffectUse& effect : effects)
     if (effect.name == "rod") {
       ASSERT_EQ(effect.askers.size(), 1u);
       EXPECT_EQ(effect.askers[0].pointer, "/rods/0");
@@ -47,7 +47,7 @@ TEST(Effects, AnAskerIsNamedByItsEntry) {
 TEST(Effects, AnAskerIsFoundByItsLine) {
   const Scene scene = scene_with(R"(, "friction": 0.4)", ", \"contact\": {},\n \"gravity_m_s2\": [0, 0, -9.81]");
   std::map<std::string, int> lines;
-  for (const Effect& effect : effects_of(scene))
+  for (const EffectUse& effect : effects_of(scene))
     if (effect.is_on()) lines[effect.name] = effect.askers.back().line;
   EXPECT_EQ(lines.at("collision"), 3);         // the ball's
   EXPECT_EQ(lines.at("friction"), 3);
@@ -61,7 +61,7 @@ TEST(Effects, AnAskerIsFoundByItsLine) {
 TEST(Effects, WhatSeemsToBeAskedForAndIsNotSaysWhy) {
   Scene scene = scene_with("", R"(, "contact": {})");
   scene.bodies[1].friction = 0.5;   // only one of the two has friction: of a pair, the smaller counts
-  for (const Effect& effect : effects_of(scene))
+  for (const EffectUse& effect : effects_of(scene))
     if (effect.name == "friction") {
       EXPECT_FALSE(effect.is_on());
       EXPECT_NE(effect.note.find("the smaller coefficient counts"), std::string::npos) << effect.note;

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
+#include "framework/effects/gravity/gravity.h"
 #include "framework/scene/build_shape.h"
 
 namespace tumble::testing {
@@ -53,8 +54,8 @@ TEST(ModelScene, TakesStepsInProportionToTheTimeOfAFall) {
   const scene::Scene one = scene::make_model_scene(kModels / "gear.3ds", {0.01, 1000.0, true, true}), hundred = scene::make_model_scene(kModels / "gear.3ds", {0.0001, 1000.0, true, true});
   EXPECT_NEAR(one.duration_s / hundred.duration_s, 10.0, 1e-9);
   EXPECT_NEAR(one.step_s / hundred.step_s, 10.0, 1e-9);
-  EXPECT_TRUE(one.gravity_m_s2.has_value());
-  EXPECT_FALSE(scene::make_model_scene(kModels / "gear.3ds").gravity_m_s2.has_value());
+  EXPECT_TRUE(effects::gravity_of(one).has_value());
+  EXPECT_FALSE(effects::gravity_of(scene::make_model_scene(kModels / "gear.3ds")).has_value());
 }
 
 TEST(ModelScene, PutsObjectsSideBySideClearOfEachOther) {

@@ -85,8 +85,8 @@ TEST(SizedScenes, AreTheSameEachTime) {
     EXPECT_EQ(once.bodies[i].position_m, again.bodies[i].position_m);
     EXPECT_EQ(once.bodies[i].velocity_m_s, again.bodies[i].velocity_m_s);
   }
-  EXPECT_EQ(once.hash, again.hash);
-  EXPECT_NE(once.hash, scene::make_sized_scene("atoms", 31).hash);
+  EXPECT_EQ(once.digest, again.digest);
+  EXPECT_NE(once.digest, scene::make_sized_scene("atoms", 31).digest);
 }
 
 // The scene places the block of ground by its centre of mass, which it knows as numbers.

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "framework/effects/joint/joint.h"
+#include "framework/effects/point_force/point_force.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/support.h"
 
@@ -111,7 +113,7 @@ void friction_threshold(const Given& given, Findings& findings) {
 
 scene::Scene pushed_box(double direction, double force, double mu) {
   scene::Scene scene = with_contact("pushed", {rough(box("box", Vector3d(0.5, 0.5, 0.1), 10.0, Vector3d(0, 0, 0.1)), mu), floor_of(mu)});
-  scene.point_forces = {{"box", force * Vector3d(std::cos(direction), std::sin(direction), 0), Vector3d(0, 0, 0.1), 0.0, 100.0}};
+  scene.effects.of<effects::PointForceSpec>() = {{"box", force * Vector3d(std::cos(direction), std::sin(direction), 0), Vector3d(0, 0, 0.1), 0.0, 100.0}};
   return scene;
 }
 
@@ -127,7 +129,7 @@ scene::Scene box_on_balls(int count, double mu_box, double force, double depth) 
   }
   bodies.push_back(floor_of(0.8));
   scene::Scene scene = with_contact("box on balls", std::move(bodies));
-  scene.point_forces = {{"box", force * Vector3d(std::sqrt(0.5), std::sqrt(0.5), 0), Vector3d(0, 0, 0.3 - depth), 0.0, 100.0}};
+  scene.effects.of<effects::PointForceSpec>() = {{"box", force * Vector3d(std::sqrt(0.5), std::sqrt(0.5), 0), Vector3d(0, 0, 0.3 - depth), 0.0, 100.0}};
   return scene;
 }
 
@@ -182,7 +184,7 @@ scene::Scene turntable(double part, double mu) {
   block.omega_world_rad_s = Vector3d(0, 0, omega);
   scene::Scene scene = with_contact("turntable", {block, table});
   scene.stabilisation = scene::StabilisationSpec{};
-  scene.joints = {{"axle", scene::JointKind::kHinge, "table", "", Vector3d(0, 0, -0.1), Vector3d::UnitZ()}};
+  scene.effects.of<effects::JointSpec>() = {{"axle", effects::JointKind::kHinge, "table", "", Vector3d(0, 0, -0.1), Vector3d::UnitZ()}};
   return scene;
 }
 

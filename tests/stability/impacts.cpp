@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/effects/gravity/gravity.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/support.h"
 
@@ -14,7 +15,7 @@ namespace {
 
 scene::Scene dropped(double e, double rest_speed) {
   scene::Scene scene = truths::empty_scene("zeno", 1.0, rest_speed);
-  scene.gravity_m_s2 = kDown;
+  effects::set_gravity(scene, kDown);
   scene.bodies = {truths::ball("ball", 1.0, 0.1, Vector3d(0, 0, 1.1), Vector3d::Zero(), e), truths::wall("floor", Vector3d::Zero(), Vector3d::UnitZ(), 1.0)};
   return scene;
 }

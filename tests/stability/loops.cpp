@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include "framework/core/shortest_turn.h"
+#include "framework/effects/gravity/gravity.h"
+#include "framework/effects/joint/joint.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/methods.h"
 #include "tests/stability/support.h"
@@ -25,7 +27,7 @@ scene::BodySpec link(const std::string& name, const Vector3d& from, const Vector
 /// N four-bars side by side (IFToMM benchmark A02): N + 1 cranks on the ground, N couplers; the cranks stand upright and go at 1 m/s.
 scene::Scene four_bars(int n) {
   scene::Scene scene = truths::empty_scene("four-bars", 1.0, 1e-9);
-  scene.gravity_m_s2 = kDown;
+  effects::set_gravity(scene, kDown);
   scene.stabilisation = scene::StabilisationSpec{};
   const Vector3d y = Vector3d::UnitY();
   for (int i = 0; i <= n; ++i) {
@@ -34,15 +36,15 @@ scene::Scene four_bars(int n) {
     crank.velocity_m_s = Vector3d(0.5, 0, 0);
     crank.omega_world_rad_s = y;
     scene.bodies.push_back(crank);
-    scene.joints.push_back({"A" + std::to_string(i), scene::JointKind::kHinge, crank.name, "", ground, y});
+    scene.effects.of<effects::JointSpec>().push_back({"A" + std::to_string(i), effects::JointKind::kHinge, crank.name, "", ground, y});
   }
   for (int i = 0; i < n; ++i) {
     const Vector3d left(i, 0, 1), right(i + 1, 0, 1);
     scene::BodySpec coupler = link("coupler" + std::to_string(i), left, right);
     coupler.velocity_m_s = Vector3d(1, 0, 0);
     scene.bodies.push_back(coupler);
-    scene.joints.push_back({"L" + std::to_string(i), scene::JointKind::kHinge, coupler.name, "crank" + std::to_string(i), left, y});
-    scene.joints.push_back({"R" + std::to_string(i), scene::JointKind::kHinge, coupler.name, "crank" + std::to_string(i + 1), right, y});
+    scene.effects.of<effects::JointSpec>().push_back({"L" + std::to_string(i), effects::JointKind::kHinge, coupler.name, "crank" + std::to_string(i), left, y});
+    scene.effects.of<effects::JointSpec>().push_back({"R" + std::to_string(i), effects::JointKind::kHinge, coupler.name, "crank" + std::to_string(i + 1), right, y});
   }
   return scene;
 }
@@ -114,8 +116,9 @@ void closed_loop(const Given& given, Findings& findings) {
 void redundant(const Given& given, Findings& findings) {
   const scene::Scene once = chain({1.0, 0.5, 2.0, 1.0}, 0.5, Vector3d(0.8, 0, -0.6));
   scene::Scene twice = once;
-  twice.rods.push_back(twice.rods[1]);
-  twice.rods.back().name = "the same again";
+  std::vector<effects::RodSpec>& rods = twice.effects.of<effects::RodSpec>();
+  rods.push_back(effects::RodSpec(rods[1]));
+  rods.back().name = "the same again";
   const double duration = given.is_long ? 10.0 : 2.0;
   const Trajectory single = run_by_steps(once, given.laws, duration, 1e-3, 200), doubled = run_by_steps(twice, given.laws, duration, 1e-3, 200);
   double places = 0.0, forces = 0.0;

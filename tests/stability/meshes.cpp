@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "framework/effects/gravity/gravity.h"
+#include "framework/effects/rod/rod.h"
 #include "framework/geometry/closed.h"
 #include "framework/geometry/mass_properties.h"
 #include "framework/geometry/shape.h"
@@ -130,7 +132,7 @@ void masses_far_off(const Given& given, Findings& findings) {
 /// Balls and a box that fly, hit a floor and bounce.
 scene::Scene bouncing(const Vector3d& origin) {
   scene::Scene scene = truths::empty_scene("far", 10.0, 1e-6);
-  scene.gravity_m_s2 = kDown;
+  effects::set_gravity(scene, kDown);
   scene.bodies = {truths::ball("ball", 1.0, 0.25, Vector3d(0, 0, 2), Vector3d(0.5, 0, 0), 0.9), truths::wall("floor", Vector3d::Zero(), Vector3d::UnitZ(), 0.9),
                   truths::wall("left", Vector3d(-1, 0, 0), Vector3d::UnitX(), 1.0), truths::wall("right", Vector3d(1, 0, 0), -Vector3d::UnitX(), 1.0)};
   for (scene::BodySpec& body : scene.bodies) body.position_m += origin;
@@ -157,7 +159,7 @@ void scenes_far_off(const Given& given, Findings& findings) {
   const auto compare = [&](const std::string& name, const scene::Scene& near, const std::string& why) {
     scene::Scene far = near;
     for (scene::BodySpec& body : far.bodies) body.position_m += origin;
-    for (scene::RodSpec& rod : far.rods)
+    for (effects::RodSpec& rod : far.effects.of<effects::RodSpec>())
       if (rod.a.body.empty()) rod.a.point_m += origin;
     const Trajectory here = run_by_steps(near, given.laws, duration, 1.0 / 60, 600), there = run_by_steps(far, given.laws, duration, 1.0 / 60, 600);
     double worst = here.frames.size() == there.frames.size() ? 0.0 : INFINITY;

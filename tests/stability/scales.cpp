@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "framework/effects/gravity/gravity.h"
+#include "framework/effects/spring/spring.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/support.h"
 
@@ -14,7 +16,7 @@ namespace {
 scene::Scene bouncing_and_sliding(double s, bool scaled_rest_speed) {
   const double speed = std::sqrt(s);
   scene::Scene scene = truths::empty_scene("scaled", 1.0, scaled_rest_speed ? 1e-3 * speed : 1e-3);
-  scene.gravity_m_s2 = kDown;
+  effects::set_gravity(scene, kDown);
   scene.bodies = {truths::ball("ball", 1.0, 0.2 * s, s * Vector3d(0, 0, 1.5), speed * Vector3d(1.0, 0.2, 0), 0.7), truths::ball("other", 2.0, 0.3 * s, s * Vector3d(1.5, 0.1, 0.9), speed * Vector3d(-0.5, 0, 1), 0.7),
                   truths::wall("floor", Vector3d::Zero(), Vector3d::UnitZ(), 0.7), truths::wall("left", s * Vector3d(-1, 0, 0), Vector3d::UnitX(), 0.9), truths::wall("right", s * Vector3d(3, 0, 0), -Vector3d::UnitX(), 0.9)};
   return scene;
@@ -31,9 +33,9 @@ scene::Scene box_at_rest_after_sliding(double s) {
 /// A bob on a damped spring, pulled aside: frequencies go with 1 / sqrt(s), so that stiffness goes with 1 / s.
 scene::Scene on_a_spring(double s) {
   scene::Scene scene = truths::empty_scene("scaled spring", 1.0, 1e-3 * std::sqrt(s));
-  scene.gravity_m_s2 = kDown;
+  effects::set_gravity(scene, kDown);
   scene.bodies = {truths::point_mass("bob", 1.0, s * Vector3d(0.6, 0.2, -1.0), Vector3d::Zero())};
-  scene.springs = {{"spring", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 100.0 / s, 0.5 / std::sqrt(s), s * 1.0}};
+  scene.effects.of<effects::SpringSpec>() = {{"spring", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, 100.0 / s, 0.5 / std::sqrt(s), s * 1.0}};
   return scene;
 }
 

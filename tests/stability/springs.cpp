@@ -7,7 +7,8 @@
 #include <fmt/format.h>
 
 #include "framework/core/error.h"
-#include "framework/dynamics/build_world.h"
+#include "framework/effects/build_world.h"
+#include "framework/effects/spring/spring.h"
 #include "framework/engines/stepping/stability.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/methods.h"
@@ -22,7 +23,7 @@ using truths::run_in_steps;
 scene::Scene swing(double w) {
   scene::Scene scene = truths::empty_scene("swing", 1.0, 1e-9);
   scene.bodies = {truths::point_mass("bob", 1.0, Vector3d(0.1, 0, 0), Vector3d::Zero())};
-  scene.springs = {{"spring", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, w * w, 0.0, 0.0}};
+  scene.effects.of<effects::SpringSpec>() = {{"spring", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, w * w, 0.0, 0.0}};
   return scene;
 }
 

@@ -6,6 +6,9 @@
 #include <fmt/format.h>
 
 #include "framework/core/files.h"
+#include "framework/effects/gravity/gravity.h"
+#include "framework/effects/joint/joint.h"
+#include "framework/effects/point_force/point_force.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/support.h"
 
@@ -96,11 +99,11 @@ scene::Scene nip(double a, double mu) {
   const Vector3d along(std::cos(2 * a), 0, std::sin(2 * a)), up(-std::sin(2 * a), 0, std::cos(2 * a));
   scene::BodySpec jaw = turned(rough(box("jaw", Vector3d(1.0, 0.3, 0.05), 1.0, along + 0.05 * up), mu), -2 * a, Vector3d::UnitY());
   scene::Scene scene = with_contact("nip", {ball, jaw, floor_of(mu)});
-  scene.gravity_m_s2.reset();
+  scene.effects.of<effects::GravitySpec>().clear();
   scene.stabilisation = scene::StabilisationSpec{};
-  scene.joints = {{"hinge", scene::JointKind::kHinge, "jaw", "", Vector3d::Zero(), Vector3d::UnitY()}};
+  scene.effects.of<effects::JointSpec>() = {{"hinge", effects::JointKind::kHinge, "jaw", "", Vector3d::Zero(), Vector3d::UnitY()}};
   scene.apart = {{"jaw", "floor"}};
-  scene.point_forces = {{"jaw", -100.0 * up, along + 0.05 * up, 0.0, 100.0}};
+  scene.effects.of<effects::PointForceSpec>() = {{"jaw", -100.0 * up, along + 0.05 * up, 0.0, 100.0}};
   return scene;
 }
 

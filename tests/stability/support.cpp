@@ -6,6 +6,7 @@
 #include "framework/core/error.h"
 #include "framework/core/files.h"
 #include "framework/core/not_implemented.h"
+#include "framework/effects/gravity/gravity.h"
 #include "framework/engines/truths/families.h"
 #include "models/write_3ds.h"
 
@@ -32,7 +33,7 @@ scene::BodySpec turned(scene::BodySpec body, double angle, const Vector3d& axis)
 
 scene::Scene with_contact(const std::string& name, std::vector<scene::BodySpec> bodies) {
   scene::Scene scene = truths::empty_scene(name, 1.0, 1e-3);
-  scene.gravity_m_s2 = kDown;
+  effects::set_gravity(scene, kDown);
   scene.bodies = std::move(bodies);
   scene.contact.emplace();
   return scene;

@@ -7,6 +7,7 @@
 
 #include "framework/collision/first_impact.h"
 #include "framework/core/random.h"
+#include "framework/effects/gravity/gravity.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/support.h"
 
@@ -146,7 +147,7 @@ void grazing(const Given& given, Findings& findings) {
   report::Plot plot{"A ball that tops at a ceiling", {"time after the top", "s"}, {"gap", "m"}, {}, {}, "At 1e-8 m of overlap the gap would be closed for 90 microseconds: a look at the ends of steps of 10 ms does not see it."};
   for (const double gap : {0.0, 1e-12, -1e-12, -1e-8}) {
     scene::Scene scene = truths::empty_scene("graze", 1.0, 1e-9);
-    scene.gravity_m_s2 = kDown;
+    effects::set_gravity(scene, kDown);
     scene.step_s = 0.01;
     scene.bodies = {truths::ball("ball", 1.0, radius, Vector3d(0, 0, 0), Vector3d(0, 0, v), 1.0), truths::wall("ceiling", Vector3d(0, 0, top + radius + gap), -Vector3d::UnitZ(), 1.0)};
     const Trajectory run = truths::run_in_steps(scene, given.laws, 0.6, 60, 60);

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include "framework/dynamics/free_rotation.h"
+#include "framework/effects/gravity/gravity.h"
+#include "framework/effects/joint/joint.h"
 #include "tests/stability/cases.h"
 #include "tests/stability/methods.h"
 #include "tests/stability/support.h"
@@ -196,7 +198,7 @@ double tilt_from_upright(const Frame& frame) {
 /// A top on its tip, which is at the origin, turned by q. @param axial, across  moments about its axis, and across it about the tip [kg m^2]
 scene::Scene top_on_its_tip(double m, double l, double across, double axial, const Quaterniond& q, double spin) {
   scene::Scene scene = truths::empty_scene("top", 1.0, 1e-9);
-  scene.gravity_m_s2 = kDown;
+  effects::set_gravity(scene, kDown);
   scene.stabilisation = scene::StabilisationSpec{};
   scene::BodySpec top = truths::point_mass("top", m, q * Vector3d(0, 0, l), Vector3d::Zero());
   const double about_com = across - m * l * l;   // Steiner
@@ -204,7 +206,7 @@ scene::Scene top_on_its_tip(double m, double l, double across, double axial, con
   top.world_from_body = q;
   top.omega_world_rad_s = q * Vector3d(0, 0, spin);
   scene.bodies = {top};
-  scene.joints = {{"tip", scene::JointKind::kBall, "top", "", Vector3d::Zero(), Vector3d::UnitZ()}};
+  scene.effects.of<effects::JointSpec>() = {{"tip", effects::JointKind::kBall, "top", "", Vector3d::Zero(), Vector3d::UnitZ()}};
   return scene;
 }
 

@@ -27,7 +27,7 @@ std::string bytes_of(const std::filesystem::path& file) {
 
 Trajectory small_run() {
   Trajectory run;
-  run.info = {"tumble run x", "1", "x", "ab12", "rd", "reference", "library", 1.0 / 60.0, 60.0, 7};
+  run.info = {"tumble run x", "1", "x", "ab12", "rd", "reference", "library", 1.0 / 60.0, 60.0, {7, 8}};
   run.bodies = {{"ball", false}, {"floor", true}};
   const BodyPose pose{{0.1, -0.0, 1e-310}, Quaterniond(0.5, -0.5, 0.5, 0.5), {1, 2, 3}, {4, 5, 6}};
   const double infinity = std::numeric_limits<double>::infinity();
@@ -85,7 +85,7 @@ TEST(TrajectoryFile, ComesBackBitForBit) {
   EXPECT_EQ(read.frames[1].contacts[0].body_b, 1);
   EXPECT_EQ(read.frames[1].contacts[0].force_on_a_world, Vector3d(0.5, 0, 9.81));
   EXPECT_EQ(read.info.constraint_source, "student");
-  EXPECT_EQ(read.info.seed, 7u);
+  EXPECT_EQ(read.info.seeds, (std::vector<std::uint64_t>{7, 8}));
   EXPECT_EQ(read.counters.counts, small_run().counters.counts);
   EXPECT_EQ(read.stopped_by, "ball flew off");
   std::filesystem::remove(first);
@@ -114,7 +114,7 @@ TEST(TrajectoryFile, ForeignFileIsNamedAsSuch) {
 TEST(TrajectoryFile, OtherVersionIsNamedAsOlderOrNewer) {
   std::string bytes = good_bytes();
   bytes[8] = 1;
-  EXPECT_NE(problem_of(bytes).find("byte 8: recorded by an older version of this program: format version 1, this program reads 2"), std::string::npos);
+  EXPECT_NE(problem_of(bytes).find("byte 8: recorded by an older version of this program: format version 1, this program reads 3"), std::string::npos);
   bytes[8] = 9;
   EXPECT_NE(problem_of(bytes).find("byte 8: recorded by a newer version"), std::string::npos);
 }

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "framework/effects/gravity/gravity.h"
 #include "framework/engines/truths/memory_scene.h"
 #include "tests/truths/made_case.h"
 #include "tests/truths/truths.h"
@@ -20,7 +21,7 @@ TEST(TruthVariations, BouncingBallOfOtherHeightsAndRestitutions) {
     for (const double h : {0.02, 3.0, 50.0}) {
       const double g = 1.62, first = std::sqrt(2.0 * h / g);
       scene::Scene scene = truths::empty_scene("drop", 4.0 * first, 1e-4);
-      scene.gravity_m_s2 = Vector3d(0, 0, -g);
+      effects::set_gravity(scene, Vector3d(0, 0, -g));
       scene.bodies = {truths::ball("ball", 2.5, 0.0, {0, 0, h}, Vector3d::Zero(), e), truths::wall("floor", Vector3d::Zero(), Vector3d::UnitZ(), e)};
       const auto impacts = truths::impacts_of(truths::run_in_memory(scene, laws, 1e-3));
       ASSERT_GE(impacts.size(), 2u);

@@ -1,4 +1,4 @@
-/// Which effects the engines are built with: all of them, except where tests/bench/absent_effects.sh leaves one out (-DTUMBLE_WITHOUT="spring")
+/// Which of the effects that are no folder under framework/effects the engines are built with: all of them, except where tests/bench/absent_effects.sh leaves one out (-DTUMBLE_WITHOUT="spring")
 /// to show that an effect that a scene does not ask for costs what an effect that is not there costs: nothing.
 #pragma once
 
@@ -12,13 +12,6 @@ namespace tumble::engines::built {
 
 constexpr std::string_view kWithout = TUMBLE_WITHOUT;
 
-constexpr bool kGravity = kWithout != "gravity";
-constexpr bool kPointForce = kWithout != "point_force";
-constexpr bool kSpring = kWithout != "spring";
-constexpr bool kDrag = kWithout != "drag";
-constexpr bool kRod = kWithout != "rod";
-constexpr bool kJoint = kWithout != "joint";
-constexpr bool kMotor = kWithout != "motor";
 constexpr bool kCollision = kWithout != "collision";
 constexpr bool kContact = kCollision && kWithout != "contact";   // begins where bodies collide
 constexpr bool kFriction = kWithout != "friction";

@@ -1,49 +1,18 @@
 /// Laws that stop a run, with words, where they fail: an exception, an answer that is not a number, an answer of the wrong size.
 #pragma once
 
-#include <stdexcept>
-#include <string>
-#include <utility>
-
-#include "framework/core/error.h"
 #include "framework/dynamics/laws.h"
+#include "framework/dynamics/stopped_run.h"
 
 namespace tumble::engines {
 
-/// Why a run cannot go on. Ends up in Trajectory::stopped_by, with the time before it.
-class StoppedRun : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
-/// Whatever is taken back or tried with a shorter step, it stays so, where another StoppedRun may be a consequence of what will be undone.
-class StoppedForGood : public StoppedRun, public Final {
- public:
-  using StoppedRun::StoppedRun;
-};
-
-/// The run has used up what it may take: an engine that works ahead stops for it at once.
-class OutOfTime : public StoppedForGood {
- public:
-  using StoppedForGood::StoppedForGood;
-};
+using tumble::OutOfTime;
+using tumble::StoppedForGood;
+using tumble::StoppedRun;
+using tumble::naming;
 
 /// The same laws; each throws StoppedRun where it fails, naming itself and who wrote it. `NotImplemented` and `UserError` pass
 /// through: a law that nobody has written is no failure of a run. A time of impact that is nonsense passes too: it is only a hint.
 Laws guarded(const Laws& laws);
-
-/// Does `work`; a StoppedRun out of it is told again with whom it happened to in front.
-template <class Work>
-auto naming(const std::string& subject, Work&& work) {
-  try {
-    return std::forward<Work>(work)();
-  } catch (const OutOfTime&) {
-    throw;   // happened to nobody
-  } catch (const StoppedForGood& stop) {
-    throw StoppedForGood(subject + ": " + stop.what());
-  } catch (const StoppedRun& stop) {
-    throw StoppedRun(subject + ": " + stop.what());
-  }
-}
 
 }  // namespace tumble::engines

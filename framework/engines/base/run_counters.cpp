@@ -9,12 +9,12 @@ void RunCounters::add(const RunCounters& other) {
        {&RunCounters::steps, &RunCounters::synchronisations, &RunCounters::shortened_steps, &RunCounters::integrations, &RunCounters::undone_integrations, &RunCounters::derivative_evaluations,
         &RunCounters::candidate_pairs, &RunCounters::pair_checks, &RunCounters::rollbacks, &RunCounters::anti_messages, &RunCounters::states_kept,
         &RunCounters::impacts, &RunCounters::impulses, &RunCounters::micro_impacts, &RunCounters::nudges, &RunCounters::bodies_put_to_rest,
-        &RunCounters::bodies_woken, &RunCounters::gravity_calls, &RunCounters::point_force_calls, &RunCounters::spring_calls, &RunCounters::rod_calls,
-        &RunCounters::joint_calls, &RunCounters::drag_calls, &RunCounters::motor_calls, &RunCounters::callback_calls, &RunCounters::constraint_solves,
+        &RunCounters::bodies_woken, &RunCounters::callback_calls, &RunCounters::constraint_solves,
         &RunCounters::constraint_corrections, &RunCounters::contact_solves, &RunCounters::contact_points, &RunCounters::contact_sweeps,
         &RunCounters::contact_factorisations, &RunCounters::contact_unsolved, &RunCounters::contacts_begun, &RunCounters::contacts_ended, &RunCounters::contact_landings, &RunCounters::heap_steps,
         &RunCounters::friction_points, &RunCounters::bodies_put_to_sleep, &RunCounters::body_steps_asleep, &RunCounters::passages_begun, &RunCounters::passages_let_go, &RunCounters::impacts_at_home, &RunCounters::impacts_across, &RunCounters::rounds, &RunCounters::held_back})
     this->*count += other.*count;
+  for (std::size_t k = 0; k < effect_calls.size(); ++k) effect_calls[k] += other.effect_calls[k];
   for (const auto seconds :
        {&RunCounters::integration_seconds, &RunCounters::collision_seconds, &RunCounters::impact_seconds, &RunCounters::constraint_seconds, &RunCounters::contact_seconds,
         &RunCounters::control_seconds, &RunCounters::force_seconds, &RunCounters::sleep_seconds, &RunCounters::together_seconds, &RunCounters::alone_seconds, &RunCounters::record_seconds})
@@ -48,13 +48,6 @@ Counters RunCounters::named() const {
                   {"nudges", nudges},
                   {"bodies_put_to_rest", bodies_put_to_rest},
                   {"bodies_woken", bodies_woken},
-                  {"gravity_calls", gravity_calls},
-                  {"point_force_calls", point_force_calls},
-                  {"spring_calls", spring_calls},
-                  {"rod_calls", rod_calls},
-                  {"joint_calls", joint_calls},
-                  {"drag_calls", drag_calls},
-                  {"motor_calls", motor_calls},
                   {"callback_calls", callback_calls},
                   {"constraint_solves", constraint_solves},
                   {"constraint_corrections", constraint_corrections},
@@ -78,6 +71,7 @@ Counters RunCounters::named() const {
                   {"rounds_of_threads", rounds},
                   {"held_back", held_back},
                   {"most_states_of_a_body", most_states}};
+  for (std::size_t k = 0; k < effects::all().size(); ++k) named.counts[effects::all()[k]->counter()] = effect_calls[k];
   named.stage_seconds = {{"integration", integration_seconds},
                          {"collision", collision_seconds},
                          {"impacts", impact_seconds},

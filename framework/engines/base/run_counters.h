@@ -1,6 +1,7 @@
 /// What a run counts while it goes. Plain integers in the hot path; named when the run ends.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <set>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "framework/collision/first_impact.h"
+#include "framework/effects/registry.h"
 #include "framework/engines/base/run_watch.h"
 #include "framework/trajectory/trajectory.h"
 
@@ -17,8 +19,9 @@ namespace tumble::engines {
 struct RunCounters {
   std::uint64_t steps = 0, synchronisations = 0, shortened_steps = 0, integrations = 0, undone_integrations = 0, derivative_evaluations = 0;
   std::uint64_t candidate_pairs = 0, rollbacks = 0, impacts = 0, impulses = 0, nudges = 0, micro_impacts = 0;
-  std::uint64_t bodies_put_to_rest = 0, bodies_woken = 0, gravity_calls = 0, point_force_calls = 0;
-  std::uint64_t spring_calls = 0, rod_calls = 0, joint_calls = 0, drag_calls = 0, motor_calls = 0, callback_calls = 0;
+  std::uint64_t bodies_put_to_rest = 0, bodies_woken = 0;
+  std::uint64_t callback_calls = 0;
+  std::array<std::uint64_t, effects::kMost> effect_calls{};   // by place in effects::all()
   std::uint64_t constraint_solves = 0, constraint_corrections = 0;
   std::uint64_t contact_solves = 0, contact_points = 0, contact_sweeps = 0, contact_factorisations = 0, contact_unsolved = 0, contacts_begun = 0, contacts_ended = 0, contact_landings = 0, heap_steps = 0, friction_points = 0;
   std::uint64_t pair_checks = 0, anti_messages = 0, states_kept = 0;   // states_kept: the most at any time

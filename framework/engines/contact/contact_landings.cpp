@@ -3,21 +3,11 @@
 #include <cmath>
 #include <iterator>
 
+#include "framework/engines/contact/contact_constants.h"
 #include "framework/engines/contact/impact_bodies.h"
 #include "framework/engines/contact/lasting_contacts.h"
 
 namespace tumble::engines {
-namespace {
-
-constexpr double kCut = 0.99;        // of the way down: the step ends before the point lands, a second, short one takes it all the way
-constexpr double kShort = 1e-3;      // of the longest step: what comes this soon is predicted to its third power, below a shell
-constexpr double kSame = 1e-6;       // of the step: a landing this near to its end lands at its end
-constexpr double kNearLanding = 1e-3;       // of the way that the rest speed goes in the longest step: nearer than this a point is down
-constexpr int kMostBlows = 1000;     // at one instant
-constexpr double kTogether = 1e-6;   // of the smaller body
-constexpr double kStrikes = 1e-4;    // of the rest speed: what comes together more slowly is left to the step's impulses
-
-}  // namespace
 
 // Of A against B at a contact, with these velocities of theirs. [m/s]
 Vector3d LastingContacts::relative_velocity(const ContactProblem& problem, std::size_t contact, const std::vector<Velocity>& velocities) {
@@ -39,16 +29,16 @@ double LastingContacts::slip_speed(const ContactProblem& problem, std::size_t co
   return (relative - relative.dot(c.normal_b_to_a_world) * c.normal_b_to_a_world).norm();
 }
 
-bool LastingContacts::is_down(const Touch& touch) const {
-  const double thickness = shell(touch.pair);
-  return touch.point.gap - thickness <= thickness + kNearLanding * rest_speed_ * step_;
+bool LastingContacts::is_down(const StepContact& touch) const {
+  const double thickness = geometry_.margin(touch.pair);
+  return touch.point.gap - thickness <= thickness + kContact.down * rest_speed_ * memory_.longest_step;
 }
 
 // At the step's start; the problem's own are those of its end, of driven bodies too.
-std::vector<Velocity> LastingContacts::velocities_now(const Group& group, const std::vector<Touch>& touches, const ContactProblem& problem) const {
+std::vector<Velocity> LastingContacts::velocities_now(const ContactIsland& island, const std::vector<StepContact>& touches, const ContactProblem& problem) const {
   std::vector<Velocity> now = velocities_of(problem);
-  for (std::size_t k = 0; k < group.bodies.size(); ++k) {   // the problem's first bodies are the group's
-    const Body body = moving_.body_at_impact(group.bodies[k]);
+  for (std::size_t k = 0; k < island.bodies.size(); ++k) {   // the problem's first bodies are the island's
+    const Body body = moving_.body_at_impact(island.bodies[k]);
     now[k] = {body.velocity_world, body.omega_world};
   }
   const auto set_driven = [&](int body, int place) {
@@ -61,33 +51,55 @@ std::vector<Velocity> LastingContacts::velocities_now(const Group& group, const 
   return now;
 }
 
+// Points that touch and part at the step's start, more slowly than they could leave in it: they hop, and have come down again by its end,
+//   gap(h) = h (v0 + v1) / 2 = 0,  so that  v1 = -v0.
+// Without that they would end at rest where half of their first velocity has taken them: an edge that rocks would be lifted by
+// v0 h / 2 each time, which is more energy than it has wherever v0 < g h. @return whether there are any
+bool LastingContacts::let_part(const ContactIsland& island, std::vector<StepContact>& touches, ContactProblem& problem) const {
+  if (!island.linked.empty()) return false;   // what hangs on links is not lifted by itself: their reactions are part of what parts it
+  const std::vector<Velocity> now = velocities_now(island, touches, problem);
+  bool any = false;
+  for (std::size_t i = 0; i < touches.size(); ++i) {
+    const double parting = -approach(problem, i, now);
+    if (touches[i].lands || !(parting > kContact.hop * rest_speed_)) continue;
+    touches[i].target = problem.contacts[i].target = -parting;
+    any = true;
+  }
+  return any;
+}
+
+void LastingContacts::keep_together(std::vector<StepContact>& touches, ContactProblem& problem) {
+  for (std::size_t i = 0; i < touches.size(); ++i)
+    if (!touches[i].lands) touches[i].target = problem.contacts[i].target = 0.0;
+}
+
 // Does a point that is apart press, or would its path be under the surface, with this answer?
-bool LastingContacts::comes_down(const Group& group, const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h) const {
-  const std::vector<Velocity> now = velocities_now(group, touches, problem);
+bool LastingContacts::comes_down(const ContactIsland& island, const std::vector<StepContact>& touches, const ContactProblem& problem, const ContactSolution& solution, double h) const {
+  const std::vector<Velocity> now = velocities_now(island, touches, problem);
   for (std::size_t i = 0; i < touches.size(); ++i) {
     if (!touches[i].lands) continue;
     const double way = 0.5 * h * (approach(problem, i, now) + approach(problem, i, solution.velocities));
-    if (solution.impulses_world[i].squaredNorm() > 0.0 || way > touches[i].point.gap - shell(touches[i].pair)) return true;
+    if (solution.impulses_world[i].squaredNorm() > 0.0 || way > touches[i].point.gap - geometry_.margin(touches[i].pair)) return true;
   }
   return false;
 }
 
 // When points that are apart come down where nothing holds them up, from the velocities at the step's ends:
 //   gap(t) = r + v0 t + (v1 - v0) t^2 / (2 h).
-std::vector<LastingContacts::Landing> LastingContacts::predict_landings(const Group& group, const std::vector<Touch>& touches, double h) {
-  std::vector<Touch> held;
-  std::copy_if(touches.begin(), touches.end(), std::back_inserter(held), [](const Touch& touch) { return !touch.lands; });
-  const ContactProblem problem = problem_of(group, touches, moving_.states(), h);
-  const std::vector<Velocity> now = velocities_now(group, touches, problem);
+std::vector<LastingContacts::Landing> LastingContacts::predict_landings(const ContactIsland& island, const std::vector<StepContact>& touches, double h) {
+  std::vector<StepContact> held;
+  std::copy_if(touches.begin(), touches.end(), std::back_inserter(held), [](const StepContact& touch) { return !touch.lands; });
+  const ContactProblem problem = problem_of(island, touches, moving_.states(), h);
+  const std::vector<Velocity> now = velocities_now(island, touches, problem);
   std::vector<Velocity> then = velocities_of(problem);
   if (!held.empty() || !problem.rows.empty()) {
-    const ContactSolution free = solve(group, problem_of(group, held, moving_.states(), h), h);
-    std::copy_n(free.velocities.begin(), group.bodies.size(), then.begin());
+    const ContactSolution free = solve(island, problem_of(island, held, moving_.states(), h), h);
+    std::copy_n(free.velocities.begin(), island.bodies.size(), then.begin());
   }
   std::vector<Landing> landings;
   for (std::size_t i = 0; i < touches.size(); ++i) {
     if (!touches[i].lands) continue;
-    const double room = touches[i].point.gap - shell(touches[i].pair);
+    const double room = touches[i].point.gap - geometry_.margin(touches[i].pair);
     const double v0 = approach(problem, i, now), v1 = approach(problem, i, then), bend = (v1 - v0) / h;
     const double square = v0 * v0 + 2 * bend * room, speed = std::sqrt(std::max(0.0, square));
     const bool comes = square >= 0 && v0 + speed > 0;
@@ -100,72 +112,72 @@ std::vector<LastingContacts::Landing> LastingContacts::predict_landings(const Gr
 // Points that are apart at the step's start: where one comes down faster than the rest speed the step ends; slower ones stay, with the
 // velocity at the end that takes them down by then; others must not come farther.
 // @return an earlier target (or the same after a blow) to begin the step again with
-std::optional<double> LastingContacts::sort_out_landings(const Group& group, std::vector<Touch>& touches, double h) {
-  const std::vector<Landing> landings = predict_landings(group, touches, h);
+std::optional<double> LastingContacts::sort_out_landings(const ContactIsland& island, std::vector<StepContact>& touches, double h) {
+  const std::vector<Landing> landings = predict_landings(island, touches, h);
   std::vector<bool> stays(touches.size(), true);
   double first = h;
   for (const Landing& landing : landings)
     if (landing.within && landing.speed > rest_speed_) first = std::min(first, landing.time);
-  const double end = first <= kShort * step_ ? first : kCut * first;
-  if (first < h && end < (1 - kSame) * h && h > kShortest * kShort * step_) return moving_.time() + end;
-  std::vector<Touch> blows;
+  const double end = first <= kContact.soon * memory_.longest_step ? first : kContact.before_landing * first;
+  if (first < h && end < (1 - kContact.at_end) * h && h > kContact.shortest_step * kContact.soon * memory_.longest_step) return moving_.time() + end;
+  std::vector<StepContact> blows;
   for (const Landing& landing : landings) {
-    Touch& touch = touches[landing.touch];
+    StepContact& touch = touches[landing.touch];
     stays[landing.touch] = !(landing.within && landing.speed > rest_speed_);
-    const double steady = 2 * (touch.point.gap - shell(touch.pair)) / h;   // from this speed evenly to none it comes down at the step's end
+    const double steady = 2 * (touch.point.gap - geometry_.margin(touch.pair)) / h;   // from this speed evenly to none it comes down at the step's end
     touch.lands = false;
     touch.target = std::min(0.0, landing.approach - steady);
     if (landing.within && stays[landing.touch] && landing.approach > steady) blows.push_back({touch.pair, touch.point, -steady, false});
   }
   if (!blows.empty()) {
-    for (const Touch& touch : touches)
+    for (const StepContact& touch : touches)
       if (is_down(touch)) blows.push_back({touch.pair, touch.point, 0.0, false});
-    if (strike(group, std::move(blows))) return moving_.target();
+    if (strike(island, std::move(blows))) return moving_.target();
   }
   std::size_t i = 0;
-  std::erase_if(touches, [&](const Touch&) { return !stays[i++]; });
+  std::erase_if(touches, [&](const StepContact&) { return !stays[i++]; });
   return std::nullopt;
 }
 
 // Points that touch and come together: their velocities jump. @return whether any did
-bool LastingContacts::strike_what_is_down(const Group& group, const std::vector<Touch>& touches) {
-  if (std::none_of(touches.begin(), touches.end(), [&](const Touch& touch) { return is_down(touch); })) return false;
+bool LastingContacts::strike_what_is_down(const ContactIsland& island, const std::vector<StepContact>& touches) {
+  if (std::none_of(touches.begin(), touches.end(), [&](const StepContact& touch) { return is_down(touch); })) return false;
   // Corners of an edge that comes down flat strike together, though rounding takes one of them down first.
-  std::vector<Touch> down;
-  for (const Touch& touch : touches) {
-    const double size = size_of(touch.pair);
-    if (is_down(touch) || touch.point.gap < kTogether * size) down.push_back({touch.pair, touch.point, 0.0, false});
+  std::vector<StepContact> down;
+  for (const StepContact& touch : touches) {
+    const double size = geometry_.size_of(touch.pair);
+    if (is_down(touch) || touch.point.gap < kContact.together * size) down.push_back({touch.pair, touch.point, 0.0, false});
   }
-  return strike(group, std::move(down));
+  return strike(island, std::move(down));
 }
 
-std::vector<int> LastingContacts::touched_bodies(const Group& group, const std::vector<Touch>& touches) {
-  std::vector<int> bodies = group.bodies;
-  for (const Touch& touch : touches) {
+std::vector<int> LastingContacts::touched_bodies(const ContactIsland& island, const std::vector<StepContact>& touches) {
+  std::vector<int> bodies = island.bodies;
+  for (const StepContact& touch : touches) {
     bodies.push_back(touch.pair.first);
     bodies.push_back(touch.pair.second);
   }
   return bodies;
 }
 
-bool LastingContacts::strike(const Group& group, std::vector<Touch> down) {
-  std::stable_sort(down.begin(), down.end(), [](const Touch& a, const Touch& b) { return a.pair < b.pair; });
-  const ContactProblem problem = problem_of(group, down, moving_.states(), 0.0);
+bool LastingContacts::strike(const ContactIsland& island, std::vector<StepContact> down) {
+  std::stable_sort(down.begin(), down.end(), [](const StepContact& a, const StepContact& b) { return a.pair < b.pair; });
+  const ContactProblem problem = problem_of(island, down, moving_.states(), 0.0);
   const std::vector<Velocity> before = velocities_of(problem);
   // What goes less than a shell in a step is left to the step's impulses.
   const bool any = [&] {
     for (std::size_t i = 0; i < down.size(); ++i)
-      if ((is_down(down[i]) || down[i].target < 0) && approach(problem, i, before) + down[i].target > std::max(kStrikes * rest_speed_, shell(down[i].pair) / step_)) return true;
+      if ((is_down(down[i]) || down[i].target < 0) && approach(problem, i, before) + down[i].target > std::max(kContact.impact * rest_speed_, geometry_.margin(down[i].pair) / memory_.longest_step)) return true;
     return false;
   }();
   if (!any) return false;
-  if (struck_at_ != moving_.time()) struck_ = 0;
-  struck_at_ = moving_.time();
-  if (++struck_ > kMostBlows) return false;
-  const ContactSolution solution = solve(group, problem, 1.0);
-  note_unsolved(group, solution, step_);
-  for (std::size_t k = 0; k < group.bodies.size(); ++k) {
-    const int body = group.bodies[k];
+  if (memory_.landed_at != moving_.time()) memory_.landed_there = 0;
+  memory_.landed_at = moving_.time();
+  if (++memory_.landed_there > kContact.most_impacts_at_once) return false;
+  const ContactSolution solution = solve(island, problem, 1.0);
+  note_unsolved(island, solution, memory_.longest_step);
+  for (std::size_t k = 0; k < island.bodies.size(); ++k) {
+    const int body = island.bodies[k];
     const Inertia& inertia = moving_.world().bodies[body].inertia;
     RigidBodyState state = moving_.state(body);
     state.momentum_world = inertia.mass * solution.velocities[k].linear_world;
@@ -174,11 +186,11 @@ bool LastingContacts::strike(const Group& group, std::vector<Touch> down) {
   }
   ++counters_.contact_landings;
   // The energy of all, which the first event stands for; not told where links end in, or bodies touch, what is driven in different ways.
-  const Vector3d driven = ImpactBodies(moving_, laws_).driven_velocity(touched_bodies(group, down)).value_or(Vector3d::Constant(kUnset));
+  const Vector3d driven = ImpactBodies(moving_, laws_).driven_velocity(touched_bodies(island, down)).value_or(Vector3d::Constant(kUnset));
   EnergyOfImpact energy;
-  for (std::size_t k = 0; k < group.bodies.size(); ++k) {
-    const WorldBody& body = moving_.world().bodies[static_cast<std::size_t>(group.bodies[k])];
-    energy.add(body.inertia, moving_.state(group.bodies[k]).world_from_body, before[k], solution.velocities[k], driven);
+  for (std::size_t k = 0; k < island.bodies.size(); ++k) {
+    const WorldBody& body = moving_.world().bodies[static_cast<std::size_t>(island.bodies[k])];
+    energy.add(body.inertia, moving_.state(island.bodies[k]).world_from_body, before[k], solution.velocities[k], driven);
   }
   double excess = energy.excess(solution.converged ? work_of(problem, solution.impulses_world, before, solution.velocities) : energy.change);   // unsolved: never more is all that can be asked
   for (std::size_t from = 0, to = 0; from < down.size(); from = to) {   // a pair's hardest blow stands for it

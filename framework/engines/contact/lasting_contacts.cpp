@@ -8,50 +8,36 @@
 
 #include "framework/collision/gap.h"
 #include "framework/core/numbers.h"
+#include "framework/engines/contact/contact_constants.h"
 #include "framework/engines/stepping/body_groups.h"
 #include "framework/engines/base/guarded_laws.h"
 
 namespace tumble::engines {
-namespace {
 
-constexpr double kRounding = 64;          // of coordinates far from the origin, in the shell
-constexpr double kBand = 8.0;             // shells: nearer than this two touch
-constexpr double kUnseenRoom = 1e-9;      // of the way in a step: what the tolerance of the impulses leaves between bodies that touch
-constexpr double kApart = 32.0;           // shells: farther than this, and than the rest speed goes in a step, a contact has ended
-constexpr double kAssembled = 1e-6;       // of the smaller body: a scene's models have single precision; what does not bounce and is this near at the start stands on each other
-constexpr long kMostCutsABody = 1000;     // of a step, by contacts that ask for shorter ones
-constexpr std::uint64_t kMostSweeps = 300'000;   // of the contact solver in a step: some 200 problems that all stayed unsolved
-constexpr double kReach = 0.25;           // of the smaller body: points farther away are not looked at
-constexpr double kDeep = 0.01;            // of the smaller body: deeper than this no step leads, save in heaps; a point that is gets a second look
-constexpr double kDeeper = 1.1;           // of how far the two are in each other
-constexpr double kMostTurn = 0.05;        // rad: a group with contacts that turns twice as far gets shorter steps; what is left is of second order
-constexpr double kSlips = 1e-4;           // of the rest speed: slower than this nothing slides, though friction may be all there can be
-constexpr double kTurns = 1e-5;           // rad: where nothing turns more in a step, forces of its start do for the whole; errors of energy go with this
-constexpr int kCurvedRounds = 2;          // where a curved surface touches at the step's end hangs on how it turns in it: a second look leaves a thirtieth of the error
-constexpr std::size_t kContactsOfAHeap = 60;   // in_step: so many are asked for by a few sweeps
-// Of the heap's speed: what its sweeps leave at the worst of hundreds of contacts (0.28 in the bowl of 200 models, whose energy and gaps are right) its shell
-// and the next step take up. Where as much is left as there was, no answer was found at all.
-constexpr double kHeapSolved = 1.0;
-constexpr double kMidway = 0.3;           // of the smaller body: how far from each other points of one contact may lie at the middle of a step
-constexpr int kFrameRounds = 6;           // of drawing apart what a frame within a step shows
-
-}  // namespace
+void LastingContacts::recall(ContactMemory memory) {
+  memory_ = std::move(memory);
+  islands_.clear();
+  points_.clear();
+  reaches_.clear();
+  forces_.clear();
+  unsolved_ = {};
+}
 
 void LastingContacts::begin(Pair pair, const collision::Gap& gap) {
-  if (!lasting_.insert(pair).second) return;
+  if (!memory_.persistent.insert(pair).second) return;
   ++counters_.contacts_begun;
   sink_.event({moving_.time(), EventKind::kContact, pair.first, pair.second, gap.point_b_world, gap.normal_b_to_a_world, 0.0, 0.0});
 }
 
 void LastingContacts::begin_where_touching(const std::vector<Pair>& pairs) {
   for (const Pair& pair : pairs) {
-    const collision::Gap gap = gap_of(pair, moving_.states());
-    const double within = std::max(shell(pair), is_dead(pair) ? kAssembled * size_of(pair) : 0.0);
+    const collision::Gap gap = geometry_.gap_of(pair, moving_.states());
+    const double within = std::max(geometry_.margin(pair), geometry_.is_dead(pair) ? kContact.assembled * geometry_.size_of(pair) : 0.0);
     if (gap.distance > within) continue;
-    const Points points = points_at(pair, moving_.states(), within);
+    const ContactManifold points = geometry_.points_at(pair, moving_.states(), within);
     const Body a = moving_.body_at_impact(pair.first), b = moving_.body_at_impact(pair.second);
     const bool slow = std::all_of(points.begin(), points.end(), [&](const collision::NearPoint& p) {
-      const Vector3d relative = a.velocity_world + a.omega_world.cross(point_of(pair, p) - a.com_world) - b.velocity_world - b.omega_world.cross(point_of(pair, p) - b.com_world);
+      const Vector3d relative = a.velocity_world + a.omega_world.cross(geometry_.point_of(pair, p) - a.com_world) - b.velocity_world - b.omega_world.cross(geometry_.point_of(pair, p) - b.com_world);
       return std::abs(relative.dot(p.normal_b_to_a_world)) < rest_speed_;
     });
     if (slow) begin(pair, gap);
@@ -62,39 +48,17 @@ void LastingContacts::begin_where_touching(const std::vector<Pair>& pairs) {
 // A scene's places are rounded: of bodies wedged between others no single shift takes that back.
 void LastingContacts::draw_apart() {
   std::vector<RigidBodyState> states = moving_.states();
-  const auto closed = [&](const Pair& pair) { return distance_of(pair, states, 0.0) < 0; };
-  for (const Group& group : groups({lasting_.begin(), lasting_.end()})) {
-    if (std::none_of(group.pairs.begin(), group.pairs.end(), closed)) continue;
-    keep_apart(group, group.pairs, states, moving_.time());
-    for (const int body : group.bodies) moving_.set_state(body, states[body]);
+  const auto closed = [&](const Pair& pair) { return geometry_.distance_of(pair, states, 0.0) < 0; };
+  for (const ContactIsland& island : islands({memory_.persistent.begin(), memory_.persistent.end()})) {
+    if (std::none_of(island.pairs.begin(), island.pairs.end(), closed)) continue;
+    correction_.keep_apart(island, island.pairs, states, moving_.time());
+    for (const int body : island.bodies) moving_.set_state(body, states[body]);
   }
 }
 
-// Where forces act: on the surface of the body that moves, so that a rolling ball's arm is its radius; between two that move, in the middle.
-Vector3d LastingContacts::point_of(Pair pair, const collision::NearPoint& p) const {
-  if (moving_.world().bodies[pair.second].immovable()) return p.point_a_world;
-  if (moving_.world().bodies[pair.first].immovable()) return p.point_b_world;
-  return 0.5 * (p.point_a_world + p.point_b_world);
-}
-
-double LastingContacts::friction(Pair pair) const {
-  if (!built::kFriction) return 0.0;
-  return std::min(moving_.world().bodies[pair.first].friction, moving_.world().bodies[pair.second].friction);
-}
-
-bool LastingContacts::is_dead(Pair pair) const { return std::min(moving_.world().bodies[pair.first].restitution, moving_.world().bodies[pair.second].restitution) == 0.0; }
-
 bool LastingContacts::plastic(Pair pair) const {
-  if (locates() && heaped_.empty()) return false;
-  return is_dead(pair) && (!locates() || heaped_.contains(pair.first) || heaped_.contains(pair.second));
-}
-
-double LastingContacts::size_of(Pair pair) const { return std::min(moving_.shape(pair.first).bounding_radius(), moving_.shape(pair.second).bounding_radius()); }
-
-double LastingContacts::shell(Pair pair) const {
-  const double size = size_of(pair);
-  const auto far = [&](int body) { return moving_.world().bodies[body].immovable() ? 0.0 : moving_.state(body).com_world.cwiseAbs().maxCoeff(); };
-  return kContactMargin * size + kRounding * kEpsilon * (size + std::max(far(pair.first), far(pair.second)));
+  if (locates() && memory_.heaped.empty()) return false;
+  return geometry_.is_dead(pair) && (!locates() || memory_.heaped.contains(pair.first) || memory_.heaped.contains(pair.second));
 }
 
 // How much nearer the two can come in the step.
@@ -105,9 +69,9 @@ double LastingContacts::reach(Pair pair) {
     const double radius = moving_.shape(body).is_half_space() ? 0.0 : moving_.shape(body).bounding_radius();
     return std::max(start.velocity_world.norm(), end.velocity_world.norm()) + std::max(start.omega_world.norm(), end.omega_world.norm()) * radius;
   };
-  const double size = size_of(pair);
+  const double size = geometry_.size_of(pair);
   const double way = (reaches_.empty() ? motion(pair.first) + motion(pair.second) : reaches_[pair.first] + reaches_[pair.second]) * h;
-  return std::min(kReach * size, way) + kApart * shell(pair);
+  return std::min(kContact.reach * size, way) + kContact.open_band * geometry_.margin(pair);
 }
 
 // Where blows are dealt with in the step, a body may be as fast by its end as any that can meet it. [m/s], by body
@@ -131,62 +95,30 @@ std::vector<double> LastingContacts::speeds_about(const std::vector<Pair>& candi
   return about;
 }
 
-collision::Pose LastingContacts::pose(int body, const std::vector<RigidBodyState>& states) const {
-  return {states[body].com_world, states[body].world_from_body};
-}
-
-LastingContacts::Points LastingContacts::points_at(Pair pair, const std::vector<RigidBodyState>& states, double reach) const {
-  Points points = collision::near_points(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states), reach,
-                                         moving_.pair_cache(pair.first, pair.second));
-  // Two that touch at corners may face each other along any direction, and a column along it may go in at a narrow side and out at the far end:
-  // no point is deeper than the two are in each other.
-  if (std::any_of(points.begin(), points.end(), [&](const collision::NearPoint& p) { return p.gap < -kDeep * size_of(pair); })) {
-    const collision::Gap deepest = gap_of(pair, states);
-    std::erase_if(points, [&](const collision::NearPoint& p) { return p.gap < std::min(0.0, kDeeper * deepest.distance); });
-    if (points.empty() && deepest.distance <= reach) points.push_back({deepest.point_a_world, deepest.point_b_world, deepest.normal_b_to_a_world, deepest.distance});
-  }
-  return points;
-}
-
-collision::Gap LastingContacts::gap_of(Pair pair, const std::vector<RigidBodyState>& states) const {
-  return collision::compute_gap(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states),
-                                moving_.pair_cache(pair.first, pair.second));
-}
-
-// Above `limit` a bound from below.
-double LastingContacts::distance_of(Pair pair, const std::vector<RigidBodyState>& states, double limit) const {
-  return collision::gap_distance(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states),
-                                 moving_.pair_cache(pair.first, pair.second), limit);
-}
-
-double LastingContacts::least_gap_of(Pair pair, const std::vector<RigidBodyState>& states) const {
-  return collision::least_gap(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states));
-}
-
-std::vector<LastingContacts::Group> LastingContacts::groups(const std::vector<Pair>& touching) {
+std::vector<ContactIsland> LastingContacts::islands(const std::vector<Pair>& touching) {
   const int n = moving_.size();
   const std::vector<int> leader = group_leaders(moving_, touching);
-  std::map<int, Group> by_leader;
+  std::map<int, ContactIsland> by_leader;
   for (const auto& pair : touching) by_leader[leader[moving_.can_move(pair.first) ? pair.first : pair.second]].pairs.push_back(pair);
   for (int i = 0; i < n; ++i) {
     if (!moving_.can_move(i)) continue;
-    const auto group = by_leader.find(leader[i]);
-    if (group == by_leader.end()) continue;
-    group->second.bodies.push_back(i);
+    const auto island = by_leader.find(leader[i]);
+    if (island == by_leader.end()) continue;
+    island->second.bodies.push_back(i);
     const int linked = moving_.linked_group(i);
-    if (linked >= 0 && moving_.linked_groups()[linked].bodies().front() == i) group->second.linked.push_back(linked);
+    if (linked >= 0 && moving_.linked_groups()[linked].bodies().front() == i) island->second.linked.push_back(linked);
   }
-  std::vector<Group> result;
-  for (auto& [first, group] : by_leader) result.push_back(std::move(group));
+  std::vector<ContactIsland> result;
+  for (auto& [first, island] : by_leader) result.push_back(std::move(island));
   return result;
 }
 
-std::vector<LastingContacts::Touch> LastingContacts::touches_of(const Group& group) {
-  std::vector<Touch> touches;
-  for (const Pair& pair : group.pairs)
+std::vector<LastingContacts::StepContact> LastingContacts::touches_of(const ContactIsland& island) {
+  std::vector<StepContact> touches;
+  for (const Pair& pair : island.pairs)
     for (const collision::NearPoint& point : points_.at(pair)) {
-      const double thickness = shell(pair), room = point.gap - thickness;
-      const bool lands = room > kBand * thickness + kUnseenRoom * reach(pair);
+      const double thickness = geometry_.margin(pair), room = point.gap - thickness;
+      const bool lands = room > kContact.touching_band * thickness + kContact.unseen_approach * reach(pair);
       touches.push_back({pair, point, lands ? -room / (moving_.target() - moving_.time()) : 0.0, lands, Vector3d::Zero(), point.gap});
     }
   return touches;
@@ -195,76 +127,80 @@ std::vector<LastingContacts::Touch> LastingContacts::touches_of(const Group& gro
 std::optional<double> LastingContacts::advance(const std::vector<Pair>& candidates) {
   const StageTimer timer(counters_.contact_seconds);
   const double h = moving_.target() - moving_.time();
-  step_ = std::max(step_, h);
+  memory_.longest_step = std::max(memory_.longest_step, h);
   points_.clear();
   forces_.clear();
-  groups_.clear();
+  islands_.clear();
   unsolved_ = {};
+  // Which pairs touch in this step: those in persistent contact, and those without restitution where impacts are solved in steps.
   std::vector<Pair> touching;
-  const bool in_step = !locates() || !heaped_.empty();
+  const bool in_step = !locates() || !memory_.heaped.empty();
   reaches_ = in_step ? speeds_about(candidates) : std::vector<double>{};
   for (const Pair& pair : candidates) {
-    if (!lasting_.contains(pair) && !plastic(pair)) continue;
+    if (!memory_.persistent.contains(pair) && !plastic(pair)) continue;
     if (in_step) {
       const double within = reach(pair);
-      if (least_gap_of(pair, moving_.states()) <= within && distance_of(pair, moving_.states(), within) <= within) touching.push_back(pair);
+      if (geometry_.least_gap_of(pair, moving_.states()) <= within && geometry_.distance_of(pair, moving_.states(), within) <= within) touching.push_back(pair);
       continue;
     }
-    Points points = points_at(pair, moving_.states(), reach(pair));
+    ContactManifold points = geometry_.points_at(pair, moving_.states(), reach(pair));
     if (points.empty()) continue;
     touching.push_back(pair);
     points_.emplace(pair, std::move(points));
   }
   if (touching.empty()) return std::nullopt;
-  groups_ = groups(touching);
-  for (Group& group : groups_) group.pile = is_pile(group);
-  heaped_.clear();
-  for (const Group& group : groups_)
-    if (group.pile && locates()) heaped_.insert(group.bodies.begin(), group.bodies.end());
+  // What touches or is linked is solved together, island by island; large islands without restitution are heaps.
+  islands_ = islands(touching);
+  for (ContactIsland& island : islands_) island.pile = is_pile(island);
+  memory_.heaped.clear();
+  for (const ContactIsland& island : islands_)
+    if (island.pile && locates()) memory_.heaped.insert(island.bodies.begin(), island.bodies.end());
   if (in_step)
-    for (Group& group : groups_) {
-      for (const Pair& pair : group.pairs) points_.emplace(pair, group.pile ? Points{} : points_at(pair, moving_.states(), reach(pair)));
+    for (ContactIsland& island : islands_) {
+      for (const Pair& pair : island.pairs) points_.emplace(pair, island.pile ? ContactManifold{} : geometry_.points_at(pair, moving_.states(), reach(pair)));
     }
   note_near_pairs(candidates);
-  next_warm_.clear();
+  // Every island gets its paths; where one asks for a shorter step, the step begins again for all.
+  next_impulses_.clear();
   next_stuck_.clear();
   if (const auto earlier = take_steps(h)) {
     require_progress();
     return earlier;
   }
-  warm_ = std::move(next_warm_);
-  tried_.clear();
-  stuck_ = std::move(next_stuck_);
+  // The next step begins with these impulses.
+  memory_.last_impulses = std::move(next_impulses_);
+  memory_.tried_impulses.clear();
+  memory_.stuck = std::move(next_stuck_);
   return std::nullopt;
 }
 
-// Every group's step. @return the earliest target that one of them asks for: the step begins again for all, and once for many groups is
-// cheaper than once for each. Of ends of sliding, the one that is looked for is that of the earliest. The group that asked last is asked first,
+// Every island's step. @return the earliest target that one of them asks for: the step begins again for all, and once for many groups is
+// cheaper than once for each. Of ends of sliding, the one that is looked for is that of the earliest. The island that asked last is asked first,
 // and as long as it asks the others' steps would be in vain: one that lies at rest is not solved again for each blow of a pile elsewhere.
 std::optional<double> LastingContacts::take_steps(double h) {
-  const auto step = [&](const Group& group) { return group.pile ? take_pile_step(group, h) : take_step(group, h); };
-  const auto first = std::find_if(groups_.begin(), groups_.end(), [&](const Group& group) { return std::binary_search(group.bodies.begin(), group.bodies.end(), asked_last_); });
-  if (first != groups_.end())
+  const auto step = [&](const ContactIsland& island) { return island.pile ? take_pile_step(island, h) : take_step(island, h); };
+  const auto first = std::find_if(islands_.begin(), islands_.end(), [&](const ContactIsland& island) { return std::binary_search(island.bodies.begin(), island.bodies.end(), memory_.asked_last); });
+  if (first != islands_.end())
     if (const auto earlier = step(*first)) return earlier;
   const auto of_first = static_cast<std::ptrdiff_t>(forces_.size());
   std::ptrdiff_t before_first = 0;   // forces of groups that stand before it
   std::optional<double> earliest;
-  std::optional<Locating> of_earliest;
-  for (const Group& group : groups_) {
-    if (first != groups_.end() && &group == &*first) {
+  std::optional<SlidingSearch> of_earliest;
+  for (const ContactIsland& island : islands_) {
+    if (first != islands_.end() && &island == &*first) {
       before_first = static_cast<std::ptrdiff_t>(forces_.size()) - of_first;
       continue;
     }
-    const std::optional<Locating> before = locating_;
-    const std::optional<double> earlier = step(group);
+    const std::optional<SlidingSearch> before = memory_.sliding_search;
+    const std::optional<double> earlier = step(island);
     if (earlier && (!earliest || *earlier < *earliest)) {
       earliest = earlier;
-      of_earliest = locating_;
-      asked_last_ = group.bodies.front();
+      of_earliest = memory_.sliding_search;
+      memory_.asked_last = island.bodies.front();
     }
-    locating_ = before;
+    memory_.sliding_search = before;
   }
-  if (earliest) locating_ = of_earliest;
+  if (earliest) memory_.sliding_search = of_earliest;
   std::rotate(forces_.begin(), forces_.begin() + of_first, forces_.begin() + of_first + before_first);   // in the order of the groups
   return earliest;
 }
@@ -272,112 +208,125 @@ std::optional<double> LastingContacts::take_steps(double h) {
 // A step has been cut once more: contacts that ask for ever shorter ones, or whose problems all stay unsolved, would take hours.
 void LastingContacts::require_progress() {
   const double t = moving_.time();
-  if (!(cut_since_ <= t && t < cut_since_ + step_)) {
-    cut_since_ = t;
-    cuts_ = 0;
-    sweeps_ = 0;
+  if (!(memory_.cut_since <= t && t < memory_.cut_since + memory_.longest_step)) {
+    memory_.cut_since = t;
+    memory_.cuts = 0;
+    memory_.sweeps = 0;
   }
-  ++cuts_;
+  ++memory_.cuts;
   const auto who = [&] {
-    const auto asked = std::find_if(groups_.begin(), groups_.end(), [&](const Group& group) { return std::binary_search(group.bodies.begin(), group.bodies.end(), asked_last_); });
-    return asked == groups_.end() ? std::string("bodies") : names_of(moving_.world(), asked->bodies);
+    const auto asked = std::find_if(islands_.begin(), islands_.end(), [&](const ContactIsland& island) { return std::binary_search(island.bodies.begin(), island.bodies.end(), memory_.asked_last); });
+    return asked == islands_.end() ? std::string("bodies") : names_of(moving_.world(), asked->bodies);
   };
   constexpr const char* kRemedy = "masses or sizes that differ less, or a shorter \"step_s\", may help";
-  if (sweeps_ > kMostSweeps)
-    throw StoppedRun(fmt::format("{}: what their contacts, rods and joints ask for together stays unsolved, also in the shortest parts of a step of {:.3g} s. They may contradict each other; {}", who(), step_, kRemedy));
-  if (cuts_ > kMostCutsABody * static_cast<long>(moving_.size()))
-    throw StoppedRun(fmt::format("{}: their contacts ask for more than {} steps within one of {:.3g} s; {}", who(), cuts_ - 1, step_, kRemedy));
+  if (memory_.sweeps > kContact.most_sweeps_a_step)
+    throw StoppedRun(fmt::format("{}: what their contacts, rods and joints ask for together stays unsolved, also in the shortest parts of a step of {:.3g} s. They may contradict each other; {}", who(), memory_.longest_step, kRemedy));
+  if (memory_.cuts > kContact.most_cuts_a_body * static_cast<long>(moving_.size()))
+    throw StoppedRun(fmt::format("{}: their contacts ask for more than {} steps within one of {:.3g} s; {}", who(), memory_.cuts - 1, memory_.longest_step, kRemedy));
 }
 
 void LastingContacts::note_near_pairs(const std::vector<Pair>& candidates) {
-  std::vector<Group*> group_of(moving_.size(), nullptr);
-  for (Group& group : groups_)
-    for (const int body : group.bodies) group_of[body] = &group;
+  std::vector<ContactIsland*> group_of(moving_.size(), nullptr);
+  for (ContactIsland& island : islands_)
+    for (const int body : island.bodies) group_of[body] = &island;
   for (const Pair& pair : candidates) {
-    Group *const a = group_of[pair.first], *const b = group_of[pair.second];
+    ContactIsland *const a = group_of[pair.first], *const b = group_of[pair.second];
     if (a) a->near.push_back(pair);
     if (b && b != a) b->near.push_back(pair);
   }
 }
 
-bool LastingContacts::is_curved(const Group& group) const {
-  return std::any_of(group.bodies.begin(), group.bodies.end(), [&](int body) { return moving_.shape(body).ellipsoid() != nullptr; }) ||
-         std::any_of(group.pairs.begin(), group.pairs.end(), [&](const Pair& pair) { return are_balls(pair); });
+bool LastingContacts::is_curved(const ContactIsland& island) const {
+  return std::any_of(island.bodies.begin(), island.bodies.end(), [&](int body) { return moving_.shape(body).ellipsoid() != nullptr; }) ||
+         std::any_of(island.pairs.begin(), island.pairs.end(), [&](const Pair& pair) { return geometry_.are_balls(pair); });
 }
 
-bool LastingContacts::are_balls(Pair pair) const { return moving_.shape(pair.first).is_ball() && moving_.shape(pair.second).is_ball(); }
-
-// A ball has one point on another, however far it has gone from where it was.
-double LastingContacts::same_within(Pair pair) const { return are_balls(pair) ? std::numeric_limits<double>::infinity() : kMidway * size_of(pair); }
-
-// Of the fastest point of the group's bodies. [m/s]
-double LastingContacts::speed(const Group& group) const {
+// Of the fastest point of the island's bodies. [m/s]
+double LastingContacts::speed(const ContactIsland& island) const {
   double fastest = 0.0;
-  for (const int index : group.bodies) {
+  for (const int index : island.bodies) {
     const Body body = moving_.body_at_impact(index);
     fastest = std::max(fastest, body.velocity_world.norm() + body.omega_world.norm() * moving_.shape(index).bounding_radius());
   }
   return fastest;
 }
 
-// One group's step. @return an earlier target (or the same after a blow) to begin the step again with
-std::optional<double> LastingContacts::take_step(const Group& group, double h) {
-  std::vector<Touch> touches = touches_of(group);
-  const bool located = locates(), moves = located && speed(group) > kMoves * rest_speed_;
-  if (moves && strike_what_is_down(group, touches)) return moving_.target();
-  ContactProblem problem = problem_of(group, touches, moving_.states(), h);
-  ContactSolution solution = solve(group, problem, h);
-  remember(touches, problem, solution, h, tried_);
+// One island's step. @return an earlier target (or the same after an impact) to begin the step again with
+std::optional<double> LastingContacts::take_step(const ContactIsland& island, double h) {
+  std::vector<StepContact> touches = touches_of(island);
+  const bool located = locates(), moves = located && speed(island) > kContact.moving * rest_speed_;
+  // Points that touch and approach: their velocities jump, without rebound, and the step begins again.
+  if (moves && strike_what_is_down(island, touches)) return moving_.target();
+  // The impulses that keep what touches from approaching; points that part slowly come down again by the step's end.
+  ContactProblem problem = problem_of(island, touches, moving_.states(), h);
+  const bool parts = let_part(island, touches, problem);
+  ContactSolution solution = solve(island, problem, h);
+  remember(touches, problem, solution, h, memory_.tried_impulses);
   bool landing = lands(touches, solution);
-  if (moves && comes_down(group, touches, problem, solution, h)) {
-    if (becomes_heap(group)) return moving_.target();
-    if (const auto again = sort_out_landings(group, touches, h)) return again;
-    problem = problem_of(group, touches, moving_.states(), h);
-    solution = solve(group, problem, h);
+  // Points that come down within the step: it ends where the first does, or they are let down by its end. Too many of them make the island a heap.
+  if (moves && comes_down(island, touches, problem, solution, h)) {
+    if (becomes_heap(island)) return moving_.target();
+    if (const auto again = sort_out_landings(island, touches, h)) return again;
+    problem = problem_of(island, touches, moving_.states(), h);
+    solution = solve(island, problem, h);
     landing = false;
+  } else if (landing && parts) {   // on straight paths what hops has not left
+    keep_together(touches, problem);
+    solution = solve(island, problem, h);
+    landing = lands(touches, solution);
   }
-  std::vector<RigidBodyState> ends = ends_of(group, problem, solution, h, landing);
-  const double turn = std::max(largest_turn(group, ends, h), turn_of_normals(group, ends));
-  if (located && turn > 2 * kMostTurn && h > kShortest * step_) return moving_.time() + h * kMostTurn / turn;
+  // An island that turns too far gets a shorter step; one that turns at all meets its contacts at the step's middle.
+  std::vector<RigidBodyState> ends = ends_of(island, problem, solution, h, landing);
+  const double turn = std::max(largest_turn(island, ends, h), turn_of_normals(island, ends));
+  if (located && turn > 2 * kContact.most_turn && h > kContact.shortest_step * memory_.longest_step) return moving_.time() + h * kContact.most_turn / turn;
   std::vector<RigidBodyState> middle;
-  std::vector<Touch> used = touches;
-  const int rounds = turn <= kTurns ? 0 : is_curved(group) ? kCurvedRounds : 1;
+  std::vector<StepContact> used = touches;
+  const int rounds = turn <= kContact.even_turn ? 0 : is_curved(island) ? kContact.curved_rounds : 1;
   for (int round = 0; round < rounds && !landing; ++round) {
-    if (round > 0) ends = ends_of(group, problem, solution, h, landing, &ends);
+    if (round > 0) ends = ends_of(island, problem, solution, h, landing, &ends);
     middle = moving_.states();
-    used = touches_midway(group, touches, ends, middle);
-    problem = problem_of(group, used, middle, h, &ends);
+    used = touches_midway(island, touches, ends, middle);
+    problem = problem_of(island, used, middle, h, &ends);
     for (std::size_t i = 0; i < used.size(); ++i) problem.contacts[i].guess_world = solution.impulses_world[i];   // the same points, a little farther on
-    solution = solve(group, problem, h);
+    solution = solve(island, problem, h);
+    landing = lands(used, solution);
+    if (!landing || !parts) continue;
+    // A point lands after all: paths are straight then, and what was to hop stays.
+    for (std::size_t i = 0; i < used.size(); ++i)
+      if (!touches[i].lands) problem.contacts[i].target = used[i].target -= touches[i].target;
+    solution = solve(island, problem, h);
     landing = lands(used, solution);
   }
-  require_numbers(group, solution);
+  require_numbers(island, solution);
+  // A pair that stops sliding ends the step there.
   if (const auto stop = located ? stop_of_sliding(problem, touches, solution, h) : std::nullopt) return stop;
-  if (!give_paths(group, used, middle.empty() ? moving_.states() : middle, problem, solution, h, landing, middle.empty() ? nullptr : &ends)) {
-    if (!located && group.linked.empty()) return take_pile_step(group, h);
-    if (h > kShortest * step_) return moving_.time() + 0.5 * h;
+  // The bodies' paths, with overlaps taken back; where some stay, a shorter step may do. Contacts bring no energy in.
+  if (!give_paths(island, used, middle.empty() ? moving_.states() : middle, problem, solution, h, landing, middle.empty() ? nullptr : &ends)) {
+    if (!located && island.linked.empty()) return take_pile_step(island, h);
+    if (h > kContact.shortest_step * memory_.longest_step) return moving_.time() + 0.5 * h;
   }
-  keep_warm(group, touches, problem, solution, h);
+  if (located && h > kContact.shortest_step_for_energy * memory_.longest_step && gains_energy(island)) return moving_.time() + 0.5 * h;
+  keep_warm(island, touches, problem, solution, h);
   return std::nullopt;
 }
 
-void LastingContacts::note_unsolved(const Group& group, const ContactSolution& solution, double h) {
-  const bool is_heap = group.pile || (rules_.plastic_impacts == scene::PlasticImpacts::kInStep && solution.impulses_world.size() > kContactsOfAHeap);
-  const double allowed = is_heap ? kHeapSolved : kContactSolved;
+void LastingContacts::note_unsolved(const ContactIsland& island, const ContactSolution& solution, double h) {
+  const bool is_heap = island.pile || (rules_.plastic_impacts == scene::PlasticImpacts::kInStep && solution.impulses_world.size() > kContact.contacts_of_heap);
+  const double allowed = is_heap ? kContact.unsolved_in_heap : kContactSolved;
   if (solution.converged || solution.residual <= allowed) return;
-  unsolved_.note(RunWatch::Kind::kContactUnsolved, names_of(moving_.world(), group.bodies), {solution.residual, allowed, moving_.time(), h});
+  unsolved_.note(RunWatch::Kind::kContactUnsolved, names_of(moving_.world(), island.bodies), {solution.residual, allowed, moving_.time(), h});
 }
 
-void LastingContacts::require_numbers(const Group& group, const ContactSolution& solution) const {
-  for (std::size_t k = 0; k < group.bodies.size(); ++k)
+void LastingContacts::require_numbers(const ContactIsland& island, const ContactSolution& solution) const {
+  for (std::size_t k = 0; k < island.bodies.size(); ++k)
     if (!solution.velocities[k].linear_world.allFinite() || !solution.velocities[k].angular_world.allFinite())
-      throw StoppedRun("lasting contact: the impulses on body '" + moving_.world().bodies[group.bodies[k]].name + "' are not numbers");
+      throw StoppedRun("lasting contact: the impulses on body '" + moving_.world().bodies[island.bodies[k]].name + "' are not numbers");
 }
 
 // Puts a solution's impulses where the next problem of these pairs finds its guesses.
-void LastingContacts::remember(const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h, std::map<Pair, std::vector<Warm>>& store) const {
+void LastingContacts::remember(const std::vector<StepContact>& touches, const ContactProblem& problem, const ContactSolution& solution, double h, std::map<Pair, std::vector<KnownImpulse>>& store) const {
   for (std::size_t i = 0; i < touches.size(); ++i) {
-    std::vector<Warm>& known = store[touches[i].pair];
+    std::vector<KnownImpulse>& known = store[touches[i].pair];
     if (i == 0 || touches[i].pair != touches[i - 1].pair) known.clear();
     const RigidBodyState& a = moving_.state(touches[i].pair.first);
     known.push_back({a.world_from_body.conjugate() * (problem.contacts[i].point_world - a.com_world), solution.impulses_world[i], h});
@@ -385,12 +334,12 @@ void LastingContacts::remember(const std::vector<Touch>& touches, const ContactP
 }
 
 // What the next step remembers of this one's impulses.
-void LastingContacts::keep_warm(const Group& group, const std::vector<Touch>& touches, const ContactProblem& problem, const ContactSolution& solution, double h) {
-  note_unsolved(group, solution, h);
-  remember(touches, problem, solution, h, next_warm_);
+void LastingContacts::keep_warm(const ContactIsland& island, const std::vector<StepContact>& touches, const ContactProblem& problem, const ContactSolution& solution, double h) {
+  note_unsolved(island, solution, h);
+  remember(touches, problem, solution, h, next_impulses_);
   for (std::size_t i = 0; i < touches.size(); ++i) {
     const Vector3d force = solution.impulses_world[i] / h, point = problem.contacts[i].point_world;
-    const bool slides = solution.modes[i] == ContactMode::kSlide && !force.isZero(0.0) && slip_speed(problem, i, solution.velocities) > kSlips * rest_speed_;
+    const bool slides = solution.modes[i] == ContactMode::kSlide && !force.isZero(0.0) && slip_speed(problem, i, solution.velocities) > kContact.slips * rest_speed_;
     if (i == 0 || touches[i].pair != touches[i - 1].pair) next_stuck_.insert(touches[i].pair);
     if (slides) next_stuck_.erase(touches[i].pair);
     if (!force.isZero(0.0)) forces_.push_back({touches[i].pair.first, touches[i].pair.second, point, touches[i].point.normal_b_to_a_world, force});
@@ -400,25 +349,25 @@ void LastingContacts::keep_warm(const Group& group, const std::vector<Touch>& to
 void LastingContacts::open_gaps(std::vector<RigidBodyState>& states, double t) {
   const RunCounters before = counters_;   // what is looked at must not show in what a run counts
   const double left = (moving_.target() - t) / (moving_.target() - moving_.time());
-  for (const Group& group : groups_) {
+  for (const ContactIsland& island : islands_) {
     // A path that leads straight to the step's end has the velocity of that end all along. Momenta that change evenly show no energy that
     // neither end has.
-    if (!group.linked.empty()) continue;   // momenta of these are on their rods and joints
-    for (const int body : group.bodies) {
+    if (!island.linked.empty()) continue;   // momenta of these are on their rods and joints
+    for (const int body : island.bodies) {
       const RigidBodyState &start = moving_.state(body), &end = moving_.path_end(body);
       states[body].momentum_world = left * start.momentum_world + (1 - left) * end.momentum_world;
       states[body].angular_momentum_world = left * start.angular_momentum_world + (1 - left) * end.angular_momentum_world;
     }
   }
-  const auto closed = [&](const Pair& pair) { return least_gap_of(pair, states) < 0 && distance_of(pair, states) < 0; };
+  const auto closed = [&](const Pair& pair) { return geometry_.least_gap_of(pair, states) < 0 && geometry_.distance_of(pair, states) < 0; };
   bool any = true;
-  for (int round = 0; round < kFrameRounds && any; ++round) {   // one group's shifts may close another's gaps
+  for (int round = 0; round < kContact.frame_rounds && any; ++round) {   // one island's shifts may close another's gaps
     any = false;
-    for (const Group& group : groups_) {
-      if (std::none_of(group.near.begin(), group.near.end(), closed)) continue;
+    for (const ContactIsland& island : islands_) {
+      if (std::none_of(island.near.begin(), island.near.end(), closed)) continue;
       any = true;
-      std::vector<double> gaps(group.near.size(), 0.0);
-      if (group.pile || !keep_apart(group, group.near, states, t)) keep_pile_apart(group, group.near, states, t, gaps);
+      std::vector<double> gaps(island.near.size(), 0.0);
+      if (island.pile || !correction_.keep_apart(island, island.near, states, t)) correction_.keep_pile_apart(island, island.near, states, t, gaps);
     }
   }
   counters_ = before;
@@ -426,12 +375,12 @@ void LastingContacts::open_gaps(std::vector<RigidBodyState>& states, double t) {
 
 void LastingContacts::draw_apart(const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t) {
   const RunCounters before = counters_;   // as above
-  const auto closed = [&](const Pair& pair) { return least_gap_of(pair, states) < 0 && distance_of(pair, states) < 0; };
-  for (int round = 0; round < kFrameRounds && std::any_of(pairs.begin(), pairs.end(), closed); ++round)
-    for (const Group& group : groups(pairs)) {
-      if (std::none_of(group.pairs.begin(), group.pairs.end(), closed)) continue;
-      std::vector<double> gaps(group.pairs.size(), 0.0);
-      if (!keep_apart(group, group.pairs, states, t)) keep_pile_apart(group, group.pairs, states, t, gaps);
+  const auto closed = [&](const Pair& pair) { return geometry_.least_gap_of(pair, states) < 0 && geometry_.distance_of(pair, states) < 0; };
+  for (int round = 0; round < kContact.frame_rounds && std::any_of(pairs.begin(), pairs.end(), closed); ++round)
+    for (const ContactIsland& island : islands(pairs)) {
+      if (std::none_of(island.pairs.begin(), island.pairs.end(), closed)) continue;
+      std::vector<double> gaps(island.pairs.size(), 0.0);
+      if (!correction_.keep_apart(island, island.pairs, states, t)) correction_.keep_pile_apart(island, island.pairs, states, t, gaps);
     }
   counters_ = before;
 }
@@ -439,7 +388,7 @@ void LastingContacts::draw_apart(const std::vector<Pair>& pairs, std::vector<Rig
 // A ball has been carried by another to where nothing presses them together: no force in the step, and along the normal
 //   a_n = n . (g_a - g_b) + v_t^2 / R > 0,   R the distance of their centres, v_t their velocity along the surface.
 bool LastingContacts::flies_off(Pair pair, const std::vector<RigidBodyState>& states) const {
-  if (!are_balls(pair)) return false;
+  if (!geometry_.are_balls(pair)) return false;
   const auto pushes = [&](const ContactPoint& point) { return point.body_a == pair.first && point.body_b == pair.second; };
   if (std::any_of(forces_.begin(), forces_.end(), pushes)) return false;
   Vector3d gravity = Vector3d::Zero(), velocity = Vector3d::Zero();   // of the first against the second
@@ -455,32 +404,32 @@ bool LastingContacts::flies_off(Pair pair, const std::vector<RigidBodyState>& st
 
 bool LastingContacts::commit() {
   const StageTimer timer(counters_.contact_seconds);
-  if (groups_.empty()) return true;
+  if (islands_.empty()) return true;
   counters_.watch.add(std::exchange(unsolved_, {}));
   bool apart = true;
   std::vector<RigidBodyState> states = moving_.states();
-  for (const Group& group : groups_) {
-    std::vector<double> gaps(group.near.size(), 0.0);
-    if (group.pile) {
-      apart = keep_pile_apart(group, group.near, states, moving_.time(), gaps) && apart;
+  for (const ContactIsland& island : islands_) {
+    std::vector<double> gaps(island.near.size(), 0.0);
+    if (island.pile) {
+      apart = correction_.keep_pile_apart(island, island.near, states, moving_.time(), gaps) && apart;
     } else {
-      keep_apart(group, group.near, states, moving_.time());
+      correction_.keep_apart(island, island.near, states, moving_.time());
       apart = false;
     }
-    for (const int body : group.bodies) moving_.set_state(body, states[body]);
-    for (std::size_t k = 0; k < group.near.size(); ++k) {
-      const Pair& pair = group.near[k];
+    for (const int body : island.bodies) moving_.set_state(body, states[body]);
+    for (std::size_t k = 0; k < island.near.size(); ++k) {
+      const Pair& pair = island.near[k];
       if (!keeps(pair)) continue;
       const bool lasted = lasts(pair);
       const bool trembles = lasted && !flies_off(pair, states);   // what comes back need not begin anew
-      const double near = std::max(group.pile ? 2 * room_of(pair) : kApart * shell(pair), trembles ? rest_speed_ * step_ : 0.0);
-      const bool touches = (group.pile ? gaps[k] : distance_of(pair, states, near)) <= near;
+      const double near = std::max(island.pile ? 2 * geometry_.heap_margin(pair) : kContact.open_band * geometry_.margin(pair), trembles ? rest_speed_ * memory_.longest_step : 0.0);
+      const bool touches = (island.pile ? gaps[k] : geometry_.distance_of(pair, states, near)) <= near;
       if (touches == lasted) continue;
-      const collision::Gap gap = gap_of(pair, states);
+      const collision::Gap gap = geometry_.gap_of(pair, states);
       if (touches) {
         begin(pair, gap);
       } else {
-        lasting_.erase(pair);
+        memory_.persistent.erase(pair);
         ++counters_.contacts_ended;
         sink_.event({moving_.time(), EventKind::kBreak, pair.first, pair.second, gap.point_b_world, gap.normal_b_to_a_world, 0.0, 0.0});
       }

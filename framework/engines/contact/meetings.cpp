@@ -131,20 +131,23 @@ double Meetings::touching_distance(Pair pair) const {
          4 * kEpsilon * moving_.time() * speed;
 }
 
-std::vector<Vector3d> Meetings::touching_points(Pair pair, const collision::Gap& gap) const {
-  const collision::CollisionShape &a = moving_.shape(pair.first), &b = moving_.shape(pair.second);
+// Sizes say what lies flat; how far from the world's origin the two are only adds what their places are rounded by.
+std::vector<Vector3d> touching_points(const collision::CollisionShape& a, const collision::Pose& pose_a, const collision::CollisionShape& b, const collision::Pose& pose_b, const collision::Gap& gap,
+                                      double rounding) {
   const Vector3d point_world = 0.5 * (gap.point_a_world + gap.point_b_world);
   if (a.is_ball() || b.is_ball()) return {point_world};
   double size = 0.0;
   for (const collision::CollisionShape* shape : {&a, &b})
     if (!shape->is_half_space()) size += shape->bounding_radius();
-  // Sizes say what lies flat; how far from the world's origin the two are only adds what their places are rounded by.
-  const collision::FlatHull patch =
-      collision::contact_patch(a, pose_of(pair.first), b, pose_of(pair.second), gap, kSamePatch * size + touching_distance(pair));
+  const collision::FlatHull patch = collision::contact_patch(a, pose_a, b, pose_b, gap, kSamePatch * size + rounding);
   if (patch.corners.size() < 2) return {point_world};
   std::vector<Vector3d> points{patch.middle};
   points.insert(points.end(), patch.corners.begin(), patch.corners.end());
   return points;
+}
+
+std::vector<Vector3d> Meetings::touching_points(Pair pair, const collision::Gap& gap) const {
+  return engines::touching_points(moving_.shape(pair.first), pose_of(pair.first), moving_.shape(pair.second), pose_of(pair.second), gap, touching_distance(pair));
 }
 
 // The last guard: bounds hold for every method of integration that moves bodies smoothly, but what a student wrote may not. An

@@ -20,6 +20,11 @@ struct Earliest {
   std::size_t pair;    // place in the list of pairs that was asked about
 };
 
+/// The middle of where two solids touch, then the corners of that region if it is more than a point. World frame. [m]
+/// @param rounding  what rounding leaves of the places there [m]
+std::vector<Vector3d> touching_points(const collision::CollisionShape& a, const collision::Pose& pose_a, const collision::CollisionShape& b, const collision::Pose& pose_b, const collision::Gap& gap,
+                                      double rounding);
+
 class Meetings {
  public:
   using Pair = std::pair<int, int>;   // bodies, first < second

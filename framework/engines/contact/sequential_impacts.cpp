@@ -10,52 +10,20 @@
 #include "framework/dynamics/point_impact.h"
 #include "framework/dynamics/solve_contacts.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/contact/impact_law.h"
 
 namespace tumble::engines {
 namespace {
 
-// Approach slower than this part of the fastest one is what rounding leaves of "not approaching"; so is what rounding leaves of
-// the speeds along the surface that cancel in it (a ball sliding in a groove).
-constexpr double kRoundOffOfSpeed = 1e-13;
-constexpr double kRoundOffOfSliding = 64 * std::numeric_limits<double>::epsilon();
 constexpr int kRoundsAmongContacts = 60;   // bodies in lasting contact pass a blow on in ever smaller parts
 constexpr std::size_t kToldAPair = 64;   // impulses at one instant: more are told as one a pair
-constexpr int kMostRounds = 10000;  // restitution 0.99 in a row of 50 balls takes some hundred
 // Of K of the free bodies: what rounding leaves where rods and joints hold both bodies completely along the normal.
 constexpr double kImmovable = 1e-12;
 constexpr double kRoundOffOfEnergy = 1e-11;   // of the work of the impulses: what the tolerance of the contact problem leaves
 
-// Of the rest speed: pushes of touching pairs approach it together, each round by a part of what is missing.
-constexpr double kFastEnough = 0.5;
-constexpr int kMostPushes = 200;
-
 Contact contact_of(const TouchingPair& pair, const Vector3d& point_world) { return {point_world, pair.gap.normal_b_to_a_world}; }
 
-struct Approach {
-  double velocity;               // [m/s], negative when approaching
-  const Vector3d* point_world;   // of the pair's points
-};
-
-// The middle counts first, so that a flat landing does not tip over its corners in turn.
-Approach fastest_approach(const Laws& laws, const TouchingPair& pair, const Body& a, const Body& b, double threshold) {
-  Approach fastest{std::numeric_limits<double>::infinity(), &pair.points_world[0]};
-  for (const Vector3d& point : pair.points_world) {
-    const double velocity = laws.relative_normal_velocity(contact_of(pair, point), a, b);
-    if (velocity < fastest.velocity) fastest = {velocity, &point};
-    if (&point == &pair.points_world[0] && velocity < -threshold) break;
-  }
-  return fastest;
-}
-
-
-double speed_at(const Body& body, const Vector3d& point_world) {
-  return body.velocity_world.norm() + body.omega_world.norm() * (point_world - body.com_world).norm();
-}
-
-// Not by the law that is being judged: a record of what the impulse did.
-double normal_velocity(const Contact& contact, const Body& a, const Body& b) {
-  return contact.normal_b_to_a_world.dot(relative_velocity(a, b, contact.point_world));
-}
+TouchedRegion region_of(const TouchingPair& pair) { return {pair.gap.normal_b_to_a_world, pair.points_world}; }
 
 // The blows that pairs have struck at one instant as one each: all they gave, from the fastest approach on. A heap hands a blow to and fro ten
 // thousand times.
@@ -111,11 +79,11 @@ double SequentialImpacts::friction_at_impact(const World& world, const TouchingP
 bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double threshold) {
   Body& a = work.body(pair.a);
   Body& b = work.body(pair.b);
-  auto [approach, point] = fastest_approach(laws_, pair, a, b, threshold);
+  auto [approach, point] = fastest_approach(laws_, region_of(pair), a, b, threshold);
   if (!(approach < -threshold)) return false;
   const bool is_held = work.bodies.is_held(pair.a, pair.b);
   if (is_held && work.bodies.put_on_constraints(pair.a, pair.b)) {
-    const Approach now = fastest_approach(laws_, pair, a, b, threshold);
+    const Approach now = fastest_approach(laws_, region_of(pair), a, b, threshold);
     approach = now.velocity;
     point = now.point_world;
     if (!(approach < -threshold)) return false;
@@ -126,7 +94,7 @@ bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double thr
   const double friction = friction_at_impact(work.world(), pair);
 
   // The law's impulse is that of the free bodies without friction: what holds them makes it smaller, friction at the point both.
-  double impulse = laws_.collision_impulse(contact, a, b, restitution), by_law = 0.5 * impulse * (1 - restitution) * approach;
+  double impulse = laws_.collision_impulse(contact, a, b, restitution), by_law = work_of_impulse(impulse, approach, restitution);
   Vector3d impulse_world = impulse * contact.normal_b_to_a_world;
   static const ImpactBodies::Answer free_bodies;
   const ImpactBodies::Answer* answer = &free_bodies;
@@ -138,7 +106,7 @@ bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double thr
                                    -approach));
     impulse *= free / held;
     impulse_world = impulse * contact.normal_b_to_a_world;
-    by_law = 0.5 * impulse * (1 - restitution) * approach;
+    by_law = work_of_impulse(impulse, approach, restitution);
     if (friction > 0) {
       ++counters_.friction_points;
       const Vector3d velocity = relative_velocity(a, b, contact.point_world);
@@ -275,7 +243,7 @@ void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingP
 }
 
 bool SequentialImpacts::push_pair_apart(Work& work, const TouchingPair& pair) {
-  const auto [rate, point] = fastest_approach(laws_, pair, work.body(pair.a), work.body(pair.b), rules_.rest_speed);
+  const auto [rate, point] = fastest_approach(laws_, region_of(pair), work.body(pair.a), work.body(pair.b), rules_.rest_speed);
   if (rate >= kFastEnough * rules_.rest_speed) return false;
   const Vector3d& n = pair.gap.normal_b_to_a_world;
   const ImpactBodies::Answer& answer = work.answer(pair, *point, false);
@@ -302,18 +270,14 @@ void SequentialImpacts::push_apart(MovingWorld& moving, const std::vector<Touchi
 
 Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<TouchingPair>& pairs, std::size_t trigger) {
   Work work(moving, laws_);
-  double fastest = 0.0, sliding = 0.0;
-  for (const TouchingPair& pair : pairs)
-    for (const Vector3d& point : pair.points_world) {
-      fastest = std::max(fastest, std::abs(laws_.relative_normal_velocity(contact_of(pair, point), work.body(pair.a), work.body(pair.b))));
-      sliding = std::max({sliding, speed_at(work.body(pair.a), point), speed_at(work.body(pair.b), point)});
-    }
-  const double threshold = std::max(kRoundOffOfSpeed * fastest, kRoundOffOfSliding * sliding);
+  ApproachThreshold approach_threshold;
+  for (const TouchingPair& pair : pairs) approach_threshold.look(laws_, region_of(pair), work.body(pair.a), work.body(pair.b));
+  const double threshold = approach_threshold.value();
 
   bool again = law_ == scene::ImpactLaw::kSequential;
   int rounds = 0;
   if (!again) collide_together(work, pairs, threshold, true);
-  while (again && ++rounds < (contact_rest_speed_ ? kRoundsAmongContacts : kMostRounds)) {
+  while (again && ++rounds < (contact_rest_speed_ ? kRoundsAmongContacts : kMostImpactRounds)) {
     again = false;
     for (const TouchingPair& pair : pairs) again = collide(work, pair, threshold) || again;
   }

@@ -13,8 +13,6 @@ constexpr double kStillFor = 0.5;        // s: a swing that turns back within it
 constexpr double kSlow = 0.1;            // of the rest speed: faster than this, be it for a moment, is no rest
 constexpr double kMean = 0.01;           // of the rest speed, on the average: ten times what heaps are solved to, a step's fall times 1e-5
 constexpr double kMeanSliding = 1e-4;    // likewise, where something slides
-constexpr double kSameTorque = 1e-6;     // of the largest torque: what the rates of bodies at rest change in it
-constexpr double kSameAngle = 1e-9;      // rad: likewise, by a motor's stiffness
 constexpr double kSleepRoom = 1e-8;           // of the smaller body: lasting contacts are kept nearer
 
 }  // namespace
@@ -25,7 +23,7 @@ Sleepers::Sleepers(MovingWorld& moving, const LastingContacts& contacts, const C
     const Place place{moving.time(), state.com_world, state.world_from_body};
     still_.push_back({place, place});
   }
-  for (const LinkedBodies& group : moving.linked_groups()) torques_.push_back(group.torques());
+  for (const LinkedBodies& group : moving.linked_groups()) held_.push_back(group.held());
 }
 
 // Notes when a body was last seen to move.
@@ -46,22 +44,13 @@ bool Sleepers::is_still(const Group& group, double since) const {
   return std::all_of(group.bodies.begin(), group.bodies.end(), [&](int body) { return (group.slides ? still_[body].strictly : still_[body].roughly).since <= since; });
 }
 
-bool Sleepers::torques_differ(int linked) const {
-  const std::vector<double>& now = moving_.linked_groups()[linked].torques();
-  double largest = 0.0, stiffest = 0.0, change = 0.0;
-  for (const Motor& motor : moving_.world().motors) stiffest = std::max(stiffest, motor.law.stiffness_n_m_rad);
-  for (std::size_t k = 0; k < now.size(); ++k) {
-    largest = std::max(largest, std::abs(torques_[linked][k]));
-    change = std::max(change, std::abs(now[k] - torques_[linked][k]));
-  }
-  return change > kSameTorque * largest + kSameAngle * stiffest;
-}
+bool Sleepers::is_driven_otherwise(int linked) const { return moving_.linked_groups()[linked].is_driven_otherwise(held_[linked]); }
 
 // Where a control law changes its mind the bodies it moves are not at rest, however slow they are.
-void Sleepers::watch_torques(int linked) {
+void Sleepers::watch_control(int linked) {
   const LinkedBodies& group = moving_.linked_groups()[linked];
-  if (!torques_differ(linked)) return;
-  torques_[linked] = group.torques();
+  if (!is_driven_otherwise(linked)) return;
+  held_[linked] = group.held();
   for (const int body : group.bodies()) still_[body].roughly.since = still_[body].strictly.since = moving_.time();
 }
 
@@ -103,8 +92,8 @@ void Sleepers::look(const std::vector<Pair>& touching) {
     if (moving_.can_move(body)) watch(body);
     else if (moving_.asleep(body)) ++counters_.body_steps_asleep;
   }
-  for (int k = 0; k < static_cast<int>(torques_.size()); ++k)
-    if (moving_.can_move(moving_.linked_groups()[k].bodies().front())) watch_torques(k);
+  for (int k = 0; k < static_cast<int>(held_.size()); ++k)
+    if (moving_.can_move(moving_.linked_groups()[k].bodies().front())) watch_control(k);
   const double latest = moving_.time() - kStillFor;
   for (int body = 0; body < moving_.size(); ++body)
     if (moving_.can_move(body) && still_[body].roughly.since <= latest) {   // most of the time nobody is: no groups are made
@@ -170,8 +159,8 @@ bool Sleepers::wake_met(const std::vector<Pair>& candidates) {
 }
 
 void Sleepers::wake_where_control_changes() {
-  for (int k = 0; k < static_cast<int>(torques_.size()); ++k)
-    if (const int first = moving_.linked_groups()[k].bodies().front(); moving_.asleep(first) && torques_differ(k)) wake(first, -1);
+  for (int k = 0; k < static_cast<int>(held_.size()); ++k)
+    if (const int first = moving_.linked_groups()[k].bodies().front(); moving_.asleep(first) && is_driven_otherwise(k)) wake(first, -1);
 }
 
 void Sleepers::append_forces(std::vector<ContactPoint>& forces) const {

@@ -39,7 +39,7 @@ class Sleepers {
   bool wake(Pair pair);
   /// Wakes a body's group, if it sleeps. @param waker  what met it; -1 for a force or a control law
   bool wake(int body, int waker);
-  /// Wakes groups whose motors have changed their torques.
+  /// Wakes groups whose control laws drive them otherwise than before.
   void wake_where_control_changes();
 
   /// Appends what the contacts of the sleeping groups carried in their last step.
@@ -64,8 +64,8 @@ class Sleepers {
 
   void watch(int body);
   bool is_still(const Group& group, double since) const;
-  void watch_torques(int linked);
-  bool torques_differ(int linked) const;
+  void watch_control(int linked);
+  bool is_driven_otherwise(int linked) const;
   std::map<int, Group> groups_of(const std::vector<Pair>& touching) const;
   void put_to_sleep(Group group);
   bool would_touch(Pair pair);
@@ -77,7 +77,7 @@ class Sleepers {
   RunCounters& counters_;
   TrajectorySink& sink_;
   std::vector<Stillness> still_;   // by body
-  std::vector<std::vector<double>> torques_;   // by linked group: when they last changed
+  std::vector<std::map<int, effects::Memory>> held_;   // by linked group: what its control laws held when that last changed
   std::map<int, Group> asleep_;    // by first body
   std::vector<int> group_of_;      // by body: key in asleep_, -1
 };

@@ -14,6 +14,7 @@
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/judging/judge.h"
 #include "framework/engines/truths/memory_scene.h"
+#include "framework/scene/words.h"
 
 namespace tumble::engines {
 namespace {
@@ -70,8 +71,12 @@ class Measurement final : public TrajectorySink {
   long frames_ = 0, events_ = 0;
 };
 
+bool has_control(const scene::Scene& scene) {
+  return scene::asks_for(scene, [](const scene::Traits& traits) { return traits.looks; });
+}
+
 bool links_meet(const scene::Scene& scene) {
-  const bool linked = !(scene.springs.empty() && scene.rods.empty() && scene.joints.empty() && scene.drags.empty());
+  const bool linked = scene::asks_for(scene, [](const scene::Traits& traits) { return traits.ties; });
   return linked && std::count_if(scene.bodies.begin(), scene.bodies.end(), [](const scene::BodySpec& body) { return body.collides; }) > 1;
 }
 
@@ -223,21 +228,21 @@ long first_steps(const scene::Scene& scene, const CostTruth& truth) {
   return std::max(1L, std::lround(interval / (kCoarsest * scene.step_s)));
 }
 
-bool steps_are_free(const scene::Scene& scene) { return scene.motors.empty() && !scene.contact && !links_meet(scene); }
+bool steps_are_free(const scene::Scene& scene) { return !has_control(scene) && !scene.contact && !links_meet(scene); }
 
 long outer_steps(const scene::Scene& scene, const CostTruth& truth) {
   // Motors look between steps, and lasting contacts push once a step: there the step is part of the scene. Rods and joints are held to
   // the tolerance within a step, and brought back at its end.
   const double interval = truth.duration_s / static_cast<double>(truth.intervals);
-  if (!scene.motors.empty() || scene.contact) return std::max(1L, std::lround(interval / (2.0 * scene.step_s)));
-  const bool linked = !scene.rods.empty() || !scene.joints.empty();   // what drifts apart for long pulls so hard that no tolerance helps
+  if (has_control(scene) || scene.contact) return std::max(1L, std::lround(interval / (2.0 * scene.step_s)));
+  const bool linked = scene::is_constrained(scene);   // what drifts apart for long pulls so hard that no tolerance helps
   return linked ? std::max(1L, std::lround(interval / (kLinkedSteps * scene.step_s))) : 1;
 }
 
 namespace {
 
 /// 10^-this is the first tolerance. Rods pull at once at whatever is out of place: by looser ones a run blows up, slowly.
-int first_decade(const scene::Scene& scene) { return scene.rods.empty() && scene.joints.empty() ? 1 : 4; }
+int first_decade(const scene::Scene& scene) { return scene::is_constrained(scene) ? 4 : 1; }
 
 std::size_t most_rungs(const scene::Scene& scene, const CostWay& way, const std::vector<double>& asked) {
   if (!way.has_ladder) return 1;

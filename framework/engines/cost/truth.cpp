@@ -8,11 +8,12 @@
 
 #include "framework/core/cpu_time.h"
 #include "framework/core/error.h"
-#include "framework/dynamics/build_world.h"
 #include "framework/dynamics/world.h"
-#include "framework/engines/cost/cost.h"
+#include "framework/effects/build_world.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/cost/cost.h"
 #include "framework/engines/truths/memory_scene.h"
+#include "framework/scene/words.h"
 
 namespace tumble::engines {
 namespace {
@@ -239,7 +240,7 @@ void refine(const scene::Scene& scene, const Laws& laws, const Window& window, d
   const bool by_chance = scene.contact.has_value();
   // Between impacts a tolerance alone makes a run fine; where an impact is, hangs on the path within a step, whose error goes with its
   // fourth power. So a truth with impacts that is good to a millionth is worse than the runs that it is to judge, and a few halvings mend it.
-  const bool pushed_once_a_step = by_chance || !scene.motors.empty() || !scene.rods.empty() || !scene.joints.empty();
+  const bool pushed_once_a_step = by_chance || scene::asks_for(scene, [](const scene::Traits& traits) { return traits.looks || traits.constrains; });
   const double good_floor = pushed_once_a_step ? kGoodFloor : kFineFloor;
   bool confirmed = !by_chance;
   for (long steps = 4 * steps_a_sample(scene, window);; steps *= 2) {
@@ -268,7 +269,7 @@ void refine(const scene::Scene& scene, const Laws& laws, const Window& window, d
 }  // namespace
 
 bool goes_in_closed_form(const scene::Scene& scene) {
-  return scene.springs.empty() && scene.rods.empty() && scene.joints.empty() && scene.drags.empty() && scene.motors.empty() && scene.point_forces.empty() && !scene.contact;
+  return !scene.contact && !scene::asks_for(scene, [](const scene::Traits& traits) { return !traits.leaves_flight; });
 }
 
 std::optional<CostTruth> try_truth(const scene::Scene& scene, const Laws& laws, const CostOptions& options, std::string& why) {

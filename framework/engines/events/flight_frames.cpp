@@ -7,7 +7,7 @@
 #include "framework/collision/gap.h"
 #include "framework/collision/sweep.h"
 #include "framework/core/numbers.h"
-#include "framework/dynamics/invariants.h"
+#include "framework/effects/invariants.h"
 
 namespace tumble::engines {
 namespace {

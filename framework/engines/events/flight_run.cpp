@@ -22,7 +22,7 @@ FlightRun::FlightRun(const scene::Scene& scene, const Laws& laws, const RunOptio
   for (std::size_t k = 0; k < callbacks_.size(); ++k) callback_keys_.push_back({callbacks_[k].time, static_cast<std::uint32_t>(k), EventClass::kCallback, callbacks_[k].bodies.front(), -1});
   if (!world_.processes()) return;
   refuse_unstable_steps(world_.world(), laws_, {step_, duration_}, scene.file.empty() ? scene.name : scene.file.string(), counters.notices);
-  if (const auto step = tell_of_unstable_links(world_.world(), {}, laws_, {step_, duration_}, counters.notices)) counters.watch.name_step(*step);
+  if (const auto step = tell_of_unstable_links(world_.world(), LinkForces(world_.world()), laws_, {step_, duration_}, counters.notices)) counters.watch.name_step(*step);
   links_ = std::make_unique<LinkMeasures>(world_, laws_);
   switches_ = force_switches(world_.world(), duration_);
   for (const Event& event : world_.start_events()) sink_.event(event);
@@ -168,7 +168,7 @@ void FlightRun::commit_frame(const FlightOf& flight_of) {
   ++next_;
   if (!callbacks_.empty()) return;   // they bring energy in
   if (const auto runaway = energy_watch_.look(frame.time, world_.world(), states_))
-    throw StoppedRun(told_runaway(frame.time, world_.world(), *runaway, {frame.spring_forces, frame.rod_tensions, frame.joint_forces, frame.contacts}, laws_));
+    throw StoppedRun(told_runaway(frame.time, world_.world(), *runaway, {states_, recorded_forces(world_.world(), frame), frame.contacts}, laws_));
 }
 
 void FlightRun::tell_membership(double t, const FlightOf& flight_of) const {
@@ -187,7 +187,7 @@ void FlightRun::end(const std::string& stopped_by) {
   counters.pair_checks += cost.pair_checks;
   counters.collision.gap_evaluations += cost.narrow.gap_evaluations;
   counters.collision.root_findings += cost.narrow.root_findings;
-  energy_watch_.tell(world_.world(), counters.watch);
+  energy_watch_.tell(world_.world(), counters);
   sink_.end(counters.named(), stopped_by);
 }
 

@@ -11,7 +11,7 @@
 #include "framework/collision/gap.h"
 #include "framework/collision/sweep.h"
 #include "framework/core/error.h"
-#include "framework/dynamics/build_world.h"
+#include "framework/effects/build_world.h"
 #include "framework/engines/stepping/start_overlaps.h"
 
 namespace tumble::engines {

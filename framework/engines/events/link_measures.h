@@ -21,13 +21,12 @@ class LinkMeasures {
   Wrench wrench_on(int body, const RigidBodyState& state) const;
 
   const FlightWorld& world_;
-  const Laws& laws_;
   RunCounters uncounted_;                  // measuring is no part of the run
   std::vector<LinkedBodies> groups_;
-  const std::map<int, Vector3d>* points_body_ = nullptr;   // of the forces that act on the group that is measured
+  std::map<int, std::unique_ptr<effects::SteadyForces>> forces_;   // by place in effects::all(), as they act on the group that is measured
 };
 
-/// When point forces are switched, up to a time: events in order.
+/// When forces are switched, up to a time: events in order.
 std::vector<Event> force_switches(const World& world, double until);
 
 }  // namespace tumble::engines

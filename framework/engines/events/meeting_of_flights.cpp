@@ -6,29 +6,18 @@
 
 #include <fmt/format.h>
 
-#include "framework/collision/contact_patch.h"
 #include "framework/core/numbers.h"
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/contact/impact_bodies.h"
+#include "framework/engines/contact/impact_law.h"
+#include "framework/engines/contact/meetings.h"
 
 namespace tumble::engines {
 namespace {
 
-// Approach slower than this part of the fastest point is what rounding leaves of "not approaching" (as sequential_impacts.cpp).
-constexpr double kRoundOffOfSpeed = 1e-13;
-constexpr double kRoundOffOfSliding = 64 * kEpsilon;
-constexpr int kMostRounds = 10000;
-// Corners of two solids that touch belong to the touch within this part of the size: a face that leans by 1e-9 rad lies flat.
-constexpr double kSamePatch = 1e-9;
 // A push through the middle of a ball does not turn it: this is what rounding leaves of the torque, against the push.
 constexpr double kNoTurn = 64 * kEpsilon;
-constexpr double kLevel = 1e-12;      // a support that leans by less [rad] counts as level: in 100 s a ball would slide 5e-8 m
 constexpr int kMostPairNudges = 20;
-
-// Not by the law that is being judged: a record of what the impulse did.
-double normal_velocity(const Contact& contact, const Body& a, const Body& b) {
-  return contact.normal_b_to_a_world.dot(velocity_at(a, contact.point_world) - velocity_at(b, contact.point_world));
-}
 
 // By how much a unit impulse at the point changes the velocity of the point along a direction. [1/kg]
 double compliance(const Contact& contact, const Body& body) {
@@ -45,9 +34,8 @@ struct MeetingOfFlights::Work {
   const Flight& g;
   Body a, b;
   collision::Gap gap;
-  Vector3d middle_world = Vector3d::Zero();   // of where the two touch
-  std::vector<Vector3d> corners_world;        // of that region, if it is more than a point
-  double fastest = 0.0;                       // approach before the first impulse [m/s]
+  std::vector<Vector3d> points_world;   // the middle of where the two touch, then its corners if it is more than a point
+  double fastest = 0.0;                 // approach before the first impulse [m/s]
   bool any_event = false;
 
   void record(const Event& event) {
@@ -56,6 +44,7 @@ struct MeetingOfFlights::Work {
     any_event = true;
   }
   Contact contact_at(const Vector3d& point_world) const { return {point_world, gap.normal_b_to_a_world}; }
+  TouchedRegion region() const { return {gap.normal_b_to_a_world, points_world}; }
 };
 
 void MeetingOfFlights::push(Work& work, const Contact& contact, double impulse) const {
@@ -67,32 +56,17 @@ void MeetingOfFlights::push(Work& work, const Contact& contact, double impulse) 
   }
 }
 
-// The middle counts first, so that a flat landing does not tip over its corners in turn; then the corner that approaches fastest.
 void MeetingOfFlights::collide(Work& work) const {
   const int a = work.result.key.body_a, b = work.result.key.body_b;
   const double restitution = std::min(world_.restitution(a), world_.restitution(b));
-  double sliding = 0.0;
-  const auto look = [&](const Vector3d& point) {
-    work.fastest = std::max(work.fastest, std::abs(laws_.relative_normal_velocity(work.contact_at(point), work.a, work.b)));
-    sliding = std::max({sliding, velocity_at(work.a, point).norm(), velocity_at(work.b, point).norm()});
-  };
-  look(work.middle_world);
-  for (const Vector3d& corner : work.corners_world) look(corner);
-  const double threshold = std::max(kRoundOffOfSpeed * work.fastest, kRoundOffOfSliding * sliding);
+  ApproachThreshold threshold;
+  threshold.look(laws_, work.region(), work.a, work.b);
+  work.fastest = threshold.fastest();
   for (int round = 0;; ++round) {
-    Vector3d point = work.middle_world;
-    double approach = laws_.relative_normal_velocity(work.contact_at(point), work.a, work.b);
-    if (!(approach < -threshold))
-      for (const Vector3d& corner : work.corners_world)
-        if (const double there = laws_.relative_normal_velocity(work.contact_at(corner), work.a, work.b); there < approach) {
-          approach = there;
-          point = corner;
-        }
-    if (!(approach < -threshold)) return;
-    if (round == kMostRounds)
-      throw StoppedRun(fmt::format("collision (collision_impulse, apply_impulse of {}) left them approaching, however often it was applied: the impulse has no effect, "
-                                   "the wrong sign or too little size", laws_.impulse_source));
-    const Contact contact = work.contact_at(point);
+    const auto [approach, point] = fastest_approach(laws_, work.region(), work.a, work.b, threshold.value());
+    if (!(approach < -threshold.value())) return;
+    if (round == kMostImpactRounds) throw StoppedRun(told_left_approaching(laws_));
+    const Contact contact = work.contact_at(*point);
     const double impulse = laws_.collision_impulse(contact, work.a, work.b, restitution);
     const Velocity before_a{work.a.velocity_world, work.a.omega_world}, before_b{work.b.velocity_world, work.b.omega_world};
     push(work, contact, impulse);
@@ -102,7 +76,7 @@ void MeetingOfFlights::collide(Work& work) const {
     if (world_.can_move(b)) energy.add(work.b.inertia, work.b.world_from_body, before_b, {work.b.velocity_world, work.b.omega_world}, driven);
     work.result.impulse += impulse;
     work.record({work.result.key.time, EventKind::kCollision, a, b, contact.point_world, contact.normal_b_to_a_world, impulse, approach, normal_velocity(contact, work.a, work.b),
-                 energy.change, energy.excess(0.5 * impulse * (1 - restitution) * approach)});
+                 energy.change, energy.excess(work_of_impulse(impulse, approach, restitution))});
   }
 }
 
@@ -111,29 +85,27 @@ void MeetingOfFlights::hop(Work& work) const {
   const auto send = [&](const Vector3d& point) {
     const Contact contact = work.contact_at(point);
     const double rate = normal_velocity(contact, work.a, work.b);
-    if (rate >= 0.5 * rules_.rest_speed) return false;
+    if (rate >= kFastEnough * rules_.rest_speed) return false;
     push(work, contact, (rules_.rest_speed - rate) / (compliance(contact, work.a) + compliance(contact, work.b)));
     return true;
   };
   bool again = true;
-  for (int round = 0; again && round < 200; ++round) {   // pushes at corners approach the rest speed together
-    again = send(work.middle_world);
-    for (const Vector3d& corner : work.corners_world) again = send(corner) || again;
+  for (int round = 0; again && round < kMostPushes; ++round) {
+    again = false;
+    for (const Vector3d& point : work.points_world) again = send(point) || again;
   }
 }
 
-// Rest: a ball that met a still support, which gravity presses it straight against, more slowly than the rest speed (or that does not
-// bounce at all) and moves no faster along it.
+// Rest on a support that does not move.
 bool MeetingOfFlights::settle(Work& work, int body, int support) const {
   if (!world_.can_move(body) || !world_.is_still(support) || !world_.is_ball(body) || world_.gravity_world().isZero(0.0)) return false;
   const bool is_a = body == work.result.key.body_a;
   Body& mover = is_a ? work.a : work.b;
-  const Vector3d up = is_a ? work.gap.normal_b_to_a_world : Vector3d(-work.gap.normal_b_to_a_world), &gravity = world_.gravity_world();
-  if (!(gravity.dot(up) < 0) || (gravity - gravity.dot(up) * up).norm() > kLevel * gravity.norm()) return false;
-  const Matrix3d& inertia = mover.inertia.inertia_body;
-  if (!mover.omega_world.isZero(0.0) && (inertia - inertia(0, 0) * Matrix3d::Identity()).norm() > kNoTurn * inertia.norm()) return false;
-  const double restitution = std::min(world_.restitution(body), world_.restitution(support));
-  if (!(mover.velocity_world.norm() < rules_.rest_speed && mover.velocity_world.dot(up) <= restitution * rules_.rest_speed + kRoundOffOfSliding * work.fastest)) return false;
+  const Vector3d up = is_a ? work.gap.normal_b_to_a_world : Vector3d(-work.gap.normal_b_to_a_world);
+  const double rounding = kTouching * collision::gap_scale(world_.shape(work.result.key.body_a), {work.a.com_world, work.a.world_from_body}, world_.shape(work.result.key.body_b), {work.b.com_world, work.b.world_from_body});
+  if (!comes_to_rest({world_.gravity_world(), up, world_.radius(body), rounding, mover.inertia.inertia_body, !mover.omega_world.isZero(0.0), mover.velocity_world,
+                      std::min(world_.restitution(body), world_.restitution(support)), rules_.rest_speed, work.fastest}))
+    return false;
   mover.velocity_world.setZero();
   mover.com_world -= work.gap.distance * up;
   const EventKey& key = work.result.key;
@@ -175,28 +147,17 @@ Flight MeetingOfFlights::flight_of(const Work& work, int body, const Flight& bef
 
 Meeting MeetingOfFlights::meet(const EventKey& key, const Flight& f, const Flight& g) const {
   const int a = key.body_a, b = key.body_b;
-  Work work{{key, {}, {}, {}, 0.0, {}, {}, false}, f, g, world_.body_at(a, f, key.time), world_.body_at(b, g, key.time), {}, {}, {}, 0.0, false};
+  Work work{{key, {}, {}, {}, 0.0, {}, {}, false}, f, g, world_.body_at(a, f, key.time), world_.body_at(b, g, key.time), {}, {}, 0.0, false};
   const collision::Pose pose_a{work.a.com_world, work.a.world_from_body}, pose_b{work.b.com_world, work.b.world_from_body};
   const collision::CollisionShape &shape_a = world_.shape(a), &shape_b = world_.shape(b);
   work.gap = collision::compute_gap(shape_a, pose_a, shape_b, pose_b);
-  work.middle_world = 0.5 * (work.gap.point_a_world + work.gap.point_b_world);
-  if (!world_.is_ball(a) && !world_.is_ball(b)) {
-    double size = 0.0;
-    for (const int body : {a, b})
-      if (!world_.is_half_space(body)) size += world_.radius(body);
-    const double rounding = 64 * kEpsilon * collision::gap_scale(shape_a, pose_a, shape_b, pose_b);
-    collision::FlatHull patch = collision::contact_patch(shape_a, pose_a, shape_b, pose_b, work.gap, kSamePatch * size + rounding);
-    if (patch.corners.size() > 1) {
-      work.middle_world = patch.middle;
-      work.corners_world.assign(patch.corners.begin(), patch.corners.end());
-    }
-  }
+  work.points_world = touching_points(shape_a, pose_a, shape_b, pose_b, work.gap, kTouching * collision::gap_scale(shape_a, pose_a, shape_b, pose_b));
   collide(work);
   const bool rests = settle(work, a, b) || settle(work, b, a);
   const double last = std::max(f.partner == b ? f.begin : -kEpsilon, g.partner == a ? g.begin : -kEpsilon);
   const bool soon_again = last >= 0 && key.time - last < rules_.micro_interval && work.fastest < rules_.rest_speed;
   if (!rests && (soon_again || !work.any_event)) hop(work);
-  if (!work.any_event) work.result.first = {key.time, EventKind::kCollision, a, b, work.middle_world, work.gap.normal_b_to_a_world, 0.0, 0.0, 0.0};
+  if (!work.any_event) work.result.first = {key.time, EventKind::kCollision, a, b, work.points_world.front(), work.gap.normal_b_to_a_world, 0.0, 0.0, 0.0};
   draw_apart(work);
   work.result.a = flight_of(work, a, f, work.a);
   work.result.b = flight_of(work, b, g, work.b);

@@ -8,6 +8,9 @@
 
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/base/step_limits.h"
+#include "framework/engines/contact/contact_paths.h"
+#include "framework/engines/contact/impact_law.h"
+#include "framework/engines/contact/impact_response.h"
 
 namespace tumble::engines {
 namespace {
@@ -25,7 +28,7 @@ std::vector<const collision::CollisionShape*> shapes_of(const WorldPart& part, c
 
 const RigidBodyState& ProcessState::state_of(int body) const { return states[static_cast<std::size_t>(std::lower_bound(members.begin(), members.end(), body) - members.begin())]; }
 
-ProcessState ProcessState::without_memory() const { return {time, members, states, motors, force_points_body, met, lasting, near, std::nullopt}; }
+ProcessState ProcessState::without_memory() const { return {time, members, states, remembered, met, lasting, near, std::nullopt}; }
 
 RigidBodyState ProcessStep::state_at(std::size_t member, double t) const { return t == from.time || paths.empty() ? from.states[member] : paths[member].at(t); }
 
@@ -47,55 +50,43 @@ int ProcessWorld::local(int body) const { return static_cast<int>(std::lower_bou
 
 // ---- A state in, a state out ---------------------------------------------------------------------------------------------
 
-void ProcessWorld::load(const ProcessState& from, std::optional<LastingContacts> memory) {
+void ProcessWorld::load(const ProcessState& from, std::optional<ContactMemory> memory) {
   std::vector<RigidBodyState> states = moving_.states();
   for (std::size_t k = 0; k < members_.size(); ++k) states[static_cast<std::size_t>(part_.members[k])] = from.states[k];
   moving_.stand_at(from.time, states);
-  for (LinkedBodies& group : moving_.linked_groups()) {
-    std::vector<double> torques, looks;
-    for (const int motor : group.motors()) {
-      const auto held = from.motors.find(part_.motors[static_cast<std::size_t>(motor)]);
-      torques.push_back(held == from.motors.end() ? 0.0 : held->second.torque);
-      looks.push_back(held == from.motors.end() ? 0.0 : held->second.next_look);
-    }
-    group.remember(std::move(torques), std::move(looks));
+  if (!moving_.linked_groups().empty()) {
+    const std::map<int, effects::Memory> remembered = renamed(from.remembered, false);
+    for (LinkedBodies& group : moving_.linked_groups()) group.remember(remembered);
   }
   std::map<BodyPair, double> met;
   for (const auto& [pair, time] : from.met) met.emplace(local(pair), time);
   impacts_.remember(std::move(met));
   collector_.events.clear();
   if (!has_contacts()) return;
-  contacts_.reset();
-  if (memory) {
-    contacts_.emplace(std::move(*memory));
-    return;
-  }
-  contacts_.emplace(moving_, laws_, *moving_.world().contact, rules_.rest_speed, counters_, collector_);
+  if (memory) return contacts_->recall(std::move(*memory));
+  contacts_->recall({});
   const std::uint64_t begun = counters_.contacts_begun;
   for (const BodyPair& pair : from.lasting) contacts_->begin(local(pair), {});   // it has begun before: what is said of it is not new
   counters_.contacts_begun = begun;
   collector_.events.clear();
 }
 
-// Forces act in [start, end). Those that begin now take hold of their point. @return when the next one is switched [s]
-double ProcessWorld::load_forces(const ProcessState& from) {
-  double next = std::numeric_limits<double>::infinity();
-  if (!built::kPointForce) return next;
-  const auto& forces = moving_.world().point_forces;
-  std::vector<int> active;
-  std::vector<Vector3d> points(forces.size(), Vector3d::Zero());
-  for (std::size_t k = 0; k < forces.size(); ++k) {
-    for (const double time : {forces[k].start, forces[k].end})
-      if (time > from.time) next = std::min(next, time);
-    if (!(from.time >= forces[k].start && from.time < forces[k].end)) continue;
-    active.push_back(static_cast<int>(k));
-    const auto held = from.force_points_body.find(part_.forces[k]);
-    const RigidBodyState& state = moving_.state(forces[k].body);
-    points[k] = held != from.force_points_body.end() ? held->second : state.world_from_body.conjugate() * (forces[k].point_world - state.com_world);
+// Entries of the part by their indices in the whole, or the other way round.
+std::map<int, effects::Memory> ProcessWorld::renamed(const std::map<int, effects::Memory>& memory, bool to_whole) const {
+  std::map<int, effects::Memory> renamed;
+  for (const auto& [effect, entries] : memory) {
+    const std::vector<int>& whole = part_.entries[static_cast<std::size_t>(effect)];
+    for (const auto& [entry, numbers] : entries) {
+      const auto local = std::lower_bound(whole.begin(), whole.end(), entry);
+      if (to_whole) renamed[effect].emplace(whole[static_cast<std::size_t>(entry)], numbers);
+      else if (local != whole.end() && *local == entry) renamed[effect].emplace(static_cast<int>(local - whole.begin()), numbers);
+    }
   }
-  moving_.set_active_forces(std::move(active), std::move(points));
-  return next;
+  return renamed;
 }
+
+// @return when the next steady force is switched [s]
+double ProcessWorld::load_forces(const ProcessState& from) { return moving_.load_forces(renamed(from.remembered, false)); }
 
 // What contacts remember goes with the state: the next load brings its own.
 ProcessState ProcessWorld::save() {
@@ -109,7 +100,7 @@ ProcessState ProcessWorld::save() {
   if (!has_contacts()) return state;
   for (const BodyPair& pair : contacts_->lasting()) state.lasting.insert(whole(pair));
   if (moving_.world().contact->plastic_impacts == scene::PlasticImpacts::kInStep) note_near(state);
-  state.contacts.emplace(std::move(*contacts_));
+  state.contacts = contacts_->take_memory();
   return state;
 }
 
@@ -131,11 +122,10 @@ void ProcessWorld::note_near(ProcessState& state) const {
 }
 
 void ProcessWorld::save_controls(ProcessState& state) const {
+  std::map<int, effects::Memory> held = moving_.force_memory();
   for (const LinkedBodies& group : moving_.linked_groups())
-    for (std::size_t k = 0; k < group.motors().size(); ++k)
-      state.motors[part_.motors[static_cast<std::size_t>(group.motors()[k])]] = {group.torques()[k], group.next_looks()[k]};
-  state.force_points_body.clear();
-  for (const int force : moving_.active_forces()) state.force_points_body[part_.forces[static_cast<std::size_t>(force)]] = moving_.force_points_body()[static_cast<std::size_t>(force)];
+    for (const auto& [effect, memory] : group.held()) held[effect].insert(memory.begin(), memory.end());
+  state.remembered = renamed(held, true);
 }
 
 ProcessState ProcessWorld::at_start(const std::vector<RigidBodyState>& states) {
@@ -199,18 +189,23 @@ ProcessWorld::Outcome ProcessWorld::step(ProcessState& start, double due) {
   ProcessState from = start.without_memory();
   save_controls(from);
   ++counters_.steps;
+  // As a world of all bodies does it (rd/retroactive.cpp), without sleep and pictures: free paths, contacts, the first impact, commit, response.
   begin_step(std::min({due, next_look, next_switch}));
-  std::vector<BodyPair> pairs, near;
+  PairsOfStep pairs;
   if (has_contacts()) {
-    pairs = meetings_.candidates();
-    if (keep_contacts(pairs)) {   // a blow at the very start
+    pairs.searched = meetings_.candidates();
+    const bool goes_on = keep_contacts(*contacts_, meetings_, pairs, [&](double earlier) {
+      if (!collector_.events.empty()) return false;   // an impact at the very start
+      begin_step(earlier);
+      return true;
+    });
+    if (!goes_on) {
       ProcessState after = save();
       const double now = from.time;
       return {{std::move(from), now, {}, {}}, std::move(after), take_events()};
     }
-    if (!contacts_->empty()) near = meetings_.candidates();
   }
-  const std::optional<Earliest> earliest = pairs.empty() ? std::nullopt : meetings_.earliest(pairs);
+  const std::optional<Earliest> earliest = pairs.searched.empty() ? std::nullopt : meetings_.earliest(pairs.searched);
   const double reached = earliest ? earliest->time : moving_.target();
   ProcessStep step{std::move(from), reached, {}, forces()};
   if (reached > step.from.time)
@@ -218,27 +213,12 @@ ProcessWorld::Outcome ProcessWorld::step(ProcessState& start, double due) {
   moving_.commit(reached);
   require_numbers();
   if (has_contacts()) {
-    if (!pairs.empty() && !meetings_.apart_at_target()) meetings_.separate(pairs);
-    if (!contacts_->commit()) meetings_.separate(near);
-    if (earliest) resolve(near.empty() ? pairs : near, pairs[earliest->pair], true);
+    take_back_overlaps(&*contacts_, meetings_, pairs);
+    if (earliest) resolve(pairs.near.empty() ? pairs.searched : pairs.near, pairs.searched[earliest->pair], true);
   }
   if (!earliest) moving_.watch_links(reached - step.from.time);
   ProcessState after = save();
   return {std::move(step), std::move(after), take_events()};
-}
-
-// Bodies in lasting contact get their paths; `pairs` are those among which impacts are left to be looked for.
-// @return whether blows were struck where the step begins
-bool ProcessWorld::keep_contacts(std::vector<BodyPair>& pairs) {
-  while (const auto earlier = contacts_->advance(pairs)) {
-    if (!collector_.events.empty()) return true;
-    begin_step(*earlier);
-    pairs = meetings_.candidates();
-  }
-  if (contacts_->empty()) return false;
-  pairs = meetings_.candidates();   // the paths are others now
-  std::erase_if(pairs, [&](const BodyPair& pair) { return contacts_->keeps(pair); });
-  return false;
 }
 
 std::vector<ContactPoint> ProcessWorld::forces() const {
@@ -303,31 +283,16 @@ ProcessWorld::Change ProcessWorld::collide(BodyPair pair, const ProcessState& st
   return {std::move(after), take_events()};
 }
 
-// As a world of all bodies does it (retroactive.cpp): everything that touches, and within the same impulses what rods and joints hold.
+// As a world of all bodies does it (rd/retroactive.cpp): everything that touches, and within the same impulses what rods and joints hold.
 // What lies on something touches it: within a step that says which pairs were kept apart, at an instant all lasting contacts.
 void ProcessWorld::resolve(const std::vector<BodyPair>& pairs, BodyPair trigger, bool is_in_step) {
   const StageTimer timer(counters_.impact_seconds);
-  std::vector<TouchingPair> touching;
-  std::size_t trigger_index = 0;
-  for (const BodyPair& pair : pairs) {
-    const collision::Gap gap = meetings_.gap(pair);
-    const bool lasting = has_contacts() && contacts_->lasts(pair) && (!is_in_step || contacts_->keeps(pair));
-    if (pair != trigger && !lasting && !(gap.distance <= meetings_.touching_distance(pair))) continue;
-    if (pair == trigger) trigger_index = touching.size();
-    touching.push_back({pair.first, pair.second, gap, meetings_.touching_points(pair, gap)});
-  }
-  const Resolution resolution = impacts_.resolve(moving_, touching, trigger_index);
+  const TouchingPairs touching = touching_pairs(meetings_, pairs, trigger, [&](const BodyPair& pair) { return has_contacts() && contacts_->lasts(pair) && (!is_in_step || contacts_->keeps(pair)); });
+  const Resolution resolution = impacts_.resolve(moving_, touching.all, touching.trigger);
   for (const Event& event : resolution.events) collector_.event(event);
-  if (!resolution.settled)
-    throw StoppedRun(fmt::format("collision (collision_impulse, apply_impulse of {}) left them approaching, however often it was applied: the impulse has no effect, the wrong sign or too little "
-                                 "size, or a lasting contact is needed there", laws_.impulse_source));
-  if (!has_contacts()) return impacts_.push_apart(moving_, touching, resolution.micro_impacts);
-  for (const TouchingPair& pair : touching) {
-    bool slow = true;
-    for (const Event& event : resolution.events)
-      if (event.body_a == pair.a && event.body_b == pair.b) slow = slow && impacts_.stays(moving_.world(), pair, -event.normal_velocity_before);
-    if (slow) contacts_->begin({pair.a, pair.b}, pair.gap);
-  }
+  if (!resolution.settled) throw StoppedRun(told_left_approaching(laws_));
+  if (!has_contacts()) return impacts_.push_apart(moving_, touching.all, resolution.micro_impacts);
+  begin_slow_contacts(touching, resolution.events, impacts_, moving_.world(), *contacts_);
 }
 
 }  // namespace tumble::engines

@@ -20,23 +20,16 @@ namespace tumble::engines {
 
 using BodyPair = std::pair<int, int>;   // first < second
 
-/// What a motor holds until it looks again.
-struct MotorHold {
-  double torque = 0.0;      // [N m]
-  double next_look = 0.0;   // [s]
-};
-
 /// Everything that a process goes on from. Indices are those of the whole world.
 struct ProcessState {
   double time = 0.0;                            // [s]
   std::vector<int> members;                     // movable bodies, ascending
   std::vector<RigidBodyState> states;           // by member
-  std::map<int, MotorHold> motors;
-  std::map<int, Vector3d> force_points_body;    // by force that acts
+  std::map<int, effects::Memory> remembered;               // what entries remember, by place of the effect in effects::all()
   std::map<BodyPair, double> met;               // when pairs met last [s]
   std::set<BodyPair> lasting;                   // pairs in lasting contact
   std::set<BodyPair> near;                      // pairs without restitution that meet within a step or two: they stay together (in_step)
-  std::optional<LastingContacts> contacts;      // what contacts remember; of the process world that made this state, and for it alone
+  std::optional<ContactMemory> contacts;        // what contacts remember; bodies are those of the process world that made this state
 
   const RigidBodyState& state_of(int body) const;
   /// A copy that goes on as if contacts had been asked for the first time; much the cheaper one.
@@ -110,15 +103,15 @@ class ProcessWorld {
     std::vector<Event> events;
   };
 
-  void load(const ProcessState& from, std::optional<LastingContacts> memory = std::nullopt);
+  void load(const ProcessState& from, std::optional<ContactMemory> memory = std::nullopt);
   ProcessState save();
   void save_controls(ProcessState& state) const;
   void note_near(ProcessState& state) const;
   double load_forces(const ProcessState& from);
+  std::map<int, effects::Memory> renamed(const std::map<int, effects::Memory>& memory, bool to_whole) const;
   void begin_step(double target);
   void require_numbers() const;
   bool has_contacts() const { return contacts_.has_value(); }
-  bool keep_contacts(std::vector<BodyPair>& pairs);
   std::vector<ContactPoint> forces() const;
   void resolve(const std::vector<BodyPair>& pairs, BodyPair trigger, bool is_in_step);
   std::vector<BodyPair> near_pairs(std::optional<BodyPair> trigger) const;

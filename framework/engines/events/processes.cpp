@@ -1,7 +1,10 @@
 #include "framework/engines/events/processes.h"
 
 #include <algorithm>
-#include <numeric>
+
+#include "framework/core/disjoint_sets.h"
+
+#include "framework/effects/registry.h"
 
 namespace tumble::engines {
 namespace {
@@ -9,41 +12,39 @@ namespace {
 // Components of members, by the least of them, in order.
 class Components {
  public:
-  explicit Components(const std::vector<int>& members) : members_(members), leader_(members.size()) { std::iota(leader_.begin(), leader_.end(), 0); }
+  explicit Components(const std::vector<int>& members) : members_(members), sets_(static_cast<int>(members.size())) {}
   bool has(int body) const { return std::binary_search(members_.begin(), members_.end(), body); }
-  void join(int a, int b) {
-    const int i = find(place(a)), j = find(place(b));
-    leader_[static_cast<std::size_t>(std::max(i, j))] = std::min(i, j);
-  }
+  void join(int a, int b) { sets_.unite(place(a), place(b)); }
   std::vector<std::vector<int>> all() {
     std::vector<std::vector<int>> by_leader(members_.size());
-    for (std::size_t k = 0; k < members_.size(); ++k) by_leader[static_cast<std::size_t>(find(static_cast<int>(k)))].push_back(members_[k]);
+    for (std::size_t k = 0; k < members_.size(); ++k) by_leader[static_cast<std::size_t>(sets_.find(static_cast<int>(k)))].push_back(members_[k]);
     std::erase_if(by_leader, [](const auto& component) { return component.empty(); });
     return by_leader;
   }
 
  private:
   int place(int body) const { return static_cast<int>(std::lower_bound(members_.begin(), members_.end(), body) - members_.begin()); }
-  int find(int k) {
-    while (leader_[static_cast<std::size_t>(k)] != k) k = leader_[static_cast<std::size_t>(k)] = leader_[static_cast<std::size_t>(leader_[static_cast<std::size_t>(k)])];
-    return k;
-  }
   const std::vector<int>& members_;
-  std::vector<int> leader_;
+  DisjointSets sets_;   // of places in members_
 };
+
+// Whether some effect may keep a body from flying freely.
+bool holds_effects(const World& world) {
+  return std::any_of(effects::all().begin(), effects::all().end(), [&](const effects::Effect* effect) { return !effect->traits().leaves_flight && effect->count_in(world) > 0; });
+}
 
 }  // namespace
 
 Processes::Processes(const World& whole, ShapeOf shape_of, const Laws& laws, ProcessRules rules)
     : whole_(whole), passages_(whole, std::move(shape_of), laws, rules),
-      holds_any_(!whole.springs.empty() || !whole.rods.empty() || !whole.joints.empty() || !whole.drags.empty() || !whole.point_forces.empty() || whole.contact.has_value()), linked_(whole.bodies.size(), -1) {
+      holds_any_(holds_effects(whole) || whole.contact.has_value()), linked_(whole.bodies.size(), -1) {
   for (const std::vector<int>& group : groups_of_linked_bodies(whole))
     for (const int body : group) linked_[static_cast<std::size_t>(body)] = group.front();
   passages_.ask([this](const ProcessState& state) { return components_of(state).size() > 1; });
 }
 
 bool Processes::is_pushed(int body, double t) const {
-  return std::any_of(whole_.point_forces.begin(), whole_.point_forces.end(), [&](const PointForce& force) { return force.body == body && t < force.end; });
+  return std::any_of(effects::all().begin(), effects::all().end(), [&](const effects::Effect* effect) { return effect->pushes(whole_, body, t); });
 }
 
 Processes::Start Processes::start(const std::vector<RigidBodyState>& states, const std::vector<BodyPair>& touching) {
@@ -96,8 +97,7 @@ ProcessState Processes::together(const ProcessState& a, const ProcessState& b) {
   std::merge(a.members.begin(), a.members.end(), b.members.begin(), b.members.end(), std::back_inserter(both.members));
   for (const int body : both.members) both.states.push_back(std::binary_search(a.members.begin(), a.members.end(), body) ? a.state_of(body) : b.state_of(body));
   for (const ProcessState* state : {&a, &b}) {
-    both.motors.insert(state->motors.begin(), state->motors.end());
-    both.force_points_body.insert(state->force_points_body.begin(), state->force_points_body.end());
+    for (const auto& [effect, memory] : state->remembered) both.remembered[effect].insert(memory.begin(), memory.end());
     both.met.insert(state->met.begin(), state->met.end());
     both.lasting.insert(state->lasting.begin(), state->lasting.end());
   }
@@ -156,12 +156,11 @@ ProcessState Processes::component(const ProcessState& state, const std::vector<i
   part.time = state.time;
   part.members = members;
   for (const int body : members) part.states.push_back(state.state_of(body));
-  for (const auto& [motor, hold] : state.motors) {
-    const JointLink& joint = whole_.joints[static_cast<std::size_t>(whole_.motors[static_cast<std::size_t>(motor)].joint)];
-    if (ours(joint.a.body) || ours(joint.b.body)) part.motors.emplace(motor, hold);
-  }
-  for (const auto& [force, point] : state.force_points_body)
-    if (ours(whole_.point_forces[static_cast<std::size_t>(force)].body)) part.force_points_body.emplace(force, point);
+  for (const auto& [effect, memory] : state.remembered)
+    for (const auto& [entry, numbers] : memory) {
+      const std::vector<int> bodies = effects::all()[static_cast<std::size_t>(effect)]->bodies_of(whole_, entry);
+      if (std::any_of(bodies.begin(), bodies.end(), ours)) part.remembered[effect].emplace(entry, numbers);
+    }
   const auto whole = [&](const BodyPair& pair) {
     const auto fits = [&](int body) { return ours(body) || whole_.bodies[static_cast<std::size_t>(body)].immovable(); };
     return fits(pair.first) && fits(pair.second);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "framework/effects/registry.h"
+
 namespace tumble::engines {
 namespace {
 
@@ -31,33 +33,19 @@ std::vector<int> of_members(const std::vector<std::vector<int>>& places, const s
   return indices;
 }
 
-template <class Link>
-void take_links(const std::vector<Link>& whole, const std::vector<int>& indices, const std::vector<int>& bodies, std::vector<Link>& part) {
-  for (const int k : indices) {
-    Link link = whole[static_cast<std::size_t>(k)];
-    for (Anchor* end : {&link.a, &link.b})
-      if (end->body >= 0) end->body = place_of(bodies, end->body);
-    part.push_back(std::move(link));
-  }
-}
-
 }  // namespace
 
 EntriesByBody::EntriesByBody(const World& whole) {
-  for (Places* places : {&springs_, &rods_, &joints_, &drags_, &forces_, &apart_}) places->resize(whole.bodies.size());
-  motors_.resize(whole.joints.size());
-  const auto note_ends = [](const auto& links, Places& places) {
-    for (std::size_t k = 0; k < links.size(); ++k)
-      for (const int body : {links[k].a.body, links[k].b.body}) note(places, body, k);
-  };
-  note_ends(whole.springs, springs_);
-  note_ends(whole.rods, rods_);
-  note_ends(whole.joints, joints_);
-  for (std::size_t k = 0; k < whole.drags.size(); ++k) note(drags_, whole.drags[k].body, k);
-  for (std::size_t k = 0; k < whole.point_forces.size(); ++k) note(forces_, whole.point_forces[k].body, k);
+  for (const effects::Effect* effect : effects::all()) {
+    Places& places = effects_.emplace_back();
+    const int count = effect->count_in(whole);
+    if (count > 0) places.resize(whole.bodies.size());
+    for (int entry = 0; entry < count; ++entry)
+      for (const int body : effect->bodies_of(whole, entry)) note(places, body, static_cast<std::size_t>(entry));
+  }
+  apart_.resize(whole.bodies.size());
   for (std::size_t k = 0; k < whole.apart.size(); ++k)
     for (const int body : {whole.apart[k].first, whole.apart[k].second}) note(apart_, body, k);
-  for (std::size_t k = 0; k < whole.motors.size(); ++k) note(motors_, whole.motors[k].joint, k);
 }
 
 struct PartMaker {
@@ -68,55 +56,35 @@ struct PartMaker {
   WorldPart make(const std::vector<int>& still) const {
     WorldPart part;
     World& world = part.world;
-    const std::vector<int> springs = of_members(entries.springs_, members), rods = of_members(entries.rods_, members), joints = of_members(entries.joints_, members);
-    part.bodies = members;
-    part.bodies.insert(part.bodies.end(), still.begin(), still.end());
-    add_ends(whole.springs, springs, part.bodies);
-    add_ends(whole.rods, rods, part.bodies);
-    add_ends(whole.joints, joints, part.bodies);
-    std::sort(part.bodies.begin(), part.bodies.end());
-    part.bodies.erase(std::unique(part.bodies.begin(), part.bodies.end()), part.bodies.end());
+    take_bodies(still, part);
     for (const int body : part.bodies) world.bodies.push_back(body_of(whole.bodies[static_cast<std::size_t>(body)]));
     for (const int member : members) part.members.push_back(place_of(part.bodies, member));
     world.gravity_world = whole.gravity_world;
     world.contact = whole.contact;
     world.stabilisation = whole.stabilisation;
-    take_links(whole.springs, springs, part.bodies, world.springs);
-    take_links(whole.rods, rods, part.bodies, world.rods);
-    take_links(whole.joints, joints, part.bodies, world.joints);
-    take_pushes(joints, part);
-    return part;
-  }
-
- private:
-  template <class Link>
-  static void add_ends(const std::vector<Link>& links, const std::vector<int>& indices, std::vector<int>& bodies) {
-    for (const int k : indices)
-      for (const int body : {links[static_cast<std::size_t>(k)].a.body, links[static_cast<std::size_t>(k)].b.body})
-        if (body >= 0) bodies.push_back(body);
-  }
-
-  void take_pushes(const std::vector<int>& joints, WorldPart& part) const {
-    World& world = part.world;
-    const auto in_part = [&](int body) { return place_of(part.bodies, body); };
-    for (const int k : of_members(entries.drags_, members)) {
-      const Drag& drag = whole.drags[static_cast<std::size_t>(k)];
-      world.drags.push_back({in_part(drag.body), drag.linear, drag.angular});
-    }
-    part.motors = of_members(entries.motors_, joints);
-    for (const int k : part.motors) {
-      const auto& motor = whole.motors[static_cast<std::size_t>(k)];
-      world.motors.push_back({place_of(joints, motor.joint), motor.law});
-    }
-    part.forces = of_members(entries.forces_, members);
-    for (const int k : part.forces) {
-      world.point_forces.push_back(whole.point_forces[static_cast<std::size_t>(k)]);
-      world.point_forces.back().body = in_part(world.point_forces.back().body);
-    }
+    const auto in_part = [&](int body) { return body < 0 ? body : place_of(part.bodies, body); };
+    for (std::size_t k = 0; k < part.entries.size(); ++k)
+      if (!part.entries[k].empty()) effects::all()[k]->copy_entries(whole, part.entries[k], in_part, world);
     for (const int k : of_members(entries.apart_, members)) {
       const auto& [a, b] = whole.apart[static_cast<std::size_t>(k)];
       if (in_part(a) >= 0 && in_part(b) >= 0) world.apart.emplace_back(in_part(a), in_part(b));
     }
+    return part;
+  }
+
+ private:
+  // The members, what is still, and what an entry of a member names besides it.
+  void take_bodies(const std::vector<int>& still, WorldPart& part) const {
+    part.bodies = members;
+    part.bodies.insert(part.bodies.end(), still.begin(), still.end());
+    for (std::size_t k = 0; k < entries.effects_.size(); ++k) {
+      part.entries.push_back(entries.effects_[k].empty() ? std::vector<int>{} : of_members(entries.effects_[k], members));
+      for (const int entry : part.entries.back())
+        for (const int body : effects::all()[k]->bodies_of(whole, entry))
+          if (body >= 0) part.bodies.push_back(body);
+    }
+    std::sort(part.bodies.begin(), part.bodies.end());
+    part.bodies.erase(std::unique(part.bodies.begin(), part.bodies.end()), part.bodies.end());
   }
 };
 

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <string>
 
+#include "framework/effects/effect.h"
 #include "framework/scene/scene.h"
 #include "framework/trajectory/trajectory.h"
 
@@ -29,7 +31,7 @@ struct Finding {
 };
 
 /// @pre the run has a frame
-using Measure = Finding (*)(const CheckSpec&, const Scene&, const Trajectory&);
+using Measure = std::function<Finding(const CheckSpec&, const Scene&, const Trajectory&)>;
 
 std::string at_time(double time);
 
@@ -40,9 +42,8 @@ int index_of(const std::string& name, const Trajectory& run);
 const Frame* frame_at(double time, const Trajectory& run);
 
 // Links and contacts (measures_links.cpp)
-Finding rod_length(const CheckSpec&, const Scene&, const Trajectory&);
-Finding joint_gap(const CheckSpec&, const Scene&, const Trajectory&);
-Finding joint_angle(const CheckSpec&, const Scene&, const Trajectory&);
+/// The worst error of the links that the check means, in every frame: of a kind that the effect brings with it (Effect::link_checks).
+Finding link_error(const effects::Effect& effect, const CheckSpec&, const Scene&, const Trajectory&);
 Finding link_force(const CheckSpec&, const Scene&, const Trajectory&);
 Finding reaction(const CheckSpec&, const Scene&, const Trajectory&);
 

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "framework/core/numbers.h"
-#include "framework/dynamics/build_world.h"
 #include "framework/dynamics/world.h"
+#include "framework/effects/build_world.h"
 #include "framework/engines/judging/measures.h"
 
 namespace tumble::engines {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "framework/dynamics/invariants.h"
+#include "framework/effects/invariants.h"
 #include "framework/engines/contact/sleeping.h"
 
 namespace tumble::engines {
@@ -79,10 +79,7 @@ void FrameRecorder::push(MovingWorld& moving, double t) {
   frame.smallest_gap = smallest_gap_.measure(moving, states);
   if (built::kContact && contacts_) frame.contacts = contacts_->forces();
   if (built::kSleep && sleepers_) sleepers_->append_forces(frame.contacts);
-  LinkForces forces = moving.measure_links(states, t, frame.contacts);
-  frame.spring_forces = std::move(forces.springs);
-  frame.rod_tensions = std::move(forces.rods);
-  frame.joint_forces = std::move(forces.joints);
+  record(moving.measure_links(states, t, frame.contacts), frame);
   sink_.frame(frame);
 }
 

@@ -7,20 +7,22 @@
 
 #include <fmt/format.h>
 
-#include "framework/dynamics/build_world.h"
+#include "framework/effects/build_world.h"
+#include "framework/effects/registry.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/base/step_limits.h"
+#include "framework/engines/contact/contact_paths.h"
+#include "framework/engines/contact/impact_law.h"
+#include "framework/engines/contact/impact_response.h"
 #include "framework/engines/contact/meetings.h"
-#include "framework/engines/rd/recorder.h"
 #include "framework/engines/contact/sequential_impacts.h"
 #include "framework/engines/contact/sleeping.h"
+#include "framework/engines/rd/recorder.h"
 #include "framework/engines/stepping/stability.h"
-#include "framework/engines/base/step_limits.h"
 
 namespace tumble::engines {
 namespace {
 
-// A support that leans by less [rad] counts as level: in 100 s a ball would slide 5e-8 m.
-constexpr double kLevelSupport = 1e-12;
 constexpr double kNoStep = 1e-9;         // of the step: a shorter last one is taken with the one before
 
 class RetroactiveRun {
@@ -28,7 +30,7 @@ class RetroactiveRun {
   RetroactiveRun(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink)
       : scene_(scene), laws_(guarded(laws)), sink_(sink), step_(options.step_s.value_or(scene.step_s)),
         duration_(options.duration_s.value_or(scene.duration_s)), moving_(build_world(scene), laws_, counters_), meetings_(moving_, laws_, counters_),
-        impacts_(laws_, {scene.rest_speed_m_s, step_ / 100}, counters_), callbacks_(options.callbacks), recorder_(options.frame_rate_hz, duration_, sink), energy_watch_(scene.rest_speed_m_s, step_, true) {
+        impacts_(laws_, {scene.rest_speed_m_s, kMicroInterval * step_}, counters_), callbacks_(options.callbacks), recorder_(options.frame_rate_hz, duration_, sink), energy_watch_(scene.rest_speed_m_s, step_, true) {
     if (options.propagator == "auto") moving_.go_in_closed_form();
     if (!built::kContact || !moving_.world().contact) return;
     contacts_.emplace(moving_, laws_, *moving_.world().contact, scene.rest_speed_m_s, counters_, sink);
@@ -63,9 +65,6 @@ class RetroactiveRun {
   std::vector<std::pair<int, int>> pairs_in_step();
   void advance_to(double target);
   void resolve_at(const std::vector<std::pair<int, int>>& pairs, std::pair<int, int> trigger);
-  bool stays_on(const TouchingPair& pair, int body, const Vector3d& up) const;
-  std::vector<std::pair<int, int>> keep_contacts(std::vector<std::pair<int, int>>& pairs);
-  void begin_contacts(const std::vector<TouchingPair>& touching, const std::vector<Event>& events);
   void note_touching(const std::vector<std::pair<int, int>>& near);
   void begin_again();
   void settle(const std::vector<TouchingPair>& touching, const std::vector<Event>& events);
@@ -105,18 +104,10 @@ double RetroactiveRun::next_target() const {
 }
 
 void RetroactiveRun::switch_forces() {
-  if (!built::kPointForce) return;
-  const auto& forces = moving_.world().point_forces;
-  for (int k = 0; k < static_cast<int>(forces.size()); ++k) {
-    const auto& active = moving_.active_forces();
-    const bool is_on = std::find(active.begin(), active.end(), k) != active.end();
-    const bool should_be_on = moving_.time() >= forces[k].start && moving_.time() < forces[k].end;
-    if (is_on == should_be_on) continue;
-    if (has_sleepers()) sleepers_->wake(forces[k].body, -1);
-    moving_.switch_force(k, should_be_on);
-    const double size = forces[k].force_world.norm();
-    sink_.event({moving_.time(), should_be_on ? EventKind::kForceOn : EventKind::kForceOff, forces[k].body, -1, forces[k].point_world,
-                 size > 0 ? Vector3d(forces[k].force_world / size) : Vector3d::UnitZ(), 0.0, 0.0});
+  for (const auto& due : moving_.due_switches()) {
+    if (has_sleepers()) sleepers_->wake(due.second.event.body_a, -1);
+    moving_.turn(due);
+    sink_.event(due.second.event);
   }
 }
 
@@ -143,56 +134,23 @@ void RetroactiveRun::resolve_at(const std::vector<std::pair<int, int>>& pairs, s
   const StageTimer timer(counters_.impact_seconds);
   for (const int body : {trigger.first, trigger.second})
     if (moving_.resting(body)) moving_.wake(body);
-  std::vector<TouchingPair> touching;
-  std::size_t trigger_index = 0;
-  for (const auto& pair : pairs) {
-    const collision::Gap gap = meetings_.gap(pair);
-    const bool lasting = has_contacts() && contacts_->lasts(pair) && contacts_->keeps(pair);
-    if (pair != trigger && !lasting && !(gap.distance <= meetings_.touching_distance(pair))) continue;
-    if (pair == trigger) trigger_index = touching.size();
-    touching.push_back({pair.first, pair.second, gap, meetings_.touching_points(pair, gap)});
-    if (has_sleepers()) sleepers_->wake(pair);
-  }
+  const TouchingPairs touching = touching_pairs(meetings_, pairs, trigger, [&](const auto& pair) { return has_contacts() && contacts_->lasts(pair) && contacts_->keeps(pair); });
+  if (has_sleepers())
+    for (const TouchingPair& pair : touching.all) sleepers_->wake({pair.a, pair.b});
   const std::string subject = fmt::format("bodies {} and {}", name(trigger.first), name(trigger.second));
-  const Resolution resolution = naming(subject, [&] { return impacts_.resolve(moving_, touching, trigger_index); });
+  const Resolution resolution = naming(subject, [&] { return impacts_.resolve(moving_, touching.all, touching.trigger); });
   for (const Event& event : resolution.events) sink_.event(event);
   for (const Event& event : resolution.events) energy_watch_.note(event);
-  if (!resolution.settled)
-    stopped_by_ = fmt::format("at t = {:.6f} s, {}: collision (collision_impulse, apply_impulse of {}) left them approaching, however often it was "
-                              "applied: the impulse has no effect, the wrong sign or too little size, or a lasting contact is needed there", moving_.time(), subject, laws_.impulse_source);
-  if (has_contacts()) return begin_contacts(touching, resolution.events);
-  settle(touching, resolution.events);
+  if (!resolution.settled) stopped_by_ = fmt::format("at t = {:.6f} s, {}: {}", moving_.time(), subject, told_left_approaching(laws_));
+  if (has_contacts()) return begin_slow_contacts(touching, resolution.events, impacts_, moving_.world(), *contacts_);
+  settle(touching.all, resolution.events);
   std::vector<TouchingPair> awake;
-  for (const TouchingPair& pair : touching)
+  for (const TouchingPair& pair : touching.all)
     if (!moving_.resting(pair.a) && !moving_.resting(pair.b)) awake.push_back(pair);
   naming(subject, [&] { impacts_.push_apart(moving_, awake, resolution.micro_impacts); });
 }
 
-// A pair that touches and whose impacts, if any, were slow enough not to bounce stays together.
-void RetroactiveRun::begin_contacts(const std::vector<TouchingPair>& touching, const std::vector<Event>& events) {
-  for (const TouchingPair& pair : touching) {
-    bool slow = true;
-    for (const Event& event : events)
-      if (event.body_a == pair.a && event.body_b == pair.b) slow = slow && impacts_.stays(moving_.world(), pair, -event.normal_velocity_before);
-    if (slow) contacts_->begin({pair.a, pair.b}, pair.gap);
-  }
-}
-
-// Whether nothing but the support's push acts on a ball there: gravity presses straight against it (without friction a slope holds
-// nothing), no hand pushes, and the ball spins evenly if it spins.
-bool RetroactiveRun::stays_on(const TouchingPair& pair, int body, const Vector3d& up) const {
-  const Vector3d& gravity = *moving_.world().gravity_world;
-  const double radius = moving_.shape(body).bounding_radius(), rounding = meetings_.touching_distance({pair.a, pair.b});
-  const double level = std::max(kLevelSupport, radius > rounding ? rounding / radius : 0.0);   // the normal's own rounding
-  if (!(gravity.dot(up) < 0) || (gravity - gravity.dot(up) * up).norm() > level * gravity.norm()) return false;
-  for (const int index : moving_.active_forces())
-    if (moving_.world().point_forces[index].body == body) return false;
-  const Matrix3d& inertia = moving_.world().bodies[body].inertia.inertia_body;
-  return moving_.state(body).angular_momentum_world.isZero(0.0) || (inertia - inertia(0, 0) * Matrix3d::Identity()).norm() <= kTouching * inertia.norm();
-}
-
-// Rest: a ball that met an immovable support, which gravity presses it against, more slowly than the rest speed (or that does not
-// bounce at all) and moves no faster along it.
+// Rest of balls on immovable supports, which may move evenly. No hand pushes what rests.
 void RetroactiveRun::settle(const std::vector<TouchingPair>& touching, const std::vector<Event>& events) {
   if (!moving_.world().gravity_world || events.empty()) return;
   double fastest = 0.0;
@@ -203,11 +161,11 @@ void RetroactiveRun::settle(const std::vector<TouchingPair>& touching, const std
     const int support = a_is_support ? pair.a : pair.b, body = a_is_support ? pair.b : pair.a;
     const Vector3d up = a_is_support ? Vector3d(-pair.gap.normal_b_to_a_world) : pair.gap.normal_b_to_a_world;
     if (moving_.world().bodies[support].motion.angular_frequency_rad_s != 0.0) continue;
-    if (!moving_.shape(body).is_ball() || !stays_on(pair, body, up)) continue;
-    const Vector3d relative = moving_.velocity_of(body, moving_.time()) - moving_.velocity_of(support, moving_.time());
-    const double restitution = std::min(moving_.world().bodies[body].restitution, moving_.world().bodies[support].restitution);
-    const bool slow = relative.norm() < scene_.rest_speed_m_s && relative.dot(up) <= restitution * scene_.rest_speed_m_s + kTouching * fastest;
-    if (!slow) continue;
+    if (!moving_.shape(body).is_ball() || !moving_.is_left_alone(body)) continue;
+    const bool rests = comes_to_rest({*moving_.world().gravity_world, up, moving_.shape(body).bounding_radius(), meetings_.touching_distance({pair.a, pair.b}), moving_.world().bodies[body].inertia.inertia_body,
+                                      !moving_.state(body).angular_momentum_world.isZero(0.0), moving_.velocity_of(body, moving_.time()) - moving_.velocity_of(support, moving_.time()),
+                                      std::min(moving_.world().bodies[body].restitution, moving_.world().bodies[support].restitution), scene_.rest_speed_m_s, fastest});
+    if (!rests) continue;
     RigidBodyState state = moving_.state(body);
     state.com_world -= pair.gap.distance * up;
     moving_.set_state(body, state);
@@ -225,20 +183,6 @@ void RetroactiveRun::watch_for_trouble() {
                               laws_.integrator_source, laws_.impulse_source);
     return;
   }
-}
-
-// Bodies in lasting contact get their paths. @param pairs  becomes those among which impacts are to be looked for
-// @return all pairs that may meet on the new paths, where there are any
-std::vector<std::pair<int, int>> RetroactiveRun::keep_contacts(std::vector<std::pair<int, int>>& pairs) {
-  while (const auto earlier = contacts_->advance(pairs)) {
-    moving_.begin_step_again(*earlier);
-    pairs = meetings_.candidates();
-  }
-  if (contacts_->empty()) return {};
-  std::vector<std::pair<int, int>> near = meetings_.candidates();
-  pairs = near;
-  std::erase_if(pairs, [&](const auto& pair) { return contacts_->keeps(pair); });
-  return near;
 }
 
 void RetroactiveRun::note_touching(const std::vector<std::pair<int, int>>& near) {
@@ -263,75 +207,78 @@ void RetroactiveRun::advance_to(double target) {
   int idle = 0;
   long impacts = 0;
   while (stopped_by_.empty() && moving_.time() < target) {
+    // Bodies go where they would without each other. A sleeper that would be met takes the step awake.
     moving_.begin_step(target);
     ++counters_.steps;
-    std::vector<std::pair<int, int>> pairs;
-    if (has_collisions()) pairs = pairs_in_step();
-    if (has_sleepers() && sleepers_->wake_met(pairs)) {
+    PairsOfStep pairs;
+    if (has_collisions()) pairs.searched = pairs_in_step();
+    if (has_sleepers() && sleepers_->wake_met(pairs.searched)) {
       begin_again();
       continue;
     }
-    std::vector<std::pair<int, int>> near;
-    if (has_contacts()) near = keep_contacts(pairs);
+    // Bodies in lasting contact go where their contacts let them; the step becomes shorter where a contact changes within it.
+    if (has_contacts())
+      keep_contacts(*contacts_, meetings_, pairs, [&](double earlier) {
+        moving_.begin_step_again(earlier);
+        return true;
+      });
+    // The first impact among all others ends the step.
     std::optional<Earliest> earliest;
-    if (has_collisions()) earliest = meetings_.earliest(pairs);
-    if (has_sleepers() && earliest && sleepers_->wake(pairs[earliest->pair])) {
+    if (has_collisions()) earliest = meetings_.earliest(pairs.searched);
+    if (has_sleepers() && earliest && sleepers_->wake(pairs.searched[earliest->pair])) {
       begin_again();
       continue;
     }
     if (has_modes()) modes_->look();
     const double before = moving_.time(), reached = earliest ? earliest->time : moving_.target();
     record([&] { recorder_.record_before(moving_, reached); });
+    // The world goes there as a whole, and what is left of overlaps is taken back.
     if (reached < target) ++counters_.synchronisations;
     moving_.commit(reached);
     watch_for_trouble();
     if (!stopped_by_.empty()) return;
-    if (has_collisions() && !meetings_.apart_at_target()) meetings_.separate(pairs);
-    const bool apart = !has_contacts() || contacts_->commit();
-    if (!apart) meetings_.separate(near);
-    if (has_sleepers()) note_touching(near);
+    if (has_collisions()) take_back_overlaps(has_contacts() ? &*contacts_ : nullptr, meetings_, pairs);
+    if (has_sleepers()) note_touching(pairs.near);
     if (!earliest) moving_.watch_links(reached - before);
     if (!built::kCollision || !earliest) continue;
+    // Velocities jump, by the laws' impulses, at everything that touches there.
     ++counters_.rollbacks;
-    resolve_at(near.empty() ? pairs : near, pairs[earliest->pair]);
+    const std::pair<int, int> trigger = pairs.searched[earliest->pair];
+    resolve_at(pairs.near.empty() ? pairs.searched : pairs.near, trigger);
     idle = reached > before ? 0 : idle + 1;
-    if (idle > kMostIdleSteps || ++impacts > most_impacts(moving_.size())) {
-      const auto [a, b] = pairs[earliest->pair];
-      stopped_by_ = told_endless_impacts(moving_.time(), fmt::format("bodies {} and {}", name(a), name(b)));
-    }
+    if (idle > kMostIdleSteps || ++impacts > most_impacts(moving_.size()))
+      stopped_by_ = told_endless_impacts(moving_.time(), fmt::format("bodies {} and {}", name(trigger.first), name(trigger.second)));
   }
 }
 
 // On rods between heavy ones, or between joints.
 void RetroactiveRun::tell_of_light_bodies() {
   const RunCounters before = counters_;   // what is looked at must not show in what a run counts
-  const std::vector<double> tensions = moving_.measure_links(moving_.states(), 0.0, {}).rods;
+  const LinkForces at_start = moving_.measure_links(moving_.states(), 0.0, {});
   counters_ = before;
-  if (const auto step = tell_of_unstable_links(moving_.world(), tensions, laws_, {step_, duration_}, counters_.notices)) counters_.watch.name_step(*step);
+  if (const auto step = tell_of_unstable_links(moving_.world(), at_start, laws_, {step_, duration_}, counters_.notices)) counters_.watch.name_step(*step);
 }
 
 void RetroactiveRun::run() {
   const std::string where = scene_.file.empty() ? scene_.name : scene_.file.string();
   meetings_.refuse_overlap(where, scene_);
   refuse_unstable_steps(moving_.world(), laws_, {step_, duration_}, where, counters_.notices);
-  for (const PointForce& force : moving_.world().point_forces) {
-    switch_times_.insert(force.start);
-    switch_times_.insert(force.end);
-  }
+  for (const effects::Effect* effect : effects::all())
+    for (const effects::Switch& one : effect->switches(moving_.world())) switch_times_.insert(one.event.time);
   try {
-    if (!moving_.world().rods.empty() || !moving_.world().joints.empty()) tell_of_light_bodies();
+    if (moving_.world().stabilisation) tell_of_light_bodies();
     run_to_the_end();
   } catch (const StoppedRun& stop) {
     stopped_by_ = fmt::format("at t = {:.6f} s, {}", moving_.time(), stop.what());
   }
-  energy_watch_.tell(moving_.world(), counters_.watch);
+  energy_watch_.tell(moving_.world(), counters_);
   sink_.end(counters_.named(), stopped_by_);
 }
 
 void RetroactiveRun::stop_for(const Runaway& runaway) {
   const std::vector<ContactPoint> none, &contacts = has_contacts() ? contacts_->forces() : none;
   const LinkForces links = moving_.measure_links(moving_.states(), moving_.time(), contacts);
-  stopped_by_ = told_runaway(moving_.time(), moving_.world(), runaway, {links.springs, links.rods, links.joints, contacts}, laws_);
+  stopped_by_ = told_runaway(moving_.time(), moving_.world(), runaway, {moving_.states(), links, contacts}, laws_);
 }
 
 void RetroactiveRun::run_to_the_end() {

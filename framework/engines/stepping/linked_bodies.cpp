@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <numeric>
 
 #include <fmt/format.h>
 
-#include "framework/dynamics/joint_rows.h"
+#include "framework/effects/registry.h"
 #include "framework/engines/base/guarded_laws.h"
 
 namespace tumble::engines {
@@ -18,13 +17,6 @@ namespace {
 // a chain.
 constexpr double kOnConstraint = 1e-14;
 constexpr int kMostProjections = 8;   // Newton's method doubles the digits; a step leaves few missing
-
-Vector3d point_world(const Body& body, const Vector3d& point_body) { return body.com_world + body.world_from_body * point_body; }
-Vector3d velocity_at(const Body& body, const Vector3d& point) { return body.velocity_world + body.omega_world.cross(point - body.com_world); }
-AnchorState anchor_of(const Body& body, const Vector3d& point_body) {
-  const Vector3d point = point_world(body, point_body);
-  return {point, velocity_at(body, point)};
-}
 
 Matrix3d inverse_inertia_world(const Body& body) {
   if (body.inertia.inverse_mass == 0.0) return Matrix3d::Zero();
@@ -39,18 +31,6 @@ Body body_of(const RigidBodyState& state, const Inertia& inertia) {
 void add_force(const Body& body, const Vector3d& force, const Vector3d& point, Wrench& wrench) {
   wrench.force_world += force;
   wrench.torque_world += (point - body.com_world).cross(force);
-}
-
-// Does `work`; a StoppedRun out of it is told again with the link in front. Words are made where they are needed only: this is asked at every stage.
-template <class Work>
-auto of_link(const char* kind, const std::string& name, Work&& work) {
-  try {
-    return work();
-  } catch (const OutOfTime&) {
-    throw;
-  } catch (const StoppedRun& stop) {
-    throw StoppedRun(fmt::format("{} '{}': {}", kind, name, stop.what()));
-  }
 }
 
 }  // namespace
@@ -72,10 +52,16 @@ std::vector<std::vector<int>> groups_of_linked_bodies(const World& world) {
     const int i = find(a), j = find(b);
     leader[std::max(i, j)] = std::min(i, j);
   };
-  for (const SpringLink& link : world.springs) tie(link.a.body, link.b.body);
-  for (const RodLink& link : world.rods) tie(link.a.body, link.b.body);
-  for (const JointLink& link : world.joints) tie(link.a.body, link.b.body);
-  for (const Drag& drag : world.drags) tie(drag.body, -1);
+  for (const effects::Effect* effect : effects::all()) {
+    if (!effect->traits().ties) continue;
+    for (int entry = 0; entry < effect->count_in(world); ++entry) {
+      int first = -1;   // movable one
+      for (const int body : effect->bodies_of(world, entry)) {
+        tie(first, body);
+        if (first < 0 && movable(body)) first = body;
+      }
+    }
+  }
   std::vector<std::vector<int>> by_leader(n), groups;
   for (int i = 0; i < n; ++i)
     if (linked[i]) by_leader[find(i)].push_back(i);
@@ -86,32 +72,23 @@ std::vector<std::vector<int>> groups_of_linked_bodies(const World& world) {
 
 LinkedBodies::LinkedBodies(const World& world, const Laws& laws, RunCounters& counters, OuterWrench outer_wrench, std::vector<int> bodies)
     : world_(world), laws_(laws), counters_(counters), outer_wrench_(std::move(outer_wrench)), bodies_(std::move(bodies)) {
-  const auto ours = [&](const Anchor& a, const Anchor& b) {
-    return std::binary_search(bodies_.begin(), bodies_.end(), a.body) || std::binary_search(bodies_.begin(), bodies_.end(), b.body);
-  };
-  const auto collect = [&](const auto& links, std::vector<Link>& into) {
-    for (int k = 0; k < static_cast<int>(links.size()); ++k)
-      if (ours(links[k].a, links[k].b)) into.push_back({k, end_of(links[k].a), end_of(links[k].b)});
-  };
-  collect(world.springs, springs_);
-  collect(world.rods, rods_);
-  collect(world.joints, joints_);
-  for (int k = 0; k < static_cast<int>(world.drags.size()); ++k)
-    if (std::binary_search(bodies_.begin(), bodies_.end(), world.drags[k].body)) drags_.push_back(k);
-  for (int k = 0; k < static_cast<int>(world.motors.size()); ++k)
-    if (std::any_of(joints_.begin(), joints_.end(), [&](const Link& joint) { return joint.index == world.motors[k].joint; })) motors_.push_back(k);
-  most_rows_ = rods_.size();
-  for (const Link& link : joints_) most_rows_ += static_cast<std::size_t>(row_count(world.joints[link.index].kind));
-  torques_.assign(motors_.size(), 0.0);
-  next_looks_.assign(motors_.size(), 0.0);
+  for (std::size_t k = 0; k < effects::all().size(); ++k) {
+    auto acting = effects::all()[k]->group_terms({world_, laws_, counters_.effect_calls[k]}, *this);
+    if (!acting) continue;
+    row_count_ += acting->row_count();
+    if (acting->control() != nullptr) controls_.push_back(terms_.size());
+    terms_.push_back({k, std::move(acting)});
+  }
 }
 
-LinkedBodies::End LinkedBodies::end_of(const Anchor& anchor) {
-  const auto found = std::lower_bound(bodies_.begin(), bodies_.end(), anchor.body);
-  if (found != bodies_.end() && *found == anchor.body) return {static_cast<int>(found - bodies_.begin()), anchor.point_body};
-  auto fixed = std::find(fixed_.begin(), fixed_.end(), anchor.body);
-  if (fixed == fixed_.end()) fixed = fixed_.insert(fixed_.end(), anchor.body);
-  return {static_cast<int>(bodies_.size() + (fixed - fixed_.begin())), anchor.point_body};
+bool LinkedBodies::has(int body) const { return std::binary_search(bodies_.begin(), bodies_.end(), body); }
+
+int LinkedBodies::place_of(int body) {
+  const auto found = std::lower_bound(bodies_.begin(), bodies_.end(), body);
+  if (found != bodies_.end() && *found == body) return static_cast<int>(found - bodies_.begin());
+  auto fixed = std::find(fixed_.begin(), fixed_.end(), body);
+  if (fixed == fixed_.end()) fixed = fixed_.insert(fixed_.end(), body);
+  return static_cast<int>(bodies_.size() + static_cast<std::size_t>(fixed - fixed_.begin()));
 }
 
 std::vector<RigidBodyState> LinkedBodies::take(const std::vector<RigidBodyState>& states) const {
@@ -146,101 +123,42 @@ std::vector<Wrench> LinkedBodies::forces(const std::vector<RigidBodyState>& loca
   const StageTimer timer(counters_.force_seconds);
   std::vector<Wrench> wrenches(bodies.size(), {Vector3d::Zero(), Vector3d::Zero()});
   for (std::size_t i = 0; i < bodies_.size(); ++i) wrenches[i] = outer_wrench_(bodies_[i], local[i]);
-  if (built::kSpring) add_springs(bodies, wrenches);
-  if (built::kDrag) add_drags(bodies, wrenches);
-  if (built::kMotor) add_motors(bodies, wrenches);
+  for (const Terms& terms : terms_) terms.acting->add_forces(bodies, wrenches);
   return wrenches;
 }
 
-void LinkedBodies::add_springs(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches) {
-  for (const Link& link : springs_) {
-    ++counters_.spring_calls;
-    const AnchorState a = anchor_of(bodies[link.a.place], link.a.point_body), b = anchor_of(bodies[link.b.place], link.b.point_body);
-    const SpringLink& spring = world_.springs[link.index];
-    const Vector3d force = of_link("spring", spring.name, [&] { return laws_.spring_force(spring.spring, a, b); });
-    add_force(bodies[link.a.place], force, a.point_world, wrenches[link.a.place]);
-    add_force(bodies[link.b.place], -force, b.point_world, wrenches[link.b.place]);
-  }
-}
-
-void LinkedBodies::add_drags(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches) {
-  for (const int index : drags_) {
-    ++counters_.drag_calls;
-    const Drag& drag = world_.drags[index];
-    const auto place = std::lower_bound(bodies_.begin(), bodies_.end(), drag.body) - bodies_.begin();
-    wrenches[place].force_world -= drag.linear * bodies[place].velocity_world;
-    wrenches[place].torque_world -= drag.angular * bodies[place].omega_world;
-  }
-}
-
-void LinkedBodies::add_motors(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches) const {
-  for (std::size_t k = 0; k < motors_.size(); ++k) {
-    const int joint = world_.motors[motors_[k]].joint;
-    const auto link = std::find_if(joints_.begin(), joints_.end(), [&](const Link& l) { return l.index == joint; });
-    const HingeMotion hinge = hinge_motion(world_.joints[joint], bodies[link->a.place], bodies[link->b.place]);
-    wrenches[link->b.place].torque_world += torques_[k] * hinge.axis_world;
-    wrenches[link->a.place].torque_world -= torques_[k] * hinge.axis_world;
-  }
-}
-
-namespace {
-
-// A motor measures its hinge's angle within a turn: from half a turn between two looks on it is lost. Nothing comes so far that does not
-// overshoot more each time, because the torque that brakes it is held for too long.
-void refuse_lost(const std::string& hinge, const scene::MotorSpec& law, const HingeMotion& motion) {
-  const double turn = std::abs(motion.rate) * law.period_s;
-  if (law.stiffness_n_m_rad == 0.0 || !(turn > std::numbers::pi)) return;
-  throw StoppedRun(fmt::format("the motor of '{}' finds its hinge turning at {:.3g} rad/s, {:.3g} rad between two looks {:.3g} s apart: beyond half a turn it does not know its angle. "
-                               "Likely it overshoots more each time, for it holds its torque too long: a shorter \"period_s\", or less \"damping_n_m_s_rad\" or \"stiffness_n_m_rad\"",
-                               hinge, motion.rate, turn, law.period_s));
-}
-
-}  // namespace
-
 double LinkedBodies::look(double time, const std::vector<RigidBodyState>& states) {
   double next = std::numeric_limits<double>::infinity();
-  if (!built::kMotor || motors_.empty()) return next;
+  if (controls_.empty()) return next;
   const StageTimer timer(counters_.control_seconds);
   const std::vector<Body> bodies = place_bodies(take(states), time);
-  for (std::size_t k = 0; k < motors_.size(); ++k) {
-    const scene::MotorSpec& law = world_.motors[motors_[k]].law;
-    if (time >= next_looks_[k]) {
-      ++counters_.motor_calls;
-      const int joint = world_.motors[motors_[k]].joint;
-      const auto link = std::find_if(joints_.begin(), joints_.end(), [&](const Link& l) { return l.index == joint; });
-      const HingeMotion hinge = hinge_motion(world_.joints[joint], bodies[link->a.place], bodies[link->b.place]);
-      refuse_lost(world_.joints[joint].name, law, hinge);
-      const double target = law.offset_rad + law.amplitude_rad * std::sin(2 * std::numbers::pi * law.frequency_hz * time + law.phase_rad);
-      const double torque = law.stiffness_n_m_rad * (target - hinge.angle) - law.damping_n_m_s_rad * hinge.rate;
-      torques_[k] = std::clamp(torque, -law.largest_torque_n_m, law.largest_torque_n_m);
-      next_looks_[k] = law.period_s * (std::floor(time / law.period_s * (1 + 1e-12)) + 1);
-    }
-    next = std::min(next, next_looks_[k]);
-  }
+  for (const std::size_t k : controls_) next = std::min(next, terms_[k].acting->control()->look(time, bodies));
   return next;
+}
+
+std::map<int, effects::Memory> LinkedBodies::held() const {
+  std::map<int, effects::Memory> all;
+  for (const std::size_t k : controls_) all.emplace(static_cast<int>(terms_[k].effect), terms_[k].acting->control()->memory());
+  return all;
+}
+
+void LinkedBodies::remember(const std::map<int, effects::Memory>& held) {
+  static const effects::Memory none;
+  for (const std::size_t k : controls_) {
+    const auto found = held.find(static_cast<int>(terms_[k].effect));
+    terms_[k].acting->control()->remember(found == held.end() ? none : found->second);
+  }
+}
+
+bool LinkedBodies::is_driven_otherwise(const std::map<int, effects::Memory>& before) const {
+  return std::any_of(controls_.begin(), controls_.end(), [&](std::size_t k) { return terms_[k].acting->control()->differs_from(before.at(static_cast<int>(terms_[k].effect))); });
 }
 
 std::vector<Constraint> LinkedBodies::rows(const std::vector<Body>& bodies) {
   std::vector<Constraint> rows;
-  rows.reserve(most_rows_);
-  if (built::kRod) append_rods(bodies, rows);
-  if (built::kJoint) append_joints(bodies, rows);
+  rows.reserve(row_count_);
+  for (const Terms& terms : terms_) terms.acting->append_rows(bodies, rows);
   return rows;
-}
-
-void LinkedBodies::append_rods(const std::vector<Body>& bodies, std::vector<Constraint>& rows) {
-  for (const Link& link : rods_) {
-    ++counters_.rod_calls;
-    const RodLink& rod = world_.rods[link.index];
-    rows.push_back({link.a.place, link.b.place, of_link("rod", rod.name, [&] { return laws_.rod_row(bodies[link.a.place], link.a.point_body, bodies[link.b.place], link.b.point_body, rod.length); })});
-  }
-}
-
-void LinkedBodies::append_joints(const std::vector<Body>& bodies, std::vector<Constraint>& rows) {
-  for (const Link& link : joints_) {
-    ++counters_.joint_calls;
-    append_joint_rows(world_.joints[link.index], bodies[link.a.place], link.a.place, bodies[link.b.place], link.b.place, rows);
-  }
 }
 
 std::vector<Constraint> LinkedBodies::constraint_rows(const std::vector<RigidBodyState>& states, double t) {
@@ -353,7 +271,7 @@ std::vector<RigidBodyState> LinkedBodies::advance(const std::vector<RigidBodySta
 double LinkedBodies::open_part(const std::vector<Body>& bodies, const std::vector<Constraint>& rows) const {
   double worst = 0.0, size = 0.0;
   for (const Constraint& c : rows) worst = std::isnan(c.row.value) ? c.row.value : std::max(worst, std::abs(c.row.value));
-  for (const Link& link : rods_) size = std::max(size, world_.rods[link.index].length);
+  for (const Terms& terms : terms_) size = std::max(size, terms.acting->size());
   for (const Body& body : bodies) size = std::max(size, body.com_world.cwiseAbs().maxCoeff());
   return worst == 0.0 ? 0.0 : worst / size;
 }
@@ -456,31 +374,7 @@ void LinkedBodies::watch(const std::vector<RigidBodyState>& states, double t, do
   const auto note = [&](const std::string& name, double open) {
     if (!(open <= allowed)) counters_.watch.note(RunWatch::Kind::kLinkOpen, fmt::format("'{}'", name), {open, allowed, t, h});
   };
-  const auto at = [&](const End& end) { return point_world(bodies[end.place], end.point_body); };
-  if (built::kRod)
-    for (const Link& link : rods_) {
-      const RodLink& rod = world_.rods[link.index];
-      note(rod.name, std::abs((at(link.a) - at(link.b)).norm() - rod.length) / rod.length);
-    }
-  if (!built::kJoint) return;
-  for (const Link& link : joints_) {
-    const JointLink& joint = world_.joints[link.index];
-    note(joint.name, (at(link.a) - at(link.b)).norm() / size_of_joint(link));
-    const Quaterniond a = bodies[link.a.place].world_from_body * joint.a_from_joint, b = bodies[link.b.place].world_from_body * joint.b_from_joint;
-    if (joint.kind == scene::JointKind::kHinge) note(joint.name, (a * Vector3d::UnitZ()).cross(b * Vector3d::UnitZ()).norm());
-    if (joint.kind == scene::JointKind::kWeld) note(joint.name, 2.0 * (a.conjugate() * b).vec().norm());
-  }
-}
-
-// The longer arm of the two bodies; of bodies that are held at their centres, how far their mass lies from there. [m]
-double LinkedBodies::size_of_joint(const Link& joint) const {
-  double size = 0.0;
-  for (const End* end : {&joint.a, &joint.b}) {
-    if (end->place >= static_cast<int>(bodies_.size())) continue;
-    const Inertia& inertia = world_.bodies[bodies_[end->place]].inertia;
-    size = std::max({size, end->point_body.norm(), std::sqrt(0.5 * inertia.inertia_body.trace() * inertia.inverse_mass)});
-  }
-  return size > 0.0 ? size : 1.0;
+  for (const Terms& terms : terms_) terms.acting->note_open(bodies, note);
 }
 
 std::string LinkedBodies::whose() const { return "body '" + world_.bodies[bodies_.front()].name + "' and what is linked to it"; }
@@ -489,20 +383,18 @@ void LinkedBodies::measure(const std::vector<RigidBodyState>& states, double t, 
   const std::vector<RigidBodyState> local = take(states);
   time_of_stage_ = t;
   const std::vector<Body> bodies = place_bodies(local, t);
-  if (built::kSpring) measure_springs(bodies, measured);
-  if (!has_constraints()) return;
-  std::vector<Wrench> wrenches = forces(local, bodies);
-  if (built::kContact) add_contacts(bodies, contacts, wrenches);
-  const VectorXd multipliers = add_constraint_forces(bodies, local, wrenches);
+  VectorXd multipliers;
+  if (has_constraints()) {
+    std::vector<Wrench> wrenches = forces(local, bodies);
+    if (built::kContact) add_contacts(bodies, contacts, wrenches);
+    multipliers = add_constraint_forces(bodies, local, wrenches);
+  }
   Eigen::Index at = 0;
-  // A rod's multiplier pushes A along the growing length: away from B.
-  if (built::kRod)
-    for (const Link& link : rods_) measured.rods[link.index] = -multipliers[at++];
-  if (built::kJoint)
-    for (const Link& link : joints_) {
-      measured.joints[link.index] = multipliers.segment<3>(at).norm();
-      at += row_count(world_.joints[link.index].kind);
-    }
+  for (const Terms& terms : terms_) {
+    const auto rows = static_cast<Eigen::Index>(terms.acting->row_count());
+    if (!measured.of_effects[terms.effect].empty()) terms.acting->measure(bodies, multipliers.segment(at, rows), measured.of_effects[terms.effect]);
+    at += rows;
+  }
 } catch (const OutOfTime&) {
   throw;
 } catch (const StoppedRun& stop) {
@@ -520,12 +412,20 @@ void LinkedBodies::add_contacts(const std::vector<Body>& bodies, const std::vect
     }
 }
 
-void LinkedBodies::measure_springs(const std::vector<Body>& bodies, LinkForces& measured) {
-  for (const Link& link : springs_) {
-    const AnchorState a = anchor_of(bodies[link.a.place], link.a.point_body), b = anchor_of(bodies[link.b.place], link.b.point_body);
-    const Vector3d force = laws_.spring_force(world_.springs[link.index].spring, a, b), way = b.point_world - a.point_world;
-    measured.springs[link.index] = force.dot(way) < 0 ? -force.norm() : force.norm();
-  }
+LinkForces::LinkForces(const World& world) {
+  for (const effects::Effect* effect : effects::all()) of_effects.emplace_back(effect->measured_as() == nullptr ? 0 : effect->count_in(world));
+}
+
+void record(LinkForces forces, Frame& frame) {
+  for (std::size_t k = 0; k < forces.of_effects.size(); ++k)
+    if (const auto kept = effects::all()[k]->measured_as()) frame.*kept = std::move(forces.of_effects[k]);
+}
+
+LinkForces recorded_forces(const World& world, const Frame& frame) {
+  LinkForces forces(world);
+  for (std::size_t k = 0; k < forces.of_effects.size(); ++k)
+    if (const auto kept = effects::all()[k]->measured_as()) forces.of_effects[k] = frame.*kept;
+  return forces;
 }
 
 }  // namespace tumble::engines

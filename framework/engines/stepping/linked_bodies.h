@@ -1,13 +1,14 @@
-/// Bodies that move together because springs, rods, joints or motors tie them to each other or to the world, or a medium slows
-/// them: one system of differential equations, integrated by the laws' method as a whole.
+/// Bodies that move together because effects tie them to each other or to the world, or act on them otherwise than evenly through a step:
+/// one system of differential equations, integrated by the laws' method as a whole.
 ///
-/// Forces of springs and drag are evaluated at every stage of the method; rods and joints add what holds them (Lagrange
-/// multipliers at every stage), and are brought back by the stabilisation the scene chose: Baumgarte's term in the multipliers, or
+/// Forces are evaluated at every stage of the method; what constrains (rods, joints) adds what holds it (Lagrange
+/// multipliers at every stage), and is brought back by the stabilisation the scene chose: Baumgarte's term in the multipliers, or
 /// a projection of places and velocities at the end of each step.
 #pragma once
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,17 +16,24 @@
 #include "framework/dynamics/contact_problem.h"
 #include "framework/dynamics/laws.h"
 #include "framework/dynamics/world.h"
+#include "framework/effects/effect.h"
 #include "framework/engines/base/effects_built.h"
 #include "framework/engines/base/run_counters.h"
 
 namespace tumble::engines {
 
-/// What the links of a world pull with, by their places in World's lists; zero for links of other groups. [N]
+/// What the links of a world pull with, by their places in its lists; zero for links of other groups. [N]
 struct LinkForces {
-  std::vector<double> springs, rods, joints;
-};
+  explicit LinkForces(const World& world);
 
-class LinkedBodies {
+  std::vector<std::vector<double>> of_effects;   // by place in effects::all(); empty of those that are not recorded
+};
+/// Puts them where a frame keeps them.
+void record(LinkForces forces, Frame& frame);
+/// What a frame keeps of them.
+LinkForces recorded_forces(const World& world, const Frame& frame);
+
+class LinkedBodies final : effects::GroupPlaces {
  public:
   /// Gravity and point forces on a body (index in the world) in a state.
   using OuterWrench = std::function<Wrench(int body, const RigidBodyState& state)>;
@@ -36,18 +44,12 @@ class LinkedBodies {
   const std::vector<int>& bodies() const { return bodies_; }
   /// Immovable bodies that a link of the group ends at; -1: the world.
   const std::vector<int>& fixed_ends() const { return fixed_; }
-  /// What its motors hold until they look again, by motor. [N m]
-  const std::vector<double>& torques() const { return torques_; }
-  /// When each looks again, by motor. [s]
-  const std::vector<double>& next_looks() const { return next_looks_; }
-  /// Its motors, in the world's list.
-  const std::vector<int>& motors() const { return motors_; }
-  /// Goes on with what motors held at another time. @param torques, next_looks  by motor
-  void remember(std::vector<double> torques, std::vector<double> next_looks) {
-    torques_ = std::move(torques);
-    next_looks_ = std::move(next_looks);
-  }
-  bool has_constraints() const { return (built::kRod && !rods_.empty()) || (built::kJoint && !joints_.empty()); }
+  /// What its control laws hold until they look again, by place in effects::all(), and the same brought back.
+  std::map<int, effects::Memory> held() const;
+  void remember(const std::map<int, effects::Memory>& held);
+  /// Whether its control laws drive it otherwise than by what they held before.
+  bool is_driven_otherwise(const std::map<int, effects::Memory>& before) const;
+  bool has_constraints() const { return row_count_ > 0; }
 
   /// Control laws whose time has come look and set their torques. @return the next time at which one looks; infinite without
   double look(double time, const std::vector<RigidBodyState>& states);
@@ -83,29 +85,14 @@ class LinkedBodies {
   void measure(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts, LinkForces& forces);
 
  private:
-  struct End {                 // of a link: a place in the list of bodies
-    int place;                 // bodies_, then fixed_
-    Vector3d point_body;
-  };
-  struct Link {
-    int index;                 // in the world's list
-    End a, b;
-  };
-
   std::string whose() const;   // in words
-  double size_of_joint(const Link& joint) const;
   double open_part(const std::vector<Body>& bodies, const std::vector<Constraint>& rows) const;
-  End end_of(const Anchor& anchor);
+  bool has(int body) const override;
+  int place_of(int body) override;
   std::vector<Body> place_bodies(const std::vector<RigidBodyState>& local, double t) const;
   std::vector<Wrench> forces(const std::vector<RigidBodyState>& local, const std::vector<Body>& bodies);
-  void add_springs(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches);
-  void add_drags(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches);
-  void add_motors(const std::vector<Body>& bodies, std::vector<Wrench>& wrenches) const;
   std::vector<Constraint> rows(const std::vector<Body>& bodies);
-  void append_rods(const std::vector<Body>& bodies, std::vector<Constraint>& rows);
-  void append_joints(const std::vector<Body>& bodies, std::vector<Constraint>& rows);
   void add_contacts(const std::vector<Body>& bodies, const std::vector<ContactPoint>& contacts, std::vector<Wrench>& wrenches) const;
-  void measure_springs(const std::vector<Body>& bodies, LinkForces& measured);
   VectorXd add_constraint_forces(const std::vector<Body>& bodies, const std::vector<RigidBodyState>& local, std::vector<Wrench>& wrenches);
   VectorXd derivative(double t, const VectorXd& y);
   static std::vector<ConstrainedBody> constrained(const std::vector<Body>& bodies);
@@ -120,10 +107,13 @@ class LinkedBodies {
   OuterWrench outer_wrench_;
   std::vector<int> bodies_;
   std::vector<int> fixed_;            // immovable ends: bodies of the world, -1 for the world itself
-  std::vector<Link> springs_, rods_, joints_;
-  std::vector<int> drags_, motors_;   // in the world's lists
-  std::size_t most_rows_ = 0;   // of rods and joints
-  std::vector<double> torques_, next_looks_;   // by motors_
+  struct Terms {
+    std::size_t effect;               // its place in effects::all()
+    std::unique_ptr<effects::GroupTerms> acting;
+  };
+  std::vector<Terms> terms_;          // of the effects that act on the group
+  std::size_t row_count_ = 0;         // of all of them
+  std::vector<std::size_t> controls_; // those of terms_ that look
   double time_of_stage_ = 0.0;
   double step_ = kUnset;   // the last that advance() took [s]
 };

@@ -1,29 +1,19 @@
 #include "framework/engines/stepping/local_origin.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <limits>
 #include <string>
 
+#include "framework/scene/words.h"
+
 namespace tumble::engines {
 namespace {
 
 // Farther off than this many times its extent, a scene loses three digits and more: that is where local coordinates begin.
 constexpr double kFar = 1000.0;
-
-/// Calls visit(point) for every place that a scene names in the world's coordinates, bodies first; visit may change it.
-template <class Scene, class Visit>
-void for_each_place(Scene& scene, const Visit& visit) {
-  for (auto& body : scene.bodies) visit(body.position_m);
-  for (auto& spring : scene.springs)
-    for (auto* anchor : {&spring.a, &spring.b})
-      if (anchor->body.empty()) visit(anchor->point_m);
-  for (auto& rod : scene.rods)
-    for (auto* anchor : {&rod.a, &rod.b})
-      if (anchor->body.empty()) visit(anchor->point_m);
-  for (auto& joint : scene.joints) visit(joint.point_m);
-}
 
 // Whoever writes 1000000.1 means a tenth more than 10^6, not the nearest number that a double can hold, which is 2e-11 less: a box would
 // start in its floor. So what is before the point and what is behind it are taken apart, where a decimal says the place that every double
@@ -40,15 +30,30 @@ double difference_as_written(double place, double origin) {
   return (std::trunc(place) - origin) + std::copysign(fraction, place);
 }
 
+// Whether some link spans from one place to another.
+bool spans_places(const scene::Scene& scene) {
+  const auto& words = scene::all_words();
+  return std::any_of(words.begin(), words.end(), [&](const scene::Words* one) {
+    const std::vector<scene::Link> links = one->links(scene);
+    return std::any_of(links.begin(), links.end(), [](const scene::Link& link) { return !std::isnan(link.length_m); });
+  });
+}
+
 }  // namespace
 
 Vector3d local_origin(const scene::Scene& scene) {
   if (scene.bodies.empty()) return Vector3d::Zero();
   Vector3d low = scene.bodies.front().position_m, high = low;
-  for_each_place(scene, [&](const Vector3d& place) {
+  const auto take = [&](const Vector3d& place) {
     low = low.cwiseMin(place);
     high = high.cwiseMax(place);
-  });
+  };
+  for (const scene::BodySpec& body : scene.bodies) take(body.position_m);
+  TypedLists effects = scene.effects;   // visitors may change places
+  for (const scene::Words* words : scene::all_words())
+    words->visit_places(effects, [&](const Vector3d& place, scene::PlaceKind kind) {
+      if (kind == scene::PlaceKind::kHolds) take(place);
+    });
   double extent = (high - low).maxCoeff();
   if (extent == 0.0) extent = scene.duration_s * scene.bodies.front().velocity_m_s.norm();   // one body: its way
   const Vector3d middle = low + 0.5 * (high - low);
@@ -60,12 +65,12 @@ Vector3d local_origin(const scene::Scene& scene) {
 
 scene::Scene seen_from(const Vector3d& origin_world, scene::Scene scene) {
   // Lengths and points of bodies that a file leaves to be measured were measured between the doubles.
-  const bool as_written = scene.springs.empty() && scene.rods.empty();
+  const bool as_written = !spans_places(scene);
   const auto see = [&](Vector3d& place) {
     for (int axis = 0; axis < 3; ++axis) place[axis] = as_written ? difference_as_written(place[axis], origin_world[axis]) : place[axis] - origin_world[axis];
   };
-  for_each_place(scene, see);
-  for (scene::PointForceSpec& force : scene.point_forces) see(force.point_m);
+  for (scene::BodySpec& body : scene.bodies) see(body.position_m);
+  for (const scene::Words* words : scene::all_words()) words->visit_places(scene.effects, [&](Vector3d& place, scene::PlaceKind) { see(place); });
   return scene;
 }
 

@@ -39,7 +39,7 @@ double measure_path_bend(const Laws& laws) {
 MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters) : MovingWorld(std::move(world), laws, counters, {}) {}
 
 MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters, std::vector<const collision::CollisionShape*> shapes)
-    : world_(std::move(world)), laws_(laws), counters_(counters), shapes_(std::move(shapes)), rests_(world_.bodies.size()), asleep_(world_.bodies.size(), 0), force_points_body_(world_.point_forces.size()),
+    : world_(std::move(world)), laws_(laws), counters_(counters), shapes_(std::move(shapes)), rests_(world_.bodies.size()), asleep_(world_.bodies.size(), 0),
       paths_(world_.bodies.size()), told_of_shortening_(world_.bodies.size(), false), principal_(world_.bodies.size()) {
   for (const WorldBody& body : world_.bodies) states_.push_back(body.state);
   if (shapes_.empty()) {
@@ -47,6 +47,8 @@ MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters, s
     for (const collision::CollisionShape& shape : own_shapes_) shapes_.push_back(&shape);
   }
   path_bend_ = measure_path_bend(laws);
+  for (std::size_t k = 0; k < effects::all().size(); ++k)
+    if (auto acting = effects::all()[k]->steady_forces({world_, laws_, counters_.effect_calls[k]})) steady_.push_back({static_cast<int>(k), std::move(acting)});
   group_of_.assign(world_.bodies.size(), -1);
   for (std::vector<int>& bodies : groups_of_linked_bodies(world_)) {
     for (const int body : bodies) group_of_[body] = static_cast<int>(linked_.size());
@@ -63,9 +65,21 @@ void MovingWorld::stand_at(double time, const std::vector<RigidBodyState>& state
     if (world_.bodies[i].immovable()) states_[i].com_world = prescribed_position(world_.bodies[i], time);
 }
 
-void MovingWorld::set_active_forces(std::vector<int> active, std::vector<Vector3d> points_body) {
-  active_forces_ = std::move(active);
-  force_points_body_ = std::move(points_body);
+double MovingWorld::load_forces(const std::map<int, effects::Memory>& memory) {
+  static const effects::Memory none;
+  double next = std::numeric_limits<double>::infinity();
+  for (Steady& forces : steady_) {
+    const auto remembered = memory.find(forces.effect);
+    next = std::min(next, forces.acting->stand_at(time_, remembered == memory.end() ? none : remembered->second, states_));
+  }
+  return next;
+}
+
+std::map<int, effects::Memory> MovingWorld::force_memory() const {
+  std::map<int, effects::Memory> all;
+  for (const Steady& forces : steady_)
+    if (effects::Memory memory = forces.acting->memory(); !memory.empty()) all.emplace(forces.effect, std::move(memory));
+  return all;
 }
 
 bool MovingWorld::may_collide(int a, int b) const {
@@ -124,7 +138,7 @@ void MovingWorld::refuse_whirl(int body) const {
 }
 
 LinkForces MovingWorld::measure_links(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts) {
-  LinkForces forces{std::vector<double>(world_.springs.size()), std::vector<double>(world_.rods.size()), std::vector<double>(world_.joints.size())};
+  LinkForces forces(world_);
   for (LinkedBodies& group : linked_) group.measure(states, t, contacts, forces);
   return forces;
 }
@@ -158,16 +172,16 @@ void MovingWorld::wake(int body) {
   ++counters_.bodies_woken;
 }
 
-void MovingWorld::switch_force(int index, bool on) {
-  const PointForce& force = world_.point_forces[index];
-  if (!on) {
-    active_forces_.erase(std::remove(active_forces_.begin(), active_forces_.end(), index), active_forces_.end());
-    return;
-  }
-  if (resting(force.body)) wake(force.body);
-  const RigidBodyState& state = states_[force.body];
-  force_points_body_[index] = state.world_from_body.conjugate() * (force.point_world - state.com_world);
-  active_forces_.push_back(index);
+std::vector<std::pair<std::size_t, effects::Switch>> MovingWorld::due_switches() const {
+  std::vector<std::pair<std::size_t, effects::Switch>> all;
+  for (std::size_t k = 0; k < steady_.size(); ++k)
+    for (effects::Switch& due : steady_[k].acting->due(time_)) all.emplace_back(k, std::move(due));
+  return all;
+}
+
+void MovingWorld::turn(const std::pair<std::size_t, effects::Switch>& what) {
+  if (what.second.on && resting(what.second.event.body_a)) wake(what.second.event.body_a);
+  steady_[what.first].acting->turn(what.second, states_);
 }
 
 RigidBodyState MovingWorld::still_state(int body, double t) const {
@@ -198,33 +212,13 @@ Vector3d MovingWorld::velocity_of(int body, double t) const {
 
 Wrench MovingWorld::wrench_on(int body, const RigidBodyState& state) {
   Wrench sum{Vector3d::Zero(), Vector3d::Zero()};
-  if (built::kGravity && world_.gravity_world) {
-    ++counters_.gravity_calls;
-    sum.force_world += world_.bodies[body].inertia.mass * *world_.gravity_world;
-  }
-  if (built::kPointForce && !active_forces_.empty()) add_point_forces(body, state, sum);
+  for (Steady& forces : steady_) forces.acting->add(body, state, sum);
   return sum;
-}
-
-void MovingWorld::add_point_forces(int body, const RigidBodyState& state, Wrench& sum) {
-  for (const int index : active_forces_) {
-    const PointForce& force = world_.point_forces[index];
-    if (force.body != body) continue;
-    ++counters_.point_force_calls;
-    const Vector3d point_world = state.com_world + state.world_from_body.normalized() * force_points_body_[index];
-    const Wrench wrench = laws_.wrench_of_point_force(force.force_world, point_world, state.com_world);
-    sum.force_world += wrench.force_world;
-    sum.torque_world += wrench.torque_world;
-  }
 }
 
 void MovingWorld::go_in_closed_form() {
   for (const WorldBody& body : world_.bodies) rotations_.emplace_back(body.immovable() ? Matrix3d(Matrix3d::Identity()) : body.inertia.inertia_body);
   path_bend_ = 1.0;
-}
-
-bool MovingWorld::flies_freely(int body) const {
-  return !rotations_.empty() && std::none_of(active_forces_.begin(), active_forces_.end(), [&](int force) { return world_.point_forces[force].body == body; });
 }
 
 // x + v t + g t^2 / 2, and the free turning: by a series of the step where it reaches, which is asked many times in a search for an impact.
@@ -283,10 +277,7 @@ void MovingWorld::begin_path(int body) {
   if (!can_move(body) || group_of_[body] >= 0) return;
   path.start = pack(states_[body]);
   path.acceleration_world.setZero();
-  if (built::kPointForce)
-    for (const int index : active_forces_)
-      if (world_.point_forces[index].body == body) path.acceleration_world += world_.bodies[body].inertia.inverse_mass * world_.point_forces[index].force_world;
-  if (built::kGravity && world_.gravity_world) path.acceleration_world += *world_.gravity_world;
+  for (const Steady& forces : steady_) forces.acting->add_acceleration(body, path.acceleration_world);
   path.acceleration_world *= path_bend_;
   path.end = integrate(body, target_ - time_, time_, path.start);
 }

@@ -6,6 +6,8 @@
 #pragma once
 
 #include <functional>
+#include <map>
+#include <memory>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -16,10 +18,11 @@
 #include "framework/dynamics/rotation_bounds.h"
 #include "framework/dynamics/spin_series.h"
 #include "framework/dynamics/world.h"
+#include "framework/effects/registry.h"
 #include "framework/engines/base/effects_built.h"
+#include "framework/engines/base/run_counters.h"
 #include "framework/engines/stepping/linked_bodies.h"
 #include "framework/engines/stepping/pair_caches.h"
-#include "framework/engines/base/run_counters.h"
 #include "framework/engines/stepping/smooth_path.h"
 
 namespace tumble::engines {
@@ -42,9 +45,11 @@ class MovingWorld {
   /// Stands at another time in other states; no step is under way.
   /// @param states  by body; those of immovable bodies are not looked at: driven ones stand where they are at that time
   void stand_at(double time, const std::vector<RigidBodyState>& states);
-  /// The forces that act, and the points of the bodies that they act on (by force of the world, body frame).
-  void set_active_forces(std::vector<int> active, std::vector<Vector3d> points_body);
-  const std::vector<Vector3d>& force_points_body() const { return force_points_body_; }
+  /// Steady forces act from here on as they do at the time where this stands. @param memory  by effect: what its entries remember
+  /// @return when the next is switched; infinite without [s]
+  double load_forces(const std::map<int, effects::Memory>& memory);
+  /// What they remember, by effect.
+  std::map<int, effects::Memory> force_memory() const;
 
   /// From here on bodies that nothing but gravity acts on go in closed form instead of along the laws' integration.
   void go_in_closed_form();
@@ -73,10 +78,23 @@ class MovingWorld {
   bool asleep(int body) const { return built::kSleep && asleep_[body]; }
   /// Ends rest or sleep of a body.
   void wake(int body);
-  const std::vector<int>& active_forces() const { return active_forces_; }
-  void switch_force(int index, bool on);
+  /// Steady forces that are to be switched at the committed time, with the place of each's effect among those that act: hand each to turn().
+  std::vector<std::pair<std::size_t, effects::Switch>> due_switches() const;
+  void turn(const std::pair<std::size_t, effects::Switch>& what);
+  /// The work of what acts steadily on a body, along the way from one state of it to another. [J]
+  double steady_work(int body, const RigidBodyState& from, const RigidBodyState& to) const {
+    double sum = 0.0;
+    for (const Steady& forces : steady_) sum += forces.acting->work(body, from, to);
+    return sum;
+  }
+  /// Whether nothing steady acts on the body now but gravity.
+  bool is_left_alone(int body) const {
+    for (const Steady& forces : steady_)
+      if (!forces.acting->leaves_flight(body)) return false;
+    return true;
+  }
 
-  /// Bodies tied by springs, rods, joints, drag: groups that are integrated as one.
+  /// Bodies that effects tie (effects::Traits::ties): groups that are integrated as one.
   std::vector<LinkedBodies>& linked_groups() { return linked_; }
   const std::vector<LinkedBodies>& linked_groups() const { return linked_; }
   /// Place of a body's group in linked_groups(); -1 for a body without links.
@@ -133,6 +151,10 @@ class MovingWorld {
   Vector3d velocity_of(int body, double t) const;
 
  private:
+  struct Steady {
+    int effect;                     // its place in effects::all()
+    std::unique_ptr<effects::SteadyForces> acting;
+  };
   struct Path {
     VectorXd start;                 // packed
     RigidBodyState end;
@@ -151,11 +173,10 @@ class MovingWorld {
 
   void begin_path(int body);
   void begin_linked_paths();
-  bool flies_freely(int body) const;
+  bool flies_freely(int body) const { return !rotations_.empty() && is_left_alone(body); }
   RigidBodyState fly(int body, double duration, const VectorXd& start);
   RigidBodyState integrate(int body, double duration, double start_time, const VectorXd& start);
   Wrench wrench_on(int body, const RigidBodyState& state);
-  void add_point_forces(int body, const RigidBodyState& state, Wrench& sum);
   double torque_bound(int body) const;
   const PrincipalMoments& principal_of(int body);
   double turning_error(int body, double duration);
@@ -173,8 +194,7 @@ class MovingWorld {
   std::vector<RigidBodyState> states_;
   std::vector<std::optional<Rest>> rests_;
   std::vector<char> asleep_;                     // asked for often: a byte each is read faster than a bit
-  std::vector<int> active_forces_;               // indices into world_.point_forces
-  std::vector<Vector3d> force_points_body_;      // by force, from when it is switched on
+  std::vector<Steady> steady_;             // of the effects that act on bodies by themselves
   std::vector<Path> paths_;
   mutable PairCaches caches_;
   std::vector<LinkedBodies> linked_;

@@ -45,9 +45,7 @@ Vector3d turn_between(const Quaterniond& a, const Quaterniond& b) {
 
 double MovingWorld::torque_bound(int body) const {
   double bound = 0.0;
-  if (!built::kPointForce || active_forces_.empty()) return bound;
-  for (const int index : active_forces_)
-    if (world_.point_forces[index].body == body) bound += world_.point_forces[index].force_world.norm() * force_points_body_[index].norm();
+  for (const Steady& forces : steady_) bound += forces.acting->torque_bound(body);
   return bound;
 }
 
@@ -111,7 +109,7 @@ void MovingWorld::watch_turning(int body, double duration) {
   if (!can_move(body)) return;
   const double turning = omega_of(states_[body], world_.bodies[body].inertia).norm() * duration;
   if (turning <= kTurnResolved) return;
-  const bool is_alone = linked_group(body) < 0 && world_.springs.empty();
+  const bool is_alone = linked_group(body) < 0 && std::none_of(effects::all().begin(), effects::all().end(), [&](const effects::Effect* effect) { return effect->traits().stores_energy && effect->count_in(world_) > 0; });
   if (is_alone && flies_freely(body)) return;
   if (!is_alone || !shapes_[body]->is_ball()) return counters_.watch.note(RunWatch::Kind::kTurnUnresolved, names_of(world_, {body}), {turning, kTurnResolved, time_, duration});
   const std::string words = fmt::format("ball '{}' turns more than half a turn in a step: its orientation is not to be trusted, how it moves is", world_.bodies[body].name);

@@ -10,8 +10,9 @@
 
 #include "framework/core/decompositions.h"
 #include "framework/core/error.h"
+#include "framework/core/numbers.h"
 #include "framework/dynamics/anchors.h"
-#include "framework/dynamics/invariants.h"
+#include "framework/effects/invariants.h"
 #include "framework/engines/base/guarded_laws.h"
 
 namespace tumble::engines {
@@ -52,13 +53,13 @@ double amplification_of_decay(const Laws& laws, double rate, double step) {
 }
 
 // What a joint holds cannot grow, and what it leaves free goes slower than the body alone: its rates say nothing.
-bool is_jointed(const World& world, int body) {
-  return std::any_of(world.joints.begin(), world.joints.end(), [&](const JointLink& joint) { return joint.a.body == body || joint.b.body == body; });
+bool is_jointed(const std::vector<effects::Carrier>& carriers, int body) {
+  return std::any_of(carriers.begin(), carriers.end(), [&](const effects::Carrier& one) { return one.length == 0.0 && (one.a.body == body || one.b.body == body); });
 }
 
-bool is_held_beside_its_centre(const World& world, int body) {
+bool is_held_beside_its_centre(const std::vector<effects::Carrier>& carriers, int body) {
   const auto beside = [&](const Anchor& anchor) { return anchor.body == body && !anchor.point_body.isZero(0.0); };
-  return std::any_of(world.rods.begin(), world.rods.end(), [&](const RodLink& rod) { return beside(rod.a) || beside(rod.b); });
+  return std::any_of(carriers.begin(), carriers.end(), [&](const effects::Carrier& one) { return one.length > 0.0 && (beside(one.a) || beside(one.b)); });
 }
 
 /// Largest size of the two eigenvalues; they are real where `discriminant` is not negative, else a conjugate pair.
@@ -95,18 +96,21 @@ double largest_stable_step(const Laws& laws, double frequency, double damping, d
 
 std::vector<StepLimit> judge_decays(const World& world, const Laws& laws, double step) {
   std::vector<StepLimit> limits;
-  for (const Drag& drag : world.drags) {
-    const WorldBody& body = world.bodies[drag.body];
-    if (body.immovable() || is_jointed(world, drag.body)) continue;
+  std::vector<effects::Drain> drains;
+  for (const effects::Effect* effect : effects::all()) effect->append_drains(world, drains);
+  const Carriers carriers(world);
+  for (const effects::Drain& drain : drains) {
+    const WorldBody& body = world.bodies[drain.body];
+    if (body.immovable() || is_jointed(carriers.all, drain.body)) continue;
     const double least_moment = 1.0 / symmetric_eigen(body.inertia.inverse_inertia_body).values.maxCoeff();
-    const double turning = is_held_beside_its_centre(world, drag.body) ? 0.0 : drag.angular / least_moment;
-    for (const auto& [rate, way] : {std::pair{drag.linear * body.inertia.inverse_mass, "velocity"}, std::pair{turning, "turning"}}) {
+    const double turning = is_held_beside_its_centre(carriers.all, drain.body) ? 0.0 : drain.angular / least_moment;
+    for (const auto& [rate, way] : {std::pair{drain.linear * body.inertia.inverse_mass, "velocity"}, std::pair{turning, "turning"}}) {
       const auto amplified = [&laws, rate = rate](double h) { return amplification_of_decay(laws, rate, h); };
       if (amplified(step) > 1.0 + kNotAtAll)
-        limits.push_back({fmt::format("what the drag of body '{}' takes from its {} ({:.4g} 1/s)", body.name, way, rate), amplified(step), largest_stable_step(amplified, rate, step), "less drag"});
+        limits.push_back({fmt::format("what {} takes from its {} ({:.4g} 1/s)", drain.of, way, rate), amplified(step), largest_stable_step(amplified, rate, step), drain.remedy});
     }
   }
-  if (!world.stabilisation || world.stabilisation->kind != scene::StabilisationKind::kBaumgarte || (world.rods.empty() && world.joints.empty()) || !laws.baumgarte_acceleration) return limits;
+  if (!world.stabilisation || world.stabilisation->kind != scene::StabilisationKind::kBaumgarte || !laws.baumgarte_acceleration) return limits;
   const double T = world.stabilisation->time_constant_s;
   const double stiffness = -laws.baumgarte_acceleration(1.0, 0.0, T), damping = -laws.baumgarte_acceleration(0.0, 1.0, T);
   if (!(stiffness > 0) || !(damping >= 0)) return limits;   // a wrong law is no matter of the step
@@ -117,11 +121,11 @@ std::vector<StepLimit> judge_decays(const World& world, const Laws& laws, double
   return limits;
 }
 
-std::optional<StepLimit> judge_rods(const World& world, const std::vector<double>& tensions, const Laws& laws, double step) {
+std::optional<StepLimit> judge_rods(const World& world, const std::vector<effects::Carrier>& carriers, const std::vector<double>& loads, const Laws& laws, double step) {
   constexpr std::size_t kMostBodies = 100;   // a dense eigenvalue problem of three times that
   const auto beside_centre = [](const Anchor& anchor) { return anchor.body >= 0 && !anchor.point_body.isZero(0.0); };
-  const auto is_beside = [&](const RodLink& rod) { return beside_centre(rod.a) || beside_centre(rod.b); };
-  if (world.rods.empty() || !world.joints.empty() || std::any_of(world.rods.begin(), world.rods.end(), is_beside)) return std::nullopt;
+  const auto is_other = [&](const effects::Carrier& one) { return one.length == 0.0 || beside_centre(one.a) || beside_centre(one.b); };
+  if (carriers.empty() || std::any_of(carriers.begin(), carriers.end(), is_other)) return std::nullopt;
   std::vector<RigidBodyState> states;
   std::vector<Eigen::Index> place(world.bodies.size(), -1);
   Eigen::Index n = 0;
@@ -129,9 +133,9 @@ std::optional<StepLimit> judge_rods(const World& world, const std::vector<double
   // How hard rods hold each body, by blocks of K (Gershgorin): the most bounds the swings without rods, which are faster than those with them. Mostly that will do.
   std::vector<double> held(world.bodies.size(), 0.0);
   const auto lightness = [&](const Anchor& anchor) { return anchor.body < 0 ? 0.0 : std::sqrt(world.bodies[anchor.body].inertia.inverse_mass); };
-  for (std::size_t k = 0; k < world.rods.size(); ++k) {
-    const RodLink& rod = world.rods[k];
-    const double stiffness = std::abs(tensions[k]) / rod.length, both = lightness(rod.a) + lightness(rod.b);
+  for (std::size_t k = 0; k < carriers.size(); ++k) {
+    const effects::Carrier& rod = carriers[k];
+    const double stiffness = std::abs(loads[k]) / rod.length, both = lightness(rod.a) + lightness(rod.b);
     if (rod.a.body >= 0) held[rod.a.body] += stiffness * lightness(rod.a) * both;
     if (rod.b.body >= 0) held[rod.b.body] += stiffness * lightness(rod.b) * both;
   }
@@ -148,13 +152,13 @@ std::optional<StepLimit> judge_rods(const World& world, const std::vector<double
   const auto end_of = [&](const Anchor& anchor) -> Eigen::Index { return anchor.body < 0 ? -1 : place[anchor.body]; };
   // In places times sqrt(m): A = M^-1/2 K M^-1/2, the rods' rows J M^-1/2.
   std::vector<std::size_t> rods;
-  for (std::size_t k = 0; k < world.rods.size(); ++k)
-    if (end_of(world.rods[k].a) >= 0 || end_of(world.rods[k].b) >= 0) rods.push_back(k);
+  for (std::size_t k = 0; k < carriers.size(); ++k)
+    if (end_of(carriers[k].a) >= 0 || end_of(carriers[k].b) >= 0) rods.push_back(k);
   MatrixXd A = MatrixXd::Zero(3 * n, 3 * n), J = MatrixXd::Zero(static_cast<Eigen::Index>(rods.size()), 3 * n);
   for (Eigen::Index k = 0; k < J.rows(); ++k) {
-    const RodLink& rod = world.rods[rods[static_cast<std::size_t>(k)]];
+    const effects::Carrier& rod = carriers[rods[static_cast<std::size_t>(k)]];
     const Vector3d along = (anchor_point(rod.a, states) - anchor_point(rod.b, states)).normalized();
-    const Matrix3d across = tensions[rods[static_cast<std::size_t>(k)]] / rod.length * (Matrix3d::Identity() - along * along.transpose());
+    const Matrix3d across = loads[rods[static_cast<std::size_t>(k)]] / rod.length * (Matrix3d::Identity() - along * along.transpose());
     const auto root = [&](const Anchor& anchor) { return std::sqrt(world.bodies[anchor.body].inertia.inverse_mass); };
     const Eigen::Index a = end_of(rod.a), b = end_of(rod.b);
     if (a >= 0) A.block<3, 3>(a, a) += root(rod.a) * root(rod.a) * across, J.block<1, 3>(k, a) = root(rod.a) * along.transpose();
@@ -201,19 +205,23 @@ void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfAR
   if (const auto dampers = judge_dampers(world, laws, steps.step)) refuse_or_tell(*dampers, laws, steps, where, notices);
   const auto springs = judge_springs(world, laws, steps.step);
   if (springs && springs->amplification > 1.0 && !springs->is_overdamped())
-    refuse_or_tell({fmt::format("the swing of spring '{}' ({:.4g} rad/s where the run starts)", springs->spring, springs->angular_frequency), springs->amplification, springs->largest_step,
-                    springs->largest_step > 0 ? "a softer spring or more damping" : "damp the spring"},
+    refuse_or_tell({fmt::format("the swing of {} ({:.4g} rad/s where the run starts)", springs->of, springs->angular_frequency), springs->amplification, springs->largest_step,
+                    springs->largest_step > 0 ? springs->remedy : springs->last_remedy},
                    laws, steps, where, notices);
   for (const StepLimit& limit : judge_decays(world, laws, steps.step)) refuse_or_tell(limit, laws, steps, where, notices);
 } catch (const StoppedRun&) {
   // A law that fails here fails in the first step too, which says of whom.
 }
 
-std::optional<double> tell_of_unstable_links(const World& world, const std::vector<double>& tensions, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices) try {
-  LinkLoads loads = largest_link_loads(world);
-  for (std::size_t k = 0; k < std::min(tensions.size(), loads.rods.size()); ++k) loads.rods[k] = std::max(loads.rods[k], std::abs(tensions[k]));
+std::optional<double> tell_of_unstable_links(const World& world, const LinkForces& at_start, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices) try {
+  const Carriers carriers(world);
+  LinkLoads loads = largest_link_loads(world, carriers.all);
+  for (std::size_t k = 0; k < carriers.all.size(); ++k) {
+    const std::vector<double>& pulls = at_start.of_effects[carriers.effect[k]];
+    if (const auto entry = static_cast<std::size_t>(carriers.all[k].entry); carriers.all[k].length > 0.0 && entry < pulls.size()) loads.loads[k] = std::max(loads.loads[k], std::abs(pulls[entry]));
+  }
   std::optional<double> named;
-  for (std::optional<StepLimit> limit : {judge_rods(world, loads.rods, laws, steps.step), judge_joints(world, loads, laws, steps.step)}) {
+  for (std::optional<StepLimit> limit : {judge_rods(world, carriers.all, loads.loads, laws, steps.step), judge_joints(world, carriers.all, loads.loads, laws, steps.step)}) {
     // A method that lengthens every swing is told of by what it does to energy.
     if (!limit || !(limit->largest_step > 0) || !(growth_over(steps, limit->amplification) > std::log(kRuin))) continue;
     if (loads.by_falling) limit->largest_step *= kJerk;
@@ -241,83 +249,80 @@ int body_with_most_energy(const World& world, const std::vector<RigidBodyState>&
   return fastest;
 }
 
-// What moves, and what springs hold. [J]
+// What moves, and what effects have stored. [J]
 double energy_at_work(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums) {
   double scale = sums.kinetic_energy;
-  for (const SpringLink& link : world.springs) {
-    const double stretch = (anchor_point(link.a, states) - anchor_point(link.b, states)).norm() - link.spring.rest_length;
-    scale += 0.5 * link.spring.stiffness * stretch * stretch;
-  }
+  for (const effects::Effect* effect : effects::all())
+    if (effect->traits().stores_energy) effect->add_potential_energy(world, states, scale);
   return scale;
 }
+
+// The terms that the energy is a sum of: what its rounding goes by. [J]
+double terms_of_energy(const World& world, const std::vector<RigidBodyState>& states, double kinetic) {
+  double terms = kinetic;
+  for (const effects::Effect* effect : effects::all()) effect->add_energy_terms(world, states, terms);
+  return terms;
+}
+
+// Of the bodies' sizes: how far what lies is lifted where it is kept apart. Shells are 1e-10 of the smaller body, those of heaps 1e-4.
+constexpr double kLifted = 1e-5, kLiftedInHeaps = 1e-3;
 
 }  // namespace
 
 // What the world has to give: its kinetic energy, what its springs hold, and (available()) how far it falls.
 void EnergyWatch::begin(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums) {
-  // Of the size of a body: lying bodies are let down and lifted by less where they are kept apart.
-  constexpr double kLifted = 1e-3;
   first_energy_ = least_energy_ = sums.kinetic_energy + sums.potential_energy;
+  constexpr double kCorners = 8.0;   // what does not bounce is sent off at the rest speed, a box by each of its corners
   lowest_potential_ = first_potential_ = sums.potential_energy;
   scale_ = energy_at_work(world, states, sums);
   const double gravity = world.gravity_world ? world.gravity_world->norm() : 0.0;
   for (const WorldBody& body : world.bodies) {
     if (body.immovable()) continue;
     const double size = std::sqrt(0.5 * body.inertia.inertia_body.trace() * body.inertia.inverse_mass);   // of gyration [m]
-    unseen_ += body.inertia.mass * (rest_speed_ * rest_speed_ + kLifted * gravity * size);
+    of_rest_speed_ += kCorners * body.inertia.mass * rest_speed_ * rest_speed_;
+    of_sizes_ += body.inertia.mass * gravity * size;
   }
 }
 
-void EnergyWatch::note_rise(double time, double energy, const World& world, const std::vector<RigidBodyState>& states) {
+void EnergyWatch::note_rise(double time, double energy, double kinetic, const World& world, const std::vector<RigidBodyState>& states) {
   constexpr double kFarther = 1.1;   // times the last: what is kept of a rise that goes on
+  constexpr double kDeviations = 8.0;   // roundings of steps are independent of each other: their sum goes with the root of their number
   const double rise = energy - least_energy_;
   least_energy_ = std::min(least_energy_, energy);
-  if (!(rise > unseen_) || (!rises_.empty() && !(rise > kFarther * rises_.back().size))) return;
+  if (!(rise > unseen(kLifted)) || (!rises_.empty() && !(rise > kFarther * rises_.back().size))) return;
+  rounding_ = std::max(rounding_, kDeviations * kEpsilon * (1.0 + std::sqrt(time / step_)) * terms_of_energy(world, states, kinetic));
   rises_.push_back({time, rise, body_with_most_energy(world, states)});
 }
 
-void EnergyWatch::tell(const World& world, RunWatch& watch) const {
-  const double whole = available() + unseen_ / kEnergyRises;
+void EnergyWatch::tell(const World& world, RunCounters& counters) const {
+  const double whole = available() + (unseen(counters.heap_steps > 0 ? kLiftedInHeaps : kLifted) + rounding_) / kEnergyRises;
   for (const Rise& rise : rises_)
-    watch.note(RunWatch::Kind::kEnergyRises, fmt::format("'{}'", world.bodies[static_cast<std::size_t>(rise.body)].name), {rise.size / whole, kEnergyRises, rise.time, step_});
+    counters.watch.note(RunWatch::Kind::kEnergyRises, fmt::format("'{}'", world.bodies[static_cast<std::size_t>(rise.body)].name), {rise.size / whole, kEnergyRises, rise.time, step_});
 }
 
-// What point forces have done since the last look (force times the way of their point, exact where they are constant), and the most that motors can
-// have done: their largest torque over how far the hinge turned at the faster of its two rates, twice for what lies between.
-double EnergyWatch::work_since(double time, const World& world, const std::vector<RigidBodyState>& states) {
-  double work = 0.0;
-  pushed_body_.resize(world.point_forces.size(), unset_vector());
-  pushed_world_.resize(world.point_forces.size(), unset_vector());
-  for (std::size_t k = 0; k < world.point_forces.size(); ++k) {
-    const PointForce& force = world.point_forces[k];
-    if (time < force.start) continue;
-    const RigidBodyState& state = states[static_cast<std::size_t>(force.body)];
-    if (std::isnan(pushed_body_[k].x())) pushed_body_[k] = state.world_from_body.conjugate() * (force.point_world - state.com_world);
-    const Vector3d now = state.com_world + state.world_from_body * pushed_body_[k];
-    if (!std::isnan(pushed_world_[k].x()) && time <= force.end) work += force.force_world.dot(now - pushed_world_[k]);
-    pushed_world_[k] = now;
+// What effects have brought in since the last look, at most.
+double EnergyWatch::work_since(double time, const std::vector<RigidBodyState>& states) {
+  double work = 0.0, most = 0.0;
+  for (const auto& meter : meters_) {
+    const effects::Work since = meter->since_last(time, states);
+    work += since.done;
+    most += since.most;
   }
-  double most = 0.0;
-  turning_.resize(world.motors.size(), 0.0);
-  for (std::size_t k = 0; k < world.motors.size(); ++k) {
-    const JointLink& joint = world.joints[static_cast<std::size_t>(world.motors[k].joint)];
-    const auto omega = [&](int body) { return body < 0 ? Vector3d(Vector3d::Zero()) : omega_of(states[static_cast<std::size_t>(body)], world.bodies[static_cast<std::size_t>(body)].inertia); };
-    const double now = (omega(joint.a.body) - omega(joint.b.body)).norm();
-    most += 2.0 * world.motors[k].law.largest_torque_n_m * std::max(now, turning_[k]) * (time - last_look_);
-    turning_[k] = now;
-  }
-  last_look_ = time;
   given_ += std::abs(work) + most;
   return work + most;
 }
 
 std::optional<Runaway> EnergyWatch::look(double time, const World& world, const std::vector<RigidBodyState>& states) {
   const auto driven = [](const WorldBody& b) { return b.immovable() && !(b.motion.velocity_m_s.isZero(0.0) && b.motion.amplitude_m.isZero(0.0)); };
-  const auto is_unlimited = [](const Motor& motor) { return !std::isfinite(motor.law.largest_torque_n_m); };
-  if (std::any_of(world.motors.begin(), world.motors.end(), is_unlimited)) return std::nullopt;
-  if ((!sees_switches_ && (!world.point_forces.empty() || !world.motors.empty())) || std::any_of(world.bodies.begin(), world.bodies.end(), driven)) return std::nullopt;
+  if (!has_meters_) {
+    has_meters_ = true;
+    for (const effects::Effect* effect : effects::all())
+      if (auto meter = effect->work_meter(world)) meters_.push_back(std::move(meter));
+  }
+  if (std::any_of(meters_.begin(), meters_.end(), [](const auto& meter) { return meter->is_unlimited(); })) return std::nullopt;
+  if ((!sees_switches_ && !meters_.empty()) || std::any_of(world.bodies.begin(), world.bodies.end(), driven)) return std::nullopt;
   const Invariants sums = invariants_of(world, states);
-  work_ += work_since(time, world, states);
+  work_ += work_since(time, states);
   const double energy = sums.kinetic_energy + sums.potential_energy - work_;
   if (std::isnan(first_energy_)) begin(world, states, sums);
   else if (std::exchange(is_first_step_, false)) {   // methods whose energy swings, as symplectic ones' does, have begun to by now: that is no runaway
@@ -325,11 +330,19 @@ std::optional<Runaway> EnergyWatch::look(double time, const World& world, const 
     scale_ = std::max(scale_, energy_at_work(world, states, sums));
   }
   lowest_potential_ = std::min(lowest_potential_, sums.potential_energy);
-  note_rise(time, energy, world, states);
-  if (energy - first_energy_ <= kRunaway * available() + unseen_ + kRoundingOfRest * std::abs(first_energy_)) return std::nullopt;
+  note_rise(time, energy, sums.kinetic_energy, world, states);
+  if (energy - first_energy_ <= kRunaway * available() + unseen(kLiftedInHeaps) + kRoundingOfRest * std::abs(first_energy_)) return std::nullopt;
   if (available() == 0.0 && first_energy_ == 0.0 && !(sums.kinetic_energy > 0)) return std::nullopt;
   return Runaway{body_with_most_energy(world, states), energy, first_energy_, by_blows_};
 }
+
+namespace {
+
+bool brings_energy(const World& world) {
+  return std::any_of(effects::all().begin(), effects::all().end(), [&](const effects::Effect* effect) { return effect->work_meter(world) != nullptr; });
+}
+
+}  // namespace
 
 std::string told_runaway(double time, const World& world, const Runaway& runaway, const ActingForces& acting, const Laws& laws) {
   std::string effect;
@@ -339,12 +352,9 @@ std::string told_runaway(double time, const World& world, const Runaway& runaway
     hardest = std::abs(force);
     effect = fmt::format("{}, with {:.3g} N", words(), hardest);
   };
-  for (std::size_t k = 0; k < acting.springs.size(); ++k)
-    pulls(world.springs[k].a.body, world.springs[k].b.body, acting.springs[k], [&] { return fmt::format("spring '{}' (spring_force of {})", world.springs[k].name, laws.constraint_source); });
-  for (std::size_t k = 0; k < acting.rods.size(); ++k)
-    pulls(world.rods[k].a.body, world.rods[k].b.body, acting.rods[k], [&] { return fmt::format("rod '{}' (rod_row, constraint_multipliers, constraint_correction of {})", world.rods[k].name, laws.constraint_source); });
-  for (std::size_t k = 0; k < acting.joints.size(); ++k)
-    pulls(world.joints[k].a.body, world.joints[k].b.body, acting.joints[k], [&] { return fmt::format("joint '{}' (constraint_multipliers, constraint_correction of {})", world.joints[k].name, laws.constraint_source); });
+  std::vector<effects::Pull> all;
+  for (std::size_t k = 0; k < effects::all().size(); ++k) effects::all()[k]->append_pulls(world, acting.states, acting.links.of_effects[k], laws, all);
+  for (const effects::Pull& pull : all) pulls(pull.body_a, pull.body_b, pull.force, [&] { return pull.words; });
   for (const ContactPoint& contact : acting.contacts)
     pulls(contact.body_a, contact.body_b, contact.force_on_a_world.norm(), [&] {
       const int other = contact.body_a == runaway.body ? contact.body_b : contact.body_a;
@@ -354,7 +364,7 @@ std::string told_runaway(double time, const World& world, const Runaway& runaway
   else if (effect.empty()) effect = fmt::format("integration (integrate_step, state_derivative of {})", laws.integrator_source);
   return fmt::format("at t = {:.6f} s, body '{}': runaway energy: the world has {:.4g} J, it began with {:.4g} J{}. Most likely it comes from {}; a shorter step or another method "
                      "(here {}) is needed, or that is wrong", time, world.bodies[static_cast<std::size_t>(runaway.body)].name, runaway.energy, runaway.first_energy,
-                     world.point_forces.empty() && world.motors.empty() ? " and nothing brings energy in" : ", without what forces and motors bring in", effect, laws.integrator_source);
+                     !brings_energy(world) ? " and nothing brings energy in" : ", without what forces and motors bring in", effect, laws.integrator_source);
 }
 
 }  // namespace tumble::engines

@@ -1,14 +1,17 @@
-/// Whether a step is within the range in which the laws' method can follow a world: its springs, its drag, Baumgarte's term, light bodies on rods.
+/// Whether a step is within the range in which the laws' method can follow a world: what draws its bodies back or slows them down, Baumgarte's term, light bodies on rods.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "framework/dynamics/invariants.h"
 #include "framework/dynamics/laws.h"
 #include "framework/dynamics/world.h"
-#include "framework/engines/base/run_watch.h"
+#include "framework/effects/invariants.h"
+#include "framework/effects/registry.h"
+#include "framework/engines/base/run_counters.h"
+#include "framework/engines/stepping/linked_bodies.h"
 #include "framework/trajectory/trajectory.h"
 
 namespace tumble::engines {
@@ -24,18 +27,20 @@ inline constexpr double kNotAtAll = 1e-9;
 double largest_stable_step(const Laws& laws, double angular_frequency, double damping, double step);
 
 struct SpringStability {
-  std::string spring;              // the one that takes most part in the fastest swing
+  std::string of;                  // what takes most part in the fastest swing, in words: "spring 'a'"
   double angular_frequency;        // of that swing where the run starts [rad/s]
   double damping;                  // c of  y'' = -w^2 y - c y'  for it [1/s]
   double amplification;            // a step
   double largest_step;             // that does not lengthen it [s]; 0 where none does not
 
+  std::string remedy, last_remedy; // beside a shorter step; where no step does
+
   bool is_overdamped() const { return damping > 2.0 * angular_frequency; }   // no swing: its damper's matter
 };
 
-/// The fastest swing of the springs of a world where it starts, along the springs, with what rods and joints hold kept still: the eigenvalues of
+/// The fastest swing of what draws the bodies of a world back where it starts (springs), along these directions, with what rods and joints hold kept still: the eigenvalues of
 /// J N J^T K, where N is M^-1 without the directions that rods and joints do not allow.
-/// @return nothing for a world without springs that can stretch. Where more than 60 bodies are linked, springs on bodies that rods or joints
+/// @return nothing for a world in which nothing does. Where more than 60 bodies are linked, springs on bodies that rods or joints
 ///         hold are not judged
 std::optional<SpringStability> judge_springs(const World& world, const Laws& laws, double step);
 
@@ -52,45 +57,53 @@ struct StepLimit {
 /// @return nothing where the method follows it; the same are not judged
 std::optional<StepLimit> judge_dampers(const World& world, const Laws& laws, double step);
 
-/// What drag takes from a body's velocities, y' = -c/m y and -c/I y (the least moment), and what Baumgarte's term takes from errors of rods and
+/// What effects take evenly from a body's velocities (effects::Drain), y' = -c/m y and -c/I y (the least moment), and what Baumgarte's term takes from errors of rods and
 /// joints, e'' = -k e - c e' with the laws' own gains. Those that the method lengthens at this step.
 std::vector<StepLimit> judge_decays(const World& world, const Laws& laws, double step);
 
 /// The fastest swing of bodies across rods that pull: M x'' = -K x, K = sum of (tension / length) (1 - n n^T), where the rods keep their lengths.
 /// A light body between a ceiling and a heavy one has the highest: about sqrt(M g (1/l1 + 1/l2) / m).
-/// @param tensions  of the world's rods where the run starts [N]
+/// @param carriers  of the world: those that keep a length are its rods  @param loads  by carrier: their tensions [N]
 /// Of more than a hundred bodies the hundred that are held hardest are looked at, the others kept still: a lower bound of the fastest swing. The largest
 /// step comes from an upper bound then.
 /// @return nothing where the method does not lengthen it, and where rods end beside centres of mass or joints are there too: such worlds are not judged
-std::optional<StepLimit> judge_rods(const World& world, const std::vector<double>& tensions, const Laws& laws, double step);
+std::optional<StepLimit> judge_rods(const World& world, const std::vector<effects::Carrier>& carriers, const std::vector<double>& loads, const Laws& laws, double step);
 
-/// What rods and joints of a world carry, by its lists. [N]
+/// What carries in a world, rods and joints: in the order of effects and their entries.
+struct Carriers {
+  explicit Carriers(const World& world);
+
+  std::vector<effects::Carrier> all;
+  std::vector<std::size_t> effect;   // by carrier: its effect's place in effects::all()
+};
+
+/// What they carry. [N]
 struct LinkLoads {
-  std::vector<double> rods, joints;
+  std::vector<double> loads;       // by carrier
   bool by_falling = false;         // some hangs loose first, or carries more by what has fallen than by what hangs on it: it comes taut with a jerk
 };
 
 /// About the most that each will carry in a run by gravity and what moves at the start: the weight below it, and what turns that round where it has
 /// fallen as far as its links let it. 0 for links of which none leads to anything that does not move.
-LinkLoads largest_link_loads(const World& world);
+LinkLoads largest_link_loads(const World& world, const std::vector<effects::Carrier>& carriers);
 
 /// The fastest swing of bodies between joints that carry these loads, an upper bound: w^2 = max sum of load times arm / moment of inertia.
 /// @return nothing where the method does not lengthen it
-std::optional<StepLimit> judge_joints(const World& world, const LinkLoads& loads, const Laws& laws, double step);
+std::optional<StepLimit> judge_joints(const World& world, const std::vector<effects::Carrier>& carriers, const std::vector<double>& loads, const Laws& laws, double step);
 
 struct StepsOfARun {
   double step, duration;           // [s]
 };
 
-/// Refuses a run in which the method would lengthen a thousand times what springs, drag or Baumgarte's term take part in; tells of one where it can be seen.
-/// @throws UserError naming the spring, body or term, what happens to it and the largest step that does not do it
+/// Refuses a run in which the method would lengthen a thousand times what effects or Baumgarte's term take part in; tells of one where it can be seen.
+/// @throws UserError naming the effect, the body or the term, what happens to it and the largest step that does not do it
 void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfARun& steps, const std::string& where, std::vector<std::string>& notices);
 
 /// Tells of rods and joints whose bodies swing too fast for the step of a method that has a range, with the step that follows them all through the run. Not
 /// refused: what hangs straight does not swing.
-/// @param tensions  of the world's rods where the run starts, where they are known [N]
+/// @param at_start  what rods and joints pull with where the run starts
 /// @return that step, where one is told [s]
-std::optional<double> tell_of_unstable_links(const World& world, const std::vector<double>& tensions, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices);
+std::optional<double> tell_of_unstable_links(const World& world, const LinkForces& at_start, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices);
 
 /// Energy that nothing can have brought in.
 struct Runaway {
@@ -103,7 +116,7 @@ struct Runaway {
 class EnergyWatch {
  public:
   /// @param rest_speed  below which impacts may do as they like: so little energy is not asked for [m/s];  @param step  of the run [s]
-  /// @param sees_switches  whether it looks at each instant at which a point force begins or ends: else worlds with such forces, and with motors, go unwatched
+  /// @param sees_switches  whether it looks at each instant at which a force begins or ends: else worlds with effects that bring energy in go unwatched
   EnergyWatch(double rest_speed, double step, bool sees_switches) : rest_speed_(rest_speed), step_(step), sees_switches_(sees_switches) {}
 
   /// An impact has taken place: what it did to the energy, as measured; else the work j (u + u') / 2 of its impulse.
@@ -111,10 +124,10 @@ class EnergyWatch {
     if (event.kind != EventKind::kCollision) return;
     by_blows_ += event.energy_change == event.energy_change ? event.energy_change : 0.5 * event.impulse * (event.normal_velocity_before + event.normal_velocity_after);
   }
-  /// @return nothing while all is well, and for worlds that moving walls, or motors without a largest torque, drive
+  /// @return nothing while all is well, and for worlds that moving walls, or effects that may bring in any amount, drive
   std::optional<Runaway> look(double time, const World& world, const std::vector<RigidBodyState>& states);
   /// Notes what energy has risen by above the least it has been, where that is more than steps leave of all that the world had to give.
-  void tell(const World& world, RunWatch& watch) const;
+  void tell(const World& world, RunCounters& counters) const;
 
  private:
   struct Rise {
@@ -122,23 +135,27 @@ class EnergyWatch {
     int body;                      // that had most of the world's energy then
   };
   void begin(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums);
-  double work_since(double time, const World& world, const std::vector<RigidBodyState>& states);
-  void note_rise(double time, double energy, const World& world, const std::vector<RigidBodyState>& states);
+  double work_since(double time, const std::vector<RigidBodyState>& states);
+  void note_rise(double time, double energy, double kinetic, const World& world, const std::vector<RigidBodyState>& states);
+  /// What the model itself is free to make: what moves slower than the rest speed, and lies, is lifted by this part of its size. [J]
+  double unseen(double lifted) const { return of_rest_speed_ + lifted * of_sizes_; }
   double available() const { return scale_ + given_ + (first_potential_ - lowest_potential_); }
 
   double rest_speed_, step_;
   bool sees_switches_, is_first_step_ = true;
-  std::vector<Vector3d> pushed_body_, pushed_world_;   // of each point force, where it acts: body frame, and where that was at the last look [m]
-  std::vector<double> turning_;                        // of each motor's hinge at the last look [rad/s]
-  double last_look_ = 0.0, work_ = 0.0, given_ = 0.0;  // [s]; what forces and, at most, motors have brought in, and without its sign [J]
+  std::vector<std::unique_ptr<effects::WorkMeter>> meters_;     // of the effects that bring energy into the world, from the first look on
+  bool has_meters_ = false;
+  double work_ = 0.0, given_ = 0.0;                    // what effects have brought in, at most, and without its sign [J]
   double first_energy_ = kUnset, scale_ = 0.0, first_potential_ = 0.0, lowest_potential_ = 0.0, by_blows_ = 0.0;   // [J]
-  double least_energy_ = 0.0, unseen_ = 0.0;   // the least so far; what the model itself is free to make [J]
+  double least_energy_ = 0.0, of_rest_speed_ = 0.0, of_sizes_ = 0.0;   // the least so far; of all bodies m v^2 of the rest speed, and m g size [J]
+  double rounding_ = 0.0;          // what it leaves of an energy, where one has risen [J]
   std::vector<Rise> rises_;        // each larger than the one before
 };
 
 /// What acts on bodies at an instant.
 struct ActingForces {
-  const std::vector<double>&springs, &rods, &joints;   // by the world's lists [N]
+  const std::vector<RigidBodyState>& states;
+  const LinkForces& links;
   const std::vector<ContactPoint>& contacts;
 };
 

@@ -19,17 +19,10 @@ namespace {
 
 constexpr double kTaut = 0.999;   // of a line's length: what starts nearer to where it hangs than this falls before its links pull
 
-/// A rod or a joint, as far as both carry.
-struct Carrier {
-  Anchor a, b;
-  double length;             // between the anchors [m]
-  double* load;              // what is found [N]
-};
-
 /// Movable bodies as a tree that hangs from what does not move: each on the carrier by which it is nearest to it.
 class Hanging {
  public:
-  Hanging(const World& world, std::vector<Carrier>& carriers) : world_(world), carriers_(carriers), hung_(world.bodies.size()) {
+  Hanging(const World& world, const std::vector<effects::Carrier>& carriers) : world_(world), carriers_(carriers), hung_(world.bodies.size()) {
     for (const WorldBody& body : world.bodies) states_.push_back(body.state);
     ends_on_.resize(world.bodies.size());
     for (std::size_t k = 0; k < carriers.size(); ++k)
@@ -43,7 +36,8 @@ class Hanging {
   /// weight, they come taut with a jerk: what falls is turned round by a light body that takes all its energy and passes the line at  sqrt(M / m)  times its
   /// speed, so that the second part is so much larger.
   bool by_falling() const { return by_falling_; }
-  void find_loads() {
+  /// @param loads  by carrier
+  void find_loads(std::vector<double>& loads) {
     hang();
     const double gravity = world_.gravity_world ? world_.gravity_world->norm() : 0.0;
     double energy = 0.0;   // of all that hangs: kinetic, and what it can fall by
@@ -64,7 +58,7 @@ class Hanging {
       const double weight = mass[i] * gravity, swing = 2.0 * energy * mass[i] / std::max(moment[i], std::numeric_limits<double>::min());
       const bool is_jerked = swing > weight || hung_[i].distance < kTaut * hung_[i].depth;
       by_falling_ = by_falling_ || is_jerked;
-      *carriers_[hung_[i].carrier].load = weight + swing * (is_jerked ? std::sqrt(mass[i] / lighter_of(*body)) : 1.0);
+      loads[hung_[i].carrier] = weight + swing * (is_jerked ? std::sqrt(mass[i] / lighter_of(*body)) : 1.0);
     }
   }
 
@@ -124,7 +118,7 @@ class Hanging {
   }
 
   const World& world_;
-  std::vector<Carrier>& carriers_;
+  const std::vector<effects::Carrier>& carriers_;
   std::vector<RigidBodyState> states_;
   std::vector<Hung> hung_;
   std::vector<std::vector<std::size_t>> ends_on_;   // by body
@@ -134,34 +128,36 @@ class Hanging {
 
 }  // namespace
 
-LinkLoads largest_link_loads(const World& world) {
-  LinkLoads loads{std::vector<double>(world.rods.size(), 0.0), std::vector<double>(world.joints.size(), 0.0)};
-  std::vector<Carrier> carriers;
-  for (std::size_t k = 0; k < world.rods.size(); ++k) carriers.push_back({world.rods[k].a, world.rods[k].b, world.rods[k].length, &loads.rods[k]});
-  for (std::size_t k = 0; k < world.joints.size(); ++k) carriers.push_back({world.joints[k].a, world.joints[k].b, 0.0, &loads.joints[k]});
-  if (carriers.empty()) return loads;
+Carriers::Carriers(const World& world) {
+  for (std::size_t k = 0; k < effects::all().size(); ++k) {
+    effects::all()[k]->append_carriers(world, all);
+    effect.resize(all.size(), k);
+  }
+}
+
+LinkLoads largest_link_loads(const World& world, const std::vector<effects::Carrier>& carriers) {
+  LinkLoads found{std::vector<double>(carriers.size(), 0.0)};
+  if (carriers.empty()) return found;
   Hanging hanging(world, carriers);
-  hanging.find_loads();
-  loads.by_falling = hanging.by_falling();
-  return loads;
+  hanging.find_loads(found.loads);
+  found.by_falling = hanging.by_falling();
+  return found;
 }
 
 // For turns by small angles of bodies that hang on each other the energy is at most  1/2 sum_i (sum_k T_k |r_ik|) angle_i^2  and the kinetic one at
 // least  1/2 sum_i I_i angle_i'^2, so that  w^2 <= max_i  sum_k T_k |r_ik| / I_i.  A row of equal bars reaches it: neighbours turn to and fro.
-std::optional<StepLimit> judge_joints(const World& world, const LinkLoads& loads, const Laws& laws, double step) {
+std::optional<StepLimit> judge_joints(const World& world, const std::vector<effects::Carrier>& carriers, const std::vector<double>& loads, const Laws& laws, double step) {
   std::vector<double> stiffness(world.bodies.size(), 0.0);
   std::vector<char> turns(world.bodies.size(), 0);
-  const auto add = [&](const Anchor& anchor, double load) {
-    if (anchor.body >= 0) stiffness[static_cast<std::size_t>(anchor.body)] += load * anchor.point_body.norm();
-  };
-  for (std::size_t k = 0; k < world.joints.size(); ++k) {
-    const JointLink& joint = world.joints[k];
-    for (const Anchor* anchor : {&joint.a, &joint.b}) {
-      add(*anchor, loads.joints[k]);
-      if (joint.kind != scene::JointKind::kWeld && anchor->body >= 0) turns[static_cast<std::size_t>(anchor->body)] = 1;
+  for (const bool of_joints : {true, false})   // sums in this order
+    for (std::size_t k = 0; k < carriers.size(); ++k) {
+      if ((carriers[k].length == 0.0) != of_joints) continue;
+      for (const Anchor* anchor : {&carriers[k].a, &carriers[k].b}) {
+        if (anchor->body < 0) continue;
+        stiffness[static_cast<std::size_t>(anchor->body)] += loads[k] * anchor->point_body.norm();
+        if (carriers[k].turns) turns[static_cast<std::size_t>(anchor->body)] = 1;
+      }
     }
-  }
-  for (std::size_t k = 0; k < world.rods.size(); ++k) add(world.rods[k].a, loads.rods[k]), add(world.rods[k].b, loads.rods[k]);
   double squared = 0.0;
   std::size_t fastest = 0;
   for (std::size_t i = 0; i < world.bodies.size(); ++i) {

@@ -1,14 +1,11 @@
 // The fastest swing of a world's springs, and what its dampers take soonest: eigenvalues where the run starts.
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include <Eigen/SparseCore>
 #include <fmt/format.h>
 
 #include "framework/core/decompositions.h"
-#include "framework/dynamics/anchors.h"
-#include "framework/dynamics/joint_rows.h"
 #include "framework/engines/stepping/stability.h"
 
 namespace tumble::engines {
@@ -22,15 +19,12 @@ constexpr Eigen::Index kMostHeldBodies = 60;
 /// The movable bodies that links end on, and their coordinates M^1/2 u, in which every direction is as easy to move.
 class LinkedCoordinates {
  public:
-  explicit LinkedCoordinates(const World& world) : world_(world), place_(world.bodies.size(), -1) {
-    for (const WorldBody& body : world.bodies) states_.push_back(body.state);
-    for (const SpringLink& spring : world.springs) take(spring.a.body), take(spring.b.body);
-    for (const RodLink& rod : world.rods) take(rod.a.body), take(rod.b.body);
-    for (const JointLink& joint : world.joints) take(joint.a.body), take(joint.b.body);
+  LinkedCoordinates(const World& world, const std::vector<effects::StiffRow>& rows, const std::vector<Constraint>& held) : world_(world), place_(world.bodies.size(), -1) {
+    for (const effects::StiffRow& row : rows) take(row.body_a), take(row.body_b);
+    for (const Constraint& row : held) take(row.body_a), take(row.body_b);
   }
 
   Eigen::Index size() const { return 6 * bodies_; }
-  const std::vector<RigidBodyState>& states() const { return states_; }
   Eigen::Index place(int body) const { return place_[static_cast<std::size_t>(body)]; }   // of its first coordinate
   bool is_movable(int body) const { return body >= 0 && place_[static_cast<std::size_t>(body)] >= 0; }
 
@@ -44,19 +38,6 @@ class LinkedCoordinates {
     row.segment<3>(place_[static_cast<std::size_t>(body)] + 3) += root * (R.transpose() * jacobian.tail<3>());
   }
 
-  /// How the distance of two anchors changes, which springs and rods share.
-  void add_distance(const Anchor& a, const Anchor& b, Eigen::Ref<VectorXd> row) const {
-    const Vector3d at_a = anchor_point(a, states_), at_b = anchor_point(b, states_);
-    const double length = (at_a - at_b).norm();
-    const Vector3d along = length > 0 ? Vector3d((at_a - at_b) / length) : Vector3d(Vector3d::UnitZ());
-    for (const auto& [anchor, point, sign] : {std::tuple{&a, at_a, 1.0}, std::tuple{&b, at_b, -1.0}}) {
-      if (!is_movable(anchor->body)) continue;
-      Vector6d jacobian;
-      jacobian << sign * along, sign * (point - world_.bodies[static_cast<std::size_t>(anchor->body)].state.com_world).cross(along);
-      add(anchor->body, jacobian, row);
-    }
-  }
-
  private:
   void take(int body) {
     if (body < 0 || world_.bodies[static_cast<std::size_t>(body)].immovable() || is_movable(body)) return;
@@ -64,71 +45,59 @@ class LinkedCoordinates {
   }
 
   const World& world_;
-  std::vector<RigidBodyState> states_;
   std::vector<Eigen::Index> place_;
   Eigen::Index bodies_ = 0;
 };
 
-Body at_rest(const World& world, int index) {
-  Body body{infinite_inertia(), Vector3d::Zero(), Quaterniond::Identity(), Vector3d::Zero(), Vector3d::Zero()};
-  if (index >= 0) {
-    const RigidBodyState& state = world.bodies[static_cast<std::size_t>(index)].state;
-    body.com_world = state.com_world;
-    body.world_from_body = state.world_from_body;
-  }
-  return body;
-}
-
 /// One column for each thing that rods and joints hold.
-MatrixXd held_directions(const World& world, const LinkedCoordinates& linked) {
-  std::vector<Constraint> joints;
-  for (const JointLink& joint : world.joints) append_joint_rows(joint, at_rest(world, joint.a.body), joint.a.body, at_rest(world, joint.b.body), joint.b.body, joints);
-  const Eigen::Index rods = static_cast<Eigen::Index>(world.rods.size());
-  MatrixXd held = MatrixXd::Zero(linked.size(), rods + static_cast<Eigen::Index>(joints.size()));
-  for (Eigen::Index k = 0; k < rods; ++k) linked.add_distance(world.rods[static_cast<std::size_t>(k)].a, world.rods[static_cast<std::size_t>(k)].b, held.col(k));
-  for (std::size_t k = 0; k < joints.size(); ++k) {
-    linked.add(joints[k].body_a, joints[k].row.jacobian_a, held.col(rods + static_cast<Eigen::Index>(k)));
-    linked.add(joints[k].body_b, joints[k].row.jacobian_b, held.col(rods + static_cast<Eigen::Index>(k)));
+MatrixXd held_directions(const std::vector<Constraint>& held, const LinkedCoordinates& linked) {
+  MatrixXd directions = MatrixXd::Zero(linked.size(), static_cast<Eigen::Index>(held.size()));
+  for (std::size_t k = 0; k < held.size(); ++k) {
+    linked.add(held[k].body_a, held[k].row.jacobian_a, directions.col(static_cast<Eigen::Index>(k)));
+    linked.add(held[k].body_b, held[k].row.jacobian_b, directions.col(static_cast<Eigen::Index>(k)));
   }
-  return held;
+  return directions;
 }
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-/// J M^-1/2 of each spring, one column a spring, without what rods and joints hold; zero for springs that are not judged.
-Sparse ways_of_springs(const World& world) {
-  const LinkedCoordinates linked(world);
-  const bool holds = !world.rods.empty() || !world.joints.empty(), is_small = linked.size() <= 6 * kMostHeldBodies;
+/// J M^-1/2 of each row, one column a row, without what rods and joints hold; zero for rows that are not judged.
+Sparse ways_of(const World& world, const std::vector<effects::StiffRow>& rows) {
+  std::vector<RigidBodyState> start;
+  for (const WorldBody& body : world.bodies) start.push_back(body.state);
+  std::vector<Constraint> holding;
+  for (const effects::Effect* effect : effects::all()) effect->append_held_rows(world, start, holding);
+  const LinkedCoordinates linked(world, rows, holding);
+  const bool is_small = linked.size() <= 6 * kMostHeldBodies;
   std::vector<bool> is_held(world.bodies.size(), false);
-  const auto note = [&](const Anchor& anchor) {
-    if (anchor.body >= 0) is_held[static_cast<std::size_t>(anchor.body)] = true;
-  };
-  for (const RodLink& rod : world.rods) note(rod.a), note(rod.b);
-  for (const JointLink& joint : world.joints) note(joint.a), note(joint.b);
+  for (const Constraint& row : holding)
+    for (const int body : {row.body_a, row.body_b})
+      if (body >= 0) is_held[static_cast<std::size_t>(body)] = true;
 
-  Sparse ways(linked.size(), static_cast<Eigen::Index>(world.springs.size()));
+  Sparse ways(linked.size(), static_cast<Eigen::Index>(rows.size()));
   VectorXd way = VectorXd::Zero(linked.size());
-  for (std::size_t k = 0; k < world.springs.size(); ++k) {
-    const SpringLink& spring = world.springs[k];
-    const auto held = [&](const Anchor& anchor) { return anchor.body >= 0 && is_held[static_cast<std::size_t>(anchor.body)]; };
-    if (!is_small && (held(spring.a) || held(spring.b))) continue;
-    linked.add_distance(spring.a, spring.b, way);
-    for (const Anchor* anchor : {&spring.a, &spring.b}) {
-      if (!linked.is_movable(anchor->body)) continue;
-      for (Eigen::Index i = linked.place(anchor->body); i < linked.place(anchor->body) + 6; ++i) {
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const effects::StiffRow& row = rows[k];
+    const auto held = [&](int body) { return body >= 0 && is_held[static_cast<std::size_t>(body)]; };
+    if (!is_small && (held(row.body_a) || held(row.body_b))) continue;
+    linked.add(row.body_a, row.jacobian_a, way);
+    linked.add(row.body_b, row.jacobian_b, way);
+    for (const int body : {row.body_a, row.body_b}) {
+      if (!linked.is_movable(body)) continue;
+      for (Eigen::Index i = linked.place(body); i < linked.place(body) + 6; ++i) {
         if (way[i] != 0.0) ways.coeffRef(i, static_cast<Eigen::Index>(k)) = way[i];
         way[i] = 0.0;
       }
     }
   }
-  if (!holds || !is_small) return ways;
-  const MatrixXd directions = held_directions(world, linked), free(ways);
+  if (holding.empty() || !is_small) return ways;
+  const MatrixXd directions = held_directions(holding, linked), free(ways);
   return MatrixXd(free - directions * least_squares(directions, free)).sparseView();   // redundant rows are allowed
 }
 
-/// The way of moving on which a diagonal D over the springs acts most: x^T J^T D J x where x^T M x = 1.
+/// The way of moving on which a diagonal D over the rows acts most: x^T J^T D J x where x^T M x = 1.
 struct MostActedOn {
-  Eigen::Index spring = 0;   // that takes most part in it
+  Eigen::Index row = 0;      // that takes most part in it
   double most = 0.0;         // of D
   double other = 0.0;        // the same sum of another diagonal
 };
@@ -138,52 +107,62 @@ MostActedOn most_acted_on(const Sparse& shared, const VectorXd& diagonal, const 
   const Sparse scaled = root.asDiagonal() * shared * root.asDiagonal();
   MostActedOn result;
   if (shared.rows() > kMostSprings) {
-    result.most = (scaled.cwiseAbs() * VectorXd::Ones(shared.rows())).maxCoeff(&result.spring);
-    result.other = diagonal[result.spring] > 0 ? result.most * other[result.spring] / diagonal[result.spring] : 0.0;
+    result.most = (scaled.cwiseAbs() * VectorXd::Ones(shared.rows())).maxCoeff(&result.row);
+    result.other = diagonal[result.row] > 0 ? result.most * other[result.row] / diagonal[result.row] : 0.0;
     return result;
   }
   const SymmetricEigen eigen = symmetric_eigen(MatrixXd(scaled));
   const VectorXd part = eigen.vectors.rightCols<1>();
   result.most = eigen.values[shared.rows() - 1];
-  part.cwiseAbs().maxCoeff(&result.spring);
+  part.cwiseAbs().maxCoeff(&result.row);
   if (result.most > 0) result.other = other.dot((shared * root.cwiseProduct(part)).cwiseAbs2()) / result.most;
   return result;
 }
 
-/// What springs share of the ways in which bodies can move, and their constants.
-struct Springs {
-  explicit Springs(const World& world) : stiffness(static_cast<Eigen::Index>(world.springs.size())), damping(stiffness.size()) {
-    const Sparse ways = ways_of_springs(world);
-    shared = ways.transpose() * ways;
+/// What draws bodies back where the run starts, what its directions share of the ways in which bodies can move, and its constants.
+struct StiffRows {
+  explicit StiffRows(const World& world) {
+    std::vector<RigidBodyState> start;
+    for (const WorldBody& body : world.bodies) start.push_back(body.state);
+    for (const effects::Effect* effect : effects::all()) effect->append_stiff_rows(world, start, rows);
+    stiffness.resize(static_cast<Eigen::Index>(rows.size()));
+    damping.resize(stiffness.size());
     for (Eigen::Index i = 0; i < stiffness.size(); ++i) {
-      stiffness[i] = world.springs[static_cast<std::size_t>(i)].spring.stiffness;
-      damping[i] = world.springs[static_cast<std::size_t>(i)].spring.damping;
+      stiffness[i] = rows[static_cast<std::size_t>(i)].stiffness;
+      damping[i] = rows[static_cast<std::size_t>(i)].damping;
     }
   }
+  Sparse shared(const World& world) const {
+    const Sparse ways = ways_of(world, rows);
+    return ways.transpose() * ways;
+  }
+  const effects::StiffRow& at(Eigen::Index k) const { return rows[static_cast<std::size_t>(k)]; }
+
+  std::vector<effects::StiffRow> rows;
   VectorXd stiffness, damping;
-  Sparse shared;
 };
 
 }  // namespace
 
 std::optional<SpringStability> judge_springs(const World& world, const Laws& laws, double step) {
-  if (world.springs.empty()) return std::nullopt;
-  const Springs springs(world);
-  const MostActedOn swing = most_acted_on(springs.shared, springs.stiffness, springs.damping);
+  const StiffRows springs(world);
+  if (springs.rows.empty()) return std::nullopt;
+  const MostActedOn swing = most_acted_on(springs.shared(world), springs.stiffness, springs.damping);
   if (!(swing.most > 0)) return std::nullopt;
   const double frequency = std::sqrt(swing.most), damping = swing.other;
-  return SpringStability{world.springs[static_cast<std::size_t>(swing.spring)].name, frequency, damping, amplification(laws, frequency, damping, step), largest_stable_step(laws, frequency, damping, step)};
+  const effects::StiffRow& most = springs.at(swing.row);
+  return SpringStability{most.of, frequency, damping, amplification(laws, frequency, damping, step), largest_stable_step(laws, frequency, damping, step), most.remedy, most.last_remedy};
 }
 
 std::optional<StepLimit> judge_dampers(const World& world, const Laws& laws, double step) {
-  if (std::none_of(world.springs.begin(), world.springs.end(), [](const SpringLink& link) { return link.spring.damping > 0; })) return std::nullopt;
-  const Springs springs(world);
-  const MostActedOn decay = most_acted_on(springs.shared, springs.damping, springs.stiffness);
+  const StiffRows springs(world);
+  if (std::none_of(springs.rows.begin(), springs.rows.end(), [](const effects::StiffRow& row) { return row.damping > 0; })) return std::nullopt;
+  const MostActedOn decay = most_acted_on(springs.shared(world), springs.damping, springs.stiffness);
   const double frequency = std::sqrt(decay.other), damping = decay.most;
   if (!(damping > 2.0 * frequency)) return std::nullopt;
   const double amplified = amplification(laws, frequency, damping, step);
   if (!(amplified > 1.0 + kNotAtAll)) return std::nullopt;
-  return StepLimit{fmt::format("what the damper of spring '{}' takes from velocities ({:.4g} 1/s where the run starts)", world.springs[static_cast<std::size_t>(decay.spring)].name, damping), amplified,
+  return StepLimit{fmt::format("what the damper of {} takes from velocities ({:.4g} 1/s where the run starts)", springs.at(decay.row).of, damping), amplified,
                    largest_stable_step(laws, frequency, damping, step), "less damping"};
 }
 

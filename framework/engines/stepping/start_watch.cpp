@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "framework/scene/words.h"
+
 namespace tumble::engines {
 namespace {
 
@@ -16,6 +18,15 @@ constexpr std::size_t kMostNamed = 3;
 
 std::string show(const Vector3d& v) { return fmt::format("({:.6g}, {:.6g}, {:.6g})", v.x(), v.y(), v.z()); }
 
+/// Rods and joints.
+std::vector<scene::Link> holding_links(const scene::Scene& scene) {
+  std::vector<scene::Link> all;
+  for (const scene::Words* words : scene::all_words())
+    if (words->traits().constrains)
+      for (scene::Link& link : words->links(scene)) all.push_back(std::move(link));
+  return all;
+}
+
 /// By body's name: the rods and joints that hold it.
 std::map<std::string, std::string> holders(const scene::Scene& scene) {
   std::map<std::string, std::string> all;
@@ -24,18 +35,18 @@ std::map<std::string, std::string> holders(const scene::Scene& scene) {
     std::string& links = all[body];
     links += (links.empty() ? "'" : ", '") + link + "'";
   };
-  for (const scene::RodSpec& rod : scene.rods) add(rod.a.body, rod.name), add(rod.b.body, rod.name);
-  for (const scene::JointSpec& joint : scene.joints) add(joint.body_a, joint.name), add(joint.body_b, joint.name);
+  for (const scene::Link& link : holding_links(scene)) add(link.a.body, link.name), add(link.b.body, link.name);
   return all;
 }
 
 /// How far the links of a scene reach from the bodies that they hold. [m]
 double longest_arm(const scene::Scene& scene) {
   double arm = 0.0;
-  for (const scene::RodSpec& rod : scene.rods) arm = std::max({arm, rod.length_m, rod.a.body.empty() ? 0.0 : rod.a.point_m.norm(), rod.b.body.empty() ? 0.0 : rod.b.point_m.norm()});
-  for (const scene::JointSpec& joint : scene.joints)
-    for (const scene::BodySpec& body : scene.bodies)
-      if (body.name == joint.body_a || body.name == joint.body_b) arm = std::max(arm, (joint.point_m - body.position_m).norm());
+  for (const scene::Link& link : holding_links(scene)) {
+    if (link.length_m > arm) arm = link.length_m;   // NaN is not
+    for (const scene::AnchorSpec* anchor : {&link.a, &link.b})
+      if (!anchor->body.empty()) arm = std::max(arm, anchor->point_m.norm());
+  }
   return arm;
 }
 
@@ -47,7 +58,7 @@ struct Change {
 }  // namespace
 
 void StartWatch::frame(const Frame& frame) {
-  if (!is_compared_ && (!scene_.rods.empty() || !scene_.joints.empty())) compare(frame);
+  if (!is_compared_ && scene::is_constrained(scene_)) compare(frame);
   is_compared_ = true;
   sink_.frame(frame);
 }

@@ -5,8 +5,6 @@
 namespace tumble::engines {
 namespace {
 
-constexpr double kSweptSlack = 1e-9;      // of lengths, on boxes: rounding hides nothing
-constexpr double kBoxRounding = 1e-14;  // of coordinates
 constexpr std::size_t kMostKept = 2, kFewKept = 16;   // of the boxes that are there, and so many: what a heap may hold
 
 }  // namespace
@@ -102,29 +100,8 @@ void TaughtProcess::push(double time, const Flight& flight, const EventKey& bega
   swept_.add(next_id_++, box);
 }
 
-// A parabola leaves the box of its ends by at most a s^2 / 8; a body that turns stays in the ball around it.
 Box TaughtProcess::box_of(const Flight& flight, double from, double to) const {
-  if (flight.passage >= 0) {
-    Box way;
-    world_.take_in_way(body_, flight, until_end(world_, flight, from), until_end(world_, flight, to), way.low, way.high);
-    const Vector3d margin = Vector3d::Constant(world_.radius(body_) * (1 + kSweptSlack)) + kSweptSlack * (way.high - way.low) + kBoxRounding * (way.low.cwiseAbs() + way.high.cwiseAbs());
-    return {way.low - margin, way.high + margin};
-  }
-  const double s = to - from;
-  const Vector3d first = world_.position(body_, flight, from), last = world_.position(body_, flight, to);
-  const Vector3d margin = world_.acceleration(body_, flight).cwiseAbs() * (s * s / 8) + Vector3d::Constant(world_.radius(body_) * (1 + kSweptSlack)) + kSweptSlack * (last - first).cwiseAbs() +
-                          kBoxRounding * (first.cwiseAbs() + last.cwiseAbs());
-  return {first.cwiseMin(last) - margin, first.cwiseMax(last) + margin};
-}
-
-// It goes its prescribed way: a straight line, and no farther off it than its amplitude.
-Box box_of_immovable(const FlightWorld& world, int body, double duration) {
-  const Box box = box_around(world.shape(body), world.first_flight(body).world_from_body);
-  if (world.is_half_space(body)) return box;
-  const scene::PrescribedMotion& m = world.world().bodies[static_cast<std::size_t>(body)].motion;
-  const Vector3d start = world.first_flight(body).com_world, end = start + m.velocity_m_s * duration;
-  const Vector3d reach = m.amplitude_m.cwiseAbs() + Vector3d::Constant(kSweptSlack * world.radius(body));
-  return {start.cwiseMin(end) + box.low - reach, start.cwiseMax(end) + box.high + reach};
+  return swept_box(world_, body_, flight, until_end(world_, flight, from), until_end(world_, flight, to));
 }
 
 }  // namespace tumble::engines

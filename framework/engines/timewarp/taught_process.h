@@ -13,6 +13,7 @@
 
 #include "framework/engines/events/flight_world.h"
 #include "framework/engines/timewarp/active_pairs.h"
+#include "framework/engines/timewarp/flight_boxes.h"
 
 namespace tumble::engines {
 
@@ -84,8 +85,5 @@ class TaughtProcess {
   SweptBox swept_;
   std::uint64_t next_id_ = 0;
 };
-
-/// Around an immovable body for a whole run; infinite for a half-space.
-Box box_of_immovable(const FlightWorld& world, int body, double duration);
 
 }  // namespace tumble::engines

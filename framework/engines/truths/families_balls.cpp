@@ -4,6 +4,7 @@
 
 #include "framework/engines/truths/families.h"
 #include "framework/engines/truths/memory_scene.h"
+#include "framework/scene/write_entries.h"
 
 namespace tumble::truths {
 namespace {
@@ -20,7 +21,7 @@ struct BallOnFloor {
 /// @param duration  [s];  @param slowest_impact  relative speed of the slowest impact that must not end in rest [m/s]
 BallOnFloor ball_on_floor(const Case& truth, double duration, double slowest_impact) {
   BallOnFloor world{truth.input("g").number(), truth.input("e").number(), empty_scene(truth.id, duration, std::min(kRestSpeed, kRestBelow * slowest_impact))};
-  world.scene.gravity_m_s2 = Vector3d(0, 0, -world.g);
+  scene::EntryWriter{world.scene}("gravity_m_s2", Vector3d(0, 0, -world.g));
   // Some cases state the start apart from the height that the other outputs are about.
   const double z0 = truth.inputs.find("z0") ? truth.input("z0").number() : truth.input("h").number();
   const double v0 = truth.inputs.find("v0") ? truth.input("v0").number() : 0.0;

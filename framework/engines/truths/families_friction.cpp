@@ -10,6 +10,7 @@
 #include "framework/dynamics/contact_problem.h"
 #include "framework/engines/truths/families.h"
 #include "framework/engines/truths/memory_scene.h"
+#include "framework/scene/write_entries.h"
 
 namespace tumble::truths {
 namespace {
@@ -33,7 +34,7 @@ struct Incline {
 /// @param height  of the body's centre above the plane [m]
 scene::Scene Incline::scene(const std::string& name, double duration, scene::BodySpec body, double height) const {
   scene::Scene scene = empty_scene(name, duration, kNeverBounces);
-  scene.gravity_m_s2 = Vector3d(0, 0, -g);
+  scene::EntryWriter{scene}("gravity_m_s2", Vector3d(0, 0, -g));
   scene.contact = scene::ContactSpec{};
   body.position_m = height * out();
   scene::BodySpec plane = wall("incline", Vector3d::Zero(), Vector3d::UnitZ(), 0.0);

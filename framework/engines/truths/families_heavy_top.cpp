@@ -8,6 +8,7 @@
 #include "framework/engines/truths/families.h"
 #include "framework/engines/truths/memory_scene.h"
 #include "framework/engines/truths/refined_run.h"
+#include "framework/scene/write_entries.h"
 
 namespace tumble::truths {
 namespace {
@@ -28,7 +29,7 @@ struct HeavyTop {
 
 scene::Scene HeavyTop::scene(const std::string& name) const {
   scene::Scene scene = empty_scene(name, 1.0, 1e-9);
-  scene.gravity_m_s2 = Vector3d(0, 0, -g);
+  scene::EntryWriter{scene}("gravity_m_s2", Vector3d(0, 0, -g));
   scene.stabilisation = scene::StabilisationSpec{};
   const Quaterniond q = orientation();
   const Vector3d omega = q * omega_body(), com = q * Vector3d(0, 0, l);
@@ -38,7 +39,7 @@ scene::Scene HeavyTop::scene(const std::string& name) const {
   const double transverse = It - m * l * l;   // about the centre of mass (Steiner)
   top.inertia_body_kg_m2 = Vector3d(transverse, transverse, I3).asDiagonal();
   scene.bodies.push_back(top);
-  scene.joints.push_back({"point", scene::JointKind::kBall, "top", "", Vector3d::Zero()});
+  scene::EntryWriter{scene}("joints", {{"name", "point"}, {"kind", "ball"}, {"body_a", "top"}, {"point_m", Vector3d(Vector3d::Zero())}});
   return scene;
 }
 

@@ -8,6 +8,7 @@
 #include "framework/engines/truths/families.h"
 #include "framework/engines/truths/memory_scene.h"
 #include "framework/engines/truths/refined_run.h"
+#include "framework/scene/write_entries.h"
 
 namespace tumble::truths {
 namespace {
@@ -33,7 +34,7 @@ struct Chain {
 
 scene::Scene Chain::scene(const std::string& name) const {
   scene::Scene scene = empty_scene(name, 1.0, 1e-9);
-  scene.gravity_m_s2 = Vector3d(0, -g, 0);
+  scene::EntryWriter{scene}("gravity_m_s2", Vector3d(0, -g, 0));
   scene.stabilisation = scene::StabilisationSpec{};
   Vector3d place = Vector3d::Zero(), velocity = Vector3d::Zero();
   std::string above;   // the first rod hangs on the world
@@ -42,7 +43,7 @@ scene::Scene Chain::scene(const std::string& name) const {
     velocity += lengths[i] * rates[i] * across(angles[i]);
     const std::string bob = "bob" + std::to_string(i);
     scene.bodies.push_back(point_mass(bob, masses[i], place, velocity));
-    scene.rods.push_back({"rod" + std::to_string(i), {above, Vector3d::Zero()}, {bob, Vector3d::Zero()}, lengths[i]});
+    scene::EntryWriter{scene}("rods", {{"name", "rod" + std::to_string(i)}, {"a", scene::AnchorSpec{above}}, {"b", scene::AnchorSpec{bob}}, {"length_m", lengths[i]}});
     above = bob;
   }
   return scene;
@@ -151,7 +152,7 @@ struct CompoundPendulum {
 
 scene::Scene CompoundPendulum::scene(const std::string& name) const {
   scene::Scene scene = empty_scene(name, 1.0, 1e-9);
-  scene.gravity_m_s2 = Vector3d(0, -g, 0);
+  scene::EntryWriter{scene}("gravity_m_s2", Vector3d(0, -g, 0));
   scene.stabilisation = scene::StabilisationSpec{};
   scene::BodySpec body = point_mass("body", m, d * along(angle), Vector3d::Zero());
   body.world_from_body = Quaterniond(Eigen::AngleAxisd(angle, Vector3d::UnitZ()));   // body -y points from the pivot to the centre of mass
@@ -159,9 +160,9 @@ scene::Scene CompoundPendulum::scene(const std::string& name) const {
   constexpr double kPoint = 1e-12;   // of I_pivot: less is the rounding of the difference, and all the mass is in one point
   if (I_com > kPoint * I_pivot) {
     body.inertia_body_kg_m2 = I_com * Matrix3d::Identity();
-    scene.joints.push_back({"hinge", scene::JointKind::kHinge, "body", "", Vector3d::Zero(), Vector3d::UnitZ()});
+    scene::EntryWriter{scene}("joints", {{"name", "hinge"}, {"kind", "hinge"}, {"body_a", "body"}, {"point_m", Vector3d(Vector3d::Zero())}, {"axis", Vector3d(Vector3d::UnitZ())}});
   } else {
-    scene.rods.push_back({"rod", {"", Vector3d::Zero()}, {"body", Vector3d::Zero()}, d});
+    scene::EntryWriter{scene}("rods", {{"name", "rod"}, {"a", scene::AnchorSpec{}}, {"b", scene::AnchorSpec{"body"}}, {"length_m", d}});
   }
   scene.bodies.push_back(body);
   return scene;

@@ -7,9 +7,14 @@
 #include "framework/engines/truths/families.h"
 #include "framework/engines/truths/memory_scene.h"
 #include "framework/engines/truths/refined_run.h"
+#include "framework/scene/write_entries.h"
 
 namespace tumble::truths {
 namespace {
+
+void add_spring(scene::Scene& scene, const scene::AnchorSpec& a, const scene::AnchorSpec& b, const Spring& spring) {
+  scene::EntryWriter{scene}("springs", {{"name", "spring"}, {"a", a}, {"b", b}, {"stiffness_n_m", spring.stiffness}, {"damping_n_s_m", spring.damping}, {"rest_length_m", spring.rest_length}});
+}
 
 const Vector3d kAxis = Vector3d::UnitX();   // along which a spring-mass moves
 
@@ -38,7 +43,7 @@ scene::Scene SpringMass::scene(const std::string& name) const {
   scene::Scene scene = empty_scene(name, 1.0, 1e-9);
   scene.bodies.push_back(point_mass("mass", m, x0 * kAxis, v0 * kAxis));
   const double rest_length = x0 == 0.0 && c > 0.0 ? 2.0 * largest_stretch() : 0.0;
-  scene.springs.push_back({"spring", {"", -rest_length * kAxis}, {"mass", Vector3d::Zero()}, k, c, rest_length});
+  add_spring(scene, {"", -rest_length * kAxis}, {"mass", Vector3d::Zero()}, {k, c, rest_length});
   return scene;
 }
 
@@ -92,9 +97,9 @@ void compare_spring_mass(const Case& truth, const Laws& laws, Comparison& compar
 void compare_elastic_pendulum(const Case& truth, const Laws& laws, Comparison& comparison) {
   const double m = truth.input("m").number(), k = truth.input("k").number();
   scene::Scene scene = empty_scene(truth.id, 1.0, 1e-9);
-  scene.gravity_m_s2 = Vector3d(0, 0, -truth.input("g").number());
+  scene::EntryWriter{scene}("gravity_m_s2", Vector3d(0, 0, -truth.input("g").number()));
   scene.bodies.push_back(point_mass("bob", m, truth.input("x0").vector3(), truth.input("v0").vector3()));
-  scene.springs.push_back({"spring", {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, k, 0.0, truth.input("L0").number()});
+  add_spring(scene, {"", Vector3d::Zero()}, {"bob", Vector3d::Zero()}, {k, 0.0, truth.input("L0").number()});
 
   const Frame start = start_of(scene, laws);
   comparison.closed_form(truth, "energy", energy_of(start));
@@ -144,7 +149,7 @@ void compare_two_body_spring(const Case& truth, const Laws& laws, Comparison& co
   scene.bodies = {joined_body(truth, "A"), joined_body(truth, "B")};
   const Vector3d a = truth.input("aA").vector3(), b = truth.input("aB").vector3();
   const double k = truth.input("k").number();
-  scene.springs.push_back({"spring", {"A", a}, {"B", b}, k, truth.input("c").number(), truth.input("L0").number()});
+  add_spring(scene, {"A", a}, {"B", b}, {k, truth.input("c").number(), truth.input("L0").number()});
   const auto length = [a, b](const Frame& frame) {
     const auto end = [&](std::size_t i, const Vector3d& point) { return Vector3d(frame.poses[i].com_world + frame.poses[i].world_from_body * point); };
     return (end(1, b) - end(0, a)).norm();

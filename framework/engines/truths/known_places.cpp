@@ -1,7 +1,11 @@
 #include "framework/engines/truths/known_places.h"
 
+#include <algorithm>
 #include <cmath>
 #include <variant>
+
+#include "framework/effects/build_world.h"
+#include "framework/scene/words.h"
 
 namespace tumble::truths {
 namespace {
@@ -11,14 +15,24 @@ constexpr double kSame = 1e-14;   // relative: a scene's file has 16 digits at m
 bool same(double a, double b) { return std::abs(a - b) <= kSame * std::max(1.0, std::abs(b)); }
 bool same(const Vector3d& a, const Vector3d& b) { return (a - b).norm() <= kSame * std::max(1.0, b.norm()); }
 
-bool falls_along_z(const scene::Scene& scene, double g) { return scene.gravity_m_s2 && same(*scene.gravity_m_s2, Vector3d(0.0, 0.0, -g)); }
+bool falls_along_z(const scene::Scene& scene, double g) {
+  const std::optional<Vector3d> gravity = build_world(scene).gravity_world;
+  return gravity && same(*gravity, Vector3d(0.0, 0.0, -g));
+}
 
-bool has_only_rods(const scene::Scene& scene) { return scene.springs.empty() && scene.joints.empty() && scene.drags.empty() && scene.motors.empty() && scene.point_forces.empty() && !scene.contact; }
+/// Whether a scene asks for nothing but these, by their keys in a file.
+bool asks_only(const scene::Scene& scene, const std::vector<std::string>& keys) {
+  const auto& words = scene::all_words();
+  return !scene.contact && std::none_of(words.begin(), words.end(), [&](const scene::Words* one) { return std::find(keys.begin(), keys.end(), one->key()) == keys.end() && one->is_asked(scene); });
+}
 
 /// Bob i hangs on bob i - 1, the first on the world's origin, each by its centre.
 bool hangs_in_a_row(const scene::Scene& scene, const VectorXd& lengths) {
-  for (std::size_t i = 0; i < scene.rods.size(); ++i) {
-    const scene::RodSpec& rod = scene.rods[i];
+  const scene::Words* words = scene::words_of("rods");
+  const std::vector<scene::Link> rods = words == nullptr ? std::vector<scene::Link>{} : words->links(scene);
+  if (rods.size() != scene.bodies.size()) return false;
+  for (std::size_t i = 0; i < rods.size(); ++i) {
+    const scene::Link& rod = rods[i];
     const bool upper = rod.a.body == (i == 0 ? "" : scene.bodies[i - 1].name), lower = rod.b.body == scene.bodies[i].name;
     if (!upper || !lower || !rod.a.point_m.isZero(kSame) || !rod.b.point_m.isZero(kSame) || !same(rod.length_m, lengths[static_cast<Eigen::Index>(i)])) return false;
   }
@@ -28,7 +42,8 @@ bool hangs_in_a_row(const scene::Scene& scene, const VectorXd& lengths) {
 bool is_that_chain(const scene::Scene& scene, const Case& truth) {
   const VectorXd masses = truth.input("masses").vector(), lengths = truth.input("lengths").vector(), angles = truth.input("theta0").vector();
   const std::size_t n = static_cast<std::size_t>(masses.size());
-  if (scene.bodies.size() != n || scene.rods.size() != n || !has_only_rods(scene) || !falls_along_z(scene, truth.input("g").number())) return false;
+  if (scene.bodies.size() != n || !asks_only(scene, {"gravity_m_s2", "rods"})) return false;
+  if (!falls_along_z(scene, truth.input("g").number())) return false;
   if (truth.input("omega0").vector().cwiseAbs().maxCoeff() != 0.0 || !hangs_in_a_row(scene, lengths)) return false;
   Vector3d place = Vector3d::Zero();
   for (std::size_t i = 0; i < n; ++i) {
@@ -51,7 +66,7 @@ std::vector<KnownPlace> places_of_chain(const scene::Scene& scene, const Case& t
 }
 
 std::vector<KnownPlace> places_of_ball(const scene::Scene& scene, const Case& truth) {
-  if (scene.bodies.size() != 2 || !scene.rods.empty() || !has_only_rods(scene) || !falls_along_z(scene, truth.input("g").number())) return {};
+  if (scene.bodies.size() != 2 || !asks_only(scene, {"gravity_m_s2"}) || !falls_along_z(scene, truth.input("g").number())) return {};
   const std::size_t which = scene.bodies[0].immovable ? 1 : 0;
   const scene::BodySpec &ball = scene.bodies[which], &floor = scene.bodies[1 - which];
   const auto* sphere = std::get_if<scene::SphereSpec>(&ball.shape);

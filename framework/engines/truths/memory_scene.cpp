@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "framework/core/shortest_turn.h"
+#include "framework/scene/write_entries.h"
 
 namespace tumble::truths {
 
@@ -37,13 +38,13 @@ scene::BodySpec point_mass(const std::string& name, double mass, const Vector3d&
 
 scene::Scene straight_chain(const std::vector<double>& masses, double length, const Vector3d& direction, const Vector3d& gravity) {
   scene::Scene scene = empty_scene("chain", 1.0, 1e-9);
-  scene.gravity_m_s2 = gravity;
+  scene::EntryWriter{scene}("gravity_m_s2", gravity);
   scene.stabilisation = scene::StabilisationSpec{};
   std::string above;
   for (std::size_t i = 0; i < masses.size(); ++i) {
     const std::string bob = "bob" + std::to_string(i);
     scene.bodies.push_back(point_mass(bob, masses[i], length * static_cast<double>(i + 1) * direction, Vector3d::Zero()));
-    scene.rods.push_back({"rod" + std::to_string(i), {above, Vector3d::Zero()}, {bob, Vector3d::Zero()}, length});
+    scene::EntryWriter{scene}("rods", {{"name", "rod" + std::to_string(i)}, {"a", scene::AnchorSpec{above}}, {"b", scene::AnchorSpec{bob}}, {"length_m", length}});
     above = bob;
   }
   return scene;

@@ -28,12 +28,14 @@ constexpr const char* kHeadersInside = "/headers";
 constexpr const char* kSourceInside = "/submission";
 constexpr const char* kPrecompiled = "precompiled.h";
 
-// The compiler may fork its passes, and link to /tmp. What it made leaves through descriptor 3, not through a folder of ours.
+// The compiler may fork its passes, and links to /tmp. The object leaves the sandbox through
+// descriptor 3, not through a shared folder.
 constexpr const char* kScript = "cd /submission && /usr/bin/g++ " TUMBLE_SUBMISSION_FLAGS
                                 " -Wall -Wextra -Wno-unused-parameter -fdiagnostics-color=never -fmax-errors=20 -I /headers -isystem " TUMBLE_EIGEN_INCLUDE
                                 " -include /headers/precompiled.h -x c++ \"$1\" -x none -shared -Wl,-z,defs -o /tmp/module.so && exec cat /tmp/module.so >&3";
 
-// Headers of the tree that a text includes, directly or not: those that students have, and of them only what is asked for.
+// Headers of the tree that a text includes, directly or indirectly, restricted to those that
+// students have.
 void collect_headers(const fs::path& root, const std::string& text, std::set<std::string>& found) {
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) {
@@ -49,7 +51,7 @@ void collect_headers(const fs::path& root, const std::string& text, std::set<std
   }
 }
 
-// The precompiled header of this build; without it the compiler reads the same text, which takes longer.
+// The precompiled header of this build; without it compilation takes longer.
 void stage_precompiled(Stage& headers, const fs::path& build) {
   const fs::path folder = build.empty() ? fs::path(TUMBLE_SUBMISSION_SDK) : build / fs::path(TUMBLE_SUBMISSION_SDK).filename();
   headers.add_text(text_of(folder / kPrecompiled), kPrecompiled);
@@ -63,7 +65,8 @@ fs::path init_program(const fs::path& build) {
   return init;
 }
 
-// All that comes out of the pipe; one byte above the limit tells that there is more.
+// Everything from the pipe, up to one byte above the limit, which shows that the limit was
+// exceeded.
 std::string drain(int fd) {
   std::string bytes;
   char buffer[1 << 16];
@@ -76,11 +79,11 @@ std::string drain(int fd) {
   return bytes;
 }
 
-// Compilers read bytes; an editor of Windows may write two of them a letter. Empty where the text is what a compiler reads.
+// Editors on Windows may write two bytes per letter. Empty where a compiler can read the text.
 std::string why_no_text(const std::string& text) {
   const bool is_utf16 = text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff");
   if (is_utf16) return "is written in UTF-16, which no C++ compiler reads. Save it as UTF-8 (in Visual Studio: Save As, Save with Encoding; in Notepad: Encoding UTF-8)";
-  if (text.find('\0') != std::string::npos) return "holds bytes that are no text (a NUL at byte " + std::to_string(text.find('\0')) + "). Save it as UTF-8 text; a compiled file or an archive is no source";
+  if (text.find('\0') != std::string::npos) return "contains bytes that are not text (a NUL at byte " + std::to_string(text.find('\0')) + "). Save it as UTF-8 text; a compiled file or an archive is not source code";
   return "";
 }
 
@@ -95,10 +98,10 @@ Compiled judge(const SandboxOutcome& outcome, const std::string& object, const C
   switch (outcome.ending) {
     case Ending::kNotStarted:
     case Ending::kStopped: return {Outcome::kGraderFault, "the sandbox did not start: " + said};
-    case Ending::kWallLimit: return {Outcome::kGraderFault, "the machine was too busy: the compiler was not done after " + std::to_string(static_cast<int>(limits.wall_s)) + " s, and had computed for less than " + std::to_string(limits.cpu_s) + " s. Run it again when less else runs"};
-    case Ending::kStalled: return {Outcome::kOutOfResources, "the compiler stood still: it waits for something, such as an #include of what is no file"};
-    case Ending::kOutputLimit: return {Outcome::kOutOfResources, "the compiler's messages had no end; the first were:\n" + said.substr(0, 2000)};
-    case Ending::kSignal: return {Outcome::kOutOfResources, "the compiler was ended by a limit\n" + said};
+    case Ending::kWallLimit: return {Outcome::kGraderFault, "the machine was too busy: the compiler had not finished after " + std::to_string(static_cast<int>(limits.wall_s)) + " s, and had computed for less than " + std::to_string(limits.cpu_s) + " s. Run it again when the machine is less busy"};
+    case Ending::kStalled: return {Outcome::kOutOfResources, "the compiler made no progress: it waits for something, such as an #include of something that is not a file"};
+    case Ending::kOutputLimit: return {Outcome::kOutOfResources, "the compiler's messages exceeded their limit; the first were:\n" + said.substr(0, 2000)};
+    case Ending::kSignal: return {Outcome::kOutOfResources, "a limit ended the compiler\n" + said};
     case Ending::kExited: break;
   }
   if (outcome.code == 0 && object.size() > kObjectBytes) return {Outcome::kOutOfResources, "the compiled module is larger than 32 MiB"};
@@ -126,7 +129,7 @@ SandboxJob sandbox_job(const CompileLimits& limits, const fs::path& init) {
 Compiled compile_submission(const CompileJob& job) {
   std::error_code ignored;
   fs::remove(job.object, ignored);
-  if (!fs::exists(job.root / job.header)) throw UserError((job.root / job.header).string(), "there is no such header", "It tells what the module is.");
+  if (!fs::exists(job.root / job.header)) throw UserError((job.root / job.header).string(), "there is no such header", "It declares the functions of the module.");
   const std::string name = job.source.filename().string();
   std::string why;
   const auto source = read_plain_file(job.source, job.limits.source_bytes, why);
@@ -146,7 +149,7 @@ Compiled compile_submission(const CompileJob& job) {
   if (::pipe2(ends, O_CLOEXEC) != 0) return {Outcome::kGraderFault, "no descriptor left for a compiler"};
   SandboxJob inside = sandbox_job(job.limits, tools.add_file(init_program(job.build), "init", true));
   inside.binds = {{headers.path(), kHeadersInside}, {submission.path(), kSourceInside}};
-  // A name such as "-o" or "@file" is no option.
+  // A name such as "-o" or "@file" must not be read as an option.
   const bool plain_name = std::isalnum(static_cast<unsigned char>(name[0])) != 0 || name[0] == '_';
   inside.command = {"/usr/bin/sh", "-c", kScript, "compile", plain_name ? name : "./" + name};
   inside.uid = user.uid();

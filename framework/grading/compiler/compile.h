@@ -1,5 +1,6 @@
-/// From a submission's source to a shared object, inside the sandbox: the compiler sees that one file, the headers that a
-/// student has, and the system's; nothing of a solution, a test or another submission.
+/// Compiles a submission's source to a shared object, inside the sandbox. The compiler sees this
+/// one file, the headers that a student has, and the system's headers; nothing of a solution, a
+/// test or another submission.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +10,9 @@
 namespace tumble::grading {
 
 struct CompileLimits {
-  double wall_s = 900.0;                          // a module takes 2 on an idle core; past this the machine is too busy
+  double wall_s = 900.0;                          // a module takes 2 s on an idle core; after this time the machine is too busy
   std::uint64_t cpu_s = 30;
-  double stall_s = 30.0;                          // in which the compiler neither computes nor waits for a core: it waits for what never comes
+  double stall_s = 30.0;                          // without computing or waiting for a core: the compiler waits for input that never comes
   std::uint64_t memory_bytes = 1536ull << 20;     // of address space: Eigen's templates take 300 MB
   std::uint64_t source_bytes = 1u << 20;          // of the file handed in
 };
@@ -20,23 +21,23 @@ struct CompileJob {
   std::filesystem::path root;       // of the source tree
   std::filesystem::path header;     // of the module, from root: "assignments/a1_impulse/a1_impulse.h"
   std::filesystem::path source;     // the file handed in
-  std::filesystem::path object;     // written where it is built
+  std::filesystem::path object;     // written where the outcome is kBuilt
   CompileLimits limits;
-  std::filesystem::path build = {};   // of the build tree: sandbox_init in bin/, what is precompiled in submission_sdk/; empty: that of this program
+  std::filesystem::path build = {};   // build tree with bin/sandbox_init and the precompiled header in submission_sdk/; empty: that of this program
 };
 
 struct Compiled {
   enum class Outcome {
     kBuilt,
-    kRefused,          // the compiler's errors, or a file that is none
-    kOutOfResources,   // of time, memory, file size or output
-    kGraderFault,      // ours, or a machine too busy
+    kRefused,          // compiler errors, or not a source file
+    kOutOfResources,   // time, memory, file size or output
+    kGraderFault,      // of this program, or the machine was too busy
   };
   Outcome outcome = Outcome::kGraderFault;
-  std::string said;    // the compiler's words, which name the file as the student does; or what went wrong
+  std::string said;    // the compiler's output, with the student's name of the file; or what went wrong
 };
 
-/// Never throws for what the source does. What was in `object` before is gone, whatever the outcome.
+/// Never throws because of the source. Removes an earlier `object` in every case.
 /// @throws UserError when the module's header is missing or `object` cannot be written
 Compiled compile_submission(const CompileJob& job);
 

@@ -18,11 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kShownErrors = 8;     // the first are those that matter
+constexpr std::size_t kShownErrors = 8;     // the first ones matter most
 constexpr std::size_t kShownWarnings = 10;
 constexpr std::size_t kShownExcerpt = 4;    // lines of code and markers below a message
-constexpr std::size_t kShownWhole = 4000;   // bytes, of words that are not understood here
-// Bytes of a line that are read: a hostile file has lines of a megabyte, and std::regex goes one level deeper a letter.
+constexpr std::size_t kShownWhole = 4000;   // bytes, of output without a known error
+// Bytes of a line that are read: a hostile file has lines of a megabyte, and std::regex recurses
+// once per letter.
 constexpr std::size_t kReadOfLine = 600;
 
 /// A place in a file as the compiler writes it: "FILE:LINE:COLUMN".
@@ -37,7 +38,7 @@ struct Diagnostic {
   Place place;
   std::string message;
   std::vector<std::string> excerpt;
-  std::optional<Place> required_from;   // the student's line, where the message itself stands in a library
+  std::optional<Place> required_from;   // the student's line, where the message is for a line of a library
 };
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -52,7 +53,7 @@ bool is_excerpt(const std::string& line) {
   return std::regex_match(line, excerpt);
 }
 
-/// Sorts what a compiler printed into messages.
+/// Splits a compiler's output into messages.
 class Reader {
  public:
   explicit Reader(const fs::path& source) : name_(source.filename().string()) {}
@@ -63,7 +64,7 @@ class Reader {
   }
 
  private:
-  // The student's file by its bare name: what stands before it is a folder of this machine.
+  // The student's file by its bare name, without a folder of this machine.
   std::string shortened(const std::string& file) const {
     if (fs::path(file).filename() == name_) return name_;
     const auto eigen = file.rfind("/Eigen/");
@@ -77,7 +78,7 @@ class Reader {
     std::smatch m;
     if (std::regex_match(line, m, required) || std::regex_match(line, m, inlined)) {
       const Place place{shortened(m[1]), std::stoi(m[2]), std::stoi(m[3])};
-      if (place.file == name_) context_ = place;   // the last one is the nearest to what the student wrote
+      if (place.file == name_) context_ = place;   // the last one is the nearest to the student's code
     } else if (std::regex_match(line, m, head)) {
       Diagnostic d;
       d.kind = m[4] == "warning" ? Diagnostic::Kind::kWarning : m[4] == "note" ? Diagnostic::Kind::kNote : Diagnostic::Kind::kError;
@@ -96,7 +97,7 @@ class Reader {
   std::vector<Diagnostic> found_;
 };
 
-/// "   12 | the line" and a mark below its column; empty where the file has no such line.
+/// "   12 | the line" with a mark below its column; empty where the file has no such line.
 std::string source_line(const std::vector<std::string>& source, const Place& place) {
   if (place.line < 1 || static_cast<std::size_t>(place.line) > source.size()) return "";
   const std::string& text = source[static_cast<std::size_t>(place.line) - 1];
@@ -116,7 +117,7 @@ std::string errors_text(const std::vector<Diagnostic>& all, const fs::path& sour
   const std::string name = source.filename().string();
   const std::vector<std::string> code = lines_of(text_of(source));
   std::string story;
-  std::set<std::string> shown;   // places: one line breaks several of a library's checks
+  std::set<std::string> shown;   // places: one line may break several checks of a library
   for (const Diagnostic& d : all) {
     if (d.kind != Diagnostic::Kind::kError || shown.size() >= kShownErrors) continue;
     const std::string place = d.required_from ? d.required_from->text() : d.place.text();
@@ -131,7 +132,7 @@ std::string errors_text(const std::vector<Diagnostic>& all, const fs::path& sour
   return story;
 }
 
-/// The declaration of a function in a module's header, on one line, and where it stands.
+/// A function's declaration or definition, on one line, and its place.
 struct Declaration {
   std::string text;
   int line = 0;
@@ -158,7 +159,7 @@ std::optional<Declaration> declared(const std::string& text, const std::string& 
   return std::nullopt;
 }
 
-/// Functions of the project that the linker looked for in vain.
+/// Functions of the project that the linker did not find.
 std::vector<std::string> undefined_functions(const std::string& said) {
   static const std::regex undefined(R"((?:undefined symbol: |undefined reference to [`'‘])(?:tumble::\w+::)(\w+)\()");
   std::vector<std::string> names;
@@ -177,12 +178,12 @@ std::string missing_text(const std::string& said, const fs::path& source, const 
     if (found) story += fmt::format("{}:{}: error: {} is written here, but not as the header declares it\n  here:     {}\n", name, found->line, function, found->text);
     else story += fmt::format("{}: error: {} is missing: the file does not define it\n", name, function);
     if (expected) story += fmt::format("  expected: {}\n  declared in {}:{}\n", expected->text, header.filename().string(), expected->line);
-    if (found && expected && one_line(found->text) == expected->text) story += "  The words are the same: is it inside the header's namespace, and not static?\n";
+    if (found && expected && one_line(found->text) == expected->text) story += "  The text is the same: is it inside the header's namespace, and not static?\n";
   }
   return story;
 }
 
-// What to do about errors that a student cannot read off the line.
+// Advice on errors that the line itself does not explain.
 std::string advice_on(const std::string& said) {
   const auto has = [&](const char* words) { return said.find(words) != std::string::npos; };
   if (has("internal compiler error"))
@@ -202,7 +203,7 @@ std::string compiler_story(const std::string& said, const fs::path& source, cons
 }
 
 std::string compiler_warnings(const std::string& said, const fs::path& source) {
-  // Nothing is wrong with an argument that is not used yet.
+  // An argument that is not used yet is fine.
   constexpr const char* kUnusedParameter = "[-Wunused-parameter]";
   std::string story;
   std::set<std::string> shown;

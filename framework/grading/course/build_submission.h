@@ -1,4 +1,4 @@
-/// From a submission's source to a shared object, in a course.
+/// Builds a submission's shared object from its source, in a course.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@ namespace tumble::grading {
 /// See build_module.
 BuiltSubmission build_submission(const Course& course, const std::string& id, const std::filesystem::path& source, const std::filesystem::path& object);
 
-/// The header that says what the module of an assignment is.
+/// The header of an assignment's module.
 std::filesystem::path module_header(const Course& course, const std::string& id);
 
 }  // namespace tumble::grading

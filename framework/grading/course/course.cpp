@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kListWall = 600.0;             // s: a list takes milliseconds; the machine may be loaded
-constexpr const char* kSdk = "submission_sdk";  // what compile.cpp finds precompiled
+constexpr const char* kSdk = "submission_sdk";  // precompiled header of compile.cpp
 
 }  // namespace
 
@@ -71,7 +71,7 @@ void require_rubric_of_judge(const Course& course, const std::string& id) {
   for (const std::string& test : tests)
     if (rubric.find(test) == nullptr)
       throw UserError(open.string(), "has no entry for test '" + test + "' of judge_" + id + ", and neither has " + hidden.string() + ": it would be worth nothing",
-                      "Give the test an entry (0 points where it shall earn none)." + did_you_mean(test, named));
+                      "Give the test an entry (with 0 points if it should earn none)." + did_you_mean(test, named));
 }
 
 CourseSnapshot::CourseSnapshot(const Course& course, const std::string& id) : course_(course) {

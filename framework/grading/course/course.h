@@ -1,4 +1,4 @@
-/// Where a course's files and programs lie: what grading needs to know of the tree that it runs in.
+/// The files and programs of the course's tree that grading needs.
 #pragma once
 
 #include <filesystem>
@@ -18,28 +18,32 @@ struct Course {
   std::string command;           // as typed, for records
 };
 
-/// build/bin/judge_a1. @throws UserError when it is not there: a student's tree has no judge
+/// build/bin/judge_a1.
+/// @throws UserError when it is missing: a student's tree has no judge
 std::filesystem::path judge_of(const Course& course, const std::string& id);
 /// build/modules/a1_WORD.so, which may not exist.
 std::filesystem::path built_module(const Course& course, const std::string& id, const std::string& word);
-/// Public and hidden items, together 100 points. @throws UserError as read_rubric and joined do
+/// Public and hidden items, together 100 points.
+/// @throws UserError as read_rubric and joined
 Rubric rubric_of(const Course& course, const std::string& id);
 /// The demo scenes of an assignment, by name.
 std::vector<std::filesystem::path> scenes_of(const Course& course, const std::string& id);
 
 /// "Suite.Name" of every test that the judge runs, in its order.
-/// @throws UserError when the judge does not say: it is half built, or of another time than this program
+/// @throws UserError when the judge does not list them: it is incomplete, or older or newer than
+///   this program
 std::vector<std::string> tests_of_judge(const Course& course, const std::string& id);
-/// Every entry of the rubric has a test in the judge, and every test an entry.
-/// @throws UserError that names the first that has none, and the nearest name
+/// Checks that every entry of the rubric has a test in the judge, and every test an entry.
+/// @throws UserError with the first one without a counterpart, and the nearest name
 void require_rubric_of_judge(const Course& course, const std::string& id);
 
-/// Copies of the programs and modules that a grading runs: a build that goes on beside it, or is broken, changes nothing.
+/// Copies of the programs and modules that a grading runs, so that a concurrent or failed build
+/// does not affect it.
 class CourseSnapshot {
  public:
   /// @throws UserError when one is not built or cannot be copied
   CourseSnapshot(const Course& course, const std::string& id);
-  /// The same course; `build` is the copies'.
+  /// The same course with `build` set to the copies.
   const Course& course() const { return course_; }
 
  private:

@@ -1,4 +1,4 @@
-/// The laws of a scene with one module's functions in their place.
+/// The laws of a scene with the functions of the module under test.
 #pragma once
 
 #include <string>
@@ -9,16 +9,14 @@
 
 namespace tumble::grading {
 
-/// Puts a module's functions into the laws that it is about, and says whose each of these laws is.
-void put_into(const modules::ModuleKind& kind, const modules::AnyModule& module, const std::string& source, Laws& laws);
-
-/// The course's own module, loaded into this process; nothing where the tree has none.
+/// The reference implementation, loaded into this process; nothing where the tree has none.
 modules::AnyModule reference_of(const Course& course, const modules::ModuleKind& kind);
 
-/// Right neighbours around a module, so that a slip is seen once: what the scene needs and the module is not about is the reference's
-/// where the tree has one, else the library's.
-/// @param module  may be empty: then nothing is put over the neighbours
-/// @param source  whose it is, for pictures and records
+/// Combines a module with correct versions of the others, so that an error counts once: laws that
+/// the scene needs and the module does not implement come from the reference where the tree has
+/// one, else from the library.
+/// @param module  may be empty: then the others only
+/// @param source  of the module, for pictures and records
 Laws laws_around(const Course& course, const modules::ModuleKind& kind, const modules::AnyModule& module, const std::string& source, const scene::Scene& scene);
 
 }  // namespace tumble::grading

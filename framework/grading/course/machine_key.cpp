@@ -10,18 +10,18 @@
 #include <cstring>
 
 #include "framework/core/error.h"
-#include "framework/grading/course/digest.h"
+#include "framework/core/digest.h"
 
 namespace tumble::grading {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kKeyBytes = 32;   // as many as SHA-256 gives: more adds nothing (RFC 2104, section 3)
+constexpr std::size_t kKeyBytes = 32;   // the size of a SHA-256 digest: more adds no security (RFC 2104, section 3)
 
-// What stands in the file, and what is wrong with it.
+// The content of the file, or its problem.
 struct FoundKey {
-  std::string bytes;     // empty: no key that can be used
+  std::string bytes;     // empty: not a usable key
   std::string problem;   // empty where there is no file
 };
 
@@ -30,17 +30,17 @@ FoundKey read_key(const fs::path& file) {
   if (fd < 0) return {"", errno == ENOENT ? "" : errno == ELOOP ? "is a symbolic link" : std::string("cannot be read (") + std::strerror(errno) + ")"};
   struct stat about {};
   FoundKey found;
-  if (::fstat(fd, &about) != 0 || !S_ISREG(about.st_mode)) found.problem = "is no file";
+  if (::fstat(fd, &about) != 0 || !S_ISREG(about.st_mode)) found.problem = "is not a file";
   else if (about.st_uid != ::geteuid()) found.problem = "belongs to another user";
   else if ((about.st_mode & 077) != 0) found.problem = "can be read or written by others";
-  else if (about.st_size != static_cast<off_t>(kKeyBytes)) found.problem = "is no key";
+  else if (about.st_size != static_cast<off_t>(kKeyBytes)) found.problem = "is not a key";
   std::string bytes(kKeyBytes, '\0');
   if (found.problem.empty() && ::read(fd, bytes.data(), kKeyBytes) == static_cast<ssize_t>(kKeyBytes)) found.bytes = bytes;
   ::close(fd);
   return found;
 }
 
-// Written whole under another name, then linked: of two first users at once both end with the same key.
+// Written under another name, then linked: two concurrent first users get the same key.
 bool keep(const fs::path& file, const std::string& bytes) {
   std::error_code failed;
   fs::create_directories(file.parent_path(), failed);
@@ -71,18 +71,18 @@ MachineKey machine_key() {
   key.file = machine_key_file();
   FoundKey found = key.file.empty() ? FoundKey{} : read_key(key.file);
   if (!found.bytes.empty()) return key.bytes = found.bytes, key;
-  // A file that is not our key may be somebody's work: it is never touched.
+  // A file that is not a key may belong to the user: it is never changed.
   if (!found.problem.empty())
-    throw UserError(key.file.string(), "should hold the key that signs results of this machine, and " + found.problem,
-                    "Name a file that is not there yet in TUMBLE_GRADER_KEY, or move this one away: a new key is made, and earlier results are graded again.");
+    throw UserError(key.file.string(), "should hold the key that signs results of this machine, but " + found.problem,
+                    "Set TUMBLE_GRADER_KEY to a file that does not exist yet, or move this one away: a new key is made, and earlier results are graded again.");
   const std::string fresh = random_bytes(kKeyBytes);
   if (!key.file.empty() && keep(key.file, fresh)) found = read_key(key.file);
   if (!found.bytes.empty()) {
     key.bytes = found.bytes;
     key.notice = "a new key of this machine was made in " + key.file.string() + " (there was none): results of earlier runs are graded again";
   } else {
-    key.notice = "no key of this machine can be kept" + (key.file.empty() ? std::string() : " in " + key.file.string()) +
-                 ", so the next run grades everything again. Name a file that you may write in TUMBLE_GRADER_KEY.";
+    key.notice = "the key of this machine cannot be stored" + (key.file.empty() ? std::string() : " in " + key.file.string()) +
+                 ", so the next run grades everything again. Set TUMBLE_GRADER_KEY to a file that you may write.";
     key.bytes = fresh;
     key.file.clear();
   }

@@ -1,7 +1,9 @@
-/// The key of this machine: what a grader signs its own records with, so that it takes over nothing that somebody else wrote.
+/// The key of this machine, with which a grader signs its records, so that it never reuses a record
+/// that was written elsewhere.
 ///
-/// It lies in $TUMBLE_GRADER_KEY, else $XDG_STATE_HOME/tumble/grader.key, else ~/.local/state/tumble/grader.key: 32 random bytes, mode
-/// 0600, made on first use. Never in a folder of results. Losing it costs time only: everything is graded again.
+/// The key file is $TUMBLE_GRADER_KEY, else $XDG_STATE_HOME/tumble/grader.key, else
+/// ~/.local/state/tumble/grader.key: 32 random bytes, mode 0600, created on first use, never in a
+/// folder of results. Losing it costs only time: everything is graded again.
 #pragma once
 
 #include <filesystem>
@@ -11,15 +13,17 @@ namespace tumble::grading {
 
 struct MachineKey {
   std::string bytes;             // 32
-  std::filesystem::path file;    // where it lies; empty: it could not be kept, and ends with this process
-  std::string notice;            // for the person at the terminal: why it is new, or is not kept; empty: it was there
+  std::filesystem::path file;    // empty: the key could not be stored, and is lost with this process
+  std::string notice;            // for the user: why the key is new, or is not stored; empty: it existed
 };
 
-/// Where the key lies, or would.
+/// Path of the key, which may not exist.
 std::filesystem::path machine_key_file();
 
-/// Reads the key, or makes it. A key that others can read or that is no key is replaced by a new one, and the notice says so.
-/// Never throws: a machine that keeps no key grades everything anew each time.
+/// Reads the key, or creates it. A machine that cannot store a key grades everything again each
+/// time.
+/// @throws UserError when the file exists and is not a key, or others can read it: it is never
+///   overwritten
 MachineKey machine_key();
 
 }  // namespace tumble::grading

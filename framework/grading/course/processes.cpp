@@ -23,22 +23,23 @@ using Clock = std::chrono::steady_clock;
 
 volatile std::sig_atomic_t ended_by = 0;
 
-// While it lives, the signals that ask a program to end are noted instead, and orphans below us come to us.
-class Orderly {
+// During its lifetime termination signals are only recorded, and this process adopts orphaned
+// descendants.
+class SignalRecorder {
  public:
-  Orderly() {
+  SignalRecorder() {
     ended_by = 0;
     struct sigaction note {};
     note.sa_handler = [](int signal) { ended_by = signal; };   // no SA_RESTART: waiting must end
     for (std::size_t i = 0; i < kSignals.size(); ++i) ::sigaction(kSignals[i], &note, &before_[i]);
     ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   }
-  ~Orderly() { restore(); }
+  ~SignalRecorder() { restore(); }
   void restore() const {
     for (std::size_t i = 0; i < kSignals.size(); ++i) ::sigaction(kSignals[i], &before_[i], nullptr);
     ::prctl(PR_SET_CHILD_SUBREAPER, 0);
   }
-  static void forget() {
+  static void set_defaults() {
     for (const int signal : kSignals) ::signal(signal, SIG_DFL);
   }
 
@@ -47,11 +48,11 @@ class Orderly {
   std::array<struct sigaction, kSignals.size()> before_{};
 };
 
-// Ends processes and all below them: each dies with the one above it, and is ours to reap then.
+// Kills processes and their descendants: each dies with its parent, and is then reaped here.
 void end_all(const std::map<pid_t, std::pair<std::size_t, Clock::time_point>>& running) {
   for (const auto& [child, about] : running) ::kill(child, SIGKILL);
-  const auto patience = Clock::now() + std::chrono::seconds(10);   // for sandboxes to be torn down
-  while (Clock::now() < patience) {
+  const auto deadline = Clock::now() + std::chrono::seconds(10);   // for sandboxes to be torn down
+  while (Clock::now() < deadline) {
     const pid_t child = ::waitpid(-1, nullptr, WNOHANG);
     if (child < 0 && errno != EINTR) return;
     if (child == 0) ::usleep(1000);
@@ -61,10 +62,10 @@ void end_all(const std::map<pid_t, std::pair<std::size_t, Clock::time_point>>& r
 pid_t start(const std::function<void(std::size_t)>& work, std::size_t index) {
   std::fflush(nullptr);
   const pid_t child = ::fork();
-  if (child < 0) throw std::runtime_error("no process can be made");
+  if (child < 0) throw std::runtime_error("no process can be created");
   if (child > 0) return child;
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-  Orderly::forget();
+  SignalRecorder::set_defaults();
   int code = 0;
   try {
     work(index);
@@ -79,7 +80,7 @@ pid_t start(const std::function<void(std::size_t)>& work, std::size_t index) {
 
 void run_in_processes(std::size_t count, int jobs, const std::function<void(std::size_t)>& work,
                       const std::function<void(std::size_t, int, double)>& done, const std::function<void()>& cleared) {
-  const Orderly orderly;
+  const SignalRecorder recorder;
   std::map<pid_t, std::pair<std::size_t, Clock::time_point>> running;
   std::size_t next = 0;
   while (next < count || !running.empty()) {
@@ -87,7 +88,7 @@ void run_in_processes(std::size_t count, int jobs, const std::function<void(std:
       end_all(running);
       sweep_stages_of_the_dead();
       if (cleared) cleared();
-      Orderly::forget();
+      SignalRecorder::set_defaults();
       ::raise(ended_by);
     }
     if (next < count && running.size() < static_cast<std::size_t>(std::max(1, jobs))) {
@@ -97,7 +98,7 @@ void run_in_processes(std::size_t count, int jobs, const std::function<void(std:
     }
     int status = 0;
     const pid_t child = ::waitpid(-1, &status, WNOHANG);
-    if (child == 0) ::usleep(5000);   // not a wait: a signal that comes just before one would be seen an hour later
+    if (child == 0) ::usleep(5000);   // polling: a signal just before a blocking wait would be noticed much later
     if (child == 0 || (child < 0 && errno == EINTR)) continue;
     if (child < 0) throw std::runtime_error("a process was lost");
     const auto it = running.find(child);

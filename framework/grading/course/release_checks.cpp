@@ -12,16 +12,17 @@
 #include <unordered_map>
 
 #include "framework/core/files.h"
+#include "framework/grading/course/code_text.h"
 
 namespace tumble::grading {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Rows of tokens that a public and a private file may share: signatures, loops and idioms are shorter. Hidden tests share
-// whole fixtures and scenes with public ones.
+// Shortest sequences of tokens that count as a copy: signatures, loops and idioms are shorter.
+// Hidden tests share whole fixtures and scenes with public ones.
 constexpr std::size_t kSolutionTokens = 50, kTestTokens = 200;
-// Three lines of code in a row are somebody's work; fewer are the idiom of a language, shorter than a line of text anybody's.
+// Three consecutive lines of code are a copy; fewer lines, or fewer characters, are common idiom.
 constexpr std::size_t kLinesInARow = 3, kLeastCharacters = 80;
 constexpr std::size_t kMostBytes = 4u << 20;   // of a file that is text
 
@@ -29,29 +30,6 @@ bool is_text(const std::string& bytes) { return bytes.size() < kMostBytes && byt
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 int line_at(const std::string& text, std::size_t at) { return 1 + static_cast<int>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(at), '\n')); }
 std::string at_line(const std::string& file, int line) { return file + ":" + std::to_string(line); }
-
-/// The same text with comments and preprocessor lines blanked: places stay. Text between quotes is kept.
-std::string code_of(std::string text) {
-  bool line_begins = true;
-  for (std::size_t i = 0; i < text.size();) {
-    const auto blank_until = [&](std::size_t end) {
-      for (; i < std::min(end, text.size()); ++i)
-        if (text[i] != '\n') text[i] = ' ';
-    };
-    const char c = text[i];
-    if (line_begins && c == '#') blank_until(text.find('\n', i));
-    else if (text.compare(i, 2, "//") == 0) blank_until(text.find('\n', i));
-    else if (text.compare(i, 2, "/*") == 0) blank_until(std::min(text.find("*/", i + 2), text.size() - 2) + 2);
-    else if (c == '"') {
-      for (++i; i < text.size() && text[i] != '"' && text[i] != '\n'; ++i) i += text[i] == '\\' ? 1 : 0;
-      ++i, line_begins = false;
-    } else {
-      line_begins = c == '\n' || (line_begins && (c == ' ' || c == '\t'));
-      ++i;
-    }
-  }
-  return text;
-}
 
 struct Token {
   std::uint64_t hash;
@@ -75,7 +53,7 @@ std::vector<Token> tokens_of(const std::string& code) {
   return tokens;
 }
 
-/// Calls visit(hash, line) for each row of n tokens.
+/// Calls visit(hash, line) for each sequence of n tokens.
 template <class Visit>
 void each_row(const std::vector<Token>& tokens, std::size_t n, const Visit& visit) {
   for (std::size_t i = 0; i + n <= tokens.size(); ++i) {
@@ -85,8 +63,8 @@ void each_row(const std::vector<Token>& tokens, std::size_t n, const Visit& visi
   }
 }
 
-/// Calls visit(hash, line) for each few lines of code in a row, without what says nothing about a solution: indentation, comments,
-/// includes, braces alone.
+/// Calls visit(hash, line) for each kLinesInARow consecutive lines of code, without indentation,
+/// comments, includes and lines of braces only.
 template <class Visit>
 void each_passage(const std::string& text, const Visit& visit) {
   std::vector<std::pair<std::string, int>> lines;
@@ -107,9 +85,9 @@ void each_passage(const std::string& text, const Visit& visit) {
   }
 }
 
-using Origins = std::unordered_map<std::uint64_t, std::string>;   // "solutions_private/file:line", by what stands there
+using Origins = std::unordered_map<std::uint64_t, std::string>;   // hash of a text -> "solutions_private/file:line"
 
-/// All that may not be shipped.
+/// Hashes of everything that must not be shipped.
 struct Secrets {
   Origins files, passages, solution_rows, test_rows;
 };
@@ -117,13 +95,13 @@ struct Secrets {
 Secrets collect(const std::vector<PrivateFile>& secrets) {
   Secrets all;
   for (const PrivateFile& secret : secrets) {
-    const std::string name = secret.file.string();
-    all.files.emplace(std::hash<std::string>{}(secret.text), name);
+    const auto place = [&](int line) { return secret.places.empty() ? at_line(secret.file.string(), line) : secret.places[static_cast<std::size_t>(line) - 1]; };
+    all.files.emplace(std::hash<std::string>{}(secret.text), secret.file.string());
     if (!is_text(secret.text)) continue;
     const std::vector<Token> tokens = tokens_of(code_of(secret.text));
     each_row(tokens, secret.is_test ? kTestTokens : kSolutionTokens,
-             [&](std::uint64_t hash, int line) { (secret.is_test ? all.test_rows : all.solution_rows).emplace(hash, at_line(name, line)); });
-    if (!secret.is_test) each_passage(secret.text, [&](std::uint64_t hash, int line) { all.passages.emplace(hash, at_line(name, line)); });
+             [&](std::uint64_t hash, int line) { (secret.is_test ? all.test_rows : all.solution_rows).emplace(hash, place(line)); });
+    if (!secret.is_test) each_passage(secret.text, [&](std::uint64_t hash, int line) { all.passages.emplace(hash, place(line)); });
   }
   return all;
 }
@@ -143,24 +121,24 @@ void forget_headers(const fs::path& folder, const std::vector<fs::path>& shipped
   }
 }
 
-/// The first place of a file at which something secret stands.
+/// The first place of a file with a secret.
 std::optional<Finding> first_leak(const std::string& name, const std::string& text, const Secrets& secrets) {
   if (const auto whole = secrets.files.find(std::hash<std::string>{}(text)); whole != secrets.files.end() && !text.empty())
     return Finding{name, "is a copy of " + whole->second};
   if (!is_text(text)) return std::nullopt;
   std::optional<Finding> found;
-  const auto look = [&](const Origins& origins, std::uint64_t hash, int line, const std::string& what) {
+  const auto match = [&](const Origins& origins, std::uint64_t hash, int line, const std::string& what) {
     if (found) return;
     if (const auto it = origins.find(hash); it != origins.end()) found = Finding{at_line(name, line), "holds " + what + " of " + it->second};
   };
-  each_passage(text, [&](std::uint64_t hash, int line) { look(secrets.passages, hash, line, "three lines"); });
+  each_passage(text, [&](std::uint64_t hash, int line) { match(secrets.passages, hash, line, "three lines"); });
   const std::vector<Token> tokens = tokens_of(code_of(text));
-  each_row(tokens, kSolutionTokens, [&](std::uint64_t hash, int line) { look(secrets.solution_rows, hash, line, "a passage"); });
-  each_row(tokens, kTestTokens, [&](std::uint64_t hash, int line) { look(secrets.test_rows, hash, line, "a passage"); });
+  each_row(tokens, kSolutionTokens, [&](std::uint64_t hash, int line) { match(secrets.solution_rows, hash, line, "a passage"); });
+  each_row(tokens, kTestTokens, [&](std::uint64_t hash, int line) { match(secrets.test_rows, hash, line, "a passage"); });
   return found;
 }
 
-/// Where `name` stands as a word of its own; npos: nowhere.
+/// Position of `name` as a separate word; npos: nowhere.
 std::size_t find_name(const std::string& text, const std::string& name) {
   for (std::size_t at = 0; (at = text.find(name, at)) != std::string::npos; ++at) {
     const bool begins = at == 0 || !is_word(text[at - 1]), ends = at + name.size() == text.size() || !is_word(text[at + name.size()]);
@@ -180,7 +158,7 @@ std::vector<fs::path> files_below(const fs::path& folder) {
 }  // namespace
 
 std::vector<Finding> missing_files(const fs::path& root, const std::vector<fs::path>& shipped, const std::vector<fs::path>& left_out) {
-  constexpr std::array kEverywhere = {"README.md", "CMakeLists.txt", "index.html"};   // names that any text may hold
+  constexpr std::array kEverywhere = {"README.md", "CMakeLists.txt", "index.html"};   // names that any text may contain
   std::vector<std::pair<std::string, std::string>> texts;
   for (const fs::path& file : shipped)
     if (std::string text = text_of(root / file); is_text(text)) texts.emplace_back(file.string(), std::move(text));
@@ -208,16 +186,16 @@ std::vector<Finding> what_is_no_stub(const std::string& name, const std::string&
   std::smatch m;
   for (const std::string& function : functions) {
     const std::regex stub(R"([\w:<>,&*\s]*\b)" + function + R"(\s*\([^{};]*\)\s*\{\s*throw\s+NotImplemented\(\s*")" + function + R"("\s*,\s*"[^"]*"\s*\)\s*;\s*\})");
-    const std::string now = code;   // what a match points into
+    const std::string now = code;   // a match points into this copy
     if (std::regex_search(now, m, stub)) {
       blank(code, m);
       continue;
     }
     const std::size_t at = find_name(code, function);
-    found.push_back({at == std::string::npos ? name : at_line(name, line_at(code, at)), function + " is no stub: its body must be one line, throw NotImplemented(\"" + function + "\", \"handouts/...\");"});
+    found.push_back({at == std::string::npos ? name : at_line(name, line_at(code, at)), function + " is not a stub: its body must be one line, throw NotImplemented(\"" + function + "\", \"handouts/...\");"});
   }
   if (!found.empty()) return found;
-  // What is left beside the namespace's own lines is more than a stub.
+  // Any other text than the namespace's own lines is more than stubs.
   static const std::regex space(R"(namespace [\w:]+ \{|\n\})");
   const std::string now = code;
   for (std::sregex_iterator it(now.begin(), now.end(), space), end; it != end; ++it) blank(code, *it);

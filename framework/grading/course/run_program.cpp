@@ -31,9 +31,9 @@ using Clock = std::chrono::steady_clock;
   ::_exit(127);
 }
 
-// Reads until all writers are gone or the time is up.
+// Reads until all writers have closed the pipe or the time is up.
 bool drain(int fd, Clock::time_point deadline, std::string& text) {
-  constexpr std::size_t kKept = 4u << 20;  // bytes: no program that we run has more to say
+  constexpr std::size_t kKept = 4u << 20;  // bytes: more than any of these programs prints
   char buffer[1 << 14];
   for (;;) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
@@ -50,7 +50,8 @@ bool drain(int fd, Clock::time_point deadline, std::string& text) {
 }  // namespace
 
 ProgramOutcome run_program(const std::vector<std::string>& words, Output output, double wall_s) {
-  // A pipe even where nothing is captured: its closing says that the program has ended, without a race or a signal.
+  // A pipe even where nothing is captured: its closing shows that the program has ended, without a
+  // race or a signal.
   int ends[2], alive[2];
   if (::pipe2(ends, O_CLOEXEC) != 0 || ::pipe2(alive, 0) != 0) throw std::runtime_error("no descriptor left");
   ::fcntl(alive[0], F_SETFD, FD_CLOEXEC);
@@ -58,7 +59,7 @@ ProgramOutcome run_program(const std::vector<std::string>& words, Output output,
   if (child == 0) become(words, output, ends[1]);
   ::close(ends[1]);
   ::close(alive[1]);
-  if (child < 0) throw std::runtime_error("no process can be made");
+  if (child < 0) throw std::runtime_error("no process can be created");
   ProgramOutcome outcome;
   const auto deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wall_s));
   std::string unused;

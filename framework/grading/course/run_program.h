@@ -1,4 +1,4 @@
-/// Runs a program of ours or of the system to its end.
+/// Runs a trusted program, of the project or of the system, to its end.
 #pragma once
 
 #include <string>
@@ -7,16 +7,17 @@
 namespace tumble::grading {
 
 struct ProgramOutcome {
-  int code = -1;          // of exit; 128 + signal for one that a signal ended, as a shell says it
+  int code = -1;          // exit code; 128 + signal where a signal ended it, as in a shell
   bool in_time = true;
-  std::string printed;    // stdout and stderr as they came; empty where they were not asked for
+  std::string printed;    // stdout and stderr, interleaved; empty unless kCaptured
 };
 
 enum class Output { kCaptured, kDropped, kOurs };
 
 /// @param words   the program (a path, or a name on PATH) and its arguments
-/// @param wall_s  after which it is killed
-/// The program dies with us. @throws std::runtime_error when no process can be made
+/// @param wall_s  time after which it is killed
+/// The program dies with this process.
+/// @throws std::runtime_error when no process can be created
 ProgramOutcome run_program(const std::vector<std::string>& words, Output output, double wall_s = 3600.0);
 
 }  // namespace tumble::grading

@@ -11,7 +11,7 @@
 #include "framework/core/text.h"
 #include "framework/grading/course/build_submission.h"
 #include "framework/grading/compiler/compiler_words.h"
-#include "framework/grading/course/digest.h"
+#include "framework/core/digest.h"
 #include "framework/grading/grades/grade_key.h"
 #include "framework/grading/course/processes.h"
 #include "framework/grading/grades/scoring.h"
@@ -21,25 +21,39 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<fs::path> sources_in(const fs::path& folder) {
+std::vector<fs::path> files_in(const fs::path& folder, const std::vector<std::string>& extensions) {
   std::vector<fs::path> files;
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder, ignored))
-    if (entry.path().extension() == ".cpp") files.push_back(entry.path());
+    if (std::find(extensions.begin(), extensions.end(), entry.path().extension()) != extensions.end()) files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
 }
 
-Candidate read_mutant(const fs::path& file) {
-  constexpr std::string_view kMutant = "// mutant: ", kCaughtBy = "// caught-by: ";
-  std::ifstream in(file);
-  std::string first, second;
-  std::getline(in, first);
-  std::getline(in, second);
-  const auto dash = first.find(" - ");
-  if (!first.starts_with(kMutant) || dash == std::string::npos || !second.starts_with(kCaughtBy))
-    throw UserError(file.string(), "does not say which slip it makes", "Its first two lines are:  // mutant: NAME - slip   and   // caught-by: words of the story that names it");
-  return {first.substr(kMutant.size(), dash - kMutant.size()), file, false, first.substr(dash + 3), second.substr(kCaughtBy.size())};
+Candidate read_mutant(const fs::path& file, const fs::path& solutions) {
+  if (file.extension() != kSlipExtension) {
+    const SlipTitle title = read_slip_title(file);
+    return {title.name, file, false, title.slip, title.keyword};
+  }
+  const Slip slip = read_slip(file);
+  return {slip.title.name, file, false, slip.title.slip, slip.title.keyword, base_of(slip, solutions)};
+}
+
+// Does `work` for all, and then says what stands in the way of each that it could not do: a changed base concerns many slips.
+template <class Item, class Work>
+void for_each_or_refuse(const std::vector<Item>& items, const Work& work) {
+  std::vector<UserError> errors;
+  for (const Item& item : items) {
+    try {
+      work(item);
+    } catch (const UserError& error) {
+      errors.push_back(error);
+    }
+  }
+  if (errors.size() == 1) throw errors.front();
+  std::string all;
+  for (const UserError& error : errors) all += std::string("\n  ") + error.what();
+  if (!errors.empty()) throw UserError("", std::to_string(errors.size()) + " known-wrong solutions cannot be judged:" + all);
 }
 
 bool is_caught(const TestResult& result) {
@@ -48,23 +62,29 @@ bool is_caught(const TestResult& result) {
 
 constexpr std::size_t kNameDigits = 32;   // of a digest, in a file's name: 128 bits
 
+std::string whole_name(const Candidate& candidate) { return candidate.file.stem().string() + ".cpp"; }
+
 // Where the results of an audit lie that need not be run again.
 struct Kept {
   fs::path results, refused;
 };
 
-Kept kept_for(const Course& course, const std::string& id, const std::string& grader, const Candidate& candidate) {
-  const fs::path base = course.build / "audit" / id / (candidate.file.stem().string() + "-" + digest(grader + digest_of_file(candidate.file)).substr(0, kNameDigits));
+Kept kept_for(const Course& course, const std::string& id, const std::string& grader, const Candidate& candidate, const JudgedSource& source) {
+  const fs::path base = course.build / "audit" / id / (candidate.file.stem().string() + "-" + digest(grader + digest(source.text)).substr(0, kNameDigits));
   return {base.string() + ".json", base.string() + ".refused.txt"};
 }
 
 // In a process of its own: leaves either the judge's results or why there are none.
-void run_one(const Course& course, const std::string& id, const Candidate& candidate, const Kept& kept) {
+void run_one(const Course& course, const std::string& id, const Candidate& candidate, const JudgedSource& source, const Kept& kept) {
   fs::create_directories(kept.results.parent_path());
   const fs::path object = kept.results.string() + ".so";
-  const BuiltSubmission built = build_submission(course, id, candidate.file, object);
+  const PrivateFolder folder;   // what is compiled is what the digest was taken of, whatever is saved meanwhile
+  const fs::path file = folder.path() / whole_name(candidate);
+  write_whole(file, source.text);
+  const BuiltSubmission built = build_submission(course, id, file, object);
   if (built.outcome != BuiltSubmission::Outcome::kBuilt) {
-    write_whole(kept.refused, "does not compile: " + compiler_story(built.said, candidate.file, module_header(course, id)));
+    const std::string story = compiler_story(built.said, file, module_header(course, id));
+    write_whole(kept.refused, "does not compile: " + (source.made ? in_places_of_slip(story, file.filename().string(), *source.made) : story));
     return;
   }
   Judgement judgement = judge_module(course, id, object);
@@ -111,16 +131,34 @@ bool AuditResult::is_as_it_should() const {
   return candidate.is_right ? score >= possible - kSlack && caught_by.empty() : !caught_by.empty();
 }
 
-std::vector<Candidate> find_candidates(const Course& course, const std::string& id, const fs::path& mutants) {
+fs::path reference_of(const Course& course, const std::string& id) {
   const std::string folder = course.registry->find(id).folder;
-  const fs::path own = course.root / "solutions_private" / folder;
+  return course.root / "solutions_private" / folder / (folder + ".cpp");
+}
+
+std::vector<Candidate> find_candidates(const Course& course, const std::string& id, const fs::path& mutants) {
+  const fs::path reference = reference_of(course, id), own = reference.parent_path();
   std::vector<Candidate> all;
   const fs::path wrong = mutants.empty() ? own / "mutants" : mutants;
-  for (const fs::path& file : sources_in(wrong)) all.push_back(read_mutant(file));
-  if (all.empty()) throw UserError(wrong.string(), "holds no known-wrong solution", "Put one .cpp a slip there.");
-  if (fs::exists(own / (folder + ".cpp"))) all.push_back({"reference", own / (folder + ".cpp"), true, "", ""});
-  for (const fs::path& file : sources_in(own / "alternatives")) all.push_back({file.stem().string(), file, true, "", ""});
+  for_each_or_refuse(files_in(wrong, {".cpp", kSlipExtension}), [&](const fs::path& file) { all.push_back(read_mutant(file, own)); });
+  if (all.empty()) throw UserError(wrong.string(), "holds no known-wrong solution", "Put one .slip or .cpp a slip there.");
+  if (fs::exists(reference)) all.push_back({"reference", reference, true, "", ""});
+  for (const fs::path& file : files_in(own / "alternatives", {".cpp"})) all.push_back({file.stem().string(), file, true, "", ""});
   return all;
+}
+
+std::vector<JudgedSource> sources_of(const std::vector<Candidate>& candidates) {
+  std::vector<JudgedSource> sources;
+  for_each_or_refuse(candidates, [&](const Candidate& candidate) {
+    if (candidate.base.empty()) {
+      sources.push_back({text_of(candidate.file), std::nullopt});
+      return;
+    }
+    MadeSolution made = make_solution(read_slip(candidate.file), candidate.base, text_of(candidate.base));
+    std::string text = made.text;
+    sources.push_back({std::move(text), std::move(made)});
+  });
+  return sources;
 }
 
 std::vector<Candidate> only(const std::vector<Candidate>& candidates, const std::vector<std::string>& names) {
@@ -150,15 +188,17 @@ std::vector<AuditResult> audit(const Course& course, const std::string& id, cons
                                const std::function<void(std::size_t, std::size_t)>& told) {
   const Rubric rubric = rubric_of(course, id);
   const std::string grader = judging_digest(course, id);
+  const std::vector<JudgedSource> sources = sources_of(candidates);
   std::vector<Kept> kept;
   std::vector<std::size_t> open;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    kept.push_back(kept_for(course, id, grader, candidates[i]));
+    if (sources[i].made) write_whole(course.build / "audit" / id / "slips" / whole_name(candidates[i]), sources[i].text);
+    kept.push_back(kept_for(course, id, grader, candidates[i], sources[i]));
     if (!fs::exists(kept[i].results)) open.push_back(i);
   }
   std::size_t done = candidates.size() - open.size();
   if (told) told(done, candidates.size());
-  run_in_processes(open.size(), jobs, [&](std::size_t i) { run_one(course, id, candidates[open[i]], kept[open[i]]); },
+  run_in_processes(open.size(), jobs, [&](std::size_t i) { run_one(course, id, candidates[open[i]], sources[open[i]], kept[open[i]]); },
                    [&](std::size_t, int, double) {
                      ++done;
                      if (told) told(done, candidates.size());

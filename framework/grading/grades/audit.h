@@ -4,15 +4,17 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "framework/grading/course/slip.h"
 #include "framework/grading/course/course.h"
 #include "framework/grading/verdicts/verdict.h"
 
 namespace tumble::grading {
 
-/// What is audited: a known-wrong solution, whose first two lines are
+/// What is audited: a known-wrong solution, a slip (slip.h) or a whole file, whose first two lines are
 ///   // mutant: NAME - what the slip is
 ///   // caught-by: words that the story of a test that catches it must hold
 /// or a right one, which has no such lines.
@@ -21,6 +23,13 @@ struct Candidate {
   std::filesystem::path file;
   bool is_right = false;
   std::string slip, keyword;
+  std::filesystem::path base = {};   // the right solution that a slip changes; empty for a whole file
+};
+
+/// The text that is judged.
+struct JudgedSource {
+  std::string text;
+  std::optional<MadeSolution> made;   // of a slip and its base
 };
 
 struct AuditResult {
@@ -35,12 +44,20 @@ struct AuditResult {
   bool is_as_it_should() const;
 };
 
+/// The right solution that the course calls its own.
+std::filesystem::path reference_of(const Course& course, const std::string& id);
+
 /// Known-wrong solutions of a folder (the assignment's own where empty), then the reference and the other right ones.
-/// @throws UserError for a folder without sources, or one whose first lines are not as above
+/// @throws UserError for a folder without sources; and one that names every file that is not written as above
 std::vector<Candidate> find_candidates(const Course& course, const std::string& id, const std::filesystem::path& mutants = {});
 
+/// @throws UserError that names every slip which does not fit its base
+std::vector<JudgedSource> sources_of(const std::vector<Candidate>& candidates);
+
 /// Compiles and judges all, `jobs` at a time. What has not changed since an earlier audit is not run again (BUILD/audit).
+/// The whole text of each slip is left in BUILD/audit/ID/slips/ for people to read and to run.
 /// @param told  called as each is finished: how many of how many; may be empty
+/// @throws UserError as sources_of does, before anything is judged
 /// @pre  this process runs no thread
 std::vector<AuditResult> audit(const Course& course, const std::string& id, const std::vector<Candidate>& candidates, int jobs,
                                const std::function<void(std::size_t done, std::size_t total)>& told = {});

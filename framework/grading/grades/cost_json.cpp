@@ -9,7 +9,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// JSON has no NaN: a plot breaks its line there either way.
+// JSON has no NaN, so it is stored as null; a plot breaks its line there.
 double number_or_nan(const Json& json) { return json.is_null() ? std::nan("") : json.get<double>(); }
 
 std::vector<double> numbers_of(const Json& json) {

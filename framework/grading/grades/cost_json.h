@@ -1,4 +1,5 @@
-/// The section on what accuracy costs, as JSON: a record keeps it, so that a page can be written again without measuring again.
+/// The section on the cost of accuracy as JSON: a record keeps it, so that a page can be rewritten
+/// without measuring again.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -8,7 +9,8 @@
 namespace tumble::grading {
 
 nlohmann::ordered_json cost_json(const CostSection& cost);
-/// The inverse. @throws nlohmann::json::exception for anything else
+/// The inverse.
+/// @throws nlohmann::json::exception for anything else
 CostSection cost_of(const nlohmann::ordered_json& json);
 
 }  // namespace tumble::grading

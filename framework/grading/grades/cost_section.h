@@ -1,7 +1,8 @@
-/// What accuracy costs with a submission's own methods, for its page: error against steps and against force evaluations, beside the
-/// reference, and a sentence that reads each curve.
+/// The cost of accuracy with a submission's methods, for its page: error against steps and against
+/// force evaluations, compared with the reference, and a sentence that interprets each curve.
 ///
-/// Prices are counts, never seconds, so that the same submission gives the same bytes. No points hang on any of it.
+/// Costs are counts, never seconds, so that the same submission gives the same bytes. It earns no
+/// points.
 #pragma once
 
 #include <string>
@@ -13,22 +14,22 @@ namespace tumble::grading {
 
 struct CostLine {
   std::string reading;                  // the sentence
-  bool is_right = false;                // it does what its method promises
+  bool is_right = false;                // the method has its nominal order and accuracy
   bool is_attempted = true;
-  bool is_wasteful = false;             // right, and dearer than it need be
+  bool is_wasteful = false;             // right, but costlier than necessary
 };
 
 struct CostSection {
-  std::string scene;                    // its title; empty: nothing is measured of this module
-  std::string truth;                    // what errors are measured against, and what an error is
+  std::string scene;                    // its title; empty: this module is not measured
+  std::string truth;                    // the reference solution, and the definition of the error
   std::vector<CostLine> lines;          // of the submission
   std::vector<report::Plot> plots;
   std::vector<report::Table> tables;
 };
 
 struct CostSectionOptions {
-  double call_wall_s = 3.0;             // a call that takes longer has hung: it ends its own curve
-  double session_wall_s = 60.0;         // of all calls of one curve; right ones take seconds at most on an idle machine
+  double call_wall_s = 3.0;             // a longer call counts as hung: it ends its own curve
+  double session_wall_s = 60.0;         // of all calls of one curve; right calls take at most seconds on an idle machine
 };
 
 }  // namespace tumble::grading

@@ -1,4 +1,4 @@
-// What lies in a folder of submissions. Students' folders hold anything: nothing here trusts a name, a link or a size.
+// Students' folders may contain anything: no name, link or size is trusted here.
 #include <algorithm>
 #include <cctype>
 #include <fstream>
@@ -8,7 +8,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/text.h"
-#include "framework/grading/course/digest.h"
+#include "framework/core/digest.h"
 #include "framework/grading/grades/find_submissions.h"
 #include "framework/grading/verdicts/plain_text.h"
 
@@ -18,11 +18,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uintmax_t kLargestSource = 1u << 20;  // bytes: 50x a long solution; more is data or an attack
-constexpr int kDeepest = 6;                          // folders: archives wrap a few times, no more
-constexpr std::size_t kMostFiles = 5000;             // looked at: a whole build tree handed in is smaller
+constexpr int kDeepest = 6;                          // folders: archives add only a few levels
+constexpr std::size_t kMostFiles = 5000;             // examined: even a whole build tree has fewer
 
 struct Found {
-  std::vector<fs::path> named, sources, archives, headers;   // by the right name; other sources; .zip and the like
+  std::vector<fs::path> named, sources, archives, headers;   // with the right name; other sources; .zip etc.
   std::vector<std::pair<fs::path, std::string>> locked;   // folders that cannot be read, and why
   bool cut = false, is_deep = false;
 };
@@ -32,7 +32,7 @@ bool is_archive(const fs::path& file) { return ends_in(file, {".zip", ".gz", ".t
 bool is_source(const fs::path& file) { return ends_in(file, {".cpp", ".cc", ".cxx", ".c++"}); }
 bool is_header(const fs::path& file) { return ends_in(file, {".h", ".hh", ".hpp", ".hxx"}); }
 
-// What systems and tools leave in any folder: nobody's work.
+// Files that systems and tools leave in any folder.
 bool is_litter(const std::string& name) {
   static const std::set<std::string> litter = {"__MACOSX", ".DS_Store", "Thumbs.db", "desktop.ini"};
   return litter.contains(name) || name.starts_with("._");
@@ -42,7 +42,8 @@ bool is_tools_folder(const std::string& name) {
   return tools.contains(name);
 }
 
-// A file, by what its name says. Canvas and browsers number copies: "a1_impulse-1.cpp", "a1_impulse (1).cpp" (by `name`, without it).
+// Classifies a file by its name. Canvas and browsers number copies, "a1_impulse-1.cpp", "a1_impulse
+// (1).cpp"; `name` is without the number.
 void sort_in(const fs::path& path, const std::string& name, const std::string& wanted, Found& found) {
   if (lowercase(name) == lowercase(wanted)) found.named.push_back(path);
   else if (is_source(name)) found.sources.push_back(path);
@@ -50,7 +51,7 @@ void sort_in(const fs::path& path, const std::string& name, const std::string& w
   else if (is_header(name)) found.headers.push_back(path);
 }
 
-void look(const fs::path& folder, const std::string& wanted, int depth, std::size_t& seen, Found& found) {
+void search(const fs::path& folder, const std::string& wanted, int depth, std::size_t& seen, Found& found) {
   std::error_code failed;
   std::vector<fs::directory_entry> entries;
   for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
@@ -64,7 +65,7 @@ void look(const fs::path& folder, const std::string& wanted, int depth, std::siz
     if (is_litter(name)) continue;
     if (!fs::is_directory(entry.symlink_status(failed))) sort_in(entry.path(), name, wanted, found);
     else if (is_tools_folder(name)) continue;
-    else if (depth < kDeepest) look(entry.path(), wanted, depth + 1, seen, found);
+    else if (depth < kDeepest) search(entry.path(), wanted, depth + 1, seen, found);
     else found.is_deep = true;
   }
 }
@@ -75,13 +76,13 @@ std::string listed(const std::vector<fs::path>& files, const fs::path& folder) {
   return text + (files.size() > 5 ? ", ..." : "");
 }
 
-// Why a file must not be compiled; empty where it may.
+// Why a file must not be compiled; empty where it may be.
 std::string why_not(const fs::path& file) {
   std::error_code failed;
   const auto status = fs::symlink_status(file, failed);
   const std::string name = file.filename().string();
   if (fs::is_symlink(status)) return name + " is a symbolic link, which is not followed. Hand in the file itself.";
-  if (!fs::is_regular_file(status)) return name + " is no ordinary file. Hand in a source file.";
+  if (!fs::is_regular_file(status)) return name + " is not an ordinary file. Hand in a source file.";
   const auto size = fs::file_size(file, failed);
   if (failed) return name + " cannot be read: " + failed.message();
   if (size == 0) return name + " is empty.";
@@ -90,15 +91,15 @@ std::string why_not(const fs::path& file) {
   return "";
 }
 
-// The same bytes throughout, in files that may be read: then it does not matter which counts.
+// Whether all files are readable and have the same bytes: then any of them may be taken.
 bool are_equal(const std::vector<fs::path>& files) {
   return std::all_of(files.begin(), files.end(), [&](const fs::path& file) { return why_not(file).empty() && digest_of_file(file) == digest_of_file(files[0]); });
 }
 
 void choose_source(Found found, const std::string& wanted, const fs::path& folder, Submission& submission) {
   const auto note = [&](const std::string& text) { submission.notes.push_back(text); };
-  if (found.cut) note("more than " + std::to_string(kMostFiles) + " files: only the first were looked at");
-  if (found.is_deep) note("folders more than " + std::to_string(kDeepest) + " deep were not looked at");
+  if (found.cut) note("more than " + std::to_string(kMostFiles) + " files: only the first were examined");
+  if (found.is_deep) note("folders more than " + std::to_string(kDeepest) + " deep were not examined");
   for (std::vector<fs::path>* files : {&found.named, &found.sources}) {
     if (files->size() < 2 || (files == &found.sources && !found.named.empty()) || !are_equal(*files)) continue;
     note("copies of one file, byte for byte: " + listed(*files, folder) + "; the first was taken");
@@ -107,9 +108,9 @@ void choose_source(Found found, const std::string& wanted, const fs::path& folde
   if (!found.locked.empty()) {
     const auto& [locked, why] = found.locked.front();
     submission.problem = "The folder " + (locked == folder ? folder.filename() : locked.lexically_relative(folder.parent_path())).string() + " cannot be read (" + why +
-                         "), so it is not known what was handed in. Let the grader's user in, for example: chmod -R u+rX " + shell_word(folder.string());
+                         "), so it is not known what was handed in. Give the grader's user access, for example: chmod -R u+rX " + shell_word(folder.string());
   } else if (found.named.size() > 1) {
-    submission.problem = "Holds " + wanted + " " + std::to_string(found.named.size()) + " times: " + listed(found.named, folder) + ". Leave one, so that it is clear which counts.";
+    submission.problem = "Holds " + wanted + " " + std::to_string(found.named.size()) + " times: " + listed(found.named, folder) + ". Leave only the one that counts.";
   } else if (found.named.empty() && found.sources.size() > 1) {
     submission.problem = "Holds no " + wanted + " but several other sources: " + listed(found.sources, folder) + ". Name the one that counts " + wanted + ".";
   } else if (found.named.empty() && found.sources.empty()) {
@@ -127,7 +128,7 @@ void choose_source(Found found, const std::string& wanted, const fs::path& folde
   }
 }
 
-// STUDENT_[LATE_]USER_SUBMISSION_FILE: how Canvas names what it puts into one archive of all submissions.
+// STUDENT_[LATE_]USER_SUBMISSION_FILE: Canvas's names in an archive of all submissions.
 struct CanvasName {
   std::string student, id, file;
 };
@@ -145,7 +146,7 @@ std::optional<CanvasName> canvas_name(const std::string& name) {
 
 FoundSubmissions find_submissions(const fs::path& folder, const modules::ModuleKind& kind) {
   std::error_code failed;
-  if (!fs::is_directory(folder, failed)) throw UserError(folder.string(), "is no folder", "Give the folder that holds one sub-folder a submission.");
+  if (!fs::is_directory(folder, failed)) throw UserError(folder.string(), "is not a folder", "Give the folder that holds one sub-folder per submission.");
   std::vector<fs::path> entries;
   for (fs::directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) entries.push_back(it->path());
   if (failed) throw UserError(folder.string(), "cannot be read: " + failed.message());
@@ -153,7 +154,7 @@ FoundSubmissions find_submissions(const fs::path& folder, const modules::ModuleK
 
   const std::string wanted = kind.folder + ".cpp";
   FoundSubmissions all{folder, {}, {}};
-  std::map<std::pair<std::string, std::string>, Found> flat;   // files of Canvas, by student and number
+  std::map<std::pair<std::string, std::string>, Found> flat;   // files from Canvas, by student and number
   const auto add = [&](Submission submission, const Found& found, const fs::path& within) {
     choose_source(found, wanted, within, submission);
     all.all.push_back(std::move(submission));
@@ -174,7 +175,7 @@ FoundSubmissions find_submissions(const fs::path& folder, const modules::ModuleK
       }
       Found found;
       std::size_t seen = 0;
-      look(path, wanted, 0, seen, found);
+      search(path, wanted, 0, seen, found);
       add(std::move(submission), found, path);
     } else if (const auto canvas = canvas_name(name)) {
       sort_in(path, canvas->file, wanted, flat[{canvas->student, canvas->id}]);
@@ -195,7 +196,7 @@ FoundSubmissions find_submissions(const fs::path& folder, const modules::ModuleK
   }
   std::sort(all.all.begin(), all.all.end(), [](const Submission& a, const Submission& b) { return a.name < b.name; });
   if (all.all.empty())
-    throw UserError(folder.string(), "holds no submission: one sub-folder a submission, or one file as Canvas names them",
+    throw UserError(folder.string(), "holds no submission: no sub-folder, and no file with a name as Canvas gives it",
                     "One submission is one sub-folder that holds " + wanted + ", for example " + (folder / "alice" / wanted).string() + ".");
   return all;
 }

@@ -1,4 +1,4 @@
-/// Submissions in a folder.
+/// Finds the submissions in a folder.
 #pragma once
 
 #include <filesystem>
@@ -8,9 +8,10 @@
 
 namespace tumble::grading {
 
-/// One submission a sub-folder, or a file where Canvas has put them flat (STUDENT_ID_ID_FILE.cpp). Symbolic links are not followed.
-/// Never throws for what a folder holds.
-/// @throws UserError when `folder` is no folder or holds no submission
+/// One submission per sub-folder, or per file in a flat folder from Canvas
+/// (STUDENT_ID_ID_FILE.cpp). Symbolic links are not followed. The content of a submission never
+/// causes an exception.
+/// @throws UserError when `folder` is not a folder or holds no submission
 FoundSubmissions find_submissions(const std::filesystem::path& folder, const modules::ModuleKind& kind);
 
 }  // namespace tumble::grading

@@ -14,23 +14,23 @@
 
 namespace tumble::grading {
 
-/// What stands to be graded.
+/// A submission to be graded.
 struct Submission {
-  std::string name;                    // shown to people; any bytes
+  std::string name;                    // for display; may contain any bytes
   std::filesystem::path source;        // the file that implements the module's header; empty where `problem` says why
-  std::string problem;                 // for the grader: why there is nothing to compile; empty: there is
-  std::vector<std::string> notes;      // what was odd but not in the way
-  std::string student_id = {};         // Canvas's number of the student, where the file's name has it
+  std::string problem;                 // for the grader: why there is nothing to compile; empty: there is a source
+  std::vector<std::string> notes;      // unusual, but no obstacle
+  std::string student_id = {};         // Canvas's number of the student, if the file's name has one
 };
 
-/// What lies in a folder of submissions.
+/// The content of a folder of submissions.
 struct FoundSubmissions {
   std::filesystem::path folder;
   std::vector<Submission> all;         // by name
-  std::vector<std::string> passed_over;   // entries that are no submission, each with the reason; what every such folder holds is left out
+  std::vector<std::string> passed_over;   // entries that are not submissions, each with the reason; files that systems leave in every folder are left out
 };
 
-/// A test of the rubric, as it went.
+/// A test of the rubric with its result.
 struct ScoredTest {
   RubricItem item;
   TestResult result;
@@ -41,18 +41,18 @@ enum class GradeState {
   kJudged,
   kNothingToCompile,   // Submission::problem
   kDoesNotCompile,
-  kGraderFault,        // ours: the score says nothing
+  kGraderFault,        // the score is meaningless
 };
 
-/// What a grade was made from, as digests, so that an unchanged one need not be made again.
+/// The inputs of a grade, as digests, so that an unchanged submission need not be graded again.
 struct GradeKey {
   std::string submission;   // source, problem and notes
-  std::string judging;      // judge, worker, tests, headers, compiler, time: what decides a verdict
+  std::string judging;      // everything that decides a verdict: judge, worker, tests, headers, compiler, time limit
   std::string rubric;       // points, levels and titles
   std::string pictures;     // scenes and options; empty: without pictures
 };
 
-/// A test of which an earlier run of the same submission's folder said something else.
+/// A test with another result than in the earlier run of the same submission's folder.
 struct TestChange {
   std::string test, title;
   std::string before, after;         // "wrong, 0 of 5"
@@ -61,40 +61,40 @@ struct TestChange {
 
 struct Grade {
   std::string name;                  // of the submission
-  std::string folder;                // below OUT: the name, made safe for a path
+  std::string folder;                // below OUT: the name, safe for a path
   GradeState state = GradeState::kGraderFault;
-  std::string story;                 // the compiler's words, or what else was in the way; empty when judged
+  std::string story;                 // the compiler's errors, or another obstacle; empty when judged
   std::vector<std::string> notes;
   std::vector<ScoredTest> tests;     // in the rubric's order
   std::vector<SceneMedia> media;
-  CostSection cost;                  // on the page only, not in the record
+  CostSection cost;                  // only on the page, not in the record
   double score = 0.0, possible = 0.0;
-  bool taken_over = false;           // nothing had changed since an earlier run: its results stand
-  std::string change;                // "80 -> 85: the tests changed"; empty where there was no other result before
+  bool taken_over = false;           // nothing has changed since an earlier run, whose results are kept
+  std::string change;                // "80 -> 85: the tests changed"; empty without an earlier, different result
   std::vector<TestChange> changes;   // test by test
-  std::vector<std::string> remarks;  // for the grader alone: what names other submissions
-  std::string student_id;            // as of the submission
+  std::vector<std::string> remarks;  // for the grader only, because they name other submissions
+  std::string student_id;            // of the submission
 
-  /// No test of it ended in a fault of the grader, or because the machine was too busy.
+  /// Whether no test ended in a fault of the grader or because the machine was too busy.
   bool is_final() const;
-  /// A number that a gradebook may hold: final, and of a file that was found.
+  /// Whether a gradebook may have the score: it is final, and a file was found.
   bool has_score() const { return is_final() && state != GradeState::kNothingToCompile; }
 };
 
 struct GradeProgress {
   std::size_t done = 0, total = 0;
-  std::string finished;              // name of the submission that has just been finished; may be empty
-  double left_s = 0.0;               // time left, estimated; negative: not known yet
+  std::string finished;              // name of the submission just finished; may be empty
+  double left_s = 0.0;               // estimated time left; negative: unknown
 };
 
 struct GradeOptions {
   double budget_s = 60.0;            // for all tests of a submission together: TimeBudget
-  int jobs = 1;                      // submissions at the same time, each in a process of its own
+  int jobs = 1;                      // submissions graded at the same time, each in a separate process
   bool media = true;
   MediaOptions media_options;
   std::vector<std::filesystem::path> scenes;   // empty: the assignment's demo scenes
   std::function<void(const GradeProgress&)> progress;
-  std::function<void(const std::string&)> notice;   // a sentence for the person at the terminal; may be empty
+  std::function<void(const std::string&)> notice;   // called with a sentence for the user; may be empty
 };
 
 }  // namespace tumble::grading

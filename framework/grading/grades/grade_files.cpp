@@ -10,11 +10,13 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/core/files.h"
+#include "framework/core/version.h"
 #include "framework/grading/grades/cost_json.h"
-#include "framework/grading/course/digest.h"
+#include "framework/core/digest.h"
 #include "framework/grading/grades/grade_pages.h"
 #include "framework/grading/verdicts/plain_text.h"
 #include "framework/grading/grades/scoring.h"
+#include "framework/trajectory/record.h"
 
 namespace tumble::grading {
 namespace {
@@ -26,7 +28,7 @@ constexpr const char* kRecord = "record.json";
 
 constexpr std::array kStates = {"judged", "nothing to compile", "does not compile", "fault of the grader"};
 
-// Names and stories that are kept for ourselves hold any bytes: what is not UTF-8 is replaced, not refused.
+// Names and stories may contain any bytes: invalid UTF-8 is replaced, not refused.
 std::string dumped(const Json& json) { return json.dump(1, ' ', false, Json::error_handler_t::replace) + '\n'; }
 
 std::string output_of(const ScoredTest& test) {
@@ -35,7 +37,8 @@ std::string output_of(const ScoredTest& test) {
   return text;
 }
 
-// What spreadsheets take for the start of a formula: the signs, and the full-width forms that some of them read alike.
+// Whether a spreadsheet could read the text as a formula: it starts with a sign, or with a
+// full-width form of one.
 bool starts_a_formula(const std::string& text) {
   const auto first = text.find_first_not_of(' ');
   if (first == std::string::npos) return false;
@@ -44,7 +47,7 @@ bool starts_a_formula(const std::string& text) {
   return false;
 }
 
-// A cell of a table for spreadsheets: one line, quoted where it must be, and never a formula.
+// A CSV cell: one line, quoted if necessary, and never a formula.
 std::string csv_cell(const std::string& raw) {
   std::string text = plain_name(raw);
   if (starts_a_formula(text)) text.insert(0, "'");
@@ -64,7 +67,7 @@ Json media_json(const SceneMedia& media) {
           {"story", media.story}, {"attempted", media.attempted}, {"checks", checks}, {"page", media.page.string()}};
 }
 
-// JSON has no infinities: they became null.
+// JSON has no infinity, so it is stored as null.
 double number_or_infinity(const Json& json) { return json.is_null() ? std::numeric_limits<double>::infinity() : json.get<double>(); }
 
 SceneMedia media_of(const Json& json) {
@@ -133,20 +136,21 @@ GradeRecord record_of(const Json& json) {
   return record;
 }
 
-// The last line of a page: the first digits of each digest find the entry in the ledger.
+// The last line of a page: the first digits of each digest, which identify the entry in the ledger.
 std::string graded_from(const GradeKey& key) {
   constexpr std::size_t kShown = 16;
   const auto head = [](const std::string& digits) { return digits.substr(0, kShown); };
   std::string text = "Submission " + head(key.submission) + " · judge " + head(key.judging) + " · rubric " + head(key.rubric);
   if (!key.pictures.empty()) text += " · pictures " + head(key.pictures);
-  return text + " · Tumble";
+  return text + " · " + version_in_words(kProgramVersion);
 }
 
 }  // namespace
 
 std::string gradescope_json(const Grade& grade) {
   Json page;
-  // Without a score Gradescope keeps what it has: nobody's 0 is written for what was not judged.
+  // Without a score Gradescope keeps the old one: a submission that was not judged does not get 0
+  // points.
   if (grade.has_score()) page["score"] = grade.score;
   std::string said = grade.story;
   for (const std::string& note : grade.notes) said += (said.empty() ? "" : "\n") + ("note: " + note);
@@ -156,7 +160,7 @@ std::string gradescope_json(const Grade& grade) {
   page["test_name_format"] = "text";
   page["visibility"] = "visible";
   page["stdout_visibility"] = "hidden";
-  page["extra_data"] = {{"state", kStates.at(static_cast<std::size_t>(grade.state))}, {"final", grade.is_final()}};
+  page["extra_data"] = {{"version", kProgramVersion}, {"state", kStates.at(static_cast<std::size_t>(grade.state))}, {"final", grade.is_final()}};
   page["tests"] = Json::array();
   for (const ScoredTest& test : grade.tests) {
     Json entry;
@@ -191,7 +195,7 @@ std::string gradebook_csv(const std::string& assignment_title, const std::vector
   for (const Grade& grade : grades) possible = std::max(possible, grade.possible);
   text += "    Points Possible,,,," + points_text(possible) + "\n";
   for (const Grade& grade : grades) {
-    // A student of this name would be read as the row of points.
+    // The name of such a student would be read as the row of points.
     const std::string name = csv_cell(is_points_row(grade.name) ? "folder " + grade.name : grade.name);
     text += name + "," + grade.student_id + "," + name + ",," + (grade.has_score() ? points_text(grade.score) : "") + "\n";
   }
@@ -204,7 +208,7 @@ std::map<std::string, std::string> digests_below(const fs::path& folder) {
   for (fs::recursive_directory_iterator it(folder, failed), end; !failed && it != end; it.increment(failed)) {
     const std::string name = it->path().lexically_relative(folder).string();
     if (fs::is_directory(it->symlink_status()) || name == kRecord) continue;
-    digests[name] = fs::is_regular_file(it->symlink_status()) ? digest_of_file(it->path()) : "no file";
+    digests[name] = fs::is_regular_file(it->symlink_status()) ? digest_of_file(it->path()) : "not a file";
   }
   return digests;
 }
@@ -232,7 +236,8 @@ std::string record_json(const GradeRecord& record, const std::string& machine_ke
   for (const SceneMedia& media : grade.media) json["media"].push_back(media_json(media));
   json["cost"] = cost_json(grade.cost);
   json["files"] = record.files;
-  // Through text and back: what is signed is what a reader will have, after bytes that are no UTF-8 have been replaced.
+  // Converted to text and back, so that the signature is of the data as read later, after invalid
+  // UTF-8 has been replaced.
   json = Json::parse(dumped(json));
   json["mac"] = code_of(json, machine_key);
   return dumped(json);
@@ -253,8 +258,8 @@ EarlierRun read_earlier_run(const fs::path& folder, const std::string& assignmen
   } catch (const Json::exception&) {
     return {{}, "its record cannot be read"};
   }
-  if (record.assignment != assignment || record.grade.folder != folder.filename().string()) return {{}, "its record is of another folder"};
-  if (record.files != digests_below(folder)) return {{}, "its files are not those that were written"};
+  if (record.assignment != assignment || record.grade.folder != folder.filename().string()) return {{}, "its record belongs to another folder"};
+  if (record.files != digests_below(folder)) return {{}, "its files have changed"};
   return {std::move(record), ""};
 }
 
@@ -267,6 +272,7 @@ void write_grade(const modules::ModuleKind& kind, const Grade& grade, const Grad
 std::string ledger_json(const std::string& id, const std::vector<GradeRecord>& records) {
   Json ledger;
   ledger["assignment"] = id;
+  ledger["version"] = kProgramVersion;
   ledger["submissions"] = Json::array();
   for (const GradeRecord& record : records) {
     const auto results = record.files.find("results.json");

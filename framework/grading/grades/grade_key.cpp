@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "framework/grading/course/digest.h"
+#include "framework/core/digest.h"
 
 namespace tumble::grading {
 namespace {
@@ -57,16 +57,16 @@ std::string submission_digest(const Submission& submission) {
 }
 
 std::string folder_of(const std::string& name) {
-  constexpr std::size_t kLongest = 80;  // bytes: a file system takes 255, and drafts need room
+  constexpr std::size_t kLongest = 80;  // bytes: file systems allow 255, and names of drafts are longer
   std::string plain;
   for (const char c : name) {
     const bool keep = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-' || c == '.';
     plain += keep ? c : '_';
   }
   if (plain.size() > kLongest) plain.resize(kLongest);
-  // Names that begin with "_" are those made here: nobody's own name may look like one.
+  // Names that begin with "_" are reserved for names that are made here.
   const bool taken = plain.empty() || plain[0] == '.' || plain[0] == '-' || plain[0] == '_' || plain == "index.html" || plain == "gradebook.csv" || plain == "ledger.json" || plain == "times.json";
-  constexpr std::size_t kDigits = 16;   // 64 bits of SHA-256: two names of a course do not share them by chance
+  constexpr std::size_t kDigits = 16;   // 64 bits of SHA-256: enough that no two names of a course collide by chance
   return plain == name && !taken ? plain : "_" + plain + "-" + digest(name).substr(0, kDigits);
 }
 

@@ -1,4 +1,4 @@
-/// What a grade depends on, as digests.
+/// Digests of everything that a grade depends on.
 #pragma once
 
 #include "framework/grading/grades/grade.h"
@@ -6,17 +6,19 @@
 
 namespace tumble::grading {
 
-/// Digest of what decides a verdict: the judge with its tests, the worker, the module's headers, the compiler.
+/// Digest of everything that decides a verdict: the judge with its tests, the worker, the module's
+/// headers, the compiler.
 std::string judging_digest(const Course& course, const std::string& id);
-/// The same, with this program and the time that a submission may take.
+/// The same with this program and a submission's time budget.
 std::string grader_digest(const Course& course, const std::string& id, double budget_s);
-/// Digest of what a test is worth, and how it is named.
+/// Digest of the points and titles of the tests.
 std::string rubric_digest(const Rubric& rubric);
-/// Digest of the scenes and of how they are drawn; empty where no pictures are wanted.
+/// Digest of the scenes and of the options of their pictures; empty without pictures.
 std::string pictures_digest(const Course& course, const std::string& id, const GradeOptions& options);
 std::string submission_digest(const Submission& submission);
 
-/// A name for a folder below OUT: the submission's own where it is plain, else made plain with a digest that keeps it its own.
+/// Name of a submission's folder below OUT: its own name if that is plain, else a plain form with a
+/// digest that makes it unique.
 std::string folder_of(const std::string& name);
 
 }  // namespace tumble::grading

@@ -1,4 +1,5 @@
-// All submissions of a folder: a process for each, a few at a time, so that what happens in one stays in one.
+// Grades all submissions of a folder, each in a separate process, a few at a time, so that a
+// failure affects only one.
 #include <fcntl.h>
 #include <sys/wait.h>
 
@@ -14,7 +15,7 @@
 
 #include "framework/core/files.h"
 #include "framework/grading/compiler/compile.h"
-#include "framework/grading/course/digest.h"
+#include "framework/core/digest.h"
 #include "framework/grading/grades/grade_many.h"
 #include "framework/grading/grades/grade_files.h"
 #include "framework/grading/grades/grade_key.h"
@@ -37,7 +38,7 @@ struct Work {
   std::string folder;
   GradeKey key;
   EarlierRun earlier;
-  GradeRecord record;       // as it stands in the end
+  GradeRecord record;       // the final one
   std::vector<std::string> remarks;
   double seconds = 0.0;
 };
@@ -62,19 +63,20 @@ class Batch {
   }
 
  private:
-  // Results are handed on and published; the key that signs them is not.
+  // Results are published; the key that signs them must not be.
   static void refuse_key_in(const fs::path& out) {
     std::error_code failed;
     const fs::path key = fs::weakly_canonical(machine_key_file(), failed), folder = fs::weakly_canonical(fs::absolute(out), failed);
     const auto [end, rest] = std::mismatch(folder.begin(), folder.end(), key.begin(), key.end());
-    if (!key.empty() && end == folder.end()) throw UserError(key.string(), "is the key of this machine, and lies in the folder of results " + folder.string(), "Name another file in TUMBLE_GRADER_KEY, or another folder with --out.");
+    if (!key.empty() && end == folder.end()) throw UserError(key.string(), "is the key of this machine, and is inside the folder of results " + folder.string(), "Name another file in TUMBLE_GRADER_KEY, or another folder with --out.");
   }
 
   void notice(const std::string& sentence) const {
     if (options_.notice) options_.notice(sentence);
   }
 
-  // A file may change while others are graded: what is digested, compared and compiled is one copy, read here.
+  // A file may change while others are graded: digests, comparisons and compilation all use one
+  // copy, read here.
   void read_once(std::vector<Submission>& submissions) {
     std::size_t number = 0;
     for (Submission& submission : submissions) {
@@ -88,12 +90,13 @@ class Batch {
     }
   }
 
-  // Takes over what is whole, signed and unchanged.
+  // Reuses earlier results that are complete, signed and unchanged.
   void plan(const std::vector<Submission>& submissions) {
     const std::string judging = grader_digest(course_, id_, options_.budget_s), pictures = pictures_digest(course_, id_, options_);
     std::set<std::string> folders;
     for (const Submission& submission : submissions) {
-      // Two entries of one name cannot be, but two flat files of one student can: each gets a folder of its own.
+      // Names of folders are unique, but a student may have two flat files: each gets its own
+      // folder.
       std::string folder = folder_of(submission.name);
       for (int again = 2; !folders.insert(folder).second; ++again) folder = folder_of(submission.name + '\0' + std::to_string(again));
       Work work{&submission, folder, {submission_digest(submission), judging, rubric_digest(rubric_), pictures}, {}, {}, {}, 0.0};
@@ -102,8 +105,8 @@ class Batch {
     }
     output_->claim(folders);
     remark_equal_files();
-    tell_doubles();
-    tell_distrusted();
+    report_doubles();
+    report_distrusted();
     for (Work& work : work_) {
       if (is_current(work)) {
         work.record = *work.earlier.record;
@@ -115,7 +118,8 @@ class Batch {
     }
   }
 
-  // The same bytes under two names are worth a look. No student reads it: it names others.
+  // Identical files under two names get a remark, which students do not see because it names
+  // others.
   void remark_equal_files() {
     std::map<std::string, std::vector<Work*>> by_digest;
     for (Work& work : work_)
@@ -126,23 +130,24 @@ class Batch {
           if (other != work) work->remarks.push_back("the same file, byte for byte, as that of " + plain_name(other->submission->name));
   }
 
-  // A folder and a flat file of one name, say: two rows of one student, of which a grade book keeps the last.
-  void tell_doubles() {
+  // For example a folder and a flat file of one name: two rows of one student, of which a gradebook
+  // keeps the last.
+  void report_doubles() {
     std::map<std::pair<std::string, std::string>, std::vector<Work*>> by_student;
     for (Work& work : work_) by_student[{work.submission->name, work.submission->student_id}].push_back(&work);
     for (const auto& [student, works] : by_student) {
       if (works.size() < 2) continue;
-      notice(fmt::format("{}: {} submissions of that name: the grade book has a row for each, and a system that reads it may keep the last. Leave one.", plain_name(student.first), works.size()));
+      notice(fmt::format("{}: {} submissions of that name: the gradebook has a row for each, and a system that reads it may keep the last. Leave only one.", plain_name(student.first), works.size()));
       for (Work* work : works) work->remarks.push_back(fmt::format("one of {} submissions of this name", works.size()));
     }
   }
 
-  void tell_distrusted() const {
+  void report_distrusted() const {
     constexpr std::size_t kNamed = 5;
     std::size_t count = 0;
     for (const Work& work : work_) {
       if (work.earlier.problem.empty()) continue;
-      if (++count <= kNamed) notice(plain_name(work.submission->name) + ": the earlier result is not taken over, " + work.earlier.problem + "; graded again");
+      if (++count <= kNamed) notice(plain_name(work.submission->name) + ": the earlier result is not reused, because " + work.earlier.problem + "; graded again");
     }
     if (count > kNamed) notice(fmt::format("... and {} more", count - kNamed));
   }
@@ -157,38 +162,39 @@ class Batch {
 
   void grade_open_ones() {
     start_ = Clock::now();
-    tell("");
+    report_progress("");
     const auto work = [&](std::size_t i) { grade_one(*open_[i]); };
     run_in_processes(open_.size(), options_.jobs, work, [&](std::size_t i, int status, double seconds) {
       open_[i]->seconds = seconds;
       settle(*open_[i], status);
       ++done_;
       ++fresh_;
-      tell(open_[i]->submission->name);
+      report_progress(open_[i]->submission->name);
     }, [this] { clear_drafts(); });
   }
 
-  // What is half done goes; what is done stands, and is taken over by the next run.
+  // Removes unfinished results; finished ones stay, and are reused by the next run.
   void clear_drafts() const {
     std::error_code ignored;
     for (const Work& work : work_) fs::remove_all(draft_of(work), ignored);
-    for (const fs::path& folder : {course_.build, sources_.path()}) fs::remove_all(folder, ignored);   // this process ends by the signal, without its destructors
-    fmt::print(stderr, "stopped: {} of {} submissions are graded; the same command goes on from here\n", done_, work_.size());
+    for (const fs::path& folder : {course_.build, sources_.path()}) fs::remove_all(folder, ignored);   // this process ends by a signal, without running destructors
+    fmt::print(stderr, "stopped: {} of {} submissions are graded; the same command continues from here\n", done_, work_.size());
   }
 
   fs::path place_of(const Work& work) const { return output_->path() / work.folder; }
   fs::path draft_of(const Work& work) const { return output_->path() / draft_name(work.folder); }
-  // The draft's name must not show in what is written: it is named as it will be.
+  // The draft's folder has the final name inside, because the written files contain it.
   fs::path made_of(const Work& work) const { return draft_of(work) / work.folder; }
 
-  // In a process of its own. What goes wrong is left beside the draft, for the parent to read.
+  // Runs in a separate process. The message of an exception is left beside the draft, for the
+  // parent.
   void grade_one(const Work& work) const {
     try {
       fs::create_directories(made_of(work));
       GradeOptions own = options_;
       own.progress = {};
       std::optional<Grade> grade;
-      if (verdicts_stand(work)) grade = graded_by(rubric_, work.earlier.record->grade);   // points alone have changed: added up again, not run again
+      if (verdicts_stand(work)) grade = graded_by(rubric_, work.earlier.record->grade);   // only points have changed: added up again, not run again
       GradeKey key = work.key;
       const bool is_rerun = !grade;
       if (is_rerun) grade = grade_submission(course_, id_, *work.submission, made_of(work), own);
@@ -204,7 +210,8 @@ class Batch {
     }
   }
 
-  // Pictures of an earlier run stay where none are made now: their files always, and on the page where it is known what they show.
+  // Keeps the pictures of an earlier run if none are made now: their files always, and on the page
+  // if the earlier record describes them.
   void keep_media(const Work& work, Grade& grade, GradeKey& key) const {
     const fs::path from = place_of(work) / "media", to = made_of(work) / "media";
     if (!fs::is_directory(fs::symlink_status(from))) return;
@@ -225,7 +232,7 @@ class Batch {
     if (!is_same || were_old) grade.notes.push_back(note);
   }
 
-  // What a regrade changed, test by test.
+  // Lists the changes by a regrade, test by test.
   static void compare(const GradeRecord& old, const GradeKey& key, Grade& now) {
     const char* reason = old.key.submission != key.submission ? "the submission changed"
                          : old.key.judging != key.judging     ? "the tests or the grader changed"
@@ -236,18 +243,18 @@ class Batch {
     for (const ScoredTest& test : old.grade.tests) before[test.item.test] = said(test);
     for (const ScoredTest& test : now.tests) {
       const auto it = before.find(test.item.test);
-      const std::string was = it == before.end() ? "not there" : it->second;
+      const std::string was = it == before.end() ? "absent" : it->second;
       if (was != said(test)) now.changes.push_back({test.item.test, test.item.title, was, said(test), reason});
       if (it != before.end()) before.erase(it);
     }
-    for (const auto& [test, was] : before) now.changes.push_back({test, test, was, "not there", reason});
+    for (const auto& [test, was] : before) now.changes.push_back({test, test, was, "absent", reason});
     if (old.grade.score != now.score && old.grade.has_score() && now.has_score())
       now.change = fmt::format("{} -> {}: {}", points_text(old.grade.score), points_text(now.score), reason);
     else if (old.grade.has_score() != now.has_score())
       now.change = fmt::format("{} -> {}: {}", old.grade.has_score() ? points_text(old.grade.score) : "none", now.has_score() ? points_text(now.score) : "none", reason);
   }
 
-  // Puts a finished submission in place. A fault of ours leaves an old result standing.
+  // Puts a finished submission in place. After a fault of the grader an old result stays.
   void settle(Work& work, int status) {
     const fs::path draft = draft_of(work), made = made_of(work), place = place_of(work);
     std::optional<GradeRecord> record;
@@ -266,7 +273,8 @@ class Batch {
     fs::remove_all(draft, ignored);
   }
 
-  // A reader sees the old folder or the new one, whole: where the file system can, they change places in one step.
+  // A reader sees the whole old folder or the whole new one: they are exchanged atomically where
+  // the file system can.
   static void put_in_place(const fs::path& made, const fs::path& place, const fs::path& aside) {
     if (!fs::exists(fs::symlink_status(place))) return fs::rename(made, place);
     if (::renameat2(AT_FDCWD, made.c_str(), AT_FDCWD, place.c_str(), RENAME_EXCHANGE) == 0) return;
@@ -274,7 +282,7 @@ class Batch {
     fs::rename(made, place);
   }
 
-  // The grading process itself failed: a page that says so, and no score.
+  // The grading process itself failed: writes a page that says so, without a score.
   GradeRecord write_fault(const Work& work, int status) {
     std::string why;
     std::ifstream said(draft_of(work) / "fault.txt");
@@ -299,7 +307,7 @@ class Batch {
     return record;
   }
 
-  void tell(const std::string& finished) const {
+  void report_progress(const std::string& finished) const {
     if (!options_.progress) return;
     GradeProgress progress{done_, work_.size(), finished, -1.0};
     if (fresh_ > 0) {

@@ -8,8 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "framework/core/version.h"
 #include "framework/grading/verdicts/plain_text.h"
 #include "framework/grading/grades/scoring.h"
+#include "framework/trajectory/record.h"
 
 namespace tumble::grading {
 namespace {
@@ -39,7 +41,7 @@ std::string anchor_of(const std::string& test) {
 
 bool has_story(const ScoredTest& test) { return test.result.verdict != Verdict::kRight && test.result.verdict != Verdict::kNotAttempted; }
 
-// Stories are set in from the left for a terminal's table; a page sets them in by itself.
+// Stories are indented for a terminal; a page has its own indentation.
 std::string flush_left(const std::string& story) {
   std::string text;
   std::istringstream in(story);
@@ -61,7 +63,7 @@ void add_tiles(report::Page& page, const Grade& grade) {
 
 void add_level(report::Page& page, const Grade& grade, const std::string& level) {
   report::Table table;
-  table.columns = {{"Test"}, {"Verdict"}, {"Points", true}, {"of", true}, {"Kept from students"}};
+  table.columns = {{"Test"}, {"Verdict"}, {"Points", true}, {"of", true}, {"Visibility"}};
   double score = 0.0, possible = 0.0;
   for (const ScoredTest& test : grade.tests) {
     if (test.item.level != level) continue;
@@ -79,7 +81,7 @@ void add_level(report::Page& page, const Grade& grade, const std::string& level)
   page.table(table);
 }
 
-// Of a grade that is not final: what stands in the way.
+// The verdict that keeps a grade from being final.
 Verdict unfinished_verdict(const Grade& grade) { return count(grade, Verdict::kGraderFault) > 0 ? Verdict::kGraderFault : Verdict::kMachineBusy; }
 
 void add_changes(report::Page& page, const Grade& grade) {
@@ -108,7 +110,7 @@ std::string summary_of(const Grade& grade) {
 }
 
 void add_stories(report::Page& page, const Grade& grade) {
-  std::map<std::string, std::string> missing;  // story to the titles of the tests that met it
+  std::map<std::string, std::string> missing;  // story -> titles of its tests
   for (const ScoredTest& test : grade.tests) {
     if (test.result.verdict == Verdict::kNotAttempted) missing[test.result.story] += "\n    " + test.item.title;
     if (!has_story(test)) continue;
@@ -139,7 +141,7 @@ void add_media(report::Page& page, const std::vector<SceneMedia>& media, const s
       figure.caption = scene.about;
       page.figures({figure});
     }
-    if (!scene.page.empty()) page.links({{"Play it: turn it, step through it, see its curves and where it first differs", report::link_to(folder / scene.page)}});
+    if (!scene.page.empty()) page.links({{"Play the run: rotate it, step through it, see its curves and the first difference", report::link_to(folder / scene.page)}});
     if (scene.checks.empty()) continue;
     report::Table table;
     table.columns = {{"Judged by"}, {"Of"}, {"Verdict"}, {"Reached and allowed", true}, {"Where"}};
@@ -157,7 +159,7 @@ void add_cost(report::Page& page, const CostSection& cost) {
   if (std::none_of(cost.lines.begin(), cost.lines.end(), [](const CostLine& line) { return line.is_attempted; })) return;
   for (const report::Plot& plot : cost.plots) page.plot(plot);
   for (const report::Table& table : cost.tables) page.table(table);
-  page.paragraph(fmt::format("Measured on: {}. {} This part shows; no points hang on it.", cost.scene, cost.truth), Look::kMuted);
+  page.paragraph(fmt::format("Measured on: {}. {} This part is for information and earns no points.", cost.scene, cost.truth), Look::kMuted);
 }
 
 report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade, const std::string& record) {
@@ -201,7 +203,7 @@ report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade
     page.tiles({{"submissions", {std::to_string(grades.size())}}, {"lowest", {points_text(scores.front())}}, {"median", {points_text(median)}}, {"highest", {points_text(scores.back())}}});
   }
   if (faults > 0) page.paragraph(fmt::format("{} without a final score: the grader failed, or the machine was too busy. Run the same command again; their scores in the gradebook are blank.", faults), Look::kWarning);
-  if (not_found > 0) page.paragraph(fmt::format("{} without a file to grade: the reason stands beside each; their scores in the gradebook are blank.", not_found), Look::kWarning);
+  if (not_found > 0) page.paragraph(fmt::format("{} without a file to grade: the table gives the reasons; their scores in the gradebook are blank.", not_found), Look::kWarning);
   report::Table table;
   table.columns = {{"Submission"}, {"Score", true}, {"of", true}, {"Right", true}, {"Wrong", true}, {"Not attempted", true}, {"Crashed", true}, {"Out of time or memory", true}, {"Remarks"}};
   for (const Grade& grade : grades) {
@@ -216,6 +218,7 @@ report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade
                           number(Verdict::kOutOfResources), {remarks, "", Look::kMuted}});
   }
   page.table(table);
+  page.record(version_in_words(kProgramVersion));   // without the command, which may name the number of jobs: pages are the same for any number
   return page;
 }
 

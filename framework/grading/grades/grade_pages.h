@@ -9,21 +9,21 @@
 
 namespace tumble::grading {
 
-/// The page of one submission, for OUT/NAME/index.html. Media are looked for in media/ beside it.
+/// The page of one submission, for OUT/NAME/index.html. Its media are in media/ beside it.
 report::Page submission_page(const modules::ModuleKind& kind, const Grade& grade, const std::string& record);
 
-/// The page over all, for OUT/index.html.
+/// The page over all submissions, for OUT/index.html.
 report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade>& grades);
 
-/// Parts of a page that other reports are made of.
+/// Parts of a page, for other reports.
 void add_stories(report::Page& page, const Grade& grade);
 /// @param folder  of the media, relative to the page
 void add_media(report::Page& page, const std::vector<SceneMedia>& media, const std::filesystem::path& folder);
 
-/// Nothing where nothing was measured.
+/// Adds nothing if nothing was measured.
 void add_cost(report::Page& page, const CostSection& cost);
 
-/// "12.5 of 100", "fault of the grader", ...: one line on how it went.
+/// The result in one line: "12.5 of 100", "fault of the grader", ...
 std::string summary_of(const Grade& grade);
 
 }  // namespace tumble::grading

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The shared object, gone at the end of the scope.
+// The shared object, removed at the end of the scope.
 struct ObjectFile {
   fs::path path;
   ~ObjectFile() {
@@ -41,7 +41,7 @@ void judge(const Course& course, const std::string& id, const Submission& submis
   }
   const BuiltSubmission built = build_submission(course, id, submission.source, object.path);
   if (built.outcome == BuiltSubmission::Outcome::kGraderFault) {
-    grade.story = "The compiler could not be asked: " + built.said;
+    grade.story = "The compiler could not run: " + built.said;
     grade.tests = score_nothing(rubric, Verdict::kGraderFault, grade.story);
   } else if (built.outcome == BuiltSubmission::Outcome::kRefused) {
     grade.state = GradeState::kDoesNotCompile;
@@ -84,7 +84,7 @@ std::optional<Grade> graded_by(const Rubric& rubric, Grade earlier) {
     earlier.tests = score_tests(rubric, judgement);
   } else {
     if (earlier.tests.empty()) return std::nullopt;
-    const TestResult all = earlier.tests.front().result;   // for one reason, all of them
+    const TestResult all = earlier.tests.front().result;   // all have the same reason
     earlier.tests = score_nothing(rubric, all.verdict, all.story);
   }
   add_up(earlier);

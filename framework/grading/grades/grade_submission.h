@@ -1,4 +1,4 @@
-/// Grades one submission: compiled and judged in the sandbox, and drawn.
+/// Grades one submission: compiles and judges it in the sandbox, and draws its scenes.
 #pragma once
 
 #include <filesystem>
@@ -10,14 +10,15 @@
 
 namespace tumble::grading {
 
-/// Grades one submission in this process; makes its pictures in `folder` and writes nothing else there.
-/// @return never a partial grade: what could not be judged is kGraderFault
+/// Grades one submission in this process; writes its pictures, and nothing else, into `folder`.
+/// @return never a partial grade: if judging fails, its state is kGraderFault
 /// @throws UserError when the pictures cannot be written
 Grade grade_submission(const Course& course, const std::string& id, const Submission& submission, const std::filesystem::path& folder,
                        const GradeOptions& options = {});
 
 /// The points of an earlier run's verdicts under another rubric.
-/// @return empty where the rubric names a test that the earlier run has no verdict on: then it must be run again
+/// @return empty if the rubric has a test without a verdict in the earlier run: then it must be run
+///   again
 std::optional<Grade> graded_by(const Rubric& rubric, Grade earlier);
 
 }  // namespace tumble::grading

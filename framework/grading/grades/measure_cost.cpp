@@ -25,17 +25,18 @@ using engines::CostWay;
 using modules::AnyModule;
 using modules::ModuleKind;
 
-constexpr double kCoarsest = 1.0 / 8.0;   // s: of the ladder
-constexpr int kRungs = 8;                 // halvings down to 1/1024 s
+constexpr double kCoarsest = 1.0 / 8.0;   // s: the largest step
+constexpr int kResolutions = 8;                 // halvings down to 1/1024 s
 
 struct Measured {
   CostWay way;
   std::vector<CostRung> rungs;
-  std::string story;                      // what ended it; empty: it ran whole
+  std::string story;                      // what ended it; empty: it is complete
   bool is_reference = false;
 };
 
-/// The module's own methods, then its laws as a whole: steps alone leave the derivative and the renormalisation unseen.
+/// The module's own methods, then all its laws together: methods alone do not test the derivative
+/// and the renormalisation.
 std::vector<CostWay> ways_of(const ModuleKind& kind, const AnyModule& module, const Laws& right, const Laws& whole, const std::string& whose) {
   std::vector<CostWay> ways;
   for (const modules::NamedMethod& named : kind.methods) {
@@ -50,7 +51,7 @@ std::vector<CostWay> ways_of(const ModuleKind& kind, const AnyModule& module, co
   all.name = fmt::format("{} {} as a whole", whose, kind.id);
   all.laws = whole;
   if (!kind.methods.empty()) all.order = kind.methods.back().order;
-  if (kind.methods.empty()) {   // its laws, under the library's classical method
+  if (kind.methods.empty()) {   // its laws, with the library's classical method
     all.method = [](double) { return step_of(method_named("rk4"), kUnset); };
     all.order = method_named("rk4").order;
   }
@@ -62,7 +63,7 @@ std::vector<Measured> measure(const scene::Scene& scene, std::vector<CostWay> wa
   engines::CostOptions options;
   options.runs = 1;
   std::vector<double> steps;
-  for (int k = 0; k < kRungs; ++k) steps.push_back(kCoarsest * std::pow(0.5, k));
+  for (int k = 0; k < kResolutions; ++k) steps.push_back(kCoarsest * std::pow(0.5, k));
   std::vector<Measured> all;
   for (CostWay& way : ways) {
     Measured measured{std::move(way), {}, "", false};
@@ -70,7 +71,7 @@ std::vector<Measured> measure(const scene::Scene& scene, std::vector<CostWay> wa
     try {
       engines::run_ladder(scene, measured.way, truth, 0.0, options, steps, {}, [&](const CostRung& rung) {
         measured.rungs.push_back(rung);
-        if (call_log().noted && !rung.not_attempted) throw std::runtime_error(call_log().story);   // it hangs or crashes: once is enough
+        if (call_log().noted && !rung.not_attempted) throw std::runtime_error(call_log().story);   // it hangs or crashes, and would do so again
       });
     } catch (const std::exception& error) {
       measured.story = error.what();
@@ -83,7 +84,7 @@ std::vector<Measured> measure(const scene::Scene& scene, std::vector<CostWay> wa
 CostLine line_of(const Measured& measured, const CostTruth& truth) {
   CostLine line;
   line.is_attempted = measured.rungs.empty() || !measured.rungs.back().not_attempted;
-  if (!measured.story.empty()) line.reading = fmt::format("{}: the ladder ended early. {}", measured.way.name, plain_text(measured.story));
+  if (!measured.story.empty()) line.reading = fmt::format("{}: the refinement sequence ended early. {}", measured.way.name, plain_text(measured.story));
   else line.reading = plain_text(engines::read_ladder(measured.way, measured.rungs, truth, true));
   line.is_right = measured.story.empty() && line.is_attempted && engines::keeps_promise(measured.way, measured.rungs, truth);
   line.reading[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(line.reading[0])));
@@ -93,7 +94,7 @@ CostLine line_of(const Measured& measured, const CostTruth& truth) {
 report::Plot plot_of(const std::vector<Measured>& all, const CostTruth& truth, report::Axis across, const std::string& title, double (*x)(const CostRung&), const std::string& caption) {
   report::Plot plot{title, std::move(across), {"error of places", "m", report::Scale::kLog}, {}, {}, caption};
   for (const Measured& measured : all) {
-    if (measured.is_reference) plot.curves.resize(std::max(plot.curves.size(), report::kReferenceStyles));   // the submission's colours again, with hollow marks
+    if (measured.is_reference) plot.curves.resize(std::max(plot.curves.size(), report::kReferenceStyles));   // the submission's colours with hollow marks
     const auto fit = engines::order_of(measured.way, measured.rungs, truth);
     report::Curve curve{fit ? fmt::format("{}, order {:.2f}", measured.way.name, fit->order) : measured.way.name, {}, {}, true};
     for (const CostRung& rung : measured.rungs) {
@@ -104,7 +105,7 @@ report::Plot plot_of(const std::vector<Measured>& all, const CostTruth& truth, r
     if (curve.x.empty()) curve.name.clear();
     plot.curves.push_back(std::move(curve));
   }
-  plot.limits.push_back({truth.floor_m, "the truth's own error"});
+  plot.limits.push_back({truth.floor_m, "error of the reference solution"});
   return plot;
 }
 
@@ -129,18 +130,18 @@ CostSection measure_cost(const Course& course, const std::string& id, const fs::
   worker.programs = course.build / "bin";
   worker.call_own_s = options.call_wall_s;
   worker.session_own_s = options.session_wall_s;
-  worker.callback_budget = 100'000'000;   // the wall limit comes first
+  worker.callback_budget = 100'000'000;   // above what the wall-clock limit allows
   call_log() = CallLog{};
   WorkerConnection connection(worker);
   const AnyModule proxy = kind.make_proxy(connection);
   std::vector<Measured> all = measure(scene, ways_of(kind, proxy, right, laws_around(course, kind, proxy, "submission", scene), "your"), truth, [&] {
     connection.reset();
-    call_log() = CallLog{};   // each curve by itself
+    call_log() = CallLog{};   // each curve is independent
   });
 
   CostSection section;
   section.scene = scene.title;
-  section.truth = fmt::format("Errors are against {}: {:.1e} m; an error is how far a body's centre of mass is out of place, plus the angle by which it is turned wrongly times its radius of gyration.", truth.what, truth.floor_m);
+  section.truth = fmt::format("Errors are against {}: {:.1e} m; the error is the distance of a body's centre of mass from its reference position, plus the angle between its orientations times its radius of gyration.", truth.what, truth.floor_m);
   for (const Measured& measured : all) section.lines.push_back(line_of(measured, truth));
   if (reference) {
     const Laws whole = laws_around(course, kind, reference, "reference", scene);
@@ -152,7 +153,7 @@ CostSection measure_cost(const Course& course, const std::string& id, const fs::
   section.plots.push_back(plot_of(all, truth, {"step", "s", report::Scale::kLog}, "Error against the step", [](const CostRung& rung) { return rung.step_s; },
                                   "The slope is the order: halving the step divides the error of a method of order p by 2^p."));
   section.plots.push_back(plot_of(all, truth, {"derivatives asked for", "-", report::Scale::kLog}, "Error against force evaluations", [](const CostRung& rung) { return static_cast<double>(rung.evaluations); },
-                                  "What accuracy costs, in counts that are the same on any machine: left is cheaper, down is more accurate."));
+                                  "The cost of accuracy in counts that are the same on any machine: left is cheaper, down is more accurate."));
   return section;
 }
 

@@ -1,4 +1,4 @@
-/// Measures what accuracy costs with a submission's own methods.
+/// Measures the cost of accuracy with a submission's methods.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +9,8 @@
 
 namespace tumble::grading {
 
-/// Measures a module where it says that this is done (ModuleKind::cost). Its calls go to the sandbox; what hangs or crashes there ends its
-/// own curve, and costs nothing else.
+/// Measures a module that has a showcase (engines::CostShowcase). Its calls run in the sandbox; a
+/// hang or crash there ends only its own curve.
 /// @param submission  a shared object; never loaded into this process
 CostSection measure_cost(const Course& course, const std::string& id, const std::filesystem::path& submission, const CostSectionOptions& options = {});
 

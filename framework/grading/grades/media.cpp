@@ -22,7 +22,7 @@ struct Run {
   bool attempted = true;
 };
 
-// Runs to the end, or to where the submission fails; what was recorded before stays.
+// Runs to the end, or until the submission fails; the recording up to there is kept.
 Run run(const scene::Scene& scene, const Laws& laws) {
   Run result;
   TrajectoryRecorder recorder;
@@ -36,7 +36,7 @@ Run run(const scene::Scene& scene, const Laws& laws) {
   }
   result.trajectory = recorder.trajectory();
   if (result.story.empty()) result.story = result.trajectory.stopped_by;
-  else result.trajectory.stopped_by = plain_text(result.story);   // it may be a submission's own words
+  else result.trajectory.stopped_by = plain_text(result.story);   // it may be text from a submission
   return result;
 }
 
@@ -46,7 +46,7 @@ Run run_submission(const Course& course, const ModuleKind& kind, const fs::path&
   worker.module = submission;
   worker.programs = course.build / "bin";
   worker.session_own_s = options.wall_s;
-  worker.callback_budget = 100'000'000;  // a scene is thousands of steps; the wall limit comes first
+  worker.callback_budget = 100'000'000;  // a scene has thousands of steps; above what the wall-clock limit allows
   call_log() = CallLog{};
   WorkerConnection connection(worker);
   const Laws laws = laws_around(course, kind, kind.make_proxy(connection), "submission", scene);
@@ -68,7 +68,7 @@ void draw(const scene::Scene& scene, const std::vector<render::LabelledRun>& run
   render::write_side_by_side_video(folder / media.video, scene, runs, picture);
 }
 
-// Run and reference in one page that plays them, with the first difference.
+// A page that plays run and reference, with the first difference.
 void write_page(const scene::Scene& scene, const std::vector<render::LabelledRun>& runs, const fs::path& folder, const Course& course, SceneMedia& media) {
   report::PlayerOptions player;
   player.root = course.root;
@@ -82,14 +82,14 @@ void write_page(const scene::Scene& scene, const std::vector<render::LabelledRun
 }  // namespace
 
 std::vector<SceneMedia> make_media(const Course& course, const std::string& id, const std::vector<fs::path>& scenes, const fs::path& submission,
-                                   const fs::path& folder, const MediaOptions& options, const std::function<void(const std::string&)>& told) {
+                                   const fs::path& folder, const MediaOptions& options, const std::function<void(const std::string&)>& on_scene) {
   const ModuleKind& kind = course.registry->find(id);
   const AnyModule reference = reference_of(course, kind);
   fs::create_directories(folder);
   std::vector<SceneMedia> all;
   for (const fs::path& file : scenes) {
     const scene::Scene scene = scene::load_scene(file);
-    if (told) told(scene.title);
+    if (on_scene) on_scene(scene.title);
     SceneMedia media;
     media.scene = scene.name;
     media.title = scene.title;
@@ -103,7 +103,7 @@ std::vector<SceneMedia> make_media(const Course& course, const std::string& id, 
     if (!theirs.trajectory.frames.empty()) runs.push_back({theirs.trajectory, "submission"});
     if (!ours.trajectory.frames.empty()) runs.push_back({ours.trajectory, "reference"});
     MediaOptions own = options;
-    own.video = options.video && theirs.attempted;  // nothing moves by what is not there: a picture says that as well
+    own.video = options.video && theirs.attempted;  // without an implementation nothing moves: a picture is enough
     if (!runs.empty()) draw(scene, runs, folder, own, course, media);
     if (!runs.empty() && options.page && theirs.attempted) write_page(scene, runs, folder, course, media);
     all.push_back(std::move(media));

@@ -36,7 +36,8 @@ bool is_there(const fs::path& path) {
   return fs::exists(fs::symlink_status(path, failed));
 }
 
-// Whether one of the folders is the other or lies in it, by what they are on the disk: links, "..", and letter case where that does not count.
+// Whether a folder is, or is inside, another one, compared on the disk: independent of links, "..",
+// and letter case where the file system ignores it.
 bool lies_in(const fs::path& inner, const fs::path& outer) {
   for (fs::path at = inner;; at = at.parent_path()) {
     std::error_code failed;
@@ -45,7 +46,7 @@ bool lies_in(const fs::path& inner, const fs::path& outer) {
   }
 }
 
-// A draft that a killed run left: ".index.draft123.html" beside "index.html".
+// A draft from a killed run: ".index.draft123.html" beside "index.html".
 bool is_draft_of(const std::string& name, std::string_view file) {
   const fs::path wanted(file);
   const std::string head = '.' + wanted.stem().string() + ".draft", tail = wanted.extension().string();
@@ -61,10 +62,10 @@ bool is_one_of(const std::string& name, const std::array<std::string_view, N>& f
 }
 
 [[noreturn]] void refuse_foreign(const fs::path& path) {
-  throw UserError(shown(path), "was not written by this grader, and results go only where nothing else lies", kElsewhere);
+  throw UserError(shown(path), "was not written by this grader, and results are written only to a folder without other files", kElsewhere);
 }
 
-// The files of a submission's folder are known by their names; whatever else is there was put there by somebody.
+// The files of a submission's folder have known names; any other file is foreign.
 void refuse_foreign_in(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename().string();
@@ -79,12 +80,13 @@ void refuse_foreign_in(const fs::path& folder) {
   }
 }
 
-// A folder of this folder: what folder_of() makes, and what may be joined to a path and removed.
+// Whether a name from the manifest is a single path component, as from folder_of(), and so safe to
+// join to a path and remove.
 bool is_one_component(const std::string& name) {
   return !name.empty() && name != "." && name != ".." && name.find('/') == std::string::npos && name.find('\0') == std::string::npos;
 }
 
-// Whether the process that took this lock, whose number it wrote into it, is still there.
+// Whether the process that took this lock, and wrote its id into it, is still alive.
 bool holder_lives(int lock) {
   char text[24] = {};
   if (::pread(lock, text, sizeof text - 1, 0) <= 0) return false;
@@ -100,17 +102,17 @@ OutputFolder::OutputFolder(const fs::path& out, const fs::path& submissions, con
   std::error_code failed;
   path_ = fs::weakly_canonical(fs::absolute(out), failed);
   if (failed) throw UserError(shown(out), "cannot be reached: " + failed.message());
-  if (is_there(path_) && !fs::is_directory(path_)) throw UserError(shown(out), "is no folder", kElsewhere);
+  if (is_there(path_) && !fs::is_directory(path_)) throw UserError(shown(out), "is not a folder", kElsewhere);
   const fs::path graded = fs::canonical(submissions);
-  const char* const kOverlaps = "Results are never written among submissions, and submissions never read among results. Give --out a folder elsewhere.";
+  const char* const kOverlaps = "Results must not be written among submissions, nor submissions read among results. Give --out a folder elsewhere.";
   if (lies_in(path_, graded)) throw UserError(shown(out), lies_in(graded, path_) ? "is the folder of the submissions itself" : "lies in the folder of the submissions, " + shown(submissions), kOverlaps);
   if (lies_in(graded, path_)) throw UserError(shown(out), "holds the folder of the submissions, " + shown(submissions), kOverlaps);
   read_manifest();
-  if (!is_there(path_ / kLock)) refuse_foreign_files();   // else the lock first: a grading that runs there makes and renames files
+  if (!is_there(path_ / kLock)) refuse_foreign_files();   // otherwise the lock comes first: a grading that runs there creates and renames files
   fs::create_directories(path_, failed);
-  if (failed) throw UserError(shown(out), "cannot be made: " + failed.message(), "Give --out a folder that you may write to.");
+  if (failed) throw UserError(shown(out), "cannot be created: " + failed.message(), "Give --out a folder that you may write to.");
   lock();
-  // Once more: another grading may have come first.
+  // Again, because another grading may have been first.
   read_manifest();
   refuse_foreign_files();
   sweep_drafts();
@@ -119,7 +121,7 @@ OutputFolder::OutputFolder(const fs::path& out, const fs::path& submissions, con
 
 OutputFolder::~OutputFolder() {
   if (lock_ < 0) return;
-  if (::ftruncate(lock_, 0) != 0) {}   // a number that stays is one of a process that is gone: no harm
+  if (::ftruncate(lock_, 0) != 0) {}   // a failure is harmless: the id that stays is of a process that has ended
   ::close(lock_);
 }
 
@@ -134,7 +136,7 @@ void OutputFolder::read_manifest() {
     const std::string other = manifest.at("assignment");
     if (other != id_) throw UserError(shown(path_), "holds results of " + plain_name(other) + ", not of " + id_, kElsewhere);
     for (const std::string folder : manifest.at("folders")) {
-      if (!is_one_component(folder)) refuse_foreign(file);   // written by hand: it could lead out of this folder
+      if (!is_one_component(folder)) refuse_foreign(file);   // not from this grader: it could lead out of this folder
       folders_.insert(folder);
     }
   } catch (const nlohmann::json::exception&) {
@@ -148,7 +150,8 @@ void OutputFolder::refuse_foreign_files() const {
   for (fs::directory_iterator it(path_, failed), end; !failed && it != end; it.increment(failed)) {
     const std::string name = it->path().filename().string();
     const auto status = it->symlink_status();
-    // Without a manifest nothing here is ours, whatever it is named; only a lock may stand alone, of a run that was killed at its first step.
+    // Without a manifest every file is foreign, whatever its name, except a lock from a run that
+    // was killed at its first step.
     const bool has_manifest = is_there(path_ / kManifest);
     if (fs::is_regular_file(status) && (name == kLock || is_draft_of(name, kManifest))) continue;
     if (has_manifest && fs::is_regular_file(status) && (name == kManifest || is_one_of(name, kOverview))) continue;
@@ -164,13 +167,14 @@ void OutputFolder::lock() {
   const fs::path file = path_ / kLock;
   lock_ = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0600);
   if (lock_ < 0) throw UserError(shown(file), "cannot be opened", "Give --out a folder that you may write to.");
-  // flock: held by this process and those that it forks, released when the last of them ends, however it ends. The file holds the number of the
-  // process that took the lock: while that one lives, another grading is running; after it was killed, its children need a while to die
-  // (seconds, on a busy machine), and are waited for.
+  // flock: held by this process and its children, released when the last of them ends in any way.
+  // The file contains the id of the process that took the lock. While that process lives, another
+  // grading is running; after it was killed, its children may need seconds to die on a busy
+  // machine, and this loop waits for them.
   constexpr int kTries = 3000, kTriesBesideALiving = 100, kPauseUs = 20'000;
   for (int i = 0; ::flock(lock_, LOCK_EX | LOCK_NB) != 0; ++i) {
     if (i == kTries || (i >= kTriesBesideALiving && holder_lives(lock_)))
-      throw UserError(shown(path_), "another grading writes there at this moment", "Wait for its end, or give --out another folder.");
+      throw UserError(shown(path_), "another grading writes there now", "Wait for its end, or give --out another folder.");
     ::usleep(kPauseUs);
   }
   const std::string holder = std::to_string(::getpid()) + '\n';

@@ -1,8 +1,9 @@
-/// The folder that results are written to: this grader's own, or nobody's.
+/// The folder of results, which must be new or belong to this grader.
 ///
-///   OUT/.tumble-grade.json   which assignment, and the folders that this grader has made here
-///   OUT/.tumble-lock         held while a grading runs; the kernel lets go of it when the last of its processes is gone
-/// Whatever else lies in OUT was written by somebody else: then nothing is written at all.
+///   OUT/.tumble-grade.json   the assignment, and the folders that this grader has created here
+///   OUT/.tumble-lock         held while a grading runs; the kernel releases it when the last of
+///   its processes has ended
+/// If OUT contains any other file, nothing is written.
 #pragma once
 
 #include <filesystem>
@@ -13,11 +14,13 @@ namespace tumble::grading {
 
 class OutputFolder {
  public:
-  /// Opens OUT for one grading and makes it where it is missing. Nothing is touched before everything has been looked at.
+  /// Opens OUT for one grading, and creates it if it is missing. Nothing is changed before
+  /// everything has been checked.
   /// @param out          may be a relative path, or lead through links
-  /// @param submissions  the folder that is graded
-  /// @throws UserError that names what is in the way: OUT is or holds or lies in `submissions`, holds a file that this grader did not
-  ///         write or the results of another assignment, or another grading runs there
+  /// @param submissions  the folder to be graded
+  /// @throws UserError with the obstacle: OUT is, contains or is inside `submissions`, contains a
+  ///   file that this grader did not write or the results of another assignment, or another grading
+  ///   runs there
   OutputFolder(const std::filesystem::path& out, const std::filesystem::path& submissions, const std::string& id);
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
@@ -26,11 +29,11 @@ class OutputFolder {
   /// Absolute, without links.
   const std::filesystem::path& path() const { return path_; }
 
-  /// Says in OUT that these folders are this grader's from now on; call it before they are made.
-  /// @throws UserError when one is there already and is not ours
+  /// Adds these folders to the manifest; to be called before they are created.
+  /// @throws UserError when one exists already and was not created by this grader
   void claim(const std::set<std::string>& folders);
 
-  /// A folder of this name that this grader has made.
+  /// Whether this grader has created a folder of this name.
   bool owns(const std::string& folder) const { return folders_.contains(folder); }
 
  private:
@@ -41,11 +44,11 @@ class OutputFolder {
 
   std::filesystem::path path_;
   std::string id_;
-  std::set<std::string> folders_;   // made here
+  std::set<std::string> folders_;   // in the manifest
   int lock_ = -1;
 };
 
-/// Where drafts of a submission's folder are made, beside it.
+/// Name of the draft of a submission's folder, beside it.
 std::string draft_name(const std::string& folder);
 
 }  // namespace tumble::grading

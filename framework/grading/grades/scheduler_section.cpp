@@ -24,25 +24,25 @@ using engines::SchedulerTrial;
 using modules::AnyModule;
 using modules::ModuleKind;
 
-// Each decision of a submission crosses to the sandbox and back, so that scenes are small.
+// Scenes are small, because each decision of a submission is a call into the sandbox.
 constexpr int kSizes[] = {6, 12, 24};
 constexpr double kSizedDuration = 0.5;        // s
 
 double percent(double part) { return 100.0 * part; }
 
-/// The reference comes last, in the submission's colours with hollow marks.
+/// Adds a curve; the reference is last, in the submission's colours with hollow marks.
 void place(const SchedulerCurve& whose, report::Curve curve, report::Plot& plot) {
-  if (curve.x.empty()) curve.name.clear();   // its place stays, so that colours mean the same in both
+  if (curve.x.empty()) curve.name.clear();   // keeps its place, so that colours have the same meaning in both
   if (whose.is_reference && plot.curves.size() < report::kReferenceStyles) plot.curves.resize(report::kReferenceStyles);
   plot.curves.push_back(std::move(curve));
 }
 
 report::Plot plot_of_errors(const std::vector<SchedulerCurve>& curves) {
-  report::Plot plot{"Error against work", {"integrations for each committed event", "-", report::Scale::kLog}, {"events of the reference not committed", "%"}, {}, {}, "At 0 % a scheduler is right, and the farther left the less it pays for it. Each mark is a run: other steps, or another number of processes."};
+  report::Plot plot{"Error against work", {"integrations for each committed event", "-", report::Scale::kLog}, {"events of the reference not committed", "%"}, {}, {}, "At 0 % a scheduler is right; farther left is cheaper. Each mark is a run with another step, or another number of processes."};
   for (const SchedulerCurve& whose : curves)
-    for (const auto& [ladder, what] : {std::pair{&whose.by_step, "by step"}, std::pair{&whose.by_size, "by size"}}) {
+    for (const auto& [sequence, what] : {std::pair{&whose.by_step, "by step"}, std::pair{&whose.by_size, "by size"}}) {
       report::Curve curve{fmt::format("{}, {}", whose.name, what), {}, {}, true};
-      for (const SchedulerRun& run : *ladder) {
+      for (const SchedulerRun& run : *sequence) {
         if (run.committed == 0 || run.integrations == 0) continue;
         curve.x.push_back(run.per_event(run.integrations));
         curve.y.push_back(percent(run.error()));
@@ -52,14 +52,14 @@ report::Plot plot_of_errors(const std::vector<SchedulerCurve>& curves) {
   return plot;
 }
 
-/// Work an event over one ladder, of the runs that are right.
-report::Plot plot_of_work(const std::vector<SchedulerCurve>& curves, std::vector<SchedulerRun> SchedulerCurve::* ladder, report::Axis across, const std::string& title, double (*x)(const SchedulerRun&), const std::string& caption) {
+/// Work per event over one sequence of runs, only of right runs.
+report::Plot plot_of_work(const std::vector<SchedulerCurve>& curves, std::vector<SchedulerRun> SchedulerCurve::* sequence, report::Axis across, const std::string& title, double (*x)(const SchedulerRun&), const std::string& caption) {
   report::Plot plot{title, std::move(across), {"for each committed event", "-", report::Scale::kLog}, {}, {}, caption};
   for (const SchedulerCurve& whose : curves) {
     using Count = std::uint64_t SchedulerRun::*;
-    for (const auto& [count, what] : {std::pair<Count, const char*>{&SchedulerRun::integrations, "integrations"}, {&SchedulerRun::undone, "taken back"}, {&SchedulerRun::rollbacks, "rollbacks"}, {&SchedulerRun::checks, "checks of pairs"}}) {
+    for (const auto& [count, what] : {std::pair<Count, const char*>{&SchedulerRun::integrations, "integrations"}, {&SchedulerRun::undone, "undone"}, {&SchedulerRun::rollbacks, "rollbacks"}, {&SchedulerRun::checks, "checks of pairs"}}) {
       report::Curve curve{fmt::format("{}: {}", whose.name, what), {}, {}, true};
-      for (const SchedulerRun& run : whose.*ladder) {
+      for (const SchedulerRun& run : whose.*sequence) {
         if (!run.is_right() || run.integrations == 0) continue;
         curve.x.push_back(x(run));
         curve.y.push_back(run.per_event(run.*count));
@@ -70,14 +70,14 @@ report::Plot plot_of_work(const std::vector<SchedulerCurve>& curves, std::vector
   return plot;
 }
 
-bool has(const std::vector<SchedulerCurve>& curves, std::vector<SchedulerRun> SchedulerCurve::* ladder) {
-  return std::any_of(curves.begin(), curves.end(), [ladder](const SchedulerCurve& curve) { return (curve.*ladder).size() > 1; });
+bool has(const std::vector<SchedulerCurve>& curves, std::vector<SchedulerRun> SchedulerCurve::* sequence) {
+  return std::any_of(curves.begin(), curves.end(), [sequence](const SchedulerCurve& curve) { return (curve.*sequence).size() > 1; });
 }
 
-/// Runs one ladder; what hangs or crashes in the sandbox ends it.
-class Ladder {
+/// Runs one sequence; a hang or crash in the sandbox ends it.
+class RunSequence {
  public:
-  Ladder(const Course& course, const ModuleKind& kind) : course_(course), kind_(kind), reference_(reference_of(course, kind)) {}
+  RunSequence(const Course& course, const ModuleKind& kind) : course_(course), kind_(kind), reference_(reference_of(course, kind)) {}
   const AnyModule& reference() const { return reference_; }
 
   /// @param between  called before each run
@@ -105,7 +105,7 @@ class Ladder {
   bool one(const scene::Scene& scene, const AnyModule& module, const std::string& source, const SchedulerTrial& trial, std::vector<SchedulerRun>& runs) const {
     const std::size_t due = engines::events_due(scene, laws_around(course_, kind_, nullptr, "", scene), trial);
     runs.push_back(engines::run_scheduler(scene, laws_around(course_, kind_, module, source, scene), trial, due));
-    return !call_log().noted;   // what hangs, crashes or is not written does so again
+    return !call_log().noted;   // a hang, a crash or a stub would repeat
   }
 
   const Course& course_;
@@ -128,21 +128,21 @@ CostLine line_of(const SchedulerReading& reading) {
 std::vector<report::Plot> scheduler_plots(const std::vector<SchedulerCurve>& curves) {
   std::vector<report::Plot> plots{plot_of_errors(curves)};
   if (has(curves, &SchedulerCurve::by_step))
-    plots.push_back(plot_of_work(curves, &SchedulerCurve::by_step, {"how far a process goes ahead at a time", "s", report::Scale::kLog}, "Work against the step", [](const SchedulerRun& run) { return run.step_s; },
-                                 "Much at once is soon taken back, little at once is many steps. Runs that are wrong are not drawn."));
+    plots.push_back(plot_of_work(curves, &SchedulerCurve::by_step, {"step of a process", "s", report::Scale::kLog}, "Work against the step", [](const SchedulerRun& run) { return run.step_s; },
+                                 "Large steps are often rolled back, small steps are many. Wrong runs are not drawn."));
   if (has(curves, &SchedulerCurve::by_size))
     plots.push_back(plot_of_work(curves, &SchedulerCurve::by_size, {"processes", "-", report::Scale::kLog}, "Work against the number of processes", [](const SchedulerRun& run) { return static_cast<double>(run.processes); },
-                                 "Where a surprise takes back only those whom it concerns, an event costs the same however many others there are."));
+                                 "Where a straggler rolls back only the processes that it concerns, the cost of an event does not depend on the number of processes."));
   return plots;
 }
 
 report::Table scheduler_table(const std::vector<SchedulerCurve>& curves) {
   report::Table table;
   table.caption = "Every run, in counts that are the same on any machine.";
-  table.columns = {{""}, {"processes", true}, {"step [s]", true}, {"committed", true}, {"integrations", true}, {"taken back", true}, {"rollbacks", true}, {"anti-messages", true}, {"checks", true}, {"states", true}};
+  table.columns = {{""}, {"processes", true}, {"step [s]", true}, {"committed", true}, {"integrations", true}, {"undone", true}, {"rollbacks", true}, {"anti-messages", true}, {"checks", true}, {"states", true}};
   for (const SchedulerCurve& curve : curves)
-    for (const auto* ladder : {&curve.by_step, &curve.by_size})
-      for (const SchedulerRun& run : *ladder) {
+    for (const auto* sequence : {&curve.by_step, &curve.by_size})
+      for (const SchedulerRun& run : *sequence) {
         std::vector<report::Cell> cells{{curve.is_reference ? "reference" : "yours"}, {std::to_string(run.processes)}, {fmt::format("{:.3g}", run.step_s)}, {fmt::format("{} of {}", run.committed, run.due), "", run.is_right() ? report::Look::kGood : report::Look::kBad}};
         for (const std::uint64_t count : {run.integrations, run.undone, run.rollbacks, run.anti_messages, run.checks, run.states_kept}) cells.push_back({std::to_string(count)});
         table.rows.push_back(std::move(cells));
@@ -151,14 +151,14 @@ report::Table scheduler_table(const std::vector<SchedulerCurve>& curves) {
 }
 
 std::string what_a_scheduler_pays() {
-  return "Errors are against the ordered reference, which takes one event after the other: the part of its events that a scheduler does not commit, in order and to the last bit, before it leaves them or stands still. "
-         "Prices are counts: integrations (steps of a process), those of them that were taken back, bodies sent back, checks of pairs, each for one committed event.";
+  return "Errors are relative to the sequential reference, which executes the events in order: the fraction of its events that a scheduler does not commit, in order and to the last bit, before it differs or makes no progress. "
+  "Costs are counts per committed event: integrations (steps of a process), undone integrations, rollbacks of bodies, checks of pairs.";
 }
 
 CostSection measure_scheduler(const Course& course, const ModuleKind& kind, const fs::path& submission, const CostSectionOptions& options) {
   if (!kind.note<engines::CostShowcase>().is_graded) return {};
-  const Ladder ladder(course, kind);
-  if (!ladder.reference()) return {};   // nor is there who decides the impulses
+  const RunSequence sequence(course, kind);
+  if (!sequence.reference()) return {};   // nor laws for the impulses
   WorkerOptions worker;
   worker.id = kind.id;
   worker.module = submission;
@@ -168,10 +168,10 @@ CostSection measure_scheduler(const Course& course, const ModuleKind& kind, cons
   call_log() = CallLog{};
   WorkerConnection connection(worker);
   std::vector<SchedulerCurve> curves{{"your scheduler", false, {}, {}}};
-  ladder.run(kind.make_proxy(connection), "submission", [&] { connection.reset(); }, curves[0]);   // each run has a worker of its own, and its time
+  sequence.run(kind.make_proxy(connection), "submission", [&] { connection.reset(); }, curves[0]);   // each run has its own worker and time limit
   call_log() = CallLog{};
   curves.push_back({"reference", true, {}, {}});
-  ladder.run(ladder.reference(), "reference", [] {}, curves[1]);
+  sequence.run(sequence.reference(), "reference", [] {}, curves[1]);
   CostSection section;
   section.scene = scene::load_scene(course.root / "assignments" / kind.folder / "scenes" / (kind.note<engines::CostShowcase>().scene + ".json")).title;
   section.truth = what_a_scheduler_pays();

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// s, of one judge: its own limits end every test long before; past this it is the judge that hangs.
+// s, for one judge: its own limits end every test much earlier, so beyond this the judge hangs.
 constexpr double kJudgeWall = 3600.0;
 
 }  // namespace
@@ -77,7 +77,7 @@ void add_up(Grade& grade) {
     grade.score += test.score;
     grade.possible += test.item.points;
   }
-  // Points have few decimals; their sum must not show the round-off of binary fractions.
+  // Points have few decimals: rounding removes the round-off of their sum.
   constexpr double kGrain = 1e6;
   grade.score = std::round(grade.score * kGrain) / kGrain;
   grade.possible = std::round(grade.possible * kGrain) / kGrain;

@@ -1,4 +1,4 @@
-// Every line here closes a hole that was tried (tests/grading/attack_test.cpp holds the attacks).
+// Every option here prevents an attack (tests/grading/attacks has the attacks).
 #include "framework/grading/sandbox/bubblewrap.h"
 
 #include <filesystem>
@@ -15,12 +15,12 @@ constexpr const char* kInitInside = "/sandbox_init";
 std::vector<std::string> bubblewrap_command(const SandboxJob& job) {
   std::vector<std::string> words = {"/usr/bin/bwrap"};
   const auto add = [&](std::initializer_list<std::string> more) { words.insert(words.end(), more); };
-  // New namespaces of every kind, and no way to make more.
+  // New namespaces of every kind, and no way to create more.
   add({"--unshare-user", "--unshare-all", "--disable-userns", "--die-with-parent", "--new-session", "--cap-drop", "ALL"});
   add({"--uid", "1000", "--gid", "1000", "--hostname", "sandbox", "--clearenv"});
   add({"--setenv", "PATH", "/usr/bin", "--setenv", "HOME", "/tmp", "--setenv", "LC_ALL", "C.UTF-8"});
   add({"--ro-bind", "/usr", "/usr"});
-  // What the packages of the system do not own is none of the sandbox's business.
+  // Files that do not belong to packages of the system are hidden.
   for (const char* folder : {"/usr/local", "/usr/src"})
     if (std::filesystem::is_directory(folder)) add({"--size", "4096", "--tmpfs", folder, "--remount-ro", folder});
   for (const char* folder : {"/lib", "/lib64", "/bin"}) {
@@ -33,7 +33,7 @@ std::vector<std::string> bubblewrap_command(const SandboxJob& job) {
   add({"--ro-bind", job.init.string(), kInitInside});
   for (const Bind& bind : job.binds) add({"--ro-bind", bind.from.string(), bind.to});
   add({"--chdir", "/tmp"});
-  // Both are tmpfs without a size until they are read-only.
+  // Both are tmpfs without a size limit unless read-only.
   add({"--remount-ro", "/dev", "--remount-ro", "/"});
   add({"--seccomp", std::to_string(kFilterFd), "--as-pid-1", kInitInside, std::to_string(job.limits.processes)});
   words.insert(words.end(), job.command.begin(), job.command.end());

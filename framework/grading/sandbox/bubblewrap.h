@@ -1,4 +1,4 @@
-/// The words of bubblewrap that make one sandbox.
+/// The command line of bubblewrap for one sandbox.
 #pragma once
 
 #include <string>

@@ -45,9 +45,10 @@ void limit(int what, std::uint64_t value) {
   ::setrlimit(static_cast<__rlimit_resource_t>(what), &both);
 }
 
-// Descriptors below 3 + what the sandbox needs, each at its agreed number; everything else is closed.
+// stdin, stdout, stderr and the descriptors of sandbox_wire.h at their agreed numbers; everything
+// else is closed.
 void arrange_descriptors(int printed, int channel, int status, int filter) {
-  // First out of the way of the agreed numbers, then onto them.
+  // First to high numbers, then to the agreed ones.
   constexpr int kHigh = 100;
   const int nothing = ::fcntl(::open("/dev/null", O_RDONLY), F_DUPFD, kHigh);
   const int high[] = {nothing, ::fcntl(printed, F_DUPFD, kHigh), ::fcntl(printed, F_DUPFD, kHigh),
@@ -75,7 +76,7 @@ void arrange_descriptors(int printed, int channel, int status, int filter) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  char* const no_environment[] = {nullptr};  // /proc/1/environ of a process inside shows it
+  char* const no_environment[] = {nullptr};  // it would be visible inside as /proc/1/environ
   ::execve(arguments[0], arguments.data(), no_environment);
   constexpr char kMissing[] = "bubblewrap (/usr/bin/bwrap) cannot be started";
   [[maybe_unused]] const auto told = ::write(STDERR_FILENO, kMissing, sizeof kMissing - 1);
@@ -88,7 +89,7 @@ class Keeper {
   Keeper(const SandboxJob& job, int hang_up, int result) : job_(job), hang_up_(hang_up), result_(result) {}
 
   void run() {
-    ::prctl(PR_SET_CHILD_SUBREAPER, 1);  // orphans of bubblewrap come to us, not to the machine's process 1
+    ::prctl(PR_SET_CHILD_SUBREAPER, 1);  // this process adopts orphans of bubblewrap, instead of the machine's process 1
     const int filter = make_seccomp_filter();
     Pipe printed, status;
     child_ = ::fork();
@@ -102,7 +103,7 @@ class Keeper {
     while (read_printed(printed.read_end)) {}
     while (read_status(status.read_end)) {}
     conclude();
-    tell();
+    send_outcome();
   }
 
  private:
@@ -113,8 +114,8 @@ class Keeper {
     for (;;) {
       const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
       if (left < 0) return void(forced_ = Ending::kWallLimit);
-      constexpr long long kLook = 1000;   // ms between two looks at what goes on inside
-      ::poll(waiting, 4, static_cast<int>(job_.limits.stall_s > 0.0 ? std::min<long long>(left + 1, kLook) : left + 1));
+      constexpr long long kPeriod = 1000;   // ms between two checks of the activity inside
+      ::poll(waiting, 4, static_cast<int>(job_.limits.stall_s > 0.0 ? std::min<long long>(left + 1, kPeriod) : left + 1));
       if (has_stalled()) return void(forced_ = Ending::kStalled);
       if (waiting[0].revents != 0) return void(forced_ = Ending::kStopped);
       if (waiting[2].revents != 0 && !read_printed(printed)) waiting[2].fd = -1;
@@ -126,7 +127,7 @@ class Keeper {
 
   bool has_stalled() {
     if (job_.limits.stall_s <= 0.0 || !shows_children()) return false;
-    constexpr double kTick = 0.01;   // s: the kernel's own grain of CPU time
+    constexpr double kTick = 0.01;   // s: the kernel's resolution of CPU time
     const double activity = activity_below(child_);
     if (std::abs(activity - activity_) > kTick) activity_ = activity, active_ = Clock::now();
     return Clock::now() - active_ > std::chrono::duration<double>(job_.limits.stall_s);
@@ -135,7 +136,7 @@ class Keeper {
   bool read_printed(int fd) {
     char buffer[16384];
     const ssize_t n = ::read(fd, buffer, sizeof buffer);
-    // One byte above the limit is kept: it tells that the limit was passed.
+    // One byte above the limit is kept: it shows that the limit was exceeded.
     const std::size_t room = job_.limits.output_bytes + 1 - std::min<std::size_t>(outcome_.printed.size(), job_.limits.output_bytes + 1);
     if (n > 0) outcome_.printed.append(buffer, std::min(static_cast<std::size_t>(n), room));
     return n > 0 || (n < 0 && errno == EINTR);
@@ -150,8 +151,9 @@ class Keeper {
     return true;
   }
 
-  // bubblewrap's death takes its namespace's process 1 along (--die-with-parent), and that one everything inside. But one that dies while it
-  // sets the sandbox up leaves a process 1 that waits for it for ever: that one has come to us, and is ended by us.
+  // When bubblewrap dies, process 1 of its namespace dies too (--die-with-parent), and with it
+  // everything inside. But if it dies during the set-up of the sandbox, it leaves a process 1 that
+  // waits forever: this process has adopted that one, and kills it.
   void kill_and_reap() {
     if (child_ <= 0) return;
     ::kill(child_, SIGKILL);
@@ -181,7 +183,7 @@ class Keeper {
     if (outcome_.printed.size() > job_.limits.output_bytes) outcome_.printed.resize(job_.limits.output_bytes);
   }
 
-  void tell() {
+  void send_outcome() {
     const std::string head(reinterpret_cast<const char*>(&outcome_.ending), sizeof outcome_.ending);
     std::string message = head;
     const auto add = [&](const auto& value) { message.append(reinterpret_cast<const char*>(&value), sizeof value); };
@@ -189,7 +191,7 @@ class Keeper {
     add(outcome_.peak_memory_kb);
     add(outcome_.cpu_s);
     message += outcome_.printed;
-    ::signal(SIGPIPE, SIG_IGN);  // an owner that is gone needs no outcome
+    ::signal(SIGPIPE, SIG_IGN);  // the owner may have ended
     for (std::size_t sent = 0; sent < message.size();) {
       const ssize_t n = ::write(result_, message.data() + sent, message.size() - sent);
       if (n < 0 && errno == EINTR) continue;
@@ -202,14 +204,15 @@ class Keeper {
   int hang_up_, result_;
   pid_t child_ = -1;
   bool started_ = false, has_ended_ = false;
-  double activity_ = 0.0;                     // s, of all inside, when it last grew
+  double activity_ = 0.0;                     // s of CPU time and delay of all processes inside, when it last grew
   Clock::time_point active_ = Clock::now();
   InitReport ended_{};
   Ending forced_ = Ending::kNotStarted;
   SandboxOutcome outcome_;
 };
 
-// Keeps only the descriptors named: another sandbox's hang-up line held open here would keep that sandbox alive.
+// Keeps only these descriptors: an inherited hang-up pipe of another sandbox would keep that
+// sandbox alive.
 void close_all_but(std::vector<int> kept) {
   kept.push_back(STDERR_FILENO);
   std::sort(kept.begin(), kept.end());
@@ -220,7 +223,7 @@ void close_all_but(std::vector<int> kept) {
     from = static_cast<unsigned>(fd) + 1;
   }
   ::close_range(from, ~0u, 0);
-  while (::open("/dev/null", O_RDWR) < STDERR_FILENO) {}  // 0, 1 and 2 are never free to become something else
+  while (::open("/dev/null", O_RDWR) < STDERR_FILENO) {}  // 0, 1 and 2 stay occupied
 }
 
 }  // namespace
@@ -229,13 +232,13 @@ Sandbox Sandbox::start(const SandboxJob& job) {
   Pipe hang_up, result;
   const pid_t keeper = ::fork();
   if (keeper == 0) {
-    ::setsid();  // Ctrl-C is for the owner; we end when its line hangs up
-    // The file locks of uid leases are the owner's too: a keeper holds none open.
+    ::setsid();  // Ctrl-C is for the owner; the keeper ends when the owner's pipe closes
+    // Among others this closes the owner's file locks of uid leases.
     close_all_but({hang_up.read_end, result.write_end, job.channel});
     try {
       Keeper(job, hang_up.read_end, result.write_end).run();
     } catch (const std::exception& error) {
-      SandboxOutcome{};  // silence tells the owner: not started
+      SandboxOutcome{};  // no message means: not started
     }
     ::_exit(0);
   }
@@ -244,7 +247,7 @@ Sandbox Sandbox::start(const SandboxJob& job) {
   if (keeper < 0) {
     ::close(hang_up.write_end);
     ::close(result.read_end);
-    throw std::runtime_error("no process can be made for a sandbox");
+    throw std::runtime_error("no process can be created for a sandbox");
   }
   Sandbox sandbox;
   sandbox.keeper_ = keeper;
@@ -261,7 +264,7 @@ Sandbox::~Sandbox() {
   if (keeper_ > 0) stop();
 }
 
-// Below the keeper stand bubblewrap, process 1 of its namespace, and that one's first child.
+// The chain of children below the keeper: bubblewrap, process 1 of its namespace, and the program.
 pid_t Sandbox::program() const { return first_descendant(keeper_, 3); }
 
 SandboxOutcome Sandbox::wait() {

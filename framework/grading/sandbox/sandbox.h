@@ -1,7 +1,9 @@
-/// Runs a program that nobody trusts: no network, no files but those given, limits on everything, nothing left running.
+/// Runs an untrusted program: no network, only the given files, limits on everything, no process
+/// left behind.
 ///
-/// bubblewrap builds the namespaces. A keeper process of ours stands between: it owns the limits on wall time and output,
-/// kills and reaps all, and outlives neither its owner nor its sandbox. As root the program runs under an unprivileged uid.
+/// bubblewrap creates the namespaces. A keeper process between the owner and bubblewrap enforces
+/// the limits on wall time and output, kills and reaps all processes, and ends with its owner or
+/// its sandbox. As root the program runs under an unprivileged uid.
 #pragma once
 
 #include <sys/types.h>
@@ -22,8 +24,8 @@ struct SandboxOutcome {
     kWallLimit,
     kStalled,       // slept past the limit
     kOutputLimit,
-    kStopped,       // its owner asked for it
-    kNotStarted,    // a fault of ours; `printed` says why
+    kStopped,       // by its owner
+    kNotStarted,    // a fault of the grader; `printed` says why
   };
   Ending ending = Ending::kNotStarted;
   int code = 0;
@@ -35,17 +37,18 @@ struct SandboxOutcome {
 /// A running sandbox. Destruction stops it.
 class Sandbox {
  public:
-  /// Returns at once; what fails later shows in the outcome. @throws std::runtime_error when no process can be made
+  /// Returns immediately; later failures are in the outcome.
+  /// @throws std::runtime_error when no process can be created
   static Sandbox start(const SandboxJob& job);
   Sandbox(Sandbox&& other) noexcept;
   Sandbox& operator=(Sandbox&& other) = delete;
   ~Sandbox();
 
-  /// The program inside, as the machine numbers it; -1 while it has not begun. Cost: some 30 us
+  /// Process id, outside the sandbox, of the program inside; -1 before it starts. Cost: about 30 us
   pid_t program() const;
   /// Waits for the end.
   SandboxOutcome wait();
-  /// Gives it `grace_s` to end by itself, then ends it.
+  /// Gives the program `grace_s` to end by itself, then kills it.
   SandboxOutcome stop(double grace_s = 0.0);
 
  private:
@@ -55,7 +58,7 @@ class Sandbox {
   int result_ = -1;
 };
 
-/// Whether this machine lets us: the reason where it does not.
+/// Why sandboxes do not work on this machine; nothing where they do.
 std::optional<std::string> why_no_sandbox(const std::filesystem::path& init);
 
 }  // namespace tumble::grading

@@ -1,9 +1,11 @@
-// Process 1 inside the sandbox: starts the program, waits, and tells the keeper outside how it ended.
+// Process 1 inside the sandbox: starts the program, waits, and reports to the keeper outside how it
+// ended.
 //
 //   sandbox_init MAX_PROCESSES PROGRAM ARGUMENTS...
 //
-// Why an own one: bubblewrap's process 1 can be written to through /proc/1/mem by the program it guards, which then forges
-// its exit status. This one is not dumpable, so nobody inside may look at it or its descriptors. Linked statically; plain C calls only.
+// It replaces bubblewrap's process 1, whose memory the program inside can write through
+// /proc/1/mem, to forge its exit status. This one is not dumpable, so no process inside can access
+// it or its descriptors. Linked statically, with plain C calls only.
 #include <errno.h>
 #include <stdlib.h>
 #include <sys/prctl.h>
@@ -32,13 +34,14 @@ int main(int argc, char** argv) {
   if (program < 0) return kCannotStart;
   if (program == 0) {
     close(kStatusFd);
-    // Set here, inside the user namespace: there it counts this sandbox's processes, not all that the user runs.
+    // Set inside the user namespace, where it counts this sandbox's processes, not all processes of
+    // the user.
     const rlimit limit{processes, processes};
     if (processes > 0) setrlimit(RLIMIT_NPROC, &limit);
     execv(argv[2], argv + 2);
     _exit(kCannotStart);
   }
-  close(kChannelFd);  // else the channel would not close when the program dies
+  close(kChannelFd);  // otherwise the channel would not close when the program dies
   for (;;) {
     int status = 0;
     rusage usage{};
@@ -47,7 +50,7 @@ int main(int argc, char** argv) {
       const double cpu_s = static_cast<double>(usage.ru_utime.tv_sec + usage.ru_stime.tv_sec) +
                            1e-6 * static_cast<double>(usage.ru_utime.tv_usec + usage.ru_stime.tv_usec);
       report({InitReport::kEnded, status, usage.ru_maxrss, cpu_s});
-      return 0;  // the kernel ends every other process of the sandbox with us
+      return 0;  // the kernel kills every other process of the sandbox with process 1
     }
     if (ended < 0 && errno != EINTR) return kCannotStart;
   }

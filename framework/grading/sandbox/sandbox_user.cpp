@@ -18,12 +18,13 @@
 namespace tumble::grading {
 namespace {
 
-// High in the range of ordinary users, where nobody is; one that somebody is gets skipped.
+// High in the range of ordinary users, where ids are usually free; an id in use is skipped.
 constexpr uid_t kFirstUid = 58100;
 constexpr uid_t kUids = 64;
 constexpr const char* kLockFolder = "/run/tumble";
 
-// The maker's process id stands in a stage's name, so that what a killed process left behind is seen and swept.
+// A stage's name contains its maker's process id, so that stages of killed processes can be found
+// and removed.
 constexpr const char* kStageFolder = "/tmp";
 constexpr const char* kStageName = "tumble-stage-";
 
@@ -39,7 +40,7 @@ SandboxUser SandboxUser::lease() {
     if (::getpwuid(uid) != nullptr) continue;
     const std::string file = std::string(kLockFolder) + "/uid-" + std::to_string(uid);
     const int lock = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0600);
-    if (lock < 0) throw UserError(file, "cannot be opened", "It says which sandbox uses which user id; root must be able to write there.");
+    if (lock < 0) throw UserError(file, "cannot be opened", "It records which sandbox uses which user id; root must be able to write it.");
     if (::flock(lock, LOCK_EX | LOCK_NB) == 0) {
       user.lock_ = lock;
       user.uid_ = uid;
@@ -59,9 +60,9 @@ SandboxUser::~SandboxUser() {
 Stage::Stage(const SandboxUser* user) {
   static const bool swept = (sweep_stages_of_the_dead(), true);
   (void)swept;
-  // Not the user's TMPDIR: it may lie in a folder that another uid cannot enter.
+  // Not the user's TMPDIR, which may be in a folder that another uid cannot enter.
   std::string name = std::string(kStageFolder) + '/' + kStageName + std::to_string(::getpid()) + "-XXXXXX";
-  if (::mkdtemp(name.data()) == nullptr) throw UserError(kStageFolder, "no folder can be made in it");
+  if (::mkdtemp(name.data()) == nullptr) throw UserError(kStageFolder, "no folder can be created in it");
   path_ = name;
   alive_ = hold_folder(path_);
   if (user != nullptr) owner_ = user->uid();

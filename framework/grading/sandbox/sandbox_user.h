@@ -1,4 +1,4 @@
-/// Whom a sandboxed program is, and the folders that it can read.
+/// The user id of a sandboxed program, and the folders that it can read.
 #pragma once
 
 #include <sys/types.h>
@@ -9,8 +9,8 @@
 
 namespace tumble::grading {
 
-/// Whom the sandboxed program is to the rest of the machine. As root: a uid of its own, one a concurrent job, leased until
-/// destruction. As an ordinary user: that user.
+/// The user id of a sandboxed program outside its sandbox. As root: a separate uid for each
+/// concurrent job, leased until destruction. As an ordinary user: that user.
 class SandboxUser {
  public:
   /// @throws UserError when all uids are in use
@@ -19,7 +19,7 @@ class SandboxUser {
   SandboxUser& operator=(SandboxUser&&) = delete;
   ~SandboxUser();
 
-  /// Empty where we are an ordinary user: nothing is dropped then.
+  /// Empty for an ordinary user, whose uid is kept.
   std::optional<uid_t> uid() const { return uid_; }
 
  private:
@@ -28,17 +28,17 @@ class SandboxUser {
   int lock_ = -1;
 };
 
-/// A folder that the sandbox's user can read wherever the checkout lies; removed at destruction.
+/// A folder that the sandbox's user can read, wherever the checkout is; removed at destruction.
 class Stage {
  public:
-  /// @param user  who may read it; null: anybody, for what is no secret
+  /// @param user  the only user that can read it; null: all users, for files that are not secret
   explicit Stage(const SandboxUser* user);
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;
   ~Stage();
 
   const std::filesystem::path& path() const { return path_; }
-  /// @return where the copy lies
+  /// @return path of the copy
   std::filesystem::path add_file(const std::filesystem::path& from, const std::string& name, bool executable = false);
   std::filesystem::path add_text(const std::string& text, const std::string& name);
 
@@ -50,7 +50,7 @@ class Stage {
   std::optional<uid_t> owner_;
 };
 
-/// Removes the stages of processes that are gone without having removed them: killed ones.
+/// Removes the stages of killed processes.
 void sweep_stages_of_the_dead();
 
 }  // namespace tumble::grading

@@ -1,10 +1,10 @@
-/// What process 1 of a sandbox and its keeper outside agree on.
+/// The protocol between process 1 of a sandbox and its keeper outside.
 #pragma once
 
 namespace tumble::grading {
 
-inline constexpr int kChannelFd = 3;   // the program's, where the job has a channel
-inline constexpr int kStatusFd = 4;    // process 1's alone
+inline constexpr int kChannelFd = 3;   // of the program, where the job has a channel
+inline constexpr int kStatusFd = 4;    // of process 1 only
 inline constexpr int kFilterFd = 5;    // read and closed by bubblewrap
 
 struct InitReport {

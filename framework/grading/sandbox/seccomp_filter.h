@@ -1,11 +1,11 @@
-/// The system calls that a sandboxed program is refused.
+/// The system calls that are denied to a sandboxed program.
 #pragma once
 
 namespace tumble::grading {
 
-/// A descriptor (close-on-exec, read from its start) holding the compiled filter, as bubblewrap's --seccomp wants it.
+/// A descriptor (close-on-exec, at its start) with the compiled filter, for bubblewrap's --seccomp.
 /// The caller closes it.
-/// @throws std::runtime_error when it cannot be made: a program must not run without it
+/// @throws std::runtime_error when it cannot be created: a program must not run without it
 int make_seccomp_filter();
 
 }  // namespace tumble::grading

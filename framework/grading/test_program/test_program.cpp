@@ -16,9 +16,10 @@
 namespace tumble::grading {
 namespace {
 
-// Whoever waits for the answer has a loop without end within seconds: a test of a module takes milliseconds.
-constexpr double kTestOwn = 2.0;      // s, of own time (own_time.h), as all here
-constexpr double kSuspectOwn = 0.2;   // s, of a call to a function that has just timed out
+// An endless loop ends within seconds, because the user waits; a test of a module takes
+// milliseconds.
+constexpr double kTestOwn = 2.0;      // s of own time (own_time.h), like the others
+constexpr double kSuspectOwn = 0.2;   // s, for a call to a function that has timed out
 constexpr double kBudget = 4.0;        // s, of all tests together
 
 struct Words {
@@ -42,7 +43,7 @@ Words read_words(int argc, char** argv) {
     else if (word == "--wall-s") words.limits.own_s = number_word(word, value());
     else if (word == "--budget-s") words.time.budget_s = number_word(word, value());
     else if (word == "--debug") words.debug = true;
-    else if (word.starts_with("--gtest_")) continue;  // GoogleTest has read it
+    else if (word.starts_with("--gtest_")) continue;  // already read by GoogleTest
     else if (word.starts_with("-")) throw UserError(word, "is not known here", "Known: --json FILE, --rubric FILE, --wall-s S, --budget-s S, --debug, and patterns of test names.");
     else words.filter += (words.filter.empty() ? "" : ":") + word;
   }

@@ -1,4 +1,4 @@
-/// main() of a student's check program: the tests linked into it, one by one, each with a verdict and a story of its own.
+/// main() of a student's check program: runs its tests one by one, each with a verdict and a story.
 #pragma once
 
 #include "framework/grading/verdicts/call_log.h"
@@ -7,11 +7,13 @@
 
 namespace tumble::grading {
 
-/// Words of a check program:
+/// Command line of a check program:
 ///   check_a1 [--json FILE] [--rubric FILE] [--wall-s S] [--budget-s S] [--debug] [PATTERN...]
-/// --wall-s bounds each test's own time (own_time.h), --budget-s all of them together (TimeBudget): an endless loop must not bore its author.
-/// PATTERNs are GoogleTest filters ("CollisionImpulse.*"). --debug runs GoogleTest plainly in this one process, for gdb.
-/// @return an exit code: 0 all right, 1 something is wrong, 2 wrong words, 4 the rest is right but not all is attempted
+/// --wall-s limits each test's own time (own_time.h), --budget-s all tests together (TimeBudget),
+/// so that an endless loop ends soon. PATTERNs are GoogleTest filters ("CollisionImpulse.*").
+/// --debug runs plain GoogleTest in this process, for gdb.
+/// @return an exit code: 0 all right, 1 something is wrong, 2 wrong arguments, 4 some tests not
+///   attempted and the others right
 int run_check_program(int argc, char** argv);
 
 /// The tests against the functions linked into this program.

@@ -24,7 +24,7 @@
 #include "framework/grading/verdicts/own_time.h"
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define TUMBLE_SANITIZED 1   // reserves terabytes of address space: no limit on it can be set
+#define TUMBLE_SANITIZED 1   // sanitizers reserve terabytes of address space, so it cannot be limited
 #else
 #define TUMBLE_SANITIZED 0
 #endif
@@ -36,14 +36,15 @@ using Clock = std::chrono::steady_clock;
 
 CallLog* shared_log = nullptr;
 
-constexpr double kFreeJudging = 10.0;   // s of CPU: tests of ours take at most a few
+constexpr double kFreeJudging = 10.0;   // s of CPU time: the judge's part of a test takes at most a few
 std::string fmt_seconds(double s) { return std::to_string(std::lround(s)) + " s"; }
 
-constexpr std::size_t kPrinted = 4000;     // bytes kept of what a test's process printed
-constexpr std::size_t kStory = 16'000;     // bytes of a failure's words, and of all of them: a huge answer is not written out
-constexpr rlim_t kPrintedFile = 1u << 20;  // bytes it may print at all
+constexpr std::size_t kPrinted = 4000;     // bytes kept of a test's output
+constexpr std::size_t kStory = 16'000;     // bytes of a failure message, and of all together: a huge answer is not printed whole
+constexpr rlim_t kPrintedFile = 1u << 20;  // bytes that a test may print
 
-// What the test's process tells its parent when it ends in an orderly way: one byte of outcome, then the failures.
+// The report of a test's process to its parent at a normal end: one byte of outcome, then the
+// failures.
 enum class Outcome : char { kPassed = 'p', kFailed = 'f', kSkipped = 's' };
 
 class FailureCollector : public ::testing::EmptyTestEventListener {
@@ -54,7 +55,8 @@ class FailureCollector : public ::testing::EmptyTestEventListener {
   void OnTestPartResult(const ::testing::TestPartResult& part) override {
     if (part.skipped()) skipped = true;
     if (!part.failed()) return;
-    // A story (tests/support/story.h) starts its own line. A bare EXPECT has no story: say where it stands.
+    // A story (tests/support/story.h) starts a new line. A plain EXPECT has no story: its file and
+    // line are added.
     std::string message = part.message();
     const bool bare = message.find("\n  expected:") == std::string::npos;
     if (bare && part.file_name() != nullptr) message += std::string("\n(") + part.file_name() + ":" + std::to_string(part.line_number()) + ")";
@@ -78,7 +80,7 @@ void write_all(int fd, const std::string& text) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   ::dup2(printed_fd, STDOUT_FILENO);
   ::dup2(printed_fd, STDERR_FILENO);
-  ::signal(SIGXFSZ, SIG_IGN);  // a flood of output ends in failed writes, not in a signal that is nobody's slip
+  ::signal(SIGXFSZ, SIG_IGN);  // excessive output ends in failed writes, not in a signal
   const rlimit file{kPrintedFile, kPrintedFile}, core{0, 0}, memory{limits.memory_bytes, limits.memory_bytes};
   ::setrlimit(RLIMIT_FSIZE, &file);
   ::setrlimit(RLIMIT_CORE, &core);
@@ -100,17 +102,18 @@ void write_all(int fd, const std::string& text) {
 
 struct Answer {
   std::string text;
-  double timed_out_s = 0.0;   // the limit that was passed
-  bool is_hopeless = false;   // no limit was passed, and yet it did not end: the machine is too busy
-  ProcessTimes times;         // of the test's process, in the end
+  double timed_out_s = 0.0;   // the limit that was exceeded
+  bool is_hopeless = false;   // no limit was exceeded, but the test did not end: the machine is too busy
+  ProcessTimes times;         // of the test's process, at its end
 };
 
-// Sees from outside how long a test's process takes, and the call that it is in where that has a limit of its own.
+// Measures from outside the own time of a test's process, and of its current call where that has a
+// limit.
 class TestWatch {
  public:
   TestWatch(pid_t child, Process owner, const CallLog& log, const TestLimits& limits) : child_(child), owner_(owner), log_(log), limits_(limits) {}
 
-  /// Looks at the clocks. @return the test must end
+  /// @return whether the test must end now
   bool is_over(Answer& answer) {
     const auto now = Clock::now();
     const ProcessTimes times = process_times(child_);
@@ -123,7 +126,7 @@ class TestWatch {
   static double seconds(Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
   double passed(Clock::time_point now, const ProcessTimes& times) {
-    // A judge waits for its worker, which has limits of its own: only what it computes counts.
+    // A judge waits for its worker, which has its own limits: only the judge's CPU time counts.
     const double own_s = owner_ == Process::kGraders && times.is_known ? times.cpu_s : own_time({}, times, seconds(now - start_));
     if (own_s > limits_.own_s) return limits_.own_s;
     const long call = log_.in_call ? log_.calls : 0;
@@ -144,13 +147,13 @@ class TestWatch {
 };
 
 Answer read_answer(int fd, pid_t child, Process owner, const CallLog& log, const TestLimits& limits) {
-  constexpr int kLook = 20;   // ms between two looks
+  constexpr int kPeriod = 20;   // ms between two checks
   TestWatch watch(child, owner, log, limits);
   Answer answer;
   char buffer[4096];
   for (;;) {
     pollfd waiting{fd, POLLIN, 0};
-    if (::poll(&waiting, 1, kLook) <= 0) {
+    if (::poll(&waiting, 1, kPeriod) <= 0) {
       if (watch.is_over(answer)) return answer;
       continue;
     }
@@ -163,7 +166,7 @@ Answer read_answer(int fd, pid_t child, Process owner, const CallLog& log, const
   return answer;
 }
 
-// Waits for a child that has closed its pipe, so is about to end; one that is not gets a second and is killed.
+// Waits for a child that has closed its pipe, and so should end; after a second it is killed.
 int reap(pid_t child) {
   constexpr int kTries = 1000;
   int status = 0;
@@ -184,7 +187,7 @@ std::string read_printed(int fd) {
   return text;
 }
 
-// What happened to a test's process that gave no orderly answer.
+// The verdict on a test whose process gave no normal report.
 void judge_death(TestResult& result, const CallLog& log, int status, const Answer& answer) {
   if (log.noted) {
     result.verdict = log.verdict;
@@ -214,7 +217,7 @@ void judge_answer(TestResult& result, const CallLog& log, const std::string& ans
     result.verdict = Verdict::kWrong;
     result.story = answer.substr(1);
   } else {
-    result.story = "the test was skipped, which says nothing";
+    result.story = "the test was skipped, so there is no verdict";
   }
 }
 
@@ -252,7 +255,7 @@ std::string CallLog::asked() const {
   if (argument_bytes == 0 || describer >= describers().size()) return "";
   try {
     return describers()[describer](modules::Bytes(arguments, arguments + std::min(argument_bytes, kArguments)));
-  } catch (const std::exception&) {   // the process that wrote them broke them
+  } catch (const std::exception&) {   // damaged by the process that wrote them
     return "";
   }
 }
@@ -311,14 +314,14 @@ TestResult run_isolated(const std::string& test, const TestLimits& limits, Proce
     else judge_death(result, log, status, answer);
     result.timed_out_s = log.noted ? log.timed_out_s : answer.timed_out_s;
     const double wall_s = std::chrono::duration<double>(Clock::now() - start).count();
-    // What a test of ours computes is on its account, beyond what right answers cost.
+    // The judge's own CPU time is charged where it exceeds the cost of right answers.
     const double judges_s = std::max(0.0, answer.times.cpu_s - kFreeJudging);
     result.charged_s = owner == Process::kGraders ? log.own_s + judges_s : own_time({}, answer.times, wall_s);
     const bool is_judged = result.verdict == Verdict::kRight || result.verdict == Verdict::kWrong || result.verdict == Verdict::kMachineBusy;
     if (owner == Process::kGraders && !log.noted && answer.timed_out_s > 0.0) {
-      // Right answers give a test of ours a few seconds of work.
+      // With right answers the judge's part of a test takes at most a few seconds.
       result.verdict = Verdict::kOutOfResources;
-      result.story = fmt_seconds(answer.timed_out_s) + " of the judge's own work did not come to the end of what this submission answered, last " + log.last_call + ": answers that ask for too much";
+      result.story = "the judge could not process this submission's answers in " + fmt_seconds(answer.timed_out_s) + " of its own work, the last from " + log.last_call + ": they cause too much work";
     } else if (owner == Process::kGraders && !log.noted && !is_judged) {
       result.verdict = Verdict::kGraderFault;
       result.story = "the judge's own test process ended without a verdict: " + result.story;

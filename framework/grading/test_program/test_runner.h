@@ -1,4 +1,5 @@
-/// Runs one GoogleTest test of this program in a process of its own: a crash, a hang or a memory blow-up costs that test.
+/// Runs one GoogleTest test of this program in a separate process: a crash, a hang or excessive
+/// memory use costs only that test.
 #pragma once
 
 #include <cstdint>
@@ -11,15 +12,15 @@
 namespace tumble::grading {
 
 struct TestLimits {
-  double own_s = 5.0;                        // own time (own_time.h): a test of a module takes milliseconds; an endless loop must not bore its author
+  double own_s = 5.0;                        // own time (own_time.h): a test of a module takes milliseconds
   std::uint64_t memory_bytes = 2ull << 30;   // of address space; a module's test needs a few MB
-  std::map<std::string, double> call_own_s = {};   // [s] of one call to these functions, where it is shorter (see TimeBudget)
+  std::map<std::string, double> call_own_s = {};   // [s], shorter limits of one call, by function (see TimeBudget)
 };
 
-/// Who owns the code that runs in the test's process, hence whose fault a crash of that process is.
+/// Whose code runs in the test's process, and so whose fault a crash of that process is.
 enum class Process {
   kStudents,   // the module is linked in
-  kGraders,    // the module answers from elsewhere
+  kGraders,    // the module runs in another process
 };
 
 /// Names of all tests linked into this program, "Suite.Name", in the order of registration.

@@ -17,7 +17,8 @@ bool matches(const char* pattern, const char* text) {
   return *text != '\0' && (*pattern == '?' || *pattern == *text) && matches(pattern + 1, text + 1);
 }
 
-// What a person meant who wrote this pattern: suite or name, whichever is nearer, without the stars.
+// Distance of a mistyped pattern, without its wildcards, from a test's suite or name, whichever is
+// nearer.
 std::size_t distance_of(const std::string& test, std::string pattern) {
   std::erase_if(pattern, [](char c) { return c == '*' || c == '?'; });
   while (pattern.ends_with('.')) pattern.pop_back();
@@ -40,13 +41,13 @@ std::vector<std::string> chosen_tests(const std::vector<std::string>& tests, con
   std::stable_sort(nearest.begin(), nearest.end(), [&](const auto& a, const auto& b) { return distance_of(a, first) < distance_of(b, first); });
   std::string shown;
   for (std::size_t i = 0; i < std::min(kShown, nearest.size()); ++i) shown += (i > 0 ? ", " : "") + nearest[i];
-  throw UserError(filter, "no test has such a name", "Nearest: " + shown + ". A pattern may hold '*' and '?', such as '" + tests.front().substr(0, tests.front().find('.')) + ".*'.");
+  throw UserError(filter, "no test has this name", "Nearest: " + shown + ". A pattern may hold '*' and '?', such as '" + tests.front().substr(0, tests.front().find('.')) + ".*'.");
 }
 
 double number_word(const std::string& flag, const std::string& word) {
   char* rest = nullptr;
   const double number = std::strtod(word.c_str(), &rest);
-  if (word.empty() || *rest != '\0' || !(number > 0.0)) throw UserError(flag + " " + word, "is no number of seconds above 0");
+  if (word.empty() || *rest != '\0' || !(number > 0.0)) throw UserError(flag + " " + word, "is not a number of seconds above 0");
   return number;
 }
 

@@ -1,4 +1,4 @@
-/// The words on a test program's command line that choose tests.
+/// Arguments on a test program's command line that select tests.
 #pragma once
 
 #include <string>
@@ -6,14 +6,16 @@
 
 namespace tumble::grading {
 
-/// GoogleTest's own pattern language: '*' and '?', patterns joined by ':'. An empty filter chooses all.
+/// GoogleTest's pattern language: '*' and '?', patterns separated by ':'. An empty filter selects
+/// all.
 bool chosen(const std::string& test, const std::string& filter);
 
-/// The tests that the filter chooses, in their order.
-/// @throws UserError with the nearest names when it chooses none
+/// The tests that the filter selects, in their order.
+/// @throws UserError with the nearest names when it selects none
 std::vector<std::string> chosen_tests(const std::vector<std::string>& tests, const std::string& filter);
 
-/// A number of seconds after a flag. @throws UserError when it is none, or not above 0
+/// The number of seconds after a flag.
+/// @throws UserError when it is not a number above 0
 double number_word(const std::string& flag, const std::string& word);
 
 }  // namespace tumble::grading

@@ -34,7 +34,7 @@ TestResult TimeBudget::not_run(const std::string& test) const {
   result.story = std::string("not run: the time budget of all tests together, ") + budget + " s, was used up by the tests before it";
   std::string where;
   for (const auto& [function, count] : timeouts_) where += (where.empty() ? "" : ", ") + function + " (" + std::to_string(count) + (count == 1 ? " test)" : " tests)");
-  if (!where.empty()) result.story += "; out of time were " + where;
+  if (!where.empty()) result.story += "; functions that ran out of time: " + where;
   return result;
 }
 

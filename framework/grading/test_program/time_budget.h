@@ -1,8 +1,9 @@
-/// How long a whole submission may take: loops without end must not cost a night.
+/// The time limit of a whole submission, against many endless loops.
 ///
-/// All times are own time (own_time.h). What a test that timed out is charged is its limit, and what an answered one is charged counts in
-/// whole tenths of a second only: the same endless loops use up the same budget after the same test, on an idle machine and on a
-/// loaded one, and a solution that sleeps a little in each test pays for it.
+/// All times are own time (own_time.h). A test that timed out is charged its limit, and other tests
+/// are charged in whole tenths of a second. So the same endless loops use up the budget after the
+/// same test on an idle and on a loaded machine, and a solution that sleeps a little in each test
+/// is charged for it.
 #pragma once
 
 #include <map>
@@ -13,23 +14,23 @@
 namespace tumble::grading {
 
 struct TimeRules {
-  double budget_s = 60.0;     // of all tests together: right submissions take a few
-  int full_timeouts = 2;      // in one function; a third loop of the same function is known sooner
-  double suspect_own_s = 1.0;   // of a call to a function that has had them: right calls take microseconds
+  double budget_s = 60.0;     // of all tests together: right submissions take a few seconds
+  int full_timeouts = 2;      // per function; later calls of the same function have a shorter limit
+  double suspect_own_s = 1.0;   // that shorter limit: right calls take microseconds
 };
 
-/// The account of one submission.
+/// The time account of one submission.
 class TimeBudget {
  public:
   explicit TimeBudget(const TimeRules& rules) : rules_(rules) {}
 
   /// Charges a test that has run.
   void charge(const TestResult& result);
-  /// No further test is run.
+  /// Whether no further test may run.
   bool is_used_up() const { return spent_s_ >= rules_.budget_s; }
-  /// The verdict on a test that is not run any more.
+  /// The result of a test that is not run because of the budget.
   TestResult not_run(const std::string& test) const;
-  /// Functions whose calls end sooner from now on, with their limit [s].
+  /// Functions with a shorter limit of their calls from now on [s].
   std::map<std::string, double> suspects() const;
 
  private:

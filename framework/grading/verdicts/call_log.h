@@ -1,4 +1,5 @@
-/// The calls into a module during one test, kept where the parent process can read them after the test's process died.
+/// The calls into a module during one test, stored where the parent process can read them after the
+/// test's process has died.
 #pragma once
 
 #include <cstddef>
@@ -15,51 +16,52 @@
 
 namespace tumble::grading {
 
-/// Lies in memory shared between a test's process and its parent. Plain data: it must outlive a crash.
+/// In memory shared between a test's process and its parent. Plain data, which survives a crash.
 struct CallLog {
-  static constexpr std::size_t kStory = 4096;  // bytes: a compiler-made exception text may be long, a story is not
-  static constexpr std::size_t kArguments = 8192;   // bytes, as on the wire
+  static constexpr std::size_t kStory = 4096;  // bytes: longer exception texts are cut
+  static constexpr std::size_t kArguments = 8192;   // bytes in the wire format
   char last_call[96] = "";
   unsigned char arguments[kArguments] = {};
   std::size_t argument_bytes = 0;                   // 0: none kept
-  std::size_t describer = 0;                        // makes words of them: see add_describer
+  std::size_t describer = 0;                        // converts the arguments to words: see add_describer
   char story[kStory] = "";
   long calls = 0;
   bool in_call = false;
   bool noted = false;
-  double timed_out_s = 0.0;   // the limit that a call ran into
+  double timed_out_s = 0.0;   // the limit that a call exceeded
   double own_s = 0.0;         // own time of the worker in this test, where there is one
   Verdict verdict = Verdict::kGraderFault;
 
   void begin(const char* function);
   void end() { in_call = false; }
   void keep(const modules::Bytes& bytes, std::size_t describer);
-  /// What the last call was asked, in words; empty where that was not kept.
+  /// The arguments of the last call in words; empty where they were not kept.
   std::string asked() const;
-  /// The first thing noted stands: what follows from it is not the student's slip.
+  /// Only the first note is kept: later ones are its consequences.
   void note(Verdict verdict, const std::string& story);
 };
 
-/// Of the test that is running in this process.
+/// The log of the test that runs in this process.
 CallLog& call_log();
 
 namespace detail {
 
 using Describer = std::string (*)(const modules::Bytes&);
-/// Known to the parent process too, which trusts no pointer that a crashed one left behind. @return its number
+/// Registers a describer in the parent process, which uses its number and trusts no pointer from a
+/// crashed process. @return the number
 std::size_t add_describer(Describer describer);
 
-// Made before main begins, so in the parent.
+// Initialised before main, and so in the parent.
 template <class... A>
 inline const std::size_t describer_of = add_describer(modules::show_written_arguments<A...>);
 
-// A vector of the wrong size ends the call: what would come of it is an assertion somewhere else.
+// A vector of the wrong size ends the call: otherwise an assertion would fail elsewhere.
 [[noreturn]] inline void end_by_size(const std::string& story) {
   call_log().note(Verdict::kWrong, story);
   throw modules::WrongSize(story);
 }
 
-// Functions that are passed to the module are held to be asked with the right sizes; other arguments stay what they are.
+// Adds checks of sizes to callbacks; other arguments stay unchanged.
 template <class T, class... A>
 decltype(auto) guarded(T& argument, const char* name, const A&... call) {
   if constexpr (modules::is_function<std::decay_t<T>>::value) return modules::asked_rightly(argument, name, end_by_size, call...);
@@ -84,13 +86,13 @@ std::function<R(A...)> observe(std::size_t index, const char* name, std::functio
       log.note(Verdict::kNotAttempted, missing.what());
       throw;
     } catch (const std::bad_alloc&) {
-      log.note(Verdict::kOutOfResources, std::string(name) + " asked for more memory than it may have");
+      log.note(Verdict::kOutOfResources, std::string(name) + " needed more memory than its limit");
       throw;
     } catch (const std::exception& error) {
       log.note(Verdict::kCrashed, std::string(name) + " threw an exception: " + error.what() + asked_words(log.asked()));
       throw;
     } catch (...) {
-      log.note(Verdict::kCrashed, std::string(name) + " threw something that is not a std::exception" + asked_words(log.asked()));
+      log.note(Verdict::kCrashed, std::string(name) + " threw an object that is not a std::exception" + asked_words(log.asked()));
       throw;
     }
   };
@@ -98,7 +100,7 @@ std::function<R(A...)> observe(std::size_t index, const char* name, std::functio
 
 }  // namespace detail
 
-/// The same table, each call noted in the log before it runs.
+/// The same table, with each call noted in the log before it runs.
 template <class Module>
 Module observed(Module module) {
   std::size_t index = 0;

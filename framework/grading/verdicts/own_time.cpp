@@ -14,7 +14,7 @@
 namespace tumble::grading {
 namespace {
 
-// A small file of /proc; empty where there is none.
+// A small file of /proc; empty where it does not exist.
 std::string proc_file(pid_t process, const char* name) {
   char path[64], text[1024];
   std::snprintf(path, sizeof path, "/proc/%d/%s", static_cast<int>(process), name);
@@ -36,7 +36,8 @@ double since_boot_s() {
 ProcessTimes process_times(pid_t process) {
   ProcessTimes times;
   if (process <= 0) return times;
-  // proc(5): the fields after the name, which stands in brackets and may hold anything; utime, stime and starttime are 14, 15 and 22.
+  // proc(5): the fields after the name, which is in brackets and may contain anything; utime, stime
+  // and starttime are 14, 15 and 22.
   const std::string stat = proc_file(process, "stat");
   const auto name_end = stat.rfind(')');
   unsigned long user = 0, system = 0;

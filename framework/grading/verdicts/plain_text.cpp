@@ -12,7 +12,7 @@ struct Character {
   bool is_valid = false;
 };
 
-// UTF-8 as Unicode 15, table 3-7, has it: no overlong form, no surrogate, nothing past U+10FFFF.
+// UTF-8 by Unicode 15, table 3-7: no overlong forms, no surrogates, nothing above U+10FFFF.
 Character character_at(std::string_view text, std::size_t at) {
   const auto byte = [&](std::size_t i) { return static_cast<std::uint32_t>(static_cast<unsigned char>(text[i])); };
   const std::uint32_t first = byte(at);
@@ -30,9 +30,9 @@ Character character_at(std::string_view text, std::size_t at) {
 }
 
 bool is_unseen(std::uint32_t code) {
-  if (code < 0x20 || (code >= 0x7f && code <= 0xa0)) return true;               // controls, the unbreakable space
+  if (code < 0x20 || (code >= 0x7f && code <= 0xa0)) return true;               // controls, the no-break space
   const bool turns = code == 0x061c || code == 0x200e || code == 0x200f || (code >= 0x202a && code <= 0x202e) || (code >= 0x2066 && code <= 0x2069);
-  const bool breaks = code == 0x2028 || code == 0x2029 || (code >= 0x2000 && code <= 0x200a) || code == 0x202f || code == 0x205f || code == 0x3000;  // and odd spaces
+  const bool breaks = code == 0x2028 || code == 0x2029 || (code >= 0x2000 && code <= 0x200a) || code == 0x202f || code == 0x205f || code == 0x3000;  // and unusual spaces
   // The joiners U+200C and U+200D stay: names in Persian and Hindi need them.
   const bool hides = code == 0x00ad || code == 0x034f || code == 0x115f || code == 0x1160 || code == 0x3164 || code == 0xffa0 ||
                      (code >= 0x180b && code <= 0x180f) || code == 0x200b || (code >= 0x2060 && code <= 0x2064) ||
@@ -76,7 +76,8 @@ std::string plain(std::string_view text, bool one_line) {
 
 std::string shell_word(std::string_view text) {
   const auto is_plain = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || std::string_view("_-./+,@%").find(c) != std::string_view::npos; };
-  // What cannot be seen as it is goes as a byte in $'...' (bash and zsh); all else between single quotes.
+  // Invisible characters are escaped as bytes in $'...' (bash and zsh); other text is put in single
+  // quotes.
   std::string word;
   bool is_seen = true;
   for (std::size_t at = 0; at < text.size();) {

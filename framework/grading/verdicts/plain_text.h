@@ -1,7 +1,9 @@
-/// Text of students (names, what their code printed) made safe to show: in terminals, tables, JSON.
+/// Makes text from students (names, output of their code) safe to show in terminals, tables and
+/// JSON.
 ///
-/// What cannot be seen, or reorders what stands beside it, is written out as a code point: control characters, direction
-/// overrides (the "Trojan source" set), invisible characters, bytes that are not UTF-8. Different names stay different.
+/// Characters that are invisible or reorder their neighbours are replaced by their code points:
+/// control characters, direction overrides (the "Trojan source" set), invisible characters, bytes
+/// that are not UTF-8. Different names stay different.
 #pragma once
 
 #include <string>
@@ -9,13 +11,14 @@
 
 namespace tumble::grading {
 
-/// One line: line ends and tabs are written out as well, and so is a backslash, so that no two texts become the same.
+/// One line: line ends, tabs and backslashes are escaped too, so that no two texts become equal.
 std::string plain_name(std::string_view text);
 
-/// Several lines: line ends and tabs stay, terminal colours are dropped, a backslash stays what it is.
+/// Several lines: line ends, tabs and backslashes stay, terminal colours are dropped.
 std::string plain_text(std::string_view text);
 
-/// One word of a command line that a person pastes into a shell: whatever a name holds, it stays that one word and nothing is run.
+/// A quoted argument for a command line that the user pastes into a shell: always exactly one
+/// argument, never a command.
 std::string shell_word(std::string_view text);
 
 }  // namespace tumble::grading

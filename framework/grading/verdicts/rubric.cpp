@@ -19,7 +19,7 @@ RubricItem read_item(const nlohmann::json& entry, const std::string& where) {
     item.level = entry.at("level");
     item.title = entry.at("title");
   } catch (const nlohmann::json::exception& error) {
-    throw UserError(where, std::string("is no entry of a rubric: ") + error.what(), "It needs test, points, level and title.");
+    throw UserError(where, std::string("is not an entry of a rubric: ") + error.what(), "It needs test, points, level and title.");
   }
   if (item.test.find('.') == std::string::npos) throw UserError(where, "test '" + item.test + "' is not of the form Suite.Name");
   if (!(item.points >= 0.0)) throw UserError(where, "test '" + item.test + "' has points below 0");
@@ -72,7 +72,7 @@ Rubric joined(const Rubric& open, const Rubric& hidden) {
     if (open.find(item.test) != nullptr) throw UserError("rubric of " + open.assignment, "test '" + item.test + "' is both public and hidden");
     all.items.push_back(item);
   }
-  constexpr double kFull = 100.0, kSlack = 1e-9;  // points: written with few decimals, so a sum is exact but for round-off
+  constexpr double kFull = 100.0, kSlack = 1e-9;  // points: they have few decimals, so the sum is exact up to round-off
   if (std::abs(all.total() - kFull) > kSlack)
     throw UserError("rubric of " + open.assignment, "public and hidden points sum to " + std::to_string(all.total()), "They must sum to 100.");
   return all;

@@ -1,5 +1,5 @@
-/// What each test of an assignment is worth: assignments/aN_name/rubric.json for the public ones,
-/// solutions_private/aN_name/rubric_hidden.json for the hidden ones.
+/// The points of each test of an assignment: assignments/aN_name/rubric.json for public tests,
+/// solutions_private/aN_name/rubric_hidden.json for hidden ones.
 ///
 ///   {"assignment": "a1", "title": "Impulse",
 ///    "tests": [{"test": "Suite.Name", "points": 5, "level": "basic", "title": "short human title"}]}
@@ -15,7 +15,7 @@ struct RubricItem {
   std::string test;      // "Suite.Name"
   double points = 0.0;
   std::string level;     // basic, intermediate, advanced
-  std::string title;     // for people
+  std::string title;     // shown to the user
   bool hidden = false;
 };
 
@@ -29,11 +29,12 @@ struct Rubric {
   double total() const;
 };
 
-/// @throws UserError that names the file and the entry: unreadable, a field missing or of another type, a test named twice,
-///         points below 0, an unknown level
+/// @throws UserError with file and entry: unreadable, a field missing or of a wrong type, a test
+///   named twice, points below 0, an unknown level
 Rubric read_rubric(const std::filesystem::path& file, bool hidden = false);
 
-/// Public and hidden items as one. @throws UserError when both name a test or the points do not sum to 100
+/// Public and hidden items together.
+/// @throws UserError when a test is in both or the points do not sum to 100
 Rubric joined(const Rubric& open, const Rubric& hidden);
 
 }  // namespace tumble::grading

@@ -36,7 +36,7 @@ void write_results(const std::string& file, const std::vector<TestResult>& resul
     tests.push_back({{"test", r.test}, {"verdict", words(r.verdict)}, {"story", r.story}, {"last_call", r.last_call},
                      {"calls", r.calls}, {"printed", r.printed}, {"timed_out_s", r.timed_out_s}, {"not_run", r.not_run}, {"charged_s", r.charged_s}, {"wall_s", r.wall_s}});
   std::ofstream out(file);
-  // Students' code may print any bytes: what is not UTF-8 is replaced, not refused.
+  // Students' code may print any bytes: invalid UTF-8 is replaced, not refused.
   out << nlohmann::ordered_json{{"tests", tests}}.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
   if (!out.flush()) throw UserError(file, "cannot be written");
 }
@@ -51,7 +51,7 @@ std::vector<TestResult> read_results(const std::string& file) {
       TestResult r;
       r.test = item.at("test");
       const auto verdict = verdict_from_words(item.at("verdict"));
-      if (!verdict) throw UserError(file, "a verdict of unknown name");
+      if (!verdict) throw UserError(file, "has an unknown verdict");
       r.verdict = *verdict;
       r.story = item.at("story");
       r.last_call = item.at("last_call");
@@ -65,7 +65,7 @@ std::vector<TestResult> read_results(const std::string& file) {
     }
     return results;
   } catch (const nlohmann::json::exception& error) {
-    throw UserError(file, std::string("is no record of a test program: ") + error.what());
+    throw UserError(file, std::string("is not a record of a test program: ") + error.what());
   }
 }
 

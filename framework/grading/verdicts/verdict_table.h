@@ -1,4 +1,4 @@
-/// Verdicts for a person at a terminal.
+/// Verdicts in a terminal.
 #pragma once
 
 #include <iosfwd>
@@ -11,7 +11,7 @@
 
 namespace tumble::grading {
 
-/// A table with a line a test, grouped by level; then the story of each test that needs one; then a count.
+/// Prints a table with one line per test, grouped by level; then the stories; then a count.
 /// @param rubric  gives titles, levels and points; may be empty
 void print_verdicts(std::ostream& out, const std::vector<TestResult>& results, const Rubric& rubric, bool colours);
 

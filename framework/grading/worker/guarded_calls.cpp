@@ -22,25 +22,25 @@
 namespace tumble::grading {
 namespace {
 
-constexpr auto kLook = std::chrono::milliseconds(250);   // between two looks at the calls
-constexpr int kLooks = static_cast<int>(kGuardedCallLimit / 0.25);
+constexpr auto kPeriod = std::chrono::milliseconds(250);   // between two checks of the calls
+constexpr int kMostChecks = static_cast<int>(kGuardedCallLimit / 0.25);
 constexpr std::array kSignals = {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT};
 constexpr const char* kLoading = "its global and static variables";
 
-/// What one thread is in. Written by it, read by the watch and by a signal's handler.
+/// The current call of one thread. Written by that thread, read by watch() and by signal handlers.
 struct CallPlace {
-  std::atomic<const char*> function{nullptr};   // the innermost guarded one; null: in none
-  std::atomic<const char*> file{nullptr};       // that it stands in
-  std::atomic<unsigned long> outermost{0};      // counts calls that are in no other
-  unsigned long seen = 0;                       // of the watch alone
-  int looks = 0;
+  std::atomic<const char*> function{nullptr};   // the innermost guarded function; null: none
+  std::atomic<const char*> file{nullptr};       // its file
+  std::atomic<unsigned long> outermost{0};      // number of outermost calls so far
+  unsigned long seen = 0;                       // used by watch() only
+  int checks = 0;                               // used by watch() only
 };
 
 constexpr std::size_t kThreads = 256;   // more run unguarded
 CallPlace places[kThreads];
 std::atomic<std::size_t> threads{0};
 thread_local CallPlace* here = nullptr;
-char signal_words[kSignals.size()][256];   // made before they are needed: a handler may not ask for memory
+char signal_words[kSignals.size()][256];   // prepared in advance: a signal handler must not allocate memory
 
 void say(const char* text) { [[maybe_unused]] const ssize_t n = ::write(STDERR_FILENO, text, std::strlen(text)); }
 
@@ -51,7 +51,7 @@ void say(const char* text) { [[maybe_unused]] const ssize_t n = ::write(STDERR_F
   say(what);
   say(", in ");
   say(function);
-  say("\n  The run ends here. ./tumble check tests each function by itself and tells what it was asked.\n");
+  say("\n  The run ends here. ./tumble check tests each function separately and shows its arguments.\n");
   ::_exit(1);
 }
 
@@ -60,21 +60,21 @@ void on_signal(int signal) {
   if (function != nullptr)
     for (std::size_t i = 0; i < kSignals.size(); ++i)
       if (kSignals[i] == signal) leave(signal_words[i], function, here->file);
-  ::signal(signal, SIG_DFL);   // not a module's: as if nobody had looked
+  ::signal(signal, SIG_DFL);   // not in a module: the default action
   ::raise(signal);
 }
 
 [[noreturn]] void watch() {
   static char words[96];
-  std::snprintf(words, sizeof words, "out of time: no answer within %g s (a loop that does not end?)", kGuardedCallLimit);
+  std::snprintf(words, sizeof words, "out of time: no answer within %g s (an endless loop?)", kGuardedCallLimit);
   for (;;) {
-    std::this_thread::sleep_for(kLook);
+    std::this_thread::sleep_for(kPeriod);
     for (std::size_t i = 0; i < std::min(threads.load(), kThreads); ++i) {
       CallPlace& place = places[i];
       const char* function = place.function.load();
       const unsigned long call = place.outermost.load();
-      if (function == nullptr || call != place.seen) place.looks = 0;
-      else if (++place.looks > kLooks) leave(words, function, place.file);
+      if (function == nullptr || call != place.seen) place.checks = 0;
+      else if (++place.checks > kMostChecks) leave(words, function, place.file);
       place.seen = call;
     }
   }
@@ -94,7 +94,8 @@ void start_guard() {
   });
 }
 
-// A recursion without end has no stack left for its handler: each thread that calls has one aside.
+// Endless recursion leaves no stack for the signal handler: each calling thread has an alternate
+// stack.
 void enter_thread() {
   constexpr std::size_t kStack = 1u << 16;   // bytes
   thread_local std::unique_ptr<char[]> stack;
@@ -123,7 +124,7 @@ class Guard : public modules::CallWatcher {
     if (here != nullptr) here->function.store(outer, std::memory_order_relaxed);
   }
   void threw(const char* function, const std::exception& error) override {
-    // What the framework throws through a function that it gave to the module is not the module's.
+    // Exceptions of the framework, thrown by callbacks, are not the module's.
     const bool ours = dynamic_cast<const NotImplemented*>(&error) || dynamic_cast<const UserError*>(&error) || dynamic_cast<const PreconditionError*>(&error) ||
                       dynamic_cast<const Final*>(&error) || dynamic_cast<const engines::StoppedRun*>(&error);
     if (!ours) throw CallEnded(file_ + ": " + function + " threw an exception: " + error.what());
@@ -133,7 +134,7 @@ class Guard : public modules::CallWatcher {
   std::string file_;
 };
 
-// Laws copied out of a table live as long as the program, and so does what they are watched by.
+// Never deleted, like the laws that were copied from the table.
 Guard& lasting_guard(const std::string& file) { return *new Guard(file); }
 
 }  // namespace

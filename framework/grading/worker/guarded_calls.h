@@ -1,6 +1,7 @@
-/// A person's own module in this process, at full speed, and still no dump and no hang: a crash, an exception or a loop
-/// without end in one of its functions ends the run with words that name the function. What somebody else wrote runs in
-/// the sandbox instead (worker_connection.h): this guards against slips, not against intent.
+/// Runs the user's own module in this process, at full speed, and guards its calls: a crash, an
+/// exception or an endless loop in one of its functions ends the run with a message that names the
+/// function. Modules of others run in the sandbox instead (worker_connection.h): this protects
+/// against mistakes, not against attacks.
 #pragma once
 
 #include <functional>
@@ -10,16 +11,17 @@
 
 namespace tumble::grading {
 
-/// A call that lasts longer is a loop without end [s]: right calls take microseconds. By the clock, so that a call that
-/// sleeps is found too; long, so that a loaded machine ends no right one.
+/// A longer call counts as an endless loop [s of wall-clock time, so that sleeping is found too].
+/// Right calls take microseconds; the limit is long, so that a loaded machine ends no right call.
 constexpr double kGuardedCallLimit = 10.0;
 
-/// The same module, each call guarded. A signal or a loop without end says so on stderr and exits with 1; an exception that
-/// is the module's own becomes a CallEnded, which stops a run with its reason.
-/// @param file  the module's source, for people
+/// The same module with guarded calls. On a signal or an endless loop the process prints a message
+/// to stderr and exits with 1; an exception of the module itself becomes a CallEnded, which stops a
+/// run with its reason.
+/// @param file  the module's source, for messages
 modules::AnyModule guarded(const modules::ModuleKind& kind, const modules::AnyModule& module, const std::string& file);
 
-/// Runs `load`, which may run a module's static initialisers, under the same guard.
+/// Runs `load`, which may execute a module's static initialisers, under the same guard.
 modules::AnyModule guarded_load(const std::string& file, const std::function<modules::AnyModule()>& load);
 
 }  // namespace tumble::grading

@@ -18,10 +18,11 @@
 namespace tumble::grading {
 namespace {
 
-// s, of what a test of ours computes itself: tests take at most a few, so past this it works on answers that give it too much to do. Its wall
-// clock ends after kPatience times as much, later than that of its worker.
+// s of the judge's own CPU time per test. Tests take at most a few seconds, so beyond this the
+// submission's answers cause too much work. The wall-clock limit is kPatience times as long, longer
+// than that of the worker.
 constexpr double kJudgesOwn = 60.0;
-constexpr int kMostBusy = 2;   // tests that a busy machine ended: the rest would wait as long, and none of it counts
+constexpr int kMostBusy = 2;   // tests ended by a busy machine; then the rest is not run, because it would not count either
 
 TestResult not_run_for_busy(const std::string& test) {
   TestResult result;
@@ -40,7 +41,7 @@ struct Words {
   TimeRules time;
 };
 
-// A person waits: the limits of a student's own check (test_program.cpp).
+// The limits of a student's own check (test_program.cpp), because the user waits.
 void be_quick(Words& words) {
   words.worker.call_own_s = 2.0;
   words.time = {.budget_s = 4.0, .full_timeouts = 1, .suspect_own_s = 0.2};
@@ -81,7 +82,7 @@ int run(const char* id, const std::function<void(modules::Connection&)>& attach,
     for (const std::string& test : chosen_tests(linked_tests(), words.filter)) std::cout << test << '\n';
     return static_cast<int>(ExitCode::kFine);
   }
-  // Keepers of sandboxes whose test has ended come to us, so that we leave only when all of them are gone.
+  // Adopts the keepers of sandboxes whose test has ended, and waits for them at the end.
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
   WorkerConnection connection(words.worker);
   attach(connection);

@@ -1,6 +1,8 @@
-/// main() of a judge: public and hidden tests of an assignment against a submission that runs somewhere else.
+/// main() of a judge: public and hidden tests of an assignment against a submission in another
+/// process.
 ///
-/// The judge never loads a submission's code. A test counts only when the judge itself saw every answer.
+/// The judge never loads a submission's code. A test counts only when the judge itself has received
+/// every answer.
 #pragma once
 
 #include <functional>
@@ -10,14 +12,14 @@
 
 namespace tumble::grading {
 
-/// Words of a judge:
+/// Command line of a judge:
 ///   judge_a1 --submission FILE.so [--json FILE] [--rubric FILE]... [--budget-s S] [--plain] [--quick] [PATTERN...]
-/// --budget-s bounds the time of all tests together (TimeBudget); those after it are not run.
+/// --budget-s limits the time of all tests together (TimeBudget); later tests are not run.
 ///   judge_a1 --list [PATTERN...]
-/// --list prints the names of the tests, one a line, and runs none.
-/// --plain runs the submission without a sandbox: for our own code only.
-/// --quick ends loops without end as soon as a student's own check does: a person waits.
-/// @param attach  makes the connection's proxy the module under test
+/// --list prints the names of the tests, one per line, and runs none.
+/// --plain runs the submission without a sandbox: for trusted code only.
+/// --quick has the short limits of a student's own check, because the user waits.
+/// @param attach  sets the connection's proxy as the module under test
 int run_judge_program(const char* id, const std::function<void(modules::Connection&)>& attach, int argc, char** argv);
 
 template <class Module>

@@ -26,13 +26,13 @@ using Ending = SandboxOutcome::Ending;
 constexpr const char* kModuleInside = "/module.so";
 constexpr const char* kWorkerInside = "/worker";
 
-constexpr auto kFresh = std::chrono::milliseconds(50);   // an account of the worker's time is not older where it matters
+constexpr auto kFresh = std::chrono::milliseconds(50);   // age up to which a reading of the times is reused
 
 double seconds_of(Channel::Clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
 Channel::Clock::duration seconds(double s) { return std::chrono::duration_cast<Channel::Clock::duration>(std::chrono::duration<double>(s)); }
 
-// A worker without a sandbox, for code of our own. Dies with us.
+// A worker without a sandbox, for trusted code. It dies with this process.
 pid_t start_plain(const std::filesystem::path& worker, const WorkerOptions& options, int socket) {
   const pid_t child = ::fork();
   if (child != 0) return child;
@@ -84,11 +84,11 @@ WorkerConnection::WorkerConnection(WorkerOptions options) : options_(std::move(o
   job_.binds = {{stage_.add_file(programs.worker, "worker", true), kWorkerInside}, {stage_.add_file(options_.module, "module.so", true), kModuleInside}};
   job_.command = {kWorkerInside, kModuleInside};
   job_.uid = user_.uid();
-  job_.limits.wall_s = kPatience * options_.session_own_s + 5.0;  // the deadlines of calls come first; this one is for a judge that died
+  job_.limits.wall_s = kPatience * options_.session_own_s + 5.0;  // the limits of calls are shorter; this one is for a judge that has died
   job_.limits.cpu_s = static_cast<std::uint64_t>(std::ceil(options_.session_own_s));
   job_.limits.memory_bytes = options_.memory_bytes;
-  // Process 1 and the worker: memory is limited for each, and what a second process or thread takes from the worker would look like the delay
-  // of a busy machine (own_time.h).
+  // Process 1 and the worker: memory is limited per process, and a second process or thread would
+  // delay the worker like a busy machine (own_time.h).
   job_.limits.processes = 2;
 }
 
@@ -110,7 +110,7 @@ void WorkerConnection::start() {
   }
   ::close(pair[1]);
   channel_ = std::make_unique<Channel>(socket_, socket_);
-  channel_->extend_by([this](TimePoint passed) { return look_at_time(passed); });
+  channel_->extend_by([this](TimePoint passed) { return check_time(passed); });
   callbacks_ = 0;
   worker_ = plain_;
   past_turns_s_ = 0.0;
@@ -143,9 +143,9 @@ Channel& WorkerConnection::begin_call(const char* function) {
   CallLog& log = call_log();
   if (log.noted) throw CallEnded("the test has its verdict already");
   log.begin(function);
-  asked_.clear();
+  arguments_.clear();
   if (socket_ < 0) start();
-  // Reading the kernel's numbers costs as much as a call, so an account that is younger than this is good enough to start from.
+  // Reading the times costs as much as a call, so a recent reading is reused.
   if (calls_.empty() && Channel::Clock::now() - last_.when > kFresh) last_ = account();
   Call call{function, Channel::Clock::now() + seconds(call_limit(function)), last_};
   call.start.turns_s = turns_s();
@@ -164,7 +164,7 @@ void WorkerConnection::end_call() {
     if (turns_s() - last_.turns_s > seconds_of(kFresh)) last_ = account();
     return;
   }
-  log.begin(calls_.back().function.c_str());  // the one around it goes on; it was counted when it began
+  log.begin(calls_.back().function.c_str());  // the enclosing call continues; it was counted when it began
   --log.calls;
 }
 
@@ -173,11 +173,11 @@ void WorkerConnection::count_callback() {
   if (++callbacks_ > options_.callback_budget) {
     const std::string function = calls_.back().function;
     stop(0.0);
-    end(Verdict::kOutOfResources, function + " evaluated the functions it was given more than " + std::to_string(options_.callback_budget) + " times");
+    end(Verdict::kOutOfResources, function + " called its function arguments more than " + std::to_string(options_.callback_budget) + " times");
   }
-  // A worker that never lets the judge wait is looked at here.
+  // A worker that sends callbacks without pause is checked here.
   Call& call = calls_.back();
-  if (const auto now = Channel::Clock::now(); now >= call.look && look_at_time(call.look) <= now) {
+  if (const auto now = Channel::Clock::now(); now >= call.next_check && check_time(call.next_check) <= now) {
     const std::string function = call.function;
     stop(0.0);
     end_out_of_time(function.c_str());
@@ -205,28 +205,28 @@ pid_t WorkerConnection::worker() {
 
 WorkerConnection::Account WorkerConnection::account() {
   Account now{process_times(worker()), process_times(::getpid()), turns_s(), Channel::Clock::now()};
-  // For the test's budget: what all calls of it have taken, seen from outside when this process is gone.
+  // For the test's budget: own time of all its calls, readable after this process has ended.
   call_log().own_s = own_before_s_ + own_s(session_, now);
   return now;
 }
 
-// While the worker has the word the judge waits; when it is woken late, that is no time of the worker's either.
+// The judge waits during the worker's turns; its own run delay is not time of the worker either.
 double WorkerConnection::own_s(const Account& from, const Account& to) const {
-  if (sandbox_ && !to.worker.is_known && shows_children()) return 0.0;   // its sandbox is being made
+  if (sandbox_ && !to.worker.is_known && shows_children()) return 0.0;   // the sandbox is still starting
   return own_time(from.worker, to.worker, to.turns_s - from.turns_s - (to.judge.delay_s - from.judge.delay_s));
 }
 
-WorkerConnection::TimePoint WorkerConnection::look_at_time(TimePoint passed) {
+WorkerConnection::TimePoint WorkerConnection::check_time(TimePoint passed) {
   Call& call = calls_.back();
-  if (call.look > passed && call.look > Channel::Clock::now()) return call.look;   // looked at before, and not due again
+  if (call.next_check > passed && call.next_check > Channel::Clock::now()) return call.next_check;   // already checked, and not due again
   last_ = account();
   const double call_left_s = call_limit(call.function) - own_s(call.start, last_), session_left_s = options_.session_own_s - own_s(session_, last_);
   const double left_s = std::min(call_left_s, session_left_s);
   timed_out_s_ = left_s > 0.0 ? 0.0 : call_left_s <= session_left_s ? call_limit(call.function) : options_.session_own_s;
   const bool is_hopeless = seconds_of(last_.when - call.start.when) > kPatience * call_limit(call.function) || seconds_of(last_.when - session_.when) > kPatience * options_.session_own_s;
   if (left_s <= 0.0 || is_hopeless) return passed;
-  constexpr double kLeast = 1e-3, kMost = 1.0;   // s until the next look
-  return call.look = last_.when + seconds(std::clamp(left_s, kLeast, kMost));
+  constexpr double kLeast = 1e-3, kMost = 1.0;   // s until the next check
+  return call.next_check = last_.when + seconds(std::clamp(left_s, kLeast, kMost));
 }
 
 double WorkerConnection::call_limit(const std::string& function) const {
@@ -234,7 +234,8 @@ double WorkerConnection::call_limit(const std::string& function) const {
   return own == options_.suspects.end() ? options_.call_own_s : std::min(own->second, options_.call_own_s);
 }
 
-// By the look that has just ended the wait: a limit on own time, or no time left to wait.
+// After the check that ended the wait: a limit on own time was exceeded, or the machine is too
+// busy.
 void WorkerConnection::end_out_of_time(const char* function) {
   if (timed_out_s_ > 0.0) end_at_limit(function, timed_out_s_);
   end(Verdict::kMachineBusy, busy_story(function));
@@ -242,7 +243,7 @@ void WorkerConnection::end_out_of_time(const char* function) {
 
 void WorkerConnection::end_at_limit(const char* function, double limit_s) {
   call_log().timed_out_s = limit_s;
-  end(Verdict::kOutOfResources, timeout_story(limit_s, function, true) + asked_words(asked_));
+  end(Verdict::kOutOfResources, timeout_story(limit_s, function, true) + asked_words(arguments_));
 }
 
 void WorkerConnection::end(Verdict verdict, const std::string& story) {
@@ -251,26 +252,26 @@ void WorkerConnection::end(Verdict verdict, const std::string& story) {
 }
 
 void WorkerConnection::explain_death(const char* function) {
-  constexpr double kGrace = 2.0;  // s: for a process that closed its line by dying, to be seen dead, on a loaded machine too
+  constexpr double kGrace = 2.0;  // s: after the channel has closed, for a dying process to be reaped, also on a loaded machine
   const auto before = Channel::Clock::now();
   const SandboxOutcome outcome = stop(kGrace);
-  if (outcome.ending == Ending::kStopped) charge_wait(seconds_of(Channel::Clock::now() - before));   // it lived on without its line
+  if (outcome.ending == Ending::kStopped) charge_wait(seconds_of(Channel::Clock::now() - before));   // it continued without its channel
   switch (outcome.ending) {
     case Ending::kSignal:
       if (outcome.code == SIGXCPU || (outcome.code == SIGKILL && outcome.cpu_s >= options_.session_own_s - 1.0))
         end_at_limit(function, options_.session_own_s);
-      end(Verdict::kCrashed, signal_story(outcome.code, function, true) + asked_words(asked_));
+      end(Verdict::kCrashed, signal_story(outcome.code, function, true) + asked_words(arguments_));
     case Ending::kExited: {
       const std::string said = outcome.printed.empty() ? "" : "; it printed: " + outcome.printed.substr(0, 400);
-      end(Verdict::kCrashed, exit_story(outcome.code, function, true) + said + asked_words(asked_));
+      end(Verdict::kCrashed, exit_story(outcome.code, function, true) + said + asked_words(arguments_));
     }
     case Ending::kStalled:
     case Ending::kWallLimit:
       end(Verdict::kMachineBusy, busy_story(function));
     case Ending::kOutputLimit:
-      end(Verdict::kOutOfResources, "printed more than " + std::to_string(job_.limits.output_bytes / 1024) + " KiB, in " + function + asked_words(asked_));
+      end(Verdict::kOutOfResources, "printed more than " + std::to_string(job_.limits.output_bytes / 1024) + " KiB, in " + function + asked_words(arguments_));
     case Ending::kStopped:
-      end(Verdict::kCrashed, std::string("closed its line to the judge instead of returning from ") + function + asked_words(asked_));
+      end(Verdict::kCrashed, std::string("closed its channel to the judge instead of returning from ") + function + asked_words(arguments_));
     case Ending::kNotStarted: break;
   }
   end(Verdict::kGraderFault, "the sandbox did not start: " + outcome.printed);
@@ -290,12 +291,12 @@ void WorkerConnection::fail(const char* function, std::exception_ptr transport_e
 void WorkerConnection::refuse(const char* function, const std::string& what) {
   stop(0.0);
   if (what.find("std::bad_alloc") != std::string::npos)
-    end(Verdict::kOutOfResources, std::string(function) + " asked for more memory than it may have" + asked_words(asked_));
-  end(Verdict::kCrashed, std::string(function) + ' ' + what + asked_words(asked_));
+    end(Verdict::kOutOfResources, std::string(function) + " needed more memory than its limit" + asked_words(arguments_));
+  end(Verdict::kCrashed, std::string(function) + ' ' + what + asked_words(arguments_));
 }
 
 void WorkerConnection::wrong_size(const char*, const std::string& story) {
-  stop(0.0);   // it may wait inside the call
+  stop(0.0);   // it may still wait inside the call
   end(Verdict::kWrong, story);
 }
 

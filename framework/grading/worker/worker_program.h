@@ -1,5 +1,6 @@
-/// main() of a worker: answers calls to a submission's module over the channel. Runs inside the sandbox with the submission,
-/// so nothing but the module's header goes into it: no test, no expected value, no other module.
+/// main() of a worker: answers calls to a submission's module over the channel. It runs inside the
+/// sandbox with the submission, so it contains only the module's header: no test, no expected
+/// value, no other module.
 #pragma once
 
 #include <cstdio>
@@ -12,7 +13,7 @@
 
 namespace tumble::grading {
 
-/// Words of a worker: worker_a1 FILE.so, with the channel as descriptor 3.
+/// Command line of a worker: worker_a1 FILE.so, with the channel as descriptor 3.
 template <class Module>
 int run_worker(int argc, char** argv) {
   keep_freed_memory();

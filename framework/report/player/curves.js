@@ -1,26 +1,27 @@
-// The panes of curves: of the whole run, and of the body that is chosen. Each plot follows the cursor and can be dragged along.
+// The panes of curves: of the whole run, and of the chosen body. Each plot shows the time cursor,
+// which can be dragged.
 
 const kPlots = {
-  apart: { title: 'How far apart the two runs are', axis: 'distance', isLog: true },
+  apart: { title: 'Distance between the two runs', axis: 'distance', isLog: true },
   energy: { title: 'Energy', axis: 'energy' },
   drift: { title: 'Change of the total energy', axis: 'E − E(0)' },
-  momentum: { title: 'Momentum of all that moves', axis: 'momentum' },
+  momentum: { title: 'Momentum of all movable bodies', axis: 'momentum' },
   spin: { title: 'Angular momentum about the origin', axis: 'ang. momentum' },
   gap: { title: 'Smallest gap between two bodies', axis: 'gap' },
-  springs: { title: 'Forces of springs (pull > 0)', axis: 'force', isChosen: true },
-  rods: { title: 'Tensions of rods (pull > 0)', axis: 'tension', isChosen: true },
+  springs: { title: 'Spring forces (tension > 0)', axis: 'force', isChosen: true },
+  rods: { title: 'Rod forces (tension > 0)', axis: 'tension', isChosen: true },
   joints: { title: 'Forces in joints', axis: 'force', isChosen: true },
-  place: { title: 'Centre of mass', axis: 'place' },
+  place: { title: 'Centre of mass', axis: 'position' },
   velocity: { title: 'Velocity', axis: 'velocity' },
   omega: { title: 'Angular velocity, world', axis: 'ω' },
 };
-const kMostLinks = 4;   // curves in one plot; of more links one is chosen
+const kMostLinks = 4;   // curves in one plot; with more links the user chooses one
 
 function curvesOf(runs, pick) {
   const byPlot = new Map();
   runs.forEach(run => {
     for (const series of pick(run)) {
-      if (series.plot === 'apart' && !series.values.some(v => v > 0)) continue;   // the same throughout: said elsewhere
+      if (series.plot === 'apart' && !series.values.some(v => v > 0)) continue;   // equal throughout, which the page states above
       if (!byPlot.has(series.plot)) byPlot.set(series.plot, { ...kPlots[series.plot], unit: series.unit, curves: [] });
       const name = runs.length > 1 && series.plot !== 'apart' ? `${series.name}, ${run.label}` : series.name;
       byPlot.get(series.plot).curves.push({ name, link: series.name, times: run.times, values: series.values, frameAt: t => run.frameAt(t).k });
@@ -54,7 +55,7 @@ class CurvePane {
     return made;
   }
 
-  // One of many links: at first the one that pulls hardest.
+  // One of many links: initially the one with the largest force.
   addChoice(plot, links) {
     const strength = name => Math.max(...plot.curves.filter(curve => curve.link === name).map(curve => curve.values.reduce((most, v) => Math.max(most, Math.abs(v) || 0), 0)));
     const strengths = links.map(strength), select = html('select', { ariaLabel: plot.title }), holder = html('div'), inner = html('div');
@@ -76,11 +77,11 @@ class CurvePane {
   follow(t, isFull = true) { for (const plot of this.plots) plot.follow(t, isFull); }
 }
 
-// Curves of the body that is chosen.
+// Curves of the chosen body.
 class BodyPane extends CurvePane {
   choose(body) {
     if (body < 0) {
-      this.box.textContent = 'Choose a body: click it in the picture, or take it from the list below the picture.';
+      this.box.textContent = 'Choose a body: click it in the picture, or select it in the list below.';
       this.plots = [];
       return;
     }

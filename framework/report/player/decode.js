@@ -1,11 +1,11 @@
-// Reads what framework/report/channels.h wrote.
+// Reads the channels of framework/report/channels.h.
 
 // The bytes of a data element of the page: base64, then zlib's format.
 async function openedBytes(id) {
   const text = atob(document.getElementById(id).textContent);
   const packed = new Uint8Array(text.length);
   for (let i = 0; i < text.length; ++i) packed[i] = text.charCodeAt(i);
-  if (typeof DecompressionStream === 'undefined') throw new Error('this browser cannot unpack the page\'s data (DecompressionStream is missing: browsers have had it since 2023)');
+  if (typeof DecompressionStream === 'undefined') throw new Error('this browser cannot decompress the page\'s data (it has no DecompressionStream, which browsers have since 2023)');
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('deflate'));
   try {
     return new Uint8Array(await new Response(stream).arrayBuffer());
@@ -21,7 +21,7 @@ class ChannelReader {
     this.at = 0;
   }
 
-  varint() {   // zigzag; up to 53 bits, so beyond 28 of them by multiplication
+  varint() {   // zigzag; up to 53 bits, so bits above 28 by multiplication
     const bytes = this.bytes;
     let byte = bytes[this.at++], value = byte & 127;
     for (let shift = 7; byte >= 128 && shift < 28; shift += 7) {
@@ -35,7 +35,7 @@ class ChannelReader {
     return value % 2 === 0 ? value / 2 : -(value + 1) / 2;
   }
 
-  // The next channel, of `count` values; what is missing is NaN.
+  // The next channel, of `count` values; missing values are NaN.
   channel(count, Kind = Float32Array) {
     const head = this.bytes[this.at], quantum = this.view.getFloat64(this.at + 1, true), order = head & 3;
     this.at += 9;

@@ -1,4 +1,5 @@
-// The list of events of all runs, in order of time; only the rows in sight exist. A click goes to the event.
+// The list of events of all runs, in order of time; only visible rows exist as elements. A click
+// goes to the event.
 
 const kRow = 26;   // px
 
@@ -17,7 +18,7 @@ class EventPane {
     this.ofBody = html('input', { type: 'checkbox' });
     this.count = html('span', { className: 'count' });
     this.list = html('div', { className: 'events', tabIndex: 0 });
-    this.list.style.setProperty('--run', `${Math.min(16, Math.max(...player.runs.map(run => (run.label || '').length)))}ch`);   // what stands behind it stands in columns
+    this.list.style.setProperty('--run', `${Math.min(16, Math.max(...player.runs.map(run => (run.label || '').length)))}ch`);   // so that the fields after it are aligned
     this.sheet = html('div', { className: 'sheet' });
     this.list.append(this.sheet);
     box.append(html('div', { className: 'filter' }, this.kind, html('label', {}, this.ofBody, ' of the chosen body'), this.count), this.list);
@@ -63,7 +64,7 @@ class EventPane {
     if (this.rows.length === 0) this.sheet.append(html('p', { className: 'none' }, 'None.'));
   }
 
-  // The last event that has happened is marked, and kept in sight.
+  // The last past event is highlighted and kept visible.
   follow(t, isFull = true) {
     if (!isFull) return;
     let low = 0, high = this.rows.length;

@@ -1,4 +1,4 @@
-// Puts the page together. What fails says so in the page, and leaves the rest standing.
+// Assembles the page. A part that fails says so in the page, and the rest stays usable.
 
 function complain(text) {
   byId('complaint').textContent = text;
@@ -6,8 +6,8 @@ function complain(text) {
   document.body.dataset.error = text;
 }
 
-window.addEventListener('error', event => complain(`This page's script failed: ${event.message}. Plots and events stand below.`));
-window.addEventListener('unhandledrejection', event => complain(`This page's script failed: ${event.reason && event.reason.message || event.reason}. Plots and events stand below.`));
+window.addEventListener('error', event => complain(`This page's script failed: ${event.message}. Plots and events are below.`));
+window.addEventListener('unhandledrejection', event => complain(`This page's script failed: ${event.reason && event.reason.message || event.reason}. Plots and events are below.`));
 
 async function loadThree() {
   const bytes = await openedBytes('three');
@@ -15,7 +15,7 @@ async function loadThree() {
   if (typeof THREE === 'undefined' || !THREE.OrbitControls) throw new Error('three.js did not load');
 }
 
-// Whether the processor draws, there being no graphics card.
+// Whether WebGL is rendered in software, without a graphics card.
 function drawsBySoftware() {
   const gl = document.createElement('canvas').getContext('webgl', { antialias: false }), info = gl && gl.getExtension('WEBGL_debug_renderer_info');
   const is = Boolean(info) && /swiftshader|llvmpipe|software|basic render/i.test(gl.getParameter(info.UNMASKED_RENDERER_WEBGL));
@@ -23,12 +23,12 @@ function drawsBySoftware() {
   return is;
 }
 
-// The picture: one canvas, a view for each run, one eye for all.
+// The picture: one canvas with a view for each run, and one camera for all.
 class Picture {
   constructor(player) {
     this.player = player;
     this.canvas = byId('picture');
-    const isSoftware = drawsBySoftware();   // then smooth edges and shadows would take most of the time
+    const isSoftware = drawsBySoftware();   // then antialiasing and shadows would take most of the time
     this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: !isSoftware });
     this.renderer.gammaOutput = true;
     this.renderer.gammaFactor = 2.2;
@@ -56,7 +56,8 @@ class Picture {
     const about = this.player.about, first = this.stages[0];
     this.camera.position.copy(first.eye);
     this.orbit.target.copy(first.target);
-    // As seen from straight above, y is up: a camera whose up is its sight turns to nothing.
+    // For a vertical line of sight y is up: the camera's up direction must not be parallel to its
+    // line of sight.
     if (Math.hypot(first.eye.x - first.target.x, first.eye.y - first.target.y) < 1e-6 * first.sight) this.camera.position.y -= 1e-3 * first.sight;
     this.followedAt = null;
     if (about.camera.follow >= 0 && this.player.followed < 0) {
@@ -67,7 +68,8 @@ class Picture {
     this.player.changed();
   }
 
-  // Where each run is seen: beside each other or one below the other, whichever shows a 4:3 picture larger. Shares of the canvas, y down.
+  // The views of the runs: side by side or one below the other, whichever gives the larger 4:3
+  // picture. Fractions of the canvas, y down.
   views() {
     const count = this.stages.length, size = (w, h) => Math.min(h, 0.75 * w);
     const beside = size(this.width / count, this.height) >= size(this.width, this.height / count);
@@ -83,7 +85,7 @@ class Picture {
     this.isDirty = true;
   }
 
-  // What the eye goes along with.
+  // The camera follows the chosen body.
   follow() {
     const body = this.player.followed;
     if (body !== this.following) { this.followedAt = this.following === undefined ? this.followedAt : null; this.following = body; }
@@ -102,7 +104,7 @@ class Picture {
     this.isDirty = false;
     const { player, stages, renderer, camera } = this, views = this.views();
     this.follow();
-    // The whole of a 4:3 picture is seen, however narrow the view.
+    // A whole 4:3 picture is visible, however narrow the view.
     const half = Math.tan(player.about.camera.fov * Math.PI / 360), aspect = views[0].w * this.width / (views[0].h * this.height);
     camera.fov = 2 * Math.atan(half * Math.max(1, 4 / 3 / aspect)) * 180 / Math.PI;
     camera.aspect = aspect;
@@ -135,7 +137,8 @@ class Picture {
     });
   }
 
-  // Where pictures come slower than 25 a second for a while, shadows go first, then fine pixels.
+  // If the frame rate stays below 25 Hz for a while, shadows are switched off first, then the full
+  // pixel resolution.
   adapt(milliseconds) {
     this.times = milliseconds > 500 ? [] : [...(this.times || []), milliseconds].slice(-20);
     const sum = this.times.reduce((a, b) => a + b, 0);
@@ -173,7 +176,7 @@ function addTabs(player) {
   const update = () => {
     const isNew = player.chosen !== chosen;
     chosen = player.chosen;
-    if (isNew && chosen >= 0 && !tabs[0].box.hidden) return open(1);   // whoever chooses a body wants its curves
+    if (isNew && chosen >= 0 && !tabs[0].box.hidden) return open(1);   // show the curves of a newly chosen body
     for (const { pane, box } of tabs) {
       if (!pane || box.hidden) continue;
       if (pane.choose && pane.body !== chosen) pane.choose(pane.body = chosen);
@@ -186,13 +189,13 @@ function addTabs(player) {
   return { open, names: tabs.map(entry => entry.tab.textContent) };
 }
 
-// What an arrow in the picture says, in words: the blow that was just now, pushes that last.
+// The arrows of the picture in words: the latest impact, and active forces.
 function happeningIn(player, run) {
   const e = run.events, i = run.eventFrom(player.time + 1e-5) - 1, names = player.about.bodies, words = [];
   if (i >= 0 && player.time - e.time[i] < kFlashSeconds * player.speed && e.kind[i] === kCollision)
     words.push(`${[e.a[i], e.b[i]].filter(b => b >= 0).map(b => names[b].name).join(' – ')}: ${short(e.impulse[i], 3)} N s, ${short(e.before[i], 3)} → ${short(e.after[i], 3)} m/s`);
   for (const push of player.about.forces)
-    if (player.time >= push.start - 1e-6 && player.time <= push.start + push.duration) words.push(`push on ${names[push.body].name}: ${short(Math.hypot(...push.force), 3)} N`);
+    if (player.time >= push.start - 1e-6 && player.time <= push.start + push.duration) words.push(`force on ${names[push.body].name}: ${short(Math.hypot(...push.force), 3)} N`);
   return words.join(' · ');
 }
 
@@ -202,7 +205,7 @@ function addWords(player, picture) {
     const laws = [run.head.impulses, run.head.motion].filter(word => word && word !== 'none');
     const now = html('p', { className: 'now' });
     const box = html('div', { className: 'label' }, html('b', {}, run.label || ''), html('span', {}, run.head.stopped ? ` stopped: ${run.head.stopped}` : ''),
-      html('span', {}, run.head.faults ? ` not to be trusted: ${run.head.faults}` : ''), now);
+      html('span', {}, run.head.faults ? ` cannot be trusted: ${run.head.faults}` : ''), now);
     player.listeners.push(() => { if (player.isTimeToTell()) now.textContent = happeningIn(player, run); });
     labels.push(box);
     box.title = `engine ${run.head.engine}, step ${short(run.head.step)} s, laws: ${laws.join(', ')}`;
@@ -272,11 +275,11 @@ async function main() {
   readHash(player, tabs);
   if (picture) picture.draw();
   document.body.dataset.ready = performance.now().toFixed(0);
-  window.tumble = { player, picture };   // for whoever looks from the browser's console
+  window.tumble = { player, picture };   // for the browser's console
   runLoop(player, picture);
 }
 
 main().catch(error => {
   document.documentElement.classList.remove('alive');
-  complain(`This page's script failed: ${error.message}. Plots and events stand below.`);
+  complain(`This page's script failed: ${error.message}. Plots and events are below.`);
 });

@@ -1,10 +1,10 @@
-// What a drawing adds to the bodies: impulses, forces, contact points, paths.
+// Marks of a drawing: impulses, forces, contact points, paths.
 
-const kFlashSeconds = 0.25;      // of watching: long enough to be noticed
+const kFlashSeconds = 0.25;      // of real time: long enough to be noticed
 const kMostFlashes = 40;         // the latest; more would hide the bodies
 const kColors = { impulse: 0xc14d00, force: 0x9a4f86, contact: 0x007a57, path: 0x00446b, spring: 0x1a212b, rod: 0x29313b, joint: 0x8a5a00 };
 
-// Any number of one geometry, from one moment to the next.
+// A varying number of instances of one geometry.
 class Pool {
   constructor(scene, geometry, color, opacity = 1) {
     this.scene = scene;
@@ -37,7 +37,8 @@ class Pool {
   }
 }
 
-// The local z axis laid from one point to another, `width` the scale across it; null where the points are one.
+// An instance with its local z axis from one point to another, `width` the scale across it; null
+// where the points coincide.
 function laidBetween(from, to, width) {
   const along = to.clone().sub(from), length = along.length();
   if (!(length > 0)) return null;
@@ -97,18 +98,18 @@ class Marks {
     }
   }
 
-  // Smaller than what meets there.
+  // Smaller than the colliding bodies.
   flashRadius(a, b) {
     const radii = [a, b].map(i => this.about.bodies[i]).filter(body => body && !body.immovable && body.radius > 0).map(body => 0.3 * body.radius);
     return Math.min(0.009 * this.sight, ...radii);
   }
 
-  // A force is an arrow that pushes: its head at the point, which moves with the body.
+  // A force is an arrow with its head at the point of application, which moves with the body.
   addPushes(t, speed, pose) {
     const place = new THREE.Vector3(), turn = new THREE.Quaternion();
     for (const push of this.about.forces) {
       if (t < push.start - 1e-6 || t > push.start + push.duration + 0.12 * speed) continue;
-      if (!push.local) {   // where on the body, told by its pose at the start of the push
+      if (!push.local) {   // the point in the body frame, from the pose at the start of the force
         this.run.pose(push.body, this.run.frameAt(push.start), place, turn);
         push.local = new THREE.Vector3(...push.point).sub(place).applyQuaternion(turn.clone().conjugate());
       }
@@ -126,7 +127,8 @@ class Marks {
       point.set(c[2][i], c[3][i], c[4][i]);
       this.dots.add(ballAt(point, 0.0035 * this.sight));
       force.set(c[5][i], c[6][i], c[7][i]);
-      // Of the two equal forces the one on what moves; where both move, on what lies on top.
+      // Of the two opposite forces the one on the moving body; where both move, the one on the
+      // upper body.
       const a = this.about.bodies[c[0][i]], b = this.about.bodies[c[1][i]];
       if (a.immovable || (!(b && b.immovable) && force.z < 0)) force.negate();
       const length = 0.1 * this.sight * Math.sqrt(force.length() / (this.strongest.contact || 1));
@@ -135,7 +137,7 @@ class Marks {
     }
   }
 
-  // Where the centre of mass of the chosen body goes.
+  // The path of the chosen body's centre of mass.
   tracePath(body) {
     const c = this.run.moving.get(body);
     this.path.visible = Boolean(c);

@@ -1,4 +1,4 @@
-// A run as the page holds it: poses by body and frame, series, contacts, events. SI units, world frame.
+// A run in the page: poses by body and frame, series, contacts, events. SI units, world frame.
 
 const kEventNames = ['', 'collision', 'comes to rest', 'force on', 'force off', 'contact begins', 'contact ends', 'sticks', 'slides', 'falls asleep', 'wakes', 'control'];
 const kCollision = 1;
@@ -19,35 +19,36 @@ class Run {
     this.series = head.series.map(entry => ({ ...entry, values: reader.channel(n, Float64Array) }));
     this.readContacts(reader);
     this.readEvents(reader, head.events);
-    this.findBlows();
+    this.findImpacts();
   }
 
-  // By body: when it is struck. Between two frames it does not go straight then.
-  findBlows() {
+  // Times of impacts, by body: between two frames with an impact the path is not straight.
+  findImpacts() {
     const e = this.events;
-    this.blows = new Map();
+    this.impacts = new Map();
     for (let i = 0; i < e.count; ++i)
       for (const body of e.kind[i] === kCollision ? [e.a[i], e.b[i]] : []) {
         if (!this.moving.has(body)) continue;
-        if (!this.blows.has(body)) this.blows.set(body, []);
-        this.blows.get(body).push(e.time[i]);
+        if (!this.impacts.has(body)) this.impacts.set(body, []);
+        this.impacts.get(body).push(e.time[i]);
       }
   }
 
-  // Where a struck body is between two frames: along its velocity after the first up to the first blow, along that before the second since the last, straight
-  // in between (gravity over a frame is left out: 1.4 mm at 60 frames a second). @return false where nothing strikes it between them
-  strike(body, at, place) {
-    const blows = this.blows.get(body), begin = this.times[at.k], end = this.times[at.k + 1];
-    if (!blows || at.part === 0) return false;
-    let low = 0, high = blows.length;
+  // Position of a body between two frames with impacts: along the velocity of the first frame up to
+  // the first impact, along that of the second frame after the last impact, straight in between
+  // (gravity within a frame is neglected: 1.4 mm at 60 Hz). @return false without impacts
+  placeAroundImpacts(body, at, place) {
+    const impacts = this.impacts.get(body), begin = this.times[at.k], end = this.times[at.k + 1];
+    if (!impacts || at.part === 0) return false;
+    let low = 0, high = impacts.length;
     while (low < high) {
       const middle = (low + high) >> 1;
-      if (blows[middle] <= begin + 2e-6) low = middle + 1; else high = middle;
+      if (impacts[middle] <= begin + 2e-6) low = middle + 1; else high = middle;
     }
-    const first = blows[low];
+    const first = impacts[low];
     if (!(first < end - 2e-6)) return false;
     let last = first;
-    for (let i = low; i < blows.length && blows[i] < end - 2e-6; ++i) last = blows[i];
+    for (let i = low; i < impacts.length && impacts[i] < end - 2e-6; ++i) last = impacts[i];
     const c = this.moving.get(body), t = begin + at.part * (end - begin);
     const before = (i, time) => c[i][at.k] + c[7 + i][at.k] * (time - begin), after = (i, time) => c[i][at.k + 1] - c[7 + i][at.k + 1] * (end - time);
     const share = last > first ? (t - first) / (last - first) : 0;
@@ -73,7 +74,7 @@ class Run {
 
   get end() { return this.times[this.times.length - 1]; }
 
-  // The last frame not later than t, and how far t is on the way to the next.
+  // The last frame not later than t, and the fraction of the interval to the next.
   frameAt(t) {
     const times = this.times;
     let low = 0, high = times.length - 1;
@@ -85,7 +86,7 @@ class Run {
     return { k: low, part: Math.min(1, Math.max(0, (t - times[low]) / (times[low + 1] - times[low]))) };
   }
 
-  // Place and orientation between two frames. @return false where the body is nowhere (not finite).
+  // Position and orientation between two frames. @return false where they are not finite
   pose(body, at, place, turn) {
     const c = this.moving.get(body), rest = this.resting.get(body);
     if (!c) {
@@ -95,7 +96,7 @@ class Run {
     }
     const k = at.k, u = at.part, n = Math.min(k + 1, this.times.length - 1), v = 1 - u;
     const sign = c[3][k] * c[3][n] + c[4][k] * c[4][n] + c[5][k] * c[5][n] + c[6][k] * c[6][n] < 0 ? -u : u;
-    if (!this.strike(body, at, place)) place.set(v * c[0][k] + u * c[0][n], v * c[1][k] + u * c[1][n], v * c[2][k] + u * c[2][n]);
+    if (!this.placeAroundImpacts(body, at, place)) place.set(v * c[0][k] + u * c[0][n], v * c[1][k] + u * c[1][n], v * c[2][k] + u * c[2][n]);
     turn.set(v * c[3][k] + sign * c[3][n], v * c[4][k] + sign * c[4][n], v * c[5][k] + sign * c[5][n], v * c[6][k] + sign * c[6][n]).normalize();
     return Number.isFinite(place.x + place.y + place.z + turn.x + turn.w);
   }
@@ -111,7 +112,7 @@ class Run {
     return low;
   }
 
-  // Curves of one body: what the panel shows when it is chosen.
+  // Curves of one body, for the body pane.
   bodySeries(body) {
     const c = this.moving.get(body);
     if (!c) return [];

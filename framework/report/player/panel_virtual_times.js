@@ -1,5 +1,6 @@
-// Local virtual times of an asynchronous engine: a bar a process up to its local virtual time, dark as far as global virtual time has committed it, cuts where
-// it was rolled back. The chart stands at the move of the scheduler that committed the cursor's time; the slider goes through the moves one by one.
+// Local virtual times of an asynchronous engine: one bar per process up to its local virtual time,
+// dark up to global virtual time (committed), with cuts where it was rolled back. The chart shows
+// the scheduler's move that committed the cursor's time; the slider steps through the moves.
 
 panelKinds.virtual_times = (box, data, player) => {
   const kRowHeight = 18, kLeft = 96, kTop = 26, moves = data.moves, names = data.processes, end = Math.max(player.end, ...moves.map(m => m[2]));
@@ -11,7 +12,7 @@ panelKinds.virtual_times = (box, data, player) => {
   box.append(html('p', { className: 'legend times-legend' }, html('span', {}, html('i', { className: 'committed' }), ' committed'), html('span', {}, html('i', { className: 'ahead' }), ' ahead of global virtual time'),
     html('span', {}, html('i', { className: 'undone' }), ' undone by a rollback')), slider, words, canvas);
 
-  // Everything as it is after k moves.
+  // The state after k moves.
   const stateAfter = k => {
     const times = names.map(() => 0), undone = [];
     for (let i = 0; i < k; ++i) {
@@ -49,7 +50,8 @@ panelKinds.virtual_times = (box, data, player) => {
       g.fillStyle = '#00446b';
       g.fillRect(x(0), y, x(Math.min(times[i], gvt)) - x(0), tall);
     });
-    // A cut: what was undone is hatched for a while, the place rolled back to stays marked.
+    // A cut: the undone interval is hatched for some moves, and the time rolled back to stays
+    // marked.
     for (const cut of undone) {
       const y = kTop + cut.process * kRowHeight + 1, tall = kRowHeight - 2;
       g.fillStyle = '#c14d00';
@@ -72,7 +74,7 @@ panelKinds.virtual_times = (box, data, player) => {
   slider.addEventListener('keydown', event => event.stopPropagation());
   new ResizeObserver(draw).observe(canvas);
   return {
-    // To the first move after which t is committed.
+    // Goes to the first move after which t is committed.
     at(t) {
       cursor = t;
       let low = 0, high = moves.length;

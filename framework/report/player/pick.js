@@ -1,4 +1,4 @@
-// Which body a ray meets first: in the body's own frame, by its shape.
+// The first body that a ray hits: tested in the body frame, by its shape.
 
 function hitSphere(origin, along, radius) {
   const b = origin.dot(along), c = origin.lengthSq() - radius * radius, root = b * b - c;
@@ -24,7 +24,8 @@ function hitMesh(origin, along, mesh) {
   return best;
 }
 
-// @return distance along the unit direction to the body's surface; Infinity: passes by. Planes are not met.
+// @return distance along the unit direction to the body's surface; Infinity: no hit. Planes are not
+//   tested.
 function hitBody(body, meshes, place, turn, origin, direction) {
   const back = turn.clone().conjugate(), from = origin.clone().sub(place), reach = body.radius;
   if (reach === null || from.clone().cross(direction).length() > reach) return Infinity;

@@ -1,4 +1,4 @@
-// Time, and who is told of it: play, pause, step, scrub, speed; keys; the chosen body.
+// Time and its listeners: play, pause, step, scrub, speed; keys; the chosen body.
 
 const kSpeeds = [0.01, 0.02, 0.05, 0.1, 0.25, 0.5, 1, 2, 4, 8];
 const byId = id => document.getElementById(id);
@@ -10,7 +10,7 @@ class Player {
     this.end = Math.max(...runs.map(run => run.end));
     this.longest = runs.reduce((a, b) => (b.end > a.end ? b : a));
     this.time = 0;
-    this.speed = [...kSpeeds].reverse().find(s => s <= 1 && s <= this.end / 3) || kSpeeds[0];   // a short run is watched slowly: three seconds at least
+    this.speed = [...kSpeeds].reverse().find(s => s <= 1 && s <= this.end / 3) || kSpeeds[0];   // a short run is played slowly: at least three seconds
     this.isPlaying = false;
     this.chosen = -1;
     this.followed = -1;
@@ -29,7 +29,7 @@ class Player {
     this.changed();
   }
 
-  goTo(t) {   // as an event list or a mark does: stop there
+  goTo(t) {   // from a list of events or a mark: pauses there
     this.pause();
     this.seek(t);
   }
@@ -46,7 +46,8 @@ class Player {
     this.changed();
   }
 
-  // Whether numbers should be written: while it plays ten times a second, which is as often as they can be read.
+  // Whether numbers should be updated: ten times a second while it plays, as fast as they can be
+  // read.
   isTimeToTell() {
     return !this.isPlaying || Math.floor(performance.now() / 100) !== this.tenth;
   }
@@ -59,7 +60,7 @@ class Player {
     this.seek(times[Math.min(times.length - 1, Math.max(0, at.k + frames + (isBetween ? 1 : 0)))]);
   }
 
-  // The next or previous instant at which something happens.
+  // Goes to the next or previous event.
   jump(direction) {
     const times = this.events, near = 1e-5;
     const found = direction > 0 ? times.find(t => t > this.time + near) : [...times].reverse().find(t => t < this.time - near);
@@ -134,8 +135,8 @@ class Controls {
     const hex = color => '#' + color.toString(16).padStart(6, '0');
     const has = { contacts: this.player.runs.some(run => run.head.contacts > 0), forces: this.player.about.forces.length > 0,
       links: this.player.about.springs.length + this.player.about.rods.length + this.player.about.joints.length > 0 };
-    const options = [['impulses', 'impulses', kColors.impulse], ['contacts', 'contact points and their forces', kColors.contact], ['forces', 'forces that push', kColors.force],
-      ['links', 'springs, rods, joints', kColors.rod], ['path', 'path of the chosen body', kColors.path], ['halo', 'chosen body marked', kChosen], ['ground', 'ground and grid', kLine], ['shadows', 'shadows'], ['loop', 'again from the start at the end']];
+    const options = [['impulses', 'impulses', kColors.impulse], ['contacts', 'contact points and their forces', kColors.contact], ['forces', 'point forces', kColors.force],
+      ['links', 'springs, rods, joints', kColors.rod], ['path', 'path of the chosen body', kColors.path], ['halo', 'chosen body highlighted', kChosen], ['ground', 'ground and grid', kLine], ['shadows', 'shadows'], ['loop', 'repeat']];
     for (const [name, text, color] of options) {
       if (has[name] === false) continue;
       const box = html('input', { type: 'checkbox', checked: this.player.shown[name] }), swatch = html('i');
@@ -151,7 +152,7 @@ class Controls {
     if (difference === undefined) return;
     const line = byId('difference');
     line.hidden = false;
-    line.querySelector('span').textContent = difference ? `First difference at ${short(difference.time, 6)} s: ${difference.what}.` : 'Both runs are the same to a millionth of the view.';
+    line.querySelector('span').textContent = difference ? `First difference at ${short(difference.time, 6)} s: ${difference.what}.` : 'Both runs are equal to a millionth of the view.';
     line.classList.toggle('same', !difference);
     line.querySelector('button').hidden = !difference;
     line.querySelector('button').addEventListener('click', () => this.player.goTo(difference.time));
@@ -184,7 +185,8 @@ class Controls {
     byId('follow').setAttribute('aria-pressed', String(player.followed >= 0));
   }
 
-  // Along the scrubber: an event is a line, a collision a long one, the first difference a wedge.
+  // Marks along the slider: a line for an event, a long one for a collision, a wedge for the first
+  // difference.
   drawMarks() {
     const canvas = byId('marks'), width = canvas.clientWidth, height = canvas.clientHeight, ratio = window.devicePixelRatio || 1;
     canvas.width = width * ratio;

@@ -1,4 +1,5 @@
-// Charts of an engine's own, by kind: (element, data, player) => ({ at(time_s) {} }). panel_*.js put theirs here.
+// Functions that draw engines' own charts, by kind: (element, data, player) => ({ at(time_s) {} }).
+// panel_*.js register here.
 const panelKinds = {};
 
 // Plots over time, in the style of framework/report/plot.h: a frame, round ticks, units on both axes, curves that differ in lightness and dashes.
@@ -52,7 +53,7 @@ class TimePlot {
     this.svg = element('svg', { viewBox: `0 0 ${kFrame.width} ${kFrame.height}`, class: 'plot', role: 'img', 'aria-label': plot.title });
     this.drawFrame();
     plot.curves.forEach((curve, i) => this.drawCurve(curve, kStyles[i % kStyles.length]));
-    // The cursor is laid over the drawing, not into it: moving it paints nothing anew.
+    // The cursor is an element above the drawing: moving it repaints nothing.
     this.cursor = html('div', { className: 'cursor' });
     const holder = html('div', { className: 'holder' }, this.svg, this.cursor);
     const legend = html('figcaption', { className: 'legend' });
@@ -76,7 +77,7 @@ class TimePlot {
       const room = Math.pow(10, 0.06 * Math.max(0.5, Math.log10(high / low)));
       [this.low, this.high] = [low / room, high * room];
     } else {
-      // What stays the same to six digits is drawn as a straight line, whose ticks can be told apart.
+      // A curve that is constant to six digits is drawn as a straight line, with ticks that differ.
       const least = 1e-4 * Math.max(Math.abs(low), Math.abs(high)), room = high > low || least > 0 ? Math.max(0.07 * (high - low), 0.5 * (least - (high - low))) : 1;
       [this.low, this.high] = [low - room, high + room];
     }
@@ -107,7 +108,7 @@ class TimePlot {
     if (this.isEmpty) this.svg.append(element('text', { x: (left + right) / 2, y: (top + bottom) / 2, 'text-anchor': 'middle' }, this.plot.isLog ? 'nowhere above 0' : 'nothing to draw'));
   }
 
-  // Of many points the least and the largest of each column of a screen.
+  // Of many points only the minimum and maximum in each column of the screen.
   drawCurve(curve, [colour, dashes]) {
     const n = curve.values.length, parts = Math.min(n, 500);
     let path = '', down = false;
@@ -138,7 +139,7 @@ class TimePlot {
     return html('span', {}, key, ` ${curve.name} `, value);
   }
 
-  // @param isFull  the numbers as well, not the cursor alone
+  // @param isFull  updates the numbers too, not only the cursor
   follow(t, isFull) {
     this.cursor.style.transform = `translateX(${(100 * this.x(t) / kFrame.width).toFixed(3)}%)`;
     if (!isFull) return;

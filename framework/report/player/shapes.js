@@ -1,6 +1,7 @@
-// Geometries, and how bodies are coloured.
+// Geometries and colours of bodies.
 
-// Colours that readers with any colour vision tell apart (Okabe and Ito 2008), linear; as in the pictures that the program draws.
+// Colours distinguishable for every colour vision (Okabe and Ito 2008), linear; as in the program's
+// pictures.
 const kPalette = [[0.000, 0.168, 0.445], [0.665, 0.112, 0.000], [0.000, 0.342, 0.171], [0.791, 0.347, 0.000], [0.604, 0.191, 0.386], [0.093, 0.456, 0.815]];
 const kImmovable = [0.42, 0.45, 0.48];
 
@@ -14,7 +15,8 @@ function geometryFrom(positions, normals, shades) {
   return geometry;
 }
 
-// Ball of radius 1; two of its quarters are darker, so that its turning is seen. Few corners: drawing without a graphics card counts them.
+// Ball of radius 1; two of its quarters are darker, so that its rotation is visible. Few corners,
+// for software rendering.
 function ballGeometry(isQuartered, segments) {
   const quarter = k => {
     const part = new THREE.SphereBufferGeometry(1, segments / 4, segments / 2, k * Math.PI / 2, Math.PI / 2).rotateX(Math.PI / 2);
@@ -24,11 +26,12 @@ function ballGeometry(isQuartered, segments) {
   return merged([0, 1, 2, 3].map(quarter));
 }
 
-// So many segments that a ball's outline looks round.
+// Enough segments that a ball's outline looks round.
 function segmentsFor(pixels) { return pixels < 7 ? 8 : pixels < 16 ? 12 : pixels < 45 ? 20 : 40; }
 
-// Faces that meet at less than 40 degrees are shaded as one smooth surface, others keep their edge: a corner's normal is the mean, weighted by
-// the faces' angles there, over the faces around it that lie within that of its own (Thuermer and Wuethrich 1998).
+// Faces at less than 40 degrees to each other are shaded as one smooth surface; other edges stay
+// sharp. The normal of a face's corner is the mean over the faces around the vertex within that
+// angle of this face, weighted by their angles (Thuermer and Wuethrich 1998).
 function meshGeometry(mesh) {
   const v = mesh.vertices, f = mesh.faces, count = f.length / 3, cosCrease = Math.cos(40 * Math.PI / 180);
   const corner = i => new THREE.Vector3(v[3 * i], v[3 * i + 1], v[3 * i + 2]);
@@ -56,7 +59,8 @@ function meshGeometry(mesh) {
   return geometryFrom(positions, normals, positions.map(() => 1));
 }
 
-// The same buffers under another name: three.js r111 leaves the places of one instanced mesh bound for the next of the same geometry.
+// A copy that shares the buffers: three.js r111 keeps the instance attributes of one instanced mesh
+// bound for the next one with the same geometry.
 function sameGeometry(geometry) {
   const same = new THREE.BufferGeometry();
   for (const [name, attribute] of Object.entries(geometry.attributes)) same.setAttribute(name, attribute);
@@ -79,7 +83,7 @@ function merged(parts) {
   return whole;
 }
 
-// Along z from 0 to 1: an arrow to be scaled, a rod of radius 1, a coil of radius 1.
+// Along z from 0 to 1: an arrow, a rod of radius 1, a coil of radius 1.
 function arrowGeometry() {
   const shaft = new THREE.CylinderBufferGeometry(0.035, 0.035, 0.72, 8), head = new THREE.ConeBufferGeometry(0.1, 0.28, 10);
   shaft.rotateX(Math.PI / 2).translate(0, 0, 0.36);
@@ -96,7 +100,7 @@ function coilGeometry(turns) {
       return new THREE.Vector3(radius * Math.cos(angle), radius * Math.sin(angle), share * 0.9 * turns);
     }
   }
-  // Wound at 0.9 radii between turns, at which length its wire is round.
+  // The wire is round where the turns are 0.9 radii apart.
   return new THREE.TubeBufferGeometry(new Helix(), 14 * turns, 0.17, 6).scale(1, 1, 1 / (0.9 * turns));
 }
 
@@ -109,7 +113,7 @@ function geometryOf(shape, meshes, isQuartered, segments) {
 
 function scaleOf(body, sight) {
   const shape = body.shape;
-  if (shape.kind === 'sphere') return new THREE.Vector3().setScalar(shape.radius > 0 ? shape.radius : 0.008 * sight);   // a point mass is a dot
+  if (shape.kind === 'sphere') return new THREE.Vector3().setScalar(shape.radius > 0 ? shape.radius : 0.008 * sight);   // a point mass is drawn as a dot
   if (shape.kind === 'box') return new THREE.Vector3(...shape.half);
   if (shape.kind === 'plane') return new THREE.Vector3(shape.extent, shape.extent, 1);
   return new THREE.Vector3(1, 1, 1);

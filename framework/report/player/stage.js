@@ -1,4 +1,4 @@
-// One run in three dimensions. The same eye, light and colours as in the pictures that the program draws.
+// One run in three dimensions, with the camera, light and colours of the program's pictures.
 
 const kSky = 0xf1f4f7, kFloor = 0xe3e8ec, kLine = 0xb9c4cd, kChosen = 0xffd24a;
 
@@ -21,10 +21,11 @@ class Stage {
     this.addGround();
     this.marks = new Marks(this.scene, run, about, this.sight);
     this.addLinks();
+    this.addSheets();
     this.addHalo();
   }
 
-  // The first level plane is the ground; it is drawn without an edge.
+  // The first horizontal plane is the ground; it is drawn without an edge.
   findFloor() {
     this.floor = this.about.bodies.findIndex((body, i) => {
       if (body.shape.kind !== 'plane' || this.run.moving.has(i)) return false;
@@ -33,7 +34,7 @@ class Stage {
     });
   }
 
-  // Of everything finite, over the run.
+  // Extent of all finite bodies over the run.
   findExtent() {
     this.extent = new THREE.Box3();
     const frames = this.run.times.length, stride = Math.max(1, Math.floor(frames / 100));
@@ -46,7 +47,7 @@ class Stage {
     if (this.extent.isEmpty()) this.extent.expandByPoint(this.target);
   }
 
-  // Bodies of one geometry, colour and opacity are drawn by one call.
+  // Bodies with equal geometry, colour and opacity are drawn by one call.
   addBodies() {
     const groups = new Map(), meshes = this.about.meshes;
     this.scales = this.about.bodies.map(body => scaleOf(body, this.sight));
@@ -79,7 +80,7 @@ class Stage {
     }
   }
 
-  // What stands between the eye and what moves is glass. @return its opacity, or 0
+  // An immovable body that occludes moving ones is glass. @return its opacity, or 0
   isGlass(index) {
     const body = this.about.bodies[index];
     if (!body.immovable) return 0;
@@ -114,7 +115,7 @@ class Stage {
     this.scene.add(sky, key, key.target);
   }
 
-  // A grid whose lines fade with distance, and the floor where there is one.
+  // A grid with lines that fade with distance, and the floor where there is one.
   addGround() {
     const given = this.about.grid.spacing, sight = this.sight;
     if (given === null && this.floor < 0) return;
@@ -135,7 +136,7 @@ class Stage {
           points.push(cx + x, cy + along, height, cx + along, cy + x, height);
           colors.push(color, color);
         }
-    const ordered = [], shades = [];   // both ends of a line next to each other, for either direction
+    const ordered = [], shades = [];   // the two ends of each line are adjacent, for both directions
     for (let i = 0; i < points.length; i += 12)
       for (const offset of [0, 6, 3, 9]) {
         ordered.push(points[i + offset], points[i + offset + 1], points[i + offset + 2]);
@@ -196,7 +197,7 @@ class Stage {
     }
     for (const joint of this.about.joints) {
       const width = slim(0.0075, [joint.a]);
-      if (joint.kind === 'weld') this.links.push(() => {});   // no moving part
+      if (joint.kind === 'weld') this.links.push(() => {});   // a weld is not drawn
       else if (joint.kind === 'ball') this.links.push(a => joints.add(ballAt(a, width)));
       else this.links.push((a, b) => {
         const half = b.sub(a).normalize().multiplyScalar(2.2 * width), m = laidBetween(a.clone().sub(half), a.clone().add(half), 0.7 * width);
@@ -204,6 +205,17 @@ class Stage {
       });
     }
     this.linked = [...this.about.springs, ...this.about.rods, ...this.about.joints];
+  }
+
+  // Level surfaces that one sees through, so wide that their edges are far beyond what is looked at.
+  addSheets() {
+    for (const sheet of this.about.sheets) {
+      const material = new THREE.MeshLambertMaterial({ color: new THREE.Color(...sheet.color), transparent: true, opacity: 0.35, depthWrite: false, side: THREE.DoubleSide });
+      const surface = new THREE.Mesh(new THREE.PlaneBufferGeometry(5.2 * this.sight, 5.2 * this.sight), material);
+      surface.position.set(this.target.x, this.target.y, sheet.height);
+      surface.renderOrder = 1;
+      this.scene.add(surface);
+    }
   }
 
   anchorAt(anchor, at) {
@@ -225,12 +237,13 @@ class Stage {
     this.marks.tracePath(body);
   }
 
-  // Balls are as round as they look. @param pixels  of a metre, where the eye looks
+  // Levels of detail of balls, by their size in the picture. @param pixels  per metre at the
+  // camera's target
   refine(pixels) {
     for (const group of this.groups) if (group.body.shape.kind === 'sphere') group.mesh.geometry = group.geometry(segmentsFor(group.radius * pixels));
   }
 
-  // Everything at time t. @param speed  of watching: how long a flash lasts
+  // Updates everything to time t. @param speed  of playing, for the duration of a flash
   show(t, speed, shown) {
     const at = this.run.frameAt(t), matrix = new THREE.Matrix4();
     for (const group of this.groups) {
@@ -263,7 +276,7 @@ class Stage {
     return this.place.clone();
   }
 
-  // The body that a ray meets first; -1: none.
+  // The first body that a ray hits; -1: none.
   pick(origin, direction, t) {
     const at = this.run.frameAt(t);
     let best = Infinity, found = -1;

@@ -12,6 +12,7 @@
 #include "framework/core/numbers.h"
 #include "framework/engines/base/guarded_laws.h"
 #include "framework/engines/timewarp/fast_timewarp.h"
+#include "framework/engines/timewarp/flight_boxes.h"
 #include "solutions_private/a4_timewarp/fast/fast_timewarp.h"
 
 namespace tumble::a4 {
@@ -61,12 +62,7 @@ void Conductor::enter_obstacle(int i) {
   const FlightWorld& world = all_.world();
   all_.processes[static_cast<std::size_t>(i)].horizon = kInfinity;
   if (world.is_half_space(i)) return all_.planes.push_back(i);
-  // An obstacle goes its prescribed way: a straight line, and no farther off it than its amplitude.
-  const scene::PrescribedMotion& m = world.world().bodies[static_cast<std::size_t>(i)].motion;
-  const Vector3d start = world.first_flight(i).com_world, end = start + m.velocity_m_s * all_.run.duration();
-  const Vector3d reach = m.amplitude_m.cwiseAbs() + Vector3d::Constant(kSlack * world.radius(i));
-  const Box box = engines::box_around(world.shape(i), world.first_flight(i).world_from_body);
-  all_.domains[kBorder].pairs.set_box(i, {start.cwiseMin(end) + box.low - reach, start.cwiseMax(end) + box.high + reach});
+  all_.domains[kBorder].pairs.set_box(i, engines::box_of_immovable(world, i, all_.run.duration()));
 }
 
 void Conductor::run() {

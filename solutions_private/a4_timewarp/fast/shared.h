@@ -32,7 +32,6 @@ using engines::FlightHistory;
 using engines::FlightRun;
 using engines::FlightWorld;
 
-constexpr double kSlack = 1e-9;               // of lengths, on boxes: rounding hides nothing
 constexpr std::uint32_t kAfterAll = std::numeric_limits<std::uint32_t>::max();   // generation of a process's going on: after the impacts of its instant
 constexpr std::size_t kBorder = 0;            // home of bodies that more than one thread may meet; of all, with one thread
 

@@ -23,14 +23,13 @@ class Bytes {
     return *this;
   }
   Bytes& operator<<(const RigidBodyState& s) { return *this << s.com_world << s.world_from_body << s.momentum_world << s.angular_momentum_world; }
-  Bytes& operator<<(const engines::MotorHold& hold) { return *this << hold.torque << hold.next_look; }
   Bytes& operator<<(const EventKey& key) { return *this << key.time << key.generation << key.kind << key.body_a << key.body_b; }
   Bytes& operator<<(const Event& e) {
     return *this << e.time << e.kind << e.body_a << e.body_b << e.point_world << e.normal_b_to_a_world << e.impulse << e.normal_velocity_before << e.normal_velocity_after;
   }
   Bytes& operator<<(const ContactPoint& p) { return *this << p.body_a << p.body_b << p.point_world << p.normal_b_to_a_world << p.force_on_a_world; }
   Bytes& operator<<(const engines::ProcessState& s) {
-    return *this << s.time << s.members << s.states << s.motors << s.force_points_body << s.met << s.lasting << s.near;
+    return *this << s.time << s.members << s.states << s.remembered << s.met << s.lasting << s.near;
   }
   Bytes& operator<<(const Flight& f) {
     return *this << f.begin << f.com_world << f.velocity_world << f.world_from_body << f.omega_body << f.partner << f.partner_serial << f.generation << f.serial << f.is_resting;

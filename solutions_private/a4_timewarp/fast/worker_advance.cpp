@@ -8,6 +8,7 @@
 
 #include "framework/engines/timewarp/fast_timewarp.h"
 #include "framework/engines/base/guarded_laws.h"
+#include "framework/engines/timewarp/flight_boxes.h"
 #include "solutions_private/a4_timewarp/fast/territories.h"
 
 namespace tumble::a4 {
@@ -60,26 +61,12 @@ bool Worker::meets_nobody(int body, const Flight& flight, double from, double to
   return is_nobody;
 }
 
-// Around the body over [from, to]: a parabola leaves the box of its ends by at most a s^2 / 8.
+// Around the body over [from, to], along all its flights there.
 Box Worker::swept_box(int body, double from, double to) const {
-  const FlightWorld& world = all_.world();
   const FlightHistory& flights = history(body);
   Box box;
-  for (std::size_t k = flights.at(from); k < flights.size(); ++k) {
-    const Flight& flight = flights[k];
-    const double begin = std::max(from, flight.begin), end = k + 1 < flights.size() ? flights[k + 1].begin : to, s = end - begin;
-    if (flight.passage >= 0) {
-      Box way;
-      world.take_in_way(body, flight, begin, end, way.low, way.high);
-      const Vector3d margin = Vector3d::Constant(world.radius(body) * (1 + kSlack)) + kSlack * (way.high - way.low) + 1e-14 * (way.low.cwiseAbs() + way.high.cwiseAbs());
-      box.take_in({way.low - margin, way.high + margin});
-      continue;
-    }
-    const Vector3d first = world.position(body, flight, begin), last = world.position(body, flight, end);
-    const Vector3d margin = world.acceleration(body, flight).cwiseAbs() * (s * s / 8) + Vector3d::Constant(world.radius(body) * (1 + kSlack)) + kSlack * (last - first).cwiseAbs() +
-                            1e-14 * (first.cwiseAbs() + last.cwiseAbs());
-    box.take_in({first.cwiseMin(last) - margin, first.cwiseMax(last) + margin});
-  }
+  for (std::size_t k = flights.at(from); k < flights.size(); ++k)
+    box.take_in(engines::swept_box(all_.world(), body, flights[k], std::max(from, flights[k].begin), k + 1 < flights.size() ? flights[k + 1].begin : to));
   return box;
 }
 

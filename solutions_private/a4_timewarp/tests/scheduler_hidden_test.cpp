@@ -1,4 +1,5 @@
 #include "framework/core/random.h"
+#include "framework/effects/gravity/gravity.h"
 #include "tests/a4_timewarp/a4_fixtures.h"
 
 namespace tumble::a4_testing {
@@ -12,7 +13,7 @@ TEST(Scheduler, KeepsBouncingBallsInOrder) {
   std::vector<scene::BodySpec> bodies{wall("floor", {0, 0, 0}, {0, 0, 1})};
   for (int i = 0; i < 4; ++i) bodies.push_back(ball("ball " + std::to_string(i + 1), {0.04 * i, 0.03 * i, 0.5 + 0.4 * i}, Vector3d::Zero()));
   scene::Scene scene = scene_of(bodies, 2.0, 0.1);
-  scene.gravity_m_s2 = Vector3d(0, 0, -9.81);
+  effects::set_gravity(scene, Vector3d(0, 0, -9.81));
   expect_the_references_trace(scene, 12, "four balls above each other fall on a floor");
 }
 

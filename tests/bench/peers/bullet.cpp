@@ -5,6 +5,7 @@
 
 #include <btBulletDynamicsCommon.h>
 
+#include "framework/effects/joint/joint.h"
 #include "tests/bench/peers/bullet_chain.h"
 
 namespace tumble::peers {
@@ -37,7 +38,7 @@ class BulletWorld final : public PeerWorld {
     if (bounces) dynamics_.getSolverInfo().m_splitImpulsePenetrationThreshold = 0;
     if (setting.method == kManySweeps) dynamics_.getSolverInfo().m_numIterations = 100;
     for (const WorldBody& body : world.bodies) add_body(body);
-    for (const scene::JointSpec& joint : bench.scene.joints) add_hinge(world, joint);
+    for (const effects::JointSpec& joint : bench.scene.effects.of<effects::JointSpec>()) add_hinge(world, joint);
   }
   ~BulletWorld() override {
     for (auto& hinge : hinges_) dynamics_.removeConstraint(hinge.get());
@@ -108,7 +109,7 @@ class BulletWorld final : public PeerWorld {
     return btTypedConstraint::getFixedBody();
   }
 
-  void add_hinge(const World& world, const scene::JointSpec& joint) {
+  void add_hinge(const World& world, const effects::JointSpec& joint) {
     btRigidBody &a = body_named(world, joint.body_a), &b = body_named(world, joint.body_b);
     const auto local = [](const btRigidBody& body, const btVector3& point) { return body.getCenterOfMassTransform().inverse() * point; };
     const auto local_axis = [&](const btRigidBody& body) { return body.getCenterOfMassTransform().getBasis().transpose() * bt(joint.axis); };

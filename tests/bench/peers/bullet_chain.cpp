@@ -1,3 +1,4 @@
+#include "framework/effects/joint/joint.h"
 #include "tests/bench/peers/bullet_chain.h"
 
 #include <BulletDynamics/Featherstone/btMultiBody.h>
@@ -19,7 +20,7 @@ class BulletChain final : public PeerWorld {
         chain_(static_cast<int>(world.bodies.size()), 0.0, btVector3(0, 0, 0), true, false) {
     dynamics_.setGravity(bt(world.gravity_world.value_or(Vector3d::Zero())));
     chain_.setBaseWorldTransform(btTransform::getIdentity());
-    for (int i = 0; i < static_cast<int>(world.bodies.size()); ++i) add_link(bench.scene.joints[i], world, i);
+    for (int i = 0; i < static_cast<int>(world.bodies.size()); ++i) add_link(bench.scene.effects.of<effects::JointSpec>()[i], world, i);
     chain_.finalizeMultiDof();
     chain_.setLinearDamping(0);
     chain_.setAngularDamping(0);
@@ -40,7 +41,7 @@ class BulletChain final : public PeerWorld {
 
  private:
   // Link i hangs on link i - 1, the first on the world.
-  void add_link(const scene::JointSpec& joint, const World& world, int i) {
+  void add_link(const effects::JointSpec& joint, const World& world, int i) {
     const WorldBody& body = world.bodies[i];
     const Quaterniond world_from_parent = i == 0 ? Quaterniond::Identity() : world.bodies[i - 1].state.world_from_body;
     const Vector3d parent = i == 0 ? Vector3d::Zero() : world.bodies[i - 1].state.com_world;

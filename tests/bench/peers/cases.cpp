@@ -6,6 +6,8 @@
 #include <fmt/format.h>
 
 #include "framework/core/random.h"
+#include "framework/effects/gravity/gravity.h"
+#include "framework/effects/joint/joint.h"
 #include "framework/engines/truths/memory_scene.h"
 
 namespace tumble::peers {
@@ -55,7 +57,7 @@ BenchCase free_top(bool quick) {
 /// Straight rods joined by hinges about y, the first to the world's origin. Nothing collides.
 Scene chain_of_hinges(const std::string& name, int links, double length, double width, double mass, const Vector3d& direction) {
   Scene scene = empty_scene(name, 1.0, 1e-3);
-  scene.gravity_m_s2 = kDown;
+  effects::set_gravity(scene, kDown);
   scene.stabilisation = scene::StabilisationSpec{};
   std::string above;
   for (int k = 0; k < links; ++k) {
@@ -63,7 +65,7 @@ Scene chain_of_hinges(const std::string& name, int links, double length, double 
     link.world_from_body = Quaterniond::FromTwoVectors(Vector3d::UnitX(), direction);
     link.collides = false;
     scene.bodies.push_back(link);
-    scene.joints.push_back({"joint" + std::to_string(k), scene::JointKind::kHinge, link.name, above, k * length * direction, Vector3d::UnitY()});
+    scene.effects.of<effects::JointSpec>().push_back({"joint" + std::to_string(k), effects::JointKind::kHinge, link.name, above, k * length * direction, Vector3d::UnitY()});
     above = link.name;
   }
   return scene;
@@ -124,7 +126,7 @@ BenchCase bouncing_ball(bool quick) {
                   .note = "Of a stepped engine the instant of a bounce is where its last flight reaches the floor, not the end of the step.", .scene = empty_scene("S4", 5.0, 1e-3),
                   .sample_times = {1.0, 2.0, 3.5, 5.0}, .steps = halvings(1.0 / 60, quick ? 3 : 8), .watches_first_body = true};
   constexpr double kRadius = 0.1;   // m
-  bench.scene.gravity_m_s2 = kDown;
+  effects::set_gravity(bench.scene, kDown);
   bench.scene.bodies = {ball("ball", 1.0, kRadius, Vector3d(0, 0, 1.0 + kRadius), Vector3d::Zero(), 0.8), wall("floor", Vector3d::Zero(), Vector3d::UnitZ(), 0.8)};
   return bench;
 }
@@ -134,7 +136,7 @@ BenchCase stack(int n, bool quick) {
   BenchCase bench{.id = n == 10 ? "S5" : "S5-" + many, .name = "stack of " + many, .title = "A stack of " + many + " boxes at rest, 10 s", .error_name = "way of the top box", .error_unit = "m", .truth = "static equilibrium: nothing moves",
                   .note = "ODE's direct stepper drops the stack at most steps (its solver reports internal errors). MuJoCo's default contacts give by 1 cm; harder ones hold the stack at some steps and let it fall at others, which a curve of the best does not show. MuJoCo's price at 1e-3 is lower: it stops its iterations where its softness allows, Tumble finds every contact point anew and solves to rounding whatever is asked.", .scene = empty_scene("S5", quick ? 2.0 : 10.0, 1e-3), .sample_times = times(1.0, quick ? 2 : 10),
                   .steps = halvings(1.0 / 60, quick ? 2 : 6)};
-  bench.scene.gravity_m_s2 = kDown;
+  effects::set_gravity(bench.scene, kDown);
   bench.scene.contact.emplace();
   bench.goals = {{.words = "1e-6 m at 1/60 s", .error = 1e-6, .step = 1.0 / 60}};
   if (n == 10) bench.goals.insert(bench.goals.end(), {{.words = "1e-6 m for 0.65 s", .error = 1e-6, .price_s = 0.65}, {.words = "1e-6 m for 0.1 s", .error = 1e-6, .price_s = 0.1}});
@@ -156,7 +158,7 @@ BenchCase heavy_bob(bool quick) {
                   .sample_times = times(0.1, quick ? 5 : 100), .steps = halvings(1.0 / 960, quick ? 2 : 5)};
   BodySpec bob = ball("bob", 10.0, 0.12, 10 * kBobLink * direction, Vector3d::Zero(), 1.0);
   bob.collides = false;
-  bench.scene.joints.push_back({"last", scene::JointKind::kHinge, bob.name, bench.scene.bodies.back().name, bob.position_m, Vector3d::UnitY()});
+  bench.scene.effects.of<effects::JointSpec>().push_back({"last", effects::JointKind::kHinge, bob.name, bench.scene.bodies.back().name, bob.position_m, Vector3d::UnitY()});
   bench.scene.bodies.push_back(bob);
   bench.scene.duration_s = bench.sample_times.back();
   return bench;
@@ -198,7 +200,7 @@ BenchCase rocks(int n, double duration, bool quick) {
                   .goals = {{.words = "no overlap", .error = 1e-12}, {.words = "1/240 s for one and a half times Bullet's price", .step = 1.0 / 240, .ratio = 1.5, .peer = "Bullet"}},
                   .note = "Tumble's two curves treat impacts that do not bounce with the step they fall into, or at their instants. Its price is that of never overlapping: of a pile of 20 rocks a fifth of a step solves for forces, a third finds near points and keeps solids apart, a sixth lays the paths between two steps and a tenth looks for touches midway (callgrind); the others let them sink in. DART's own collision detector has no hulls.", .scene = empty_scene("S8", duration, 1e-3),
                   .sample_times = times(0.1, static_cast<int>(std::lround(duration * 10))), .steps = quick ? std::vector{1.0 / 120} : std::vector{1.0 / 60, 1.0 / 120, 1.0 / 240, 1.0 / 480}};
-  bench.scene.gravity_m_s2 = kDown;
+  effects::set_gravity(bench.scene, kDown);
   bench.scene.contact.emplace();
   bench.scene.contact->plastic_impacts = scene::PlasticImpacts::kInStep;
   const Vector3d up(std::sin(kSlope), 0, std::cos(kSlope)), down(std::cos(kSlope), 0, -std::sin(kSlope)), across(0, 1, 0);

@@ -13,6 +13,7 @@
 #include <dart/dynamics/WeldJoint.hpp>
 #include <dart/simulation/World.hpp>
 
+#include "framework/effects/joint/joint.h"
 #include "tests/bench/peers/harness.h"
 
 namespace tumble::peers {
@@ -55,7 +56,7 @@ class DartWorld final : public PeerWorld {
   }
 
   void add_body(const BenchCase& bench, const World& world, const WorldBody& body) {
-    for (const scene::JointSpec& joint : bench.scene.joints)
+    for (const effects::JointSpec& joint : bench.scene.effects.of<effects::JointSpec>())
       if (joint.body_a == body.name) return add_hinged(world, body, joint);
     const dd::SkeletonPtr skeleton = dd::Skeleton::create(body.name);
     if (body.immovable()) {
@@ -74,7 +75,7 @@ class DartWorld final : public PeerWorld {
     world_->addSkeleton(skeleton);
   }
 
-  void add_hinged(const World& world, const WorldBody& body, const scene::JointSpec& joint) {
+  void add_hinged(const World& world, const WorldBody& body, const effects::JointSpec& joint) {
     dd::BodyNode* carrier = nullptr;
     Eigen::Isometry3d world_from_carrier = Eigen::Isometry3d::Identity(), world_from_joint = Eigen::Isometry3d::Identity();
     for (std::size_t i = 0; i < nodes_.size(); ++i)

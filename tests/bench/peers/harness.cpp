@@ -17,7 +17,7 @@
 #include <unistd.h>
 
 #include "framework/core/keep_memory.h"
-#include "framework/dynamics/build_world.h"
+#include "framework/effects/build_world.h"
 #include "tests/bench/peers/judge.h"
 
 namespace tumble::peers {

@@ -4,7 +4,8 @@
 #include <cmath>
 
 #include "framework/cli/read_truth.h"
-#include "framework/dynamics/invariants.h"
+#include "framework/effects/invariants.h"
+#include "framework/effects/joint/joint.h"
 #include "tests/support/overlap.h"
 
 namespace tumble::peers {
@@ -53,7 +54,7 @@ Vector3d place_of(const Anchor& anchor, const std::vector<BodyPose>& poses) {
 double joint_opening(const World& world, const Observed& run) {
   double worst = 0.0;
   for (const auto& poses : run.samples)
-    for (const JointLink& joint : world.joints) worst = std::max(worst, (place_of(joint.a, poses) - place_of(joint.b, poses)).norm());
+    for (const effects::JointLink& joint : world.effects.of<effects::JointLink>()) worst = std::max(worst, (place_of(joint.a, poses) - place_of(joint.b, poses)).norm());
   return worst;
 }
 

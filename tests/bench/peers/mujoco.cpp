@@ -11,6 +11,7 @@
 #include <mujoco/mujoco.h>
 #include <unistd.h>
 
+#include "framework/effects/joint/joint.h"
 #include "tests/bench/peers/harness.h"
 
 namespace tumble::peers {
@@ -62,8 +63,8 @@ class Writer {
     return "";
   }
 
-  const scene::JointSpec* joint_of(std::size_t i) const {   // joints hang body_a on body_b; the bob of S6 too
-    for (const scene::JointSpec& joint : scene_.joints)
+  const effects::JointSpec* joint_of(std::size_t i) const {   // joints hang body_a on body_b; the bob of S6 too
+    for (const effects::JointSpec& joint : scene_.effects.of<effects::JointSpec>())
       if (joint.body_a == world_.bodies[i].name) return &joint;
     return nullptr;
   }
@@ -80,7 +81,7 @@ class Writer {
       const Matrix3d& I = body.inertia.inertia_body;
       xml += fmt::format("<inertial pos=\"0 0 0\" mass=\"{:.17g}\" fullinertia=\"{:.17g} {:.17g} {:.17g} {:.17g} {:.17g} {:.17g}\"/>", body.inertia.mass, I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2));
       const Quaterniond into = state.world_from_body.conjugate();
-      if (const scene::JointSpec* joint = joint_of(i)) xml += fmt::format("<joint type=\"hinge\" pos=\"{}\" axis=\"{}\"/>", words(into * (joint->point_m - state.com_world)), words(into * joint->axis));
+      if (const effects::JointSpec* joint = joint_of(i)) xml += fmt::format("<joint type=\"hinge\" pos=\"{}\" axis=\"{}\"/>", words(into * (joint->point_m - state.com_world)), words(into * joint->axis));
       else xml += "<freejoint/>";
     }
     if (body.collides) xml += "<geom " + shape(body) + fmt::format(" friction=\"{:.17g} 0 0\" condim=\"{}\"/>", body.friction, body.friction > 0 ? 3 : 1);

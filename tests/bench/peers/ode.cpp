@@ -3,6 +3,7 @@
 
 #include <ode/ode.h>
 
+#include "framework/effects/joint/joint.h"
 #include "tests/bench/peers/harness.h"
 
 namespace tumble::peers {
@@ -20,7 +21,7 @@ class OdeWorld final : public PeerWorld {
     space_ = dHashSpaceCreate(nullptr);
     contacts_ = dJointGroupCreate(0);
     for (int i = 0; i < static_cast<int>(world.bodies.size()); ++i) add_body(i);
-    for (const scene::JointSpec& joint : scene_.joints) add_hinge(joint);
+    for (const effects::JointSpec& joint : scene_.effects.of<effects::JointSpec>()) add_hinge(joint);
   }
   ~OdeWorld() override {
     dJointGroupDestroy(contacts_);
@@ -103,7 +104,7 @@ class OdeWorld final : public PeerWorld {
     return nullptr;   // the world
   }
 
-  void add_hinge(const scene::JointSpec& joint) {
+  void add_hinge(const effects::JointSpec& joint) {
     const dJointID hinge = dJointCreateHinge(world_, nullptr);
     dJointAttach(hinge, body_named(joint.body_a), body_named(joint.body_b));
     dJointSetHingeAnchor(hinge, joint.point_m.x(), joint.point_m.y(), joint.point_m.z());

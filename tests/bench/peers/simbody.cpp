@@ -2,6 +2,7 @@
 // boxes, hulls and restitution are not in them: it runs the scenes without contact.
 #include <Simbody.h>
 
+#include "framework/effects/joint/joint.h"
 #include "tests/bench/peers/harness.h"
 
 namespace tumble::peers {
@@ -48,8 +49,8 @@ class SimbodyWorld final : public PeerWorld {
   }
 
  private:
-  static const scene::JointSpec* joint_of(const BenchCase& bench, const std::string& body) {
-    for (const scene::JointSpec& joint : bench.scene.joints)
+  static const effects::JointSpec* joint_of(const BenchCase& bench, const std::string& body) {
+    for (const effects::JointSpec& joint : bench.scene.effects.of<effects::JointSpec>())
       if (joint.body_a == body) return &joint;
     return nullptr;
   }
@@ -57,7 +58,7 @@ class SimbodyWorld final : public PeerWorld {
   void add_body(const BenchCase& bench, const World& world, const WorldBody& body) {
     const Matrix3d& I = body.inertia.inertia_body;
     const SimTK::Body::Rigid rigid(SimTK::MassProperties(body.inertia.mass, Vec3(0), SimTK::Inertia(I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2))));
-    const scene::JointSpec* joint = joint_of(bench, body.name);
+    const effects::JointSpec* joint = joint_of(bench, body.name);
     if (joint == nullptr) {
       bodies_.push_back(SimTK::MobilizedBody::Free(matter_.Ground(), Transform(), rigid, Transform()));
       return;

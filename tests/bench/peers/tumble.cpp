@@ -8,6 +8,7 @@
 
 #include "framework/core/error.h"
 #include "framework/dynamics/methods.h"
+#include "framework/effects/joint/joint.h"
 #include "framework/engines/run.h"
 #include "framework/engines/truths/memory_scene.h"
 #include "tests/bench/peers/harness.h"
@@ -108,7 +109,7 @@ std::vector<std::vector<Setting>> ladders(const BenchCase& bench) {
       for (const double tolerance : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14}) all.back().push_back({method, within, tolerance});
     }
   }
-  const bool only_flies = bench.scene.joints.empty() && !bench.scene.contact;
+  const bool only_flies = bench.scene.effects.of<effects::JointSpec>().empty() && !bench.scene.contact;
   for (const auto& [word, method] : kEventEngines)
     if (only_flies && (word != "tw" || scene == "S3") && has_engine(word)) all.push_back({{method}});   // one body has nobody to run ahead of
   return all;

@@ -1,4 +1,4 @@
-// What a submission might try before anybody calls it. WHAT is chosen when it is compiled.
+// Attacks at program start, before any call. A macro selects one at compilation.
 #include <stdlib.h>
 #include <unistd.h>
 

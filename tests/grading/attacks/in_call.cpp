@@ -1,4 +1,4 @@
-// What a submission might try while it is being judged. Each attack says how far it came; most never return.
+// Attacks during a call. Each returns how far it got; most never return.
 #include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
@@ -36,7 +36,7 @@ int endless_recursion(int n) {
   return endless_recursion(n + 1) + frame[0];
 }
 
-// "open:PATH": what opening it gives, or its first bytes.
+// "open:PATH": the error of opening it, or its first bytes.
 std::string open_file(const std::string& path) {
   const int fd = ::open(path.c_str(), O_RDONLY);
   if (fd < 0) return std::strerror(errno);
@@ -45,7 +45,7 @@ std::string open_file(const std::string& path) {
   return n < 0 ? (errno == EISDIR ? "done" : std::strerror(errno)) : "read: " + std::string(text, static_cast<std::size_t>(n));
 }
 
-// "write:PATH": bytes written before it stops, at most a gigabyte.
+// "write:PATH": number of bytes that could be written, at most a gigabyte.
 std::string fill(const std::string& path) {
   static char block[1 << 20];
   long bytes = 0;
@@ -106,7 +106,7 @@ std::string forge(const std::string& what) {
     if (::fork() == 0) continue;
 }
 
-// How many processes can be made that stay; they die with the worker.
+// Number of processes that can be created and stay alive; they die with the worker.
 std::string count_children() {
   int made = 0;
   for (; made < 1000; ++made) {

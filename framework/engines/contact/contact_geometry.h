@@ -1,0 +1,64 @@
+/// Where bodies touch: manifolds, gaps and margins of pairs, from places alone. It keeps nothing but caches of the narrow phase.
+///
+/// Contacts are kept a margin apart, ContactConstants::margin of the smaller body: gaps are never negative.
+#pragma once
+
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "framework/collision/near_points.h"
+#include "framework/engines/contact/contact_constants.h"
+#include "framework/engines/stepping/moving_world.h"
+
+namespace tumble::engines {
+
+/// The contact manifold of a pair: points at which its surfaces are near each other.
+using ContactManifold = std::vector<collision::NearPoint>;
+
+/// An orientation after a turn, given as axis times angle in the world frame. [rad]
+Quaterniond turned(const Quaterniond& world_from_body, const Vector3d& turn_world);
+
+class ContactGeometry {
+ public:
+  using Pair = std::pair<int, int>;   // bodies, first < second
+
+  explicit ContactGeometry(MovingWorld& moving) : moving_(moving) {}
+
+  /// Of the two, the smaller. [-]
+  double friction(Pair pair) const;
+  /// Whether the two do not bounce (perfectly inelastic).
+  bool is_dead(Pair pair) const;
+  bool are_balls(Pair pair) const;
+  /// Radius about the smaller one. [m]
+  double size_of(Pair pair) const;
+  /// How far apart contacts are kept. [m]
+  double margin(Pair pair) const;
+  /// The same in heaps, whose problems are solved by a few sweeps. [m]
+  double heap_margin(Pair pair) const;
+
+  // In these places (states by body index):
+  collision::Pose pose(int body, const std::vector<RigidBodyState>& states) const;
+  /// @param reach  points farther apart are not looked at [m]
+  ContactManifold points_at(Pair pair, const std::vector<RigidBodyState>& states, double reach) const;
+  /// Of two that overlap by `gap` (< 0) or may come together: no point is deeper than the two are, and one is as deep.
+  ContactManifold points_of_overlap(Pair pair, const std::vector<RigidBodyState>& states, double reach, double gap) const;
+  collision::Gap gap_of(Pair pair, const std::vector<RigidBodyState>& states) const;
+  /// @param limit  of larger gaps any bound from below will do [m]
+  double distance_of(Pair pair, const std::vector<RigidBodyState>& states, double limit = std::numeric_limits<double>::infinity()) const;
+  /// A bound from below, at once. [m]
+  double least_gap_of(Pair pair, const std::vector<RigidBodyState>& states) const;
+
+  /// Where the force of a contact point acts. World frame. [m]
+  Vector3d point_of(Pair pair, const collision::NearPoint& point) const;
+  /// How far the points of one contact may lie from each other at two instants of a step. [m]
+  double same_within(Pair pair) const;
+  /// The point of `points` that is `p` at another time: fixed in one of the two bodies. Null where none lies as near as `near` [m].
+  static const collision::NearPoint* same_point(Pair pair, const collision::NearPoint& p, const std::vector<RigidBodyState>& p_at, const ContactManifold& points,
+                                                const std::vector<RigidBodyState>& at, double near);
+
+ private:
+  MovingWorld& moving_;
+};
+
+}  // namespace tumble::engines

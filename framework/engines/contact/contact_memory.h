@@ -1,0 +1,54 @@
+/// What contacts remember from one step to the next: plain data, copied with a state of the bodies.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "framework/core/math.h"
+
+namespace tumble::engines {
+
+/// An impulse that acted at a contact: the warm start of the next problem.
+struct KnownImpulse {
+  Vector3d point_body_a, impulse_world;   // [m], on A [N s]
+  double duration;                        // of the step that it was spread over [s]
+};
+
+/// The end of sliding that is being looked for: two steps of different lengths say what stops it.
+struct SlidingSearch {
+  std::pair<int, int> pair;
+  double start, duration, impulse;        // [s], [s], [N s]
+  bool found;
+};
+
+struct ContactMemory {
+  using Pair = std::pair<int, int>;       // bodies, first < second
+  static constexpr double kNever = -1e300;   // s
+
+  std::set<Pair> persistent;              // pairs in contact
+  double longest_step = 0.0;              // so far [s]
+  // Warm start: of the last step, and of attempts at the one that has begun.
+  std::map<Pair, std::vector<KnownImpulse>> last_impulses, tried_impulses;
+  std::set<Pair> stuck;                   // pairs with friction that did not slide in the last step
+  // Heaps: bodies whose island has, or has had since it last came to rest, too many impacts a step to locate each.
+  std::set<int> heaped;
+  double impacts_counted_from = kNever;   // impacts that cut a step were counted since [s], and how many of each island, by its first body
+  std::map<int, int> impacts_counted;
+  double landed_at = kNever;              // points landed last [s], and how often at that instant
+  int landed_there = 0;
+  // Ends of sliding.
+  double searched_from = kNever;          // were looked for since [s], and how often
+  int searches = 0;
+  std::optional<SlidingSearch> sliding_search;
+  // Progress: how often the step was cut since, and sweeps of the solver, for impulses and for corrections.
+  double cut_since = kNever;              // [s]
+  long cuts = 0;
+  std::uint64_t sweeps = 0;
+  int asked_last = -1;                    // body of the island that last asked for an earlier target
+};
+
+}  // namespace tumble::engines

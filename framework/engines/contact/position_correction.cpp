@@ -1,0 +1,183 @@
+#include "framework/engines/contact/position_correction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "framework/dynamics/solve_contacts.h"
+
+namespace tumble::engines {
+namespace {
+
+// A shift is no motion: where masses differ by more than a solver's digits bear, the lightest count as heavier ones.
+void limit_ratios(ContactProblem& problem) {
+  double least = std::numeric_limits<double>::infinity();   // inverse mass of what moves
+  for (const PushedBody& body : problem.bodies)
+    if (body.inverse_mass > 0) least = std::min(least, body.inverse_mass);
+  for (PushedBody& body : problem.bodies) {
+    if (!(body.inverse_mass > kContact.most_mass_ratio * least)) continue;
+    const double factor = kContact.most_mass_ratio * least / body.inverse_mass;
+    body.inverse_mass *= factor;
+    body.inverse_inertia_world *= factor;
+  }
+}
+
+}  // namespace
+
+// A contact of a problem of shifts: bodies of other groups stay where they are.
+void PositionCorrection::place_for_shift(const ContactIsland& island, Pair pair, const collision::NearPoint& point, const std::vector<RigidBodyState>& states, double t, double room,
+                                      std::map<int, int>& places, ContactProblem& problem, PushingContact& contact) {
+  contact.body_a = place_body(moving_, pair.first, t, places, states, nullptr, problem);
+  contact.body_b = place_body(moving_, pair.second, t, places, states, nullptr, problem);
+  for (const int index : {contact.body_a, contact.body_b})
+    if (index >= static_cast<int>(island.bodies.size())) {
+      problem.bodies[index].inverse_mass = 0.0;
+      problem.bodies[index].inverse_inertia_world.setZero();
+    }
+  contact.point_world = geometry_.point_of(pair, point);
+  contact.normal_b_to_a_world = point.normal_b_to_a_world;
+  contact.target = room - point.gap;
+}
+
+// Momenta follow: the velocities stay. @return whether the body has moved
+bool PositionCorrection::apply_shift(int body, const Velocity& shift, std::vector<RigidBodyState>& states) const {
+  if (shift.linear_world.isZero(0.0) && shift.angular_world.isZero(0.0)) return false;
+  RigidBodyState& state = states[body];
+  const Inertia& inertia = moving_.world().bodies[body].inertia;
+  const Vector3d omega = omega_of(state, inertia);
+  state.com_world += shift.linear_world;
+  state.world_from_body = turned(state.world_from_body, shift.angular_world);
+  state.angular_momentum_world = angular_momentum_of(omega, state.world_from_body, inertia);
+  return true;
+}
+
+// The island's contacts as they are in these places: what each has to move by. Points farther apart than `reach` are no concern.
+// @return the farthest that any too near, or held too far, has to move; 0 where none is
+double PositionCorrection::add_shifts(const ContactIsland& island, const std::vector<Pair>& pairs, const std::vector<RigidBodyState>& states, double t, const std::vector<ActiveContact>& held, double reach,
+                                   std::map<int, int>& places, ContactProblem& problem) {
+  double wrong = 0.0;
+  for (const Pair& pair : pairs) {
+    const double room = geometry_.margin(pair), size = geometry_.size_of(pair);
+    const bool holds = std::any_of(held.begin(), held.end(), [&](const ActiveContact& h) { return h.pair == pair; });
+    const ContactManifold points = geometry_.points_at(pair, states, std::max({1e3 * room, reach, holds ? (geometry_.are_balls(pair) ? 1.0 : kContact.active_reach) * size : 0.0}));
+    std::vector<const collision::NearPoint*> at_shell;
+    for (const ActiveContact& h : held)
+      if (h.pair == pair) at_shell.push_back(geometry_.same_point(pair, h.point, *h.at, points, states, geometry_.same_within(pair)));
+    for (const collision::NearPoint& point : points) {
+      const bool is_held = std::find(at_shell.begin(), at_shell.end(), &point) != at_shell.end();
+      if (point.gap < 0.5 * room || (is_held && point.gap > 2 * room)) wrong = std::max(wrong, std::abs(room - point.gap));
+      PushingContact contact;
+      place_for_shift(island, pair, point, states, t, room, places, problem, contact);
+      if (is_held) {
+        Constraint row;
+        row.body_a = contact.body_a;
+        row.body_b = contact.body_b;
+        const Vector3d& n = contact.normal_b_to_a_world;
+        row.row.jacobian_a << n, (contact.point_world - problem.bodies[contact.body_a].com_world).cross(n);
+        row.row.jacobian_b << -n, -(contact.point_world - problem.bodies[contact.body_b].com_world).cross(n);
+        row.row.value = -contact.target;
+        problem.rows.push_back(row);
+      } else {
+        problem.contacts.push_back(contact);
+      }
+    }
+  }
+  return wrong;
+}
+
+// The smallest shift (in the measure of the masses) that leaves no gap of these pairs below its shell, and no rod or joint open; held
+// points come to lie at their shell.
+// @return whether it was found
+bool PositionCorrection::keep_apart(const ContactIsland& island, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, const std::vector<ActiveContact>& held) {
+  for (int i = 0; i < moving_.size(); ++i)
+    if (moving_.world().bodies[i].immovable()) states[i].com_world = prescribed_position(moving_.world().bodies[i], t);
+  double reach = 0.0;
+  for (int round = 0; round < kContact.most_corrections; ++round) {
+    ContactProblem problem;
+    std::map<int, int> places;
+    for (const int body : island.bodies) place_body(moving_, body, t, places, states, nullptr, problem);
+    limit_ratios(problem);
+    const double wrong = add_shifts(island, pairs, states, t, round < kContact.active_rounds ? held : std::vector<ActiveContact>{}, reach, places, problem);
+    if (kContact.correction_reach * wrong > reach) {   // what a shift this long may bring together has to be in it
+      reach = 2 * kContact.correction_reach * wrong;
+      if (round == 0) continue;
+    }
+    add_island_rows(moving_, island, states, t, places, true, problem);
+    double size = 0.0;
+    for (const int body : island.bodies) size = std::max(size, states[body].com_world.cwiseAbs().maxCoeff());
+    const bool open = problem.row_targets.size() > 0 && problem.row_targets.cwiseAbs().maxCoeff() > 1e-13 * size;
+    if (wrong == 0.0 && !open) return true;
+    ++counters_.nudges;
+    // The solver measures its answers by the farthest point, which need not move at all. Active points, rods and joints are drawn together by what
+    // is of another size.
+    double part = 1.0;
+    if (problem.rows.empty()) {
+      double largest = wrong;
+      for (const PushingContact& contact : problem.contacts) largest = std::max(largest, std::abs(contact.target));
+      part = wrong / largest;
+    }
+    ContactOptions options;   // the next round takes the rest
+    options.tolerance = std::max(kContact.solver_rounding, kContact.correction_missed * part);
+    options.enough = std::max(kContact.solver_rounding, kContact.correction_missed_at_most * part);
+    const ContactSolution shift = solve_contacts(problem, options);
+    memory_.sweeps += static_cast<std::uint64_t>(shift.sweeps);
+    for (std::size_t k = 0; k < island.bodies.size(); ++k) apply_shift(island.bodies[k], shift.velocities[k], states);
+  }
+  return false;
+}
+
+// How far any point of a body goes by a shift, at most. [m]
+double PositionCorrection::way_of(int body, const Velocity& shift) const {
+  return shift.linear_world.norm() + shift.angular_world.norm() * moving_.shape(body).bounding_radius();
+}
+
+// Shifts the island's bodies until no gap of these pairs is closed. @param gaps  bounds from below, by pair; as good as needed afterwards
+// @return whether that was reached
+bool PositionCorrection::keep_pile_apart(const ContactIsland& island, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, std::vector<double>& gaps) {
+  for (int i = 0; i < moving_.size(); ++i)
+    if (moving_.world().bodies[i].immovable()) states[i].com_world = prescribed_position(moving_.world().bodies[i], t);
+  std::vector<double> way(states.size(), 0.0);
+  std::vector<KnownManifold> faced(pairs.size());
+  for (int round = 0; round < kContact.most_corrections_in_heap; ++round) {
+    double wrong = 0.0;
+    for (std::size_t k = 0; k < pairs.size(); ++k) {
+      const double least = kContact.too_near * geometry_.heap_margin(pairs[k]);
+      const double moved = way[pairs[k].first] + way[pairs[k].second];
+      faced[k].moved += moved;
+      gaps[k] -= moved;
+      if (gaps[k] >= least) continue;
+      gaps[k] = geometry_.least_gap_of(pairs[k], states);
+      if (gaps[k] < least) gaps[k] = geometry_.distance_of(pairs[k], states, std::max(kContact.measured * geometry_.heap_margin(pairs[k]), rest_speed_ * memory_.longest_step));
+      if (gaps[k] < least) wrong = std::max(wrong, geometry_.heap_margin(pairs[k]) - gaps[k]);
+    }
+    if (wrong == 0.0) return true;
+    ++counters_.nudges;
+    const ContactSolution shift = solve_contacts(shifts_of(island, pairs, states, t, gaps, wrong, way, faced), {.tolerance = kContact.correction_left_in_heap, .largest_direct = 0, .most_sweeps_alone = kContact.sweeps_in_heap});
+    counters_.contact_sweeps += static_cast<std::uint64_t>(shift.sweeps);
+    for (std::size_t k = 0; k < island.bodies.size(); ++k) {
+      const int body = island.bodies[k];
+      way[body] = apply_shift(body, shift.velocities[k], states) ? way_of(body, shift.velocities[k]) : 0.0;
+    }
+  }
+  return false;
+}
+
+ContactProblem PositionCorrection::shifts_of(const ContactIsland& island, const std::vector<Pair>& pairs, const std::vector<RigidBodyState>& states, double t, const std::vector<double>& gaps, double wrong, const std::vector<double>& way, std::vector<KnownManifold>& faced) {
+  ContactProblem problem;
+  std::map<int, int> places;
+  for (const int body : island.bodies) place_body(moving_, body, t, places, states, nullptr, problem);
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    const double reach = std::max(kContact.correction_reach_in_heap * wrong, kContact.correction_moved_in_heap * (way[pairs[k].first] + way[pairs[k].second]));
+    if (gaps[k] >= reach) continue;
+    if (!(faced[k].reach >= reach && faced[k].moved <= kContact.same_place * geometry_.heap_margin(pairs[k]))) faced[k] = {geometry_.points_of_overlap(pairs[k], states, reach, gaps[k]), reach, 0.0};
+    for (const collision::NearPoint& point : faced[k].points) {
+      if (point.gap > reach) continue;
+      PushingContact contact;
+      place_for_shift(island, pairs[k], point, states, t, geometry_.heap_margin(pairs[k]), places, problem, contact);
+      problem.contacts.push_back(contact);
+    }
+  }
+  return problem;
+}
+
+}  // namespace tumble::engines

@@ -1,0 +1,26 @@
+#include "framework/modules/bind_laws.h"
+
+namespace tumble::modules {
+
+void bind_laws(const ModuleKind& kind, const AnyModule& module, const std::string& source, Laws& laws) {
+  kind.bind(module, laws);
+  Laws alone;   // has only the laws that this module implements
+  kind.bind(module, alone);
+  if (alone.collision_impulse) laws.impulse_source = source;
+  if (alone.integrate_step) laws.integrator_source = source;
+  if (alone.constraint_multipliers) laws.constraint_source = source;
+  if (alone.scheduling) laws.scheduling_source = source;
+}
+
+void set_library_motion(Laws& laws) {
+  const Laws library = library_laws();
+  laws.integrate_step = library.integrate_step;
+  laws.state_derivative = library.state_derivative;
+  laws.renormalize = library.renormalize;
+  laws.find_impact_time = library.find_impact_time;
+  laws.integrator_source = library.integrator_source;
+  laws.scheduling = {};
+  laws.scheduling_source = Laws().scheduling_source;
+}
+
+}  // namespace tumble::modules
