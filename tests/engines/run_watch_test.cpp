@@ -246,7 +246,8 @@ TEST(NamedSteps, AreStepsAtWhichItRunsRight) {
   for (scene::Scene scene : scenes) {
     std::vector<std::string> notices;
     scene.step_s = 1.0 / 30;
-    const auto step = engines::tell_of_unstable_links(build_world(scene), {}, laws, {scene.step_s, scene.duration_s}, notices);
+    const World world = build_world(scene);
+    const auto step = engines::tell_of_unstable_links(world, engines::LinkForces(world), laws, {scene.step_s, scene.duration_s}, notices);
     ASSERT_TRUE(step) << scene.bodies.back().mass_kg.value_or(0.0);
     ASSERT_EQ(notices.size(), 1u);
     scene.step_s = *step;
