@@ -17,7 +17,7 @@
 #include "tests/engines/event_scenes.h"
 #include "tests/engines/reference_laws.h"
 
-namespace tumble::testing {
+namespace tumble::testing::constrained_impacts_test {
 namespace {
 
 // Closed forms of numbers of the size of 1: some hundred roundings, of the impact and of the ten steps about it.
@@ -441,4 +441,4 @@ TEST(ImpactEnergy, IsJudgedAtEveryImpact) {
 }
 
 }  // namespace
-}  // namespace tumble::testing
+}  // namespace tumble::testing::constrained_impacts_test
