@@ -9,9 +9,10 @@
 #include <unistd.h>
 
 #include "framework/core/files.h"
-#include "framework/grading/course/build_submission.h"
+#include "framework/grading/compiler/build_module.h"
 #include "framework/grading/compiler/compiler_words.h"
 #include "framework/grading/course/run_program.h"
+#include "framework/modules/names.h"
 
 namespace tumble::cli {
 namespace {
@@ -21,6 +22,9 @@ using grading::Output;
 using grading::ProgramOutcome;
 
 constexpr double kLoadLimit = 10.0;   // s: a test program starts in 20 ms; the rest is for a loaded machine
+
+// @throws UserError for an id that no assignment has
+const std::string& folder_of(const std::string& id) { return modules::find_name(assignment_names(), id).folder; }
 
 bool has_colours() { return ::isatty(STDOUT_FILENO) == 1; }
 
@@ -45,11 +49,11 @@ void print_warnings(const fs::path& file, const std::string& said) {
   fmt::print("\n");
 }
 
-ExitCode run_tests(const Context& context, const CheckWords& words, std::vector<std::string> command) {
-  command.insert(command.end(), {"--rubric", (context.root / "assignments" / context.registry.find(words.id).folder / "rubric.json").string()});
-  command.insert(command.end(), words.patterns.begin(), words.patterns.end());
+ExitCode run_tests(const Command& command, const CheckWords& words, std::vector<std::string> program) {
+  program.insert(program.end(), {"--rubric", (command.root / "assignments" / folder_of(words.id) / "rubric.json").string()});
+  program.insert(program.end(), words.patterns.begin(), words.patterns.end());
   std::fflush(stdout);
-  const int code = grading::run_program(command, Output::kOurs).code;
+  const int code = grading::run_program(program, Output::kOurs).code;
   if (code < 0 || code > static_cast<int>(ExitCode::kNotAttempted)) {
     fmt::print("\nthe program with your code ended with code {} before its tests could be judged: look for code that runs before main\n", code);
     return ExitCode::kCheckFailed;
@@ -64,9 +68,9 @@ ExitCode run_tests(const Context& context, const CheckWords& words, std::vector<
 /// belongs to another version, and the file is compiled once more.
 class KeptWords {
  public:
-  KeptWords(const Context& context, const std::string& id, const std::string& folder)
-      : object_(context.build / "assignments" / folder / "CMakeFiles" / (id + "_linked.dir") / (folder + ".cpp.o")),
-        words_(context.build / "checked" / (id + ".compiler.txt")) {
+  KeptWords(const Command& command, const std::string& id, const std::string& folder)
+      : object_(command.build / "assignments" / folder / "CMakeFiles" / (id + "_linked.dir") / (folder + ".cpp.o")),
+        words_(command.build / "checked" / (id + ".compiler.txt")) {
     std::error_code ignored;
     if (!are_of_object()) fs::remove(object_, ignored);
   }
@@ -93,33 +97,32 @@ bool starts(const fs::path& program) {
   return grading::run_program({program.string(), "--debug", "--gtest_list_tests"}, Output::kDropped, kLoadLimit).in_time;
 }
 
-ExitCode check_own(const Context& context, const CheckWords& words, const fs::path& file, const fs::path& header) {
-  const KeptWords kept(context, words.id, context.registry.find(words.id).folder);
-  const ProgramOutcome built = grading::run_program({"ninja", "-C", context.build.string(), "--quiet", "check_" + words.id}, Output::kCaptured);
+ExitCode check_own(const Command& command, const CheckWords& words, const fs::path& file, const fs::path& header) {
+  const KeptWords kept(command, words.id, folder_of(words.id));
+  const ProgramOutcome built = grading::run_program({"ninja", "-C", command.build.string(), "--quiet", "check_" + words.id}, Output::kCaptured);
   if (built.code != 0) return does_not_compile(file, header, built.printed);
   print_warnings(file, kept.after_build(built.printed));
-  const fs::path program = context.build / "bin" / ("check_" + words.id);
+  const fs::path program = command.build / "bin" / ("check_" + words.id);
   if (!starts(program)) {
     fmt::print("out of time: {}\n\n    does not start within {:g} s: the initial value of a global or static variable is a loop that does not end\n\nno test ran\n",
                file.filename().string(), kLoadLimit);
     return ExitCode::kCheckFailed;
   }
-  return run_tests(context, words, {program.string()});
+  return run_tests(command, words, {program.string()});
 }
 
 // ---- Another file, compiled and called in the sandbox ----
 
-ExitCode check_foreign(const Context& context, const CheckWords& words, const fs::path& file, const fs::path& header) {
-  const fs::path program = context.build / "bin" / ("check_" + words.id + "_sandboxed");
+ExitCode check_foreign(const Command& command, const CheckWords& words, const fs::path& file, const fs::path& header) {
+  const fs::path program = command.build / "bin" / ("check_" + words.id + "_sandboxed");
   if (!fs::exists(program)) throw UserError(program.string(), "is not built", "Run ./tumble check, which builds it.");
   const PrivateFolder folder;
   const fs::path object = folder.path() / (words.id + ".so");
-  const grading::Course course{context.root, context.build, &context.registry, context.command_line};
-  const auto built = grading::build_submission(course, words.id, file, object);
+  const auto built = grading::build_module(command.root, command.build, folder_of(words.id), file, object);
   if (built.outcome == grading::BuiltSubmission::Outcome::kGraderFault) throw std::runtime_error("the sandboxed compiler could not be asked: " + built.said);
   if (built.outcome == grading::BuiltSubmission::Outcome::kRefused) return does_not_compile(file, header, built.said);
   print_warnings(file, built.said);
-  return run_tests(context, words, {program.string(), "--submission", object.string(), "--quick"});
+  return run_tests(command, words, {program.string(), "--submission", object.string(), "--quick"});
 }
 
 }  // namespace
@@ -129,8 +132,8 @@ void add_check_words(Verb& verb, std::vector<std::string>& rest, std::string& id
   verb.option("what", rest, "FILE.cpp: instead of your file under assignments/, run in the sandbox; other words choose tests, e.g. 'CollisionImpulse.*'").type_name("[FILE] [PATTERN]");
 }
 
-CheckWords read_check_words(const Context& context, const std::string& id, const std::vector<std::string>& rest) {
-  context.registry.find(id);
+CheckWords read_check_words(const std::string& id, const std::vector<std::string>& rest) {
+  folder_of(id);
   CheckWords words{id, {}, {}};
   for (const std::string& word : rest) {
     const bool is_file = word.ends_with(".cpp") || word.ends_with(".cc") || word.find('/') != std::string::npos;
@@ -142,18 +145,18 @@ CheckWords read_check_words(const Context& context, const std::string& id, const
   return words;
 }
 
-fs::path checked_file(const Context& context, const CheckWords& words) {
-  const std::string folder = context.registry.find(words.id).folder;
-  return words.file ? fs::absolute(*words.file) : context.root / "assignments" / folder / (folder + ".cpp");
+fs::path checked_file(const Command& command, const CheckWords& words) {
+  const std::string folder = folder_of(words.id);
+  return words.file ? fs::absolute(*words.file) : command.root / "assignments" / folder / (folder + ".cpp");
 }
 
-ExitCode check_once(const Context& context, const CheckWords& words) {
-  const fs::path file = checked_file(context, words);
+ExitCode check_once(const Command& command, const CheckWords& words) {
+  const fs::path file = checked_file(command, words);
   if (!fs::exists(file)) throw UserError(file.string(), "is not there", "Put your file back, or take it from the starter tree.");
-  const std::string folder = context.registry.find(words.id).folder;
-  const fs::path own = context.root / "assignments" / folder / (folder + ".cpp"), header = own.parent_path() / (folder + ".h");
+  const std::string folder = folder_of(words.id);
+  const fs::path own = command.root / "assignments" / folder / (folder + ".cpp"), header = own.parent_path() / (folder + ".h");
   std::error_code missing;
-  return fs::equivalent(file, own, missing) ? check_own(context, words, file, header) : check_foreign(context, words, file, header);
+  return fs::equivalent(file, own, missing) ? check_own(command, words, file, header) : check_foreign(command, words, file, header);
 }
 
 }  // namespace tumble::cli

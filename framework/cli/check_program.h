@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "framework/cli/verb.h"
+#include "framework/cli/command.h"
+#include "framework/cli/words.h"
 
 namespace tumble::cli {
 
@@ -19,13 +20,13 @@ struct CheckWords {
 /// Declares "a1 [FILE] [PATTERN...]" on a verb; `rest` and `id` hold the words after the parse.
 void add_check_words(Verb& verb, std::vector<std::string>& rest, std::string& id);
 /// @throws UserError for an unknown assignment or a missing file
-CheckWords read_check_words(const Context& context, const std::string& id, const std::vector<std::string>& rest);
+CheckWords read_check_words(const std::string& id, const std::vector<std::string>& rest);
 
 /// The checked file.
-std::filesystem::path checked_file(const Context& context, const CheckWords& words);
+std::filesystem::path checked_file(const Command& command, const CheckWords& words);
 
 /// Builds, then runs the public tests, which print their table. A compiler error is a verdict with
 /// its position.
-ExitCode check_once(const Context& context, const CheckWords& words);
+ExitCode check_once(const Command& command, const CheckWords& words);
 
 }  // namespace tumble::cli

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "framework/cli/find_model.h"
 #include "framework/core/error.h"
 #include "framework/core/nearest_word.h"
 #include "framework/scene/load_scene.h"
@@ -47,15 +48,6 @@ std::string sized_names() {
 }
 
 }  // namespace
-
-fs::path find_model_file(const Context& context, const std::string& word) {
-  if (fs::is_regular_file(word)) return word;
-  for (const std::string& name : {word, word + ".3ds"}) {
-    const auto path = context.root / "models" / name;
-    if (fs::is_regular_file(path)) return path.lexically_proximate(fs::current_path());
-  }
-  return word;  // the loader reports the missing file
-}
 
 scene::Scene scene_of_words(const Context& context, const RunWords& words, bool turns) {
   if ((words.scale || words.density || words.drop) && !scene::names_model(words.scene))

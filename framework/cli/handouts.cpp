@@ -8,8 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "framework/cli/command.h"
 #include "framework/cli/record.h"
-#include "framework/cli/verb.h"
+#include "framework/cli/words.h"
 #include "framework/core/files.h"
 #include "framework/grading/course/run_program.h"
 #include "framework/report/html.h"
@@ -79,20 +80,20 @@ void check_links(const std::vector<Handout>& handouts, const fs::path& figures) 
 }
 
 // Draws the figures where the reference solutions are; a tree without them contains the pictures.
-void make_figures(const Context& context, const fs::path& figures) {
+void make_figures(const Command& command, const fs::path& figures) {
   fs::remove_all(figures);   // an old picture would hide that it is not drawn any more
   fs::create_directories(figures);
-  if (!fs::exists(context.root / "solutions_private")) {
-    fs::copy(context.root / "handouts/figures", figures, fs::copy_options::overwrite_existing | fs::copy_options::recursive);
+  if (!fs::exists(command.root / "solutions_private")) {
+    fs::copy(command.root / "handouts/figures", figures, fs::copy_options::overwrite_existing | fs::copy_options::recursive);
     fmt::print(stderr, "tumble: this tree has no reference solutions to draw figures with: those that came with it are used\n");
     return;
   }
-  const auto made = grading::run_program({"bash", (context.root / "handouts/make_figures.sh").string(), figures.string()}, grading::Output::kCaptured);
+  const auto made = grading::run_program({"bash", (command.root / "handouts/make_figures.sh").string(), figures.string()}, grading::Output::kCaptured);
   if (made.code != 0) throw UserError("handouts/make_figures.sh", "did not draw the figures; it said:\n" + made.printed, "Correct what it names, then run the command again.");
 }
 
-void run_pandoc(const Context& context, const Handout& handout, const fs::path& out, const std::vector<std::string>& more) {
-  const fs::path folder = context.root / "handouts";
+void run_pandoc(const Command& command, const Handout& handout, const fs::path& out, const std::vector<std::string>& more) {
+  const fs::path folder = command.root / "handouts";
   // Pictures are taken from the folder where they were just drawn, not from beside the handout. A
   // warning of pandoc (a missing picture, a formula that it cannot read) is an error.
   std::vector<std::string> words = {"pandoc", handout.file.string(), "--from=markdown", "--standalone", "--fail-if-warnings", "--lua-filter=" + (folder / "pages.lua").string(),
@@ -103,7 +104,7 @@ void run_pandoc(const Context& context, const Handout& handout, const fs::path& 
   if (done.code != 0) throw UserError(handout.file.string(), "could not be built; pandoc said:\n" + done.printed, "Correct what it names.");
 }
 
-void write_index(const Context& context, const std::vector<Handout>& handouts, const HandoutsOptions& options, const fs::path& out) {
+void write_index(const Command& command, const std::vector<Handout>& handouts, const HandoutsOptions& options, const fs::path& out) {
   report::Page page("Handouts", "as pages and for paper");
   report::Table table;
   table.columns = {{"Handout"}, {"For paper"}};
@@ -112,37 +113,37 @@ void write_index(const Context& context, const std::vector<Handout>& handouts, c
     table.rows.push_back({{handout.title, report::link_to(name + ".html")}, options.pdf ? report::Cell{"PDF", report::link_to(name + ".pdf")} : report::Cell{""}});
   }
   page.table(table);
-  page.record(record_of(context));
+  page.record(record_of(command));
   page.write(out / "index.html");
 }
 
-void build_handouts(Context& context, const HandoutsOptions& options) {
-  const fs::path out = fs::absolute(options.out), figures = out / "figures", folder = context.root / "handouts";
+void build_handouts(Command& command, const HandoutsOptions& options) {
+  const fs::path out = fs::absolute(options.out), figures = out / "figures", folder = command.root / "handouts";
   if (fs::weakly_canonical(out) == fs::weakly_canonical(folder)) throw UserError("--out " + options.out, "is where the handouts themselves stand", "Name another folder, for example out/handouts.");
   const std::vector<Handout> handouts = read_handouts(folder);
-  make_figures(context, figures);
+  make_figures(command, figures);
   check_links(handouts, figures);
   ::setenv("SOURCE_DATE_EPOCH", "0", 1);   // no date in a PDF: the same handout gives the same bytes
   ::setenv("FORCE_SOURCE_DATE", "1", 1);
   for (const Handout& handout : handouts) {
     const std::string name = (out / handout.file.stem()).string();
-    run_pandoc(context, handout, out, {"--to=html5", "--mathml", "--self-contained", "--toc", "--toc-depth=2", "--css=" + (folder / "handout.css").string(), "--output=" + name + ".html"});
+    run_pandoc(command, handout, out, {"--to=html5", "--mathml", "--self-contained", "--toc", "--toc-depth=2", "--css=" + (folder / "handout.css").string(), "--output=" + name + ".html"});
     if (options.pdf)
-      run_pandoc(context, handout, out, {"--pdf-engine=pdflatex", "--include-in-header=" + (folder / "paper.tex").string(), "--variable=papersize:a4", "--variable=geometry:margin=24mm",
+      run_pandoc(command, handout, out, {"--pdf-engine=pdflatex", "--include-in-header=" + (folder / "paper.tex").string(), "--variable=papersize:a4", "--variable=geometry:margin=24mm",
                                          "--variable=fontsize:10pt", "--variable=colorlinks:true", "--output=" + name + ".pdf"});
     fmt::print("{}.html{}\n", name, options.pdf ? "  " + name + ".pdf" : "");
   }
-  write_index(context, handouts, options, out);
+  write_index(command, handouts, options, out);
 }
 
 }  // namespace
 
-void add_handouts(CLI::App& app, Context& context) {
+void add_handouts(CLI::App& app, Command& command) {
   auto options = std::make_shared<HandoutsOptions>();
   Verb verb(app, "handouts", "Build every handout as a page and as a PDF, with figures drawn now");
   verb.option("--out", options->out, "Folder of the pages").shows_default();
   verb.flag("!--no-pdf", options->pdf, "Pages only");
-  verb.runs([&context, options] { build_handouts(context, *options); });
+  verb.runs([&command, options] { build_handouts(command, *options); });
 }
 
 }  // namespace tumble::cli

@@ -8,8 +8,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "framework/cli/find_scene.h"
-#include "framework/cli/verb.h"
+#include "framework/cli/command.h"
+#include "framework/cli/find_model.h"
+#include "framework/cli/words.h"
 #include "framework/core/version.h"
 #include "framework/geometry/load_3ds.h"
 #include "framework/geometry/mass_properties.h"
@@ -137,14 +138,14 @@ void print_next(const InspectWords& words, const std::filesystem::path& path) {
   fmt::print("\nsee it move:  tumble run {} --html model.html     (--drop: onto a floor)\npush it:      tumble poke {} --pixel 320,240 --force 0,1,0 --duration-s 0.2 --html poke.html\n", rest, rest);
 }
 
-ExitCode inspect(const Context& context, const InspectWords& words) {
-  const auto path = find_model_file(context, words.file);
+ExitCode inspect(const Command& command, const InspectWords& words) {
+  const auto path = find_model_file(command, words.file);
   const LoadedFile file = load_3ds(path, {words.metres_per_unit});
   std::size_t closed = 0;
   for (const LoadedObject& object : file.objects) closed += object.report.is_closed() ? 1 : 0;
 
   if (words.json) {
-    Json all{{"command", context.command_line}, {"version", kProgramVersion}, {"file", file.where}, {"metres_per_unit", words.metres_per_unit},
+    Json all{{"command", command.command_line}, {"version", kProgramVersion}, {"file", file.where}, {"metres_per_unit", words.metres_per_unit},
              {"density_kg_m3", words.density}, {"objects", Json::array()}};
     for (const LoadedObject& object : file.objects) all["objects"].push_back(to_json(object, words.density));
     fmt::print("{}\n", all.dump(1));
@@ -162,7 +163,7 @@ ExitCode inspect(const Context& context, const InspectWords& words) {
 
 }  // namespace
 
-void add_inspect(CLI::App& app, Context& context) {
+void add_inspect(CLI::App& app, Command& command) {
   auto words = std::make_shared<InspectWords>();
   Verb verb(app, "inspect", "What a .3ds file holds: is it solid, what does it weigh, what is wrong");
   verb.option("file", words->file, "A .3ds file, or the name of one in models/").required().type_name("FILE");
@@ -170,7 +171,7 @@ void add_inspect(CLI::App& app, Context& context) {
   verb.option("--density", words->density, "Density [kg/m^3]").shows_default().positive();
   verb.flag("--json", words->json, "The same for machines, all digits");
   verb.footer("Example: tumble inspect chess_pawn --scale 0.05 --density 700\nExit: 0 every object is a solid, 1 one is not, 2 the file cannot be read.");
-  verb.runs([&context, words] { context.exit = inspect(context, *words); });
+  verb.runs([&command, words] { command.exit = inspect(command, *words); });
 }
 
 }  // namespace tumble::cli

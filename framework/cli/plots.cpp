@@ -5,7 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "framework/cli/verb.h"
+#include "framework/cli/command.h"
+#include "framework/cli/words.h"
 #include "framework/core/files.h"
 #include "framework/grading/course/run_program.h"
 #include "framework/report/plot_files.h"
@@ -52,7 +53,7 @@ void write_plots(const PlotsOptions& options) {
 
 }  // namespace
 
-void add_plots(CLI::App& app, Context&) {
+void add_plots(CLI::App& app, Command&) {
   auto options = std::make_shared<PlotsOptions>();
   Verb verb(app, "plots", "The plots of a page as PNG or SVG, for handouts, slides and papers");
   verb.option("page", options->page, "A page with plots, as cost, engines, battery or grade wrote it").required().type_name("PAGE");

@@ -3,16 +3,16 @@
 
 #include <string>
 
-#include "framework/cli/verb.h"
+#include "framework/cli/command.h"
 #include "framework/core/version.h"
 #include "framework/scene/scene.h"
 #include "framework/trajectory/record.h"
 
 namespace tumble::cli {
 
-inline std::string record_of(const Context& context) { return joined_record({context.command_line, version_in_words(kProgramVersion)}); }
-inline std::string record_of(const Context& context, const scene::Scene& scene) {
-  return joined_record({record_of(context), scene_in_words(scene.name, scene.digest, scene.seeds)});
+inline std::string record_of(const Command& command) { return joined_record({command.command_line, version_in_words(kProgramVersion)}); }
+inline std::string record_of(const Command& command, const scene::Scene& scene) {
+  return joined_record({record_of(command), scene_in_words(scene.name, scene.digest, scene.seeds)});
 }
 
 }  // namespace tumble::cli

@@ -58,8 +58,8 @@ class SaveWatch {
   int fd_;
 };
 
-void watch(Context& context, const CheckWords& words) {
-  const fs::path file = checked_file(context, words);
+void watch(Command& command, const CheckWords& words) {
+  const fs::path file = checked_file(command, words);
   SaveWatch saves(file);
   const bool screen = ::isatty(STDOUT_FILENO) == 1;
   for (;;) {
@@ -67,7 +67,7 @@ void watch(Context& context, const CheckWords& words) {
     // The test program and the compiler have exit codes of their own; errors of the loop itself are
     // reported and do not end it.
     try {
-      check_once(context, words);
+      check_once(command, words);
     } catch (const UserError& error) {
       fmt::print("{}\n", error.what());
     }
@@ -82,12 +82,12 @@ void watch(Context& context, const CheckWords& words) {
 
 }  // namespace
 
-void add_watch(CLI::App& app, Context& context) {
+void add_watch(CLI::App& app, Command& command) {
   auto id = std::make_shared<std::string>();
   auto rest = std::make_shared<std::vector<std::string>>();
   Verb verb(app, "watch", "The same as check, on every save");
   add_check_words(verb, *rest, *id);
-  verb.runs([&context, id, rest] { watch(context, read_check_words(context, *id, *rest)); });
+  verb.runs([&command, id, rest] { watch(command, read_check_words(*id, *rest)); });
 }
 
 }  // namespace tumble::cli

@@ -1,7 +1,6 @@
 #include "framework/core/decompositions.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 
 namespace tumble {
 
@@ -17,8 +16,10 @@ SymmetricEigen symmetric_eigen(const MatrixXd& matrix) {
 
 Matrix3d symmetric_root(const Matrix3d& matrix) { return Eigen::SelfAdjointEigenSolver<Matrix3d>(matrix).operatorSqrt(); }
 
-MatrixXd pseudo_inverse(const MatrixXd& matrix) { return matrix.completeOrthogonalDecomposition().pseudoInverse(); }
-
-MatrixXd least_squares(const MatrixXd& A, const MatrixXd& B) { return Eigen::CompleteOrthogonalDecomposition<MatrixXd>(A).solve(B); }
+VectorXd tridiagonal_eigenvalues(const VectorXd& diagonal, const VectorXd& beside) {
+  Eigen::SelfAdjointEigenSolver<MatrixXd> solver;
+  solver.computeFromTridiagonal(diagonal, beside, Eigen::EigenvaluesOnly);
+  return solver.eigenvalues();
+}
 
 }  // namespace tumble

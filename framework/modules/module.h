@@ -45,7 +45,6 @@
   /** The module as one value: one field per function, of the same name. */                    \
   struct Module {                                                                              \
     static constexpr const char* kId = #NS;                                                    \
-    static constexpr const char* kExportedName = "tumble_module_" #NS;                         \
     TUMBLE_FOR_EACH(TUMBLE_MODULE_FIELD, NS, __VA_ARGS__)                                      \
     static Module linked();                                                                    \
     /** Calls visitor(name, field) for each function, in header order. */                      \

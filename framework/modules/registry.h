@@ -11,14 +11,13 @@
 #include <vector>
 
 #include "framework/dynamics/laws.h"
+#include "framework/modules/load.h"
+#include "framework/modules/names.h"
 #include "framework/modules/proxy.h"
 #include "framework/modules/serve.h"
 #include "framework/modules/watched.h"
 
 namespace tumble::modules {
-
-/// A table of functions of some module; only the registration knows its type.
-using AnyModule = std::shared_ptr<const void>;
 
 /// A method of integration of a module, to be measured beside others.
 struct NamedMethod {
@@ -28,11 +27,7 @@ struct NamedMethod {
 };
 
 /// Everything that the framework can do with a module without its header.
-struct ModuleKind {
-  std::string id;                          // "a1"
-  std::string folder;                      // "a1_impulse": below assignments/, solutions_private/ and tests/
-  std::string title;                       // shown to the user
-  std::string exported_name;               // C symbol by which a shared object exports the table
+struct ModuleKind : ModuleName {
   std::vector<std::string> functions;      // in header order
   std::function<void(const AnyModule&, Laws&)> bind;                 // sets laws of a world to the module's functions
   std::function<void(const AnyModule&, Channel&)> serve;             // on the worker's side
@@ -56,13 +51,11 @@ class Registry {
  public:
   /// Registers an assignment.
   /// @param bind  sets the laws that this module implements
+  /// @pre assignment_names() has it
   template <class Module>
-  void add(const std::string& folder, const std::string& title, void (*bind)(const Module&, Laws&)) {
+  void add(void (*bind)(const Module&, Laws&)) {
     ModuleKind kind;
-    kind.id = Module::kId;
-    kind.folder = folder;
-    kind.title = title;
-    kind.exported_name = Module::kExportedName;
+    static_cast<ModuleName&>(kind) = find_name(assignment_names(), Module::kId);
     Module names;
     Module::visit(names, [&](const char* name, auto&) { kind.functions.push_back(name); });
     kind.bind = [bind](const AnyModule& module, Laws& laws) { bind(*static_cast<const Module*>(module.get()), laws); };

@@ -1,6 +1,6 @@
 #include "tests/a3_constraints/a3_fixtures.h"
 
-#include <Eigen/QR>
+#include "framework/core/decompositions.h"
 
 namespace tumble::a3_testing {
 
@@ -150,7 +150,7 @@ double size_of_terms(const Rig& rig) {
   double size = 1.0;
   for (std::size_t i = 0; i < rig.bodies.size(); ++i) size = std::max(size, rig.bodies[i].free_acceleration.cwiseAbs().maxCoeff());
   if (rig.size() == 0) return size;
-  const VectorXd lambda = dense_matrix(rig).completeOrthogonalDecomposition().solve(rig.wanted - accelerations_of_rows(rig, VectorXd::Zero(rig.size())));
+  const VectorXd lambda = least_squares(dense_matrix(rig), rig.wanted - accelerations_of_rows(rig, VectorXd::Zero(rig.size())));
   for (Eigen::Index i = 0; i < rig.size(); ++i) {
     const Constraint& c = rig.rows[static_cast<std::size_t>(i)];
     size = std::max({size, std::abs(lambda[i]) * rig.bodies[static_cast<std::size_t>(c.body_a)].inverse_mass, std::abs(lambda[i]) * rig.bodies[static_cast<std::size_t>(c.body_b)].inverse_mass});

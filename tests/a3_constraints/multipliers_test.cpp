@@ -2,8 +2,7 @@
 #include <algorithm>
 #include <chrono>
 
-#include <Eigen/Cholesky>
-
+#include "framework/core/decompositions.h"
 #include "tests/a3_constraints/a3_fixtures.h"
 
 namespace tumble::a3_testing {
@@ -102,7 +101,7 @@ TEST(ConstraintMultipliers, ARodOffTheCentreTurnsTheBody) {
 /// The same by a dense solution: what the multipliers are, or would be of a rig with a slip in it.
 VectorXd dense_multipliers(const Rig& rig) {
   const VectorXd free = accelerations_of_rows(rig, VectorXd::Zero(rig.size()));
-  return dense_matrix(rig).ldlt().solve(rig.wanted - free);
+  return solve_symmetric(dense_matrix(rig), rig.wanted - free);
 }
 
 TEST(ConstraintMultipliers, ProductsOfInertiaCount) {

@@ -10,7 +10,8 @@ set(sleep_files stepping/moving_world stepping/path_turning rd/retroactive conta
 
 function(absent_effect_program name)
   add_executable(${name} EXCLUDE_FROM_ALL absent_effects.cpp ${ARGN})
-  set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)   # files of another folder: what stands alone there is not known here
+  set_target_properties(${name} PROPERTIES UNITY_BUILD OFF)   # files of another folder: how they are grouped there is not known here
+  target_link_options(${name} PRIVATE -Wl,--allow-multiple-definition)   # the library's files come in groups, with copies of these; the first counts
   target_include_directories(${name} PRIVATE ${CMAKE_SOURCE_DIR})
   target_compile_definitions(${name} PRIVATE TUMBLE_BINARY_DIR="${CMAKE_BINARY_DIR}")
   target_link_libraries(${name} PRIVATE tumble::assignments tumble::engines tumble::test_laws fmt::fmt)

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 ProgramOutcome check(const std::vector<std::string>& more) {
   ::setenv("TUMBLE_ROOT", TUMBLE_SOURCE_DIR, 1);
-  std::vector<std::string> words = {std::string(TUMBLE_BINARY_DIR) + "/bin/tumble", "check", "a1"};
+  std::vector<std::string> words = {std::string(TUMBLE_BINARY_DIR) + "/bin/tumble_check", "check", "a1"};
   words.insert(words.end(), more.begin(), more.end());
   return run_program(words, Output::kCaptured, 100.0);
 }
@@ -115,7 +115,7 @@ TEST(Check, APatternThatChoosesNothingIsAnsweredWithTheNearestNames) {
 
 TEST(Check, AMissingFileAndAnUnknownAssignmentAreReportedWithTheRemedy) {
   EXPECT_EQ(check({"/nowhere/mine.cpp"}).code, 2);
-  const ProgramOutcome outcome = run_program({std::string(TUMBLE_BINARY_DIR) + "/bin/tumble", "check", "a99"}, Output::kCaptured);
+  const ProgramOutcome outcome = run_program({std::string(TUMBLE_BINARY_DIR) + "/bin/tumble_check", "check", "a99"}, Output::kCaptured);
   EXPECT_EQ(outcome.code, 2);
   EXPECT_NE(outcome.printed.find("Known: a1"), std::string::npos) << outcome.printed;
 }

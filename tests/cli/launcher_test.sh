@@ -8,7 +8,7 @@ tree=$(mktemp -d)
 trap 'rm -rf "$tree"' EXIT
 mkdir -p "$tree/framework/cli" "$tree/assignments"
 cp "$root/tumble" "$tree/"
-cp -r "$root/framework/cli/help" "$tree/framework/cli/"
+cp -r "$root/framework/cli/help" "$root/framework/cli/needs.txt" "$tree/framework/cli/"
 for folder in "$root"/assignments/a*/; do mkdir -p "$tree/assignments/$(basename "$folder")"; done
 fail() { echo "launcher_test: $*" >&2; exit 1; }
 
@@ -28,6 +28,9 @@ said 0 && holds "$out" "Subcommands:"
 said 0 --help && holds "$out" "check"
 said 0 check --help && holds "$out" "PATTERN"
 said 0 run pong_1 --help && holds "$out" "--modules"
+said 0 help && holds "$out" "Subcommands:"
+said 0 help inspect && holds "$out" "--density"
+said 2 help inspekt && holds "$err" "Did you mean 'inspect'?"
 said 2 chek a1 && holds "$err" "Did you mean 'check'?"
 said 2 simulate && holds "$err" "there is no such verb" && holds "$err" "Known: "
 said 2 check && holds "$err" "which assignment?"
@@ -39,12 +42,12 @@ for verb in demo grade audit release; do said 2 $verb a1 && holds "$err" "instru
 # Progress, on a build made of steps that sleep.
 export TUMBLE_BUILD=$tree/steps
 mkdir -p "$TUMBLE_BUILD/bin"
-printf '#!/bin/sh\necho ran\n' >"$TUMBLE_BUILD/bin/tumble" && chmod +x "$TUMBLE_BUILD/bin/tumble"
+printf '#!/bin/sh\necho ran\n' >"$TUMBLE_BUILD/bin/tumble_inspect" && chmod +x "$TUMBLE_BUILD/bin/tumble_inspect"
 : >"$tree/packages.txt" && cp "$tree/packages.txt" "$TUMBLE_BUILD/.packages"
 steps() {
   { printf 'rule slow\n  command = sleep 0.5 && touch $out\n'
     for i in $(seq 40); do echo "build s$i: slow"; done
-    printf 'build tumble: phony'; printf ' s%s' $(seq 40); printf '\n'; } >"$TUMBLE_BUILD/build.ninja"
+    printf 'build tumble_inspect: phony'; printf ' s%s' $(seq 40); printf '\n'; } >"$TUMBLE_BUILD/build.ninja"
   rm -f "$TUMBLE_BUILD"/s*
 }
 steps && "$tree/tumble" inspect box >"$tree/out" 2>"$tree/err"
@@ -57,4 +60,23 @@ if command -v script >/dev/null; then
   holds "$(cat "$tree/out")" $'\r\033[Ktumble: building: '
   holds "$(cat "$tree/out")" "s left"
 fi
+
+# What is built for which words: a target says its name.
+asked() { # VERB WORDS...: prints the targets that the launcher asked for, in their order
+  { printf 'rule say\n  command = echo $out >>$$TUMBLE_BUILD/asked\n'
+    for target in tumble tumble_check tumble_inspect tumble_pages sandbox_init submission_sdk $(for i in 1 2 3 4; do echo check_a${i}_ready check_a${i}_sandboxed worker_a$i judge_a$i a${i}_reference; done); do echo "build $target: say"; done
+  } >"$TUMBLE_BUILD/build.ninja"
+  rm -f "$TUMBLE_BUILD"/asked "$TUMBLE_BUILD"/.ninja_*
+  for program in tumble tumble_check tumble_inspect tumble_pages; do printf '#!/bin/sh\n' >"$TUMBLE_BUILD/bin/$program" && chmod +x "$TUMBLE_BUILD/bin/$program"; done
+  "$tree/tumble" "$@" >/dev/null 2>"$tree/err" || fail "'$*' fails: $(cat "$tree/err")"
+  asked=$(sort "$TUMBLE_BUILD/asked" | xargs)
+}
+asked check a2 && [ "$asked" = "check_a2_ready tumble_check" ] || fail "check a2 builds $asked"
+asked check a2 'Rk4*' && [ "$asked" = "check_a2_ready tumble_check" ] || fail "check a2 of some tests builds $asked"
+asked watch a1 my/file.cpp && [ "$asked" = "check_a1_ready check_a1_sandboxed tumble_check" ] || fail "watch of a file builds $asked"
+asked inspect box && [ "$asked" = "tumble_inspect" ] || fail "inspect builds $asked"
+asked handouts && [ "$asked" = "tumble_pages" ] || fail "handouts, without solutions, builds $asked"
+asked run pong_1 && [ "$asked" = "sandbox_init submission_sdk tumble worker_a1 worker_a2 worker_a3 worker_a4" ] || fail "run builds $asked"
+mkdir -p "$tree/solutions_private/a1_impulse" "$tree/solutions_private/a2_integration"
+asked audit a2 && [ "$asked" = "a1_reference a2_reference judge_a2 sandbox_init submission_sdk tumble worker_a1 worker_a2" ] || fail "audit a2 builds $asked"
 echo "the launcher answers without building, and builds with a word"

@@ -11,7 +11,7 @@
 #include "framework/collision/manifold_points.h"
 #include "framework/collision/time_bound.h"
 
-namespace tumble::testing {
+namespace tumble::testing::ellipsoid_test {
 namespace {
 
 using collision::CollisionShape;
@@ -129,4 +129,4 @@ TEST(EllipsoidOverAPlane, StaysApartWithinTheTimeBound) {
 }
 
 }  // namespace
-}  // namespace tumble::testing
+}  // namespace tumble::testing::ellipsoid_test

@@ -13,7 +13,7 @@
 #include "tests/collision/exhaustive.h"
 #include "tests/collision/hulls.h"
 
-namespace tumble::testing {
+namespace tumble::testing::fast_paths_test {
 namespace {
 
 using collision::CollisionShape;
@@ -315,4 +315,4 @@ TEST(BroadPhase, FindsTheSamePairsAsTestingAll) {
 }
 
 }  // namespace
-}  // namespace tumble::testing
+}  // namespace tumble::testing::fast_paths_test

@@ -1,7 +1,7 @@
 // Thousands of random problems: frictionless ones against trying out every set of active contacts, others against the law itself.
 #include <gtest/gtest.h>
-#include <Eigen/QR>
 
+#include "framework/core/decompositions.h"
 #include "tests/dynamics/contact_scenes.h"
 
 namespace tumble::testing {
@@ -85,7 +85,7 @@ VectorXd velocities_by_enumeration(const Lcp& lcp) {
     VectorXd p = VectorXd::Zero(n);
     if (!closed.empty()) {
       const MatrixXd w = lcp.w(closed, closed);
-      const VectorXd right = -lcp.base(closed), pushes = w.completeOrthogonalDecomposition().solve(right);
+      const VectorXd right = -lcp.base(closed), pushes = least_squares(w, right);
       p(closed) = pushes;
     }
     const VectorXd v = lcp.base + lcp.w * p;

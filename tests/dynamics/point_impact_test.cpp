@@ -6,7 +6,7 @@
 #include "framework/core/random.h"
 #include "framework/dynamics/point_impact.h"
 
-namespace tumble {
+namespace tumble::point_impact_test {
 namespace {
 
 constexpr double kRounding = 1e-12;   // some hundred roundings of numbers of the size of 1
@@ -95,4 +95,4 @@ TEST(PointImpact, ObeysRestitutionTheConeAndEnergyForEveryInverseMass) {
 }
 
 }  // namespace
-}  // namespace tumble
+}  // namespace tumble::point_impact_test

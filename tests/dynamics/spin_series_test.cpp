@@ -6,7 +6,7 @@
 #include "framework/dynamics/spin_series.h"
 #include "framework/dynamics/world.h"
 
-namespace tumble::testing {
+namespace tumble::testing::spin_series_test {
 namespace {
 
 constexpr double kEpsilon = 2.220446049250313e-16;
@@ -40,4 +40,4 @@ TEST(SpinSeries, IsTheExactRotationAsFarAsItReaches) {
 }
 
 }  // namespace
-}  // namespace tumble::testing
+}  // namespace tumble::testing::spin_series_test

@@ -4,9 +4,9 @@
 #include <numbers>
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <gtest/gtest.h>
 
+#include "framework/core/decompositions.h"
 #include "framework/core/random.h"
 #include "framework/effects/build_world.h"
 #include "framework/effects/joint/joint.h"
@@ -17,7 +17,7 @@
 #include "tests/engines/event_scenes.h"
 #include "tests/engines/reference_laws.h"
 
-namespace tumble::testing {
+namespace tumble::testing::constrained_impacts_test {
 namespace {
 
 // Closed forms of numbers of the size of 1: some hundred roundings, of the impact and of the ten steps about it.
@@ -156,10 +156,8 @@ double held_inverse_mass(const engines::MovingWorld& moving, const std::vector<C
   }
   const MatrixXd S = J * inverse_mass * J.transpose();
   const VectorXd response = inverse_mass * D;
-  Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
-  decomposition.setThreshold(1e-11);
-  decomposition.compute(S);
-  return D.dot(response - inverse_mass * J.transpose() * decomposition.solve(J * response));
+  const VectorXd taken_up = least_squares(S, J * response, 1e-11);
+  return D.dot(response - inverse_mass * J.transpose() * taken_up);
 }
 
 /// One impact in a world that stands still in time.
@@ -443,4 +441,4 @@ TEST(ImpactEnergy, IsJudgedAtEveryImpact) {
 }
 
 }  // namespace
-}  // namespace tumble::testing
+}  // namespace tumble::testing::constrained_impacts_test

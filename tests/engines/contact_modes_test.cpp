@@ -5,7 +5,7 @@
 
 #include "tests/engines/reference_laws.h"
 
-namespace tumble::testing {
+namespace tumble::testing::contact_modes_test {
 namespace {
 
 constexpr double kG = 9.81;
@@ -96,4 +96,4 @@ TEST(ContactModes, ChatterIsReportedAtMostTwentyTimesASecond) {
 }
 
 }  // namespace
-}  // namespace tumble::testing
+}  // namespace tumble::testing::contact_modes_test

@@ -6,7 +6,7 @@
 #include "tests/engines/reference_laws.h"
 #include "tests/engines/scenes.h"
 
-namespace tumble::testing {
+namespace tumble::testing::heaps_test {
 namespace {
 
 const Vector3d kGravity(0, 0, -9.81);
@@ -79,4 +79,4 @@ TEST(Heaps, AFewBodiesAreSolvedImpactByImpact) {
 }
 
 }  // namespace
-}  // namespace tumble::testing
+}  // namespace tumble::testing::heaps_test

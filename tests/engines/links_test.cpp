@@ -11,6 +11,7 @@
 #include "framework/engines/run.h"
 #include "framework/engines/truths/memory_scene.h"
 #include "framework/modules/load.h"
+#include "framework/modules/registry.h"
 
 namespace tumble::testing {
 namespace {

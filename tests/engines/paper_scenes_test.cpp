@@ -11,7 +11,7 @@
 #include "tests/engines/event_scenes.h"
 #include "tests/engines/reference_laws.h"
 
-namespace tumble::testing {
+namespace tumble::testing::paper_scenes_test {
 namespace {
 
 const Laws& laws() {
@@ -322,4 +322,4 @@ TEST(Robots, WhoseMotorsOvershootAreStoppedAtOnceAndNamed) {
 }
 
 }  // namespace
-}  // namespace tumble::testing
+}  // namespace tumble::testing::paper_scenes_test

@@ -5,6 +5,7 @@
 #include "assignments/a2_integration/a2_binding.h"
 #include "assignments/a3_constraints/a3_binding.h"
 #include "framework/modules/load.h"
+#include "framework/modules/registry.h"
 #include "tests/engines/scenes.h"
 
 namespace tumble::testing {

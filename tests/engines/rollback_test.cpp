@@ -10,7 +10,7 @@
 #include "tests/engines/event_process_scenes.h"
 #include "tests/engines/reference_laws.h"
 
-namespace tumble::testing {
+namespace tumble::testing::rollback_test {
 namespace {
 
 using engines::RollbackCheck;
@@ -191,4 +191,4 @@ TEST(SweptBox, IsTheSameBytesAfterOneToFiftyStepsAndARollback) {
 }
 
 }  // namespace
-}  // namespace tumble::testing
+}  // namespace tumble::testing::rollback_test

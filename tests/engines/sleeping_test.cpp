@@ -11,7 +11,7 @@
 #include "framework/effects/rod/rod.h"
 #include "tests/engines/reference_laws.h"
 
-namespace tumble::testing {
+namespace tumble::testing::sleeping_test {
 namespace {
 
 constexpr double kG = 9.81;
@@ -279,4 +279,4 @@ TEST(Resting, AMovingWallMeetsABallAtRest) {
 }
 
 }  // namespace
-}  // namespace tumble::testing
+}  // namespace tumble::testing::sleeping_test

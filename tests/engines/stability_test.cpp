@@ -1,9 +1,9 @@
 // The largest step that a method can take is told where a run starts: for drag, Baumgarte's term and light bodies on rods, against closed forms.
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
+#include "framework/core/decompositions.h"
 #include "framework/core/error.h"
 #include "framework/dynamics/methods.h"
 #include "framework/effects/build_world.h"
@@ -214,9 +214,7 @@ TEST(LargestStep, OfAChainOfAnyLengthIsReported) {
       diagonal[i] = g / l * (2 * (n - i) - 1);
       if (i + 1 < n) beside[i] = -g / l * (n - i - 1);
     }
-    Eigen::SelfAdjointEigenSolver<MatrixXd> swings;
-    swings.computeFromTridiagonal(diagonal, beside, Eigen::EigenvaluesOnly);
-    const double largest = kRk4Swing / std::sqrt(swings.eigenvalues()[n - 1]);
+    const double largest = kRk4Swing / std::sqrt(tridiagonal_eigenvalues(diagonal, beside)[n - 1]);
     const auto limit = judge_rods_of(scene, tensions, reference_laws(), 1.02 * largest);
     ASSERT_TRUE(limit) << n;
     EXPECT_LE(limit->largest_step, (1 + 1e-5) * largest) << n;   // what it promises is true, and not much less than what is

@@ -3,6 +3,7 @@
 
 #include "assignments/a4_timewarp/a4_binding.h"
 #include "framework/modules/load.h"
+#include "framework/modules/registry.h"
 #include "tests/engines/reference_laws.h"
 
 namespace tumble::testing {

@@ -14,7 +14,7 @@
 #include "models/write_3ds.h"
 #include "tests/geometry/file_3ds.h"
 
-namespace tumble::testing {
+namespace tumble::testing::load_3ds_test {
 namespace {
 
 constexpr double kFloat = 1e-6;  // coordinates of size 1 to 10 in float32, through one or two transforms in float32
@@ -238,4 +238,4 @@ TEST(Refused3ds, ChunksNestedWithoutEnd) {
 TEST(Refused3ds, NameWithoutEnd) { expect_refused(models::file_3ds(chunk(0x4000, "boxboxbox")), {"an object's name has no end"}); }
 
 }  // namespace
-}  // namespace tumble::testing
+}  // namespace tumble::testing::load_3ds_test

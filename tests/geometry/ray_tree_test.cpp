@@ -11,7 +11,7 @@
 #include "models/catalogue.h"
 #include "models/surfaces.h"
 
-namespace tumble::testing {
+namespace tumble::testing::ray_tree_test {
 namespace {
 
 constexpr double kEps = std::numeric_limits<double>::epsilon();
@@ -163,4 +163,4 @@ TEST(RayTree, RayWithoutDirectionBreaksAPrecondition) {
 }
 
 }  // namespace
-}  // namespace tumble::testing
+}  // namespace tumble::testing::ray_tree_test

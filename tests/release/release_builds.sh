@@ -7,7 +7,17 @@ tumble=$1 folder=$2
 rm -rf "$folder" "$folder.partial"
 "$tumble" release "$folder" --no-build
 cd "$folder"
+
+# Objects that the main build has made of the same files by the same commands are not made a second time (shared_object.sh).
+export TUMBLE_MAIN=$TUMBLE_ROOT TUMBLE_MAIN_BUILD TUMBLE_RELEASED=$folder TUMBLE_SHARED=$folder/build/shared
+TUMBLE_MAIN_BUILD=$(dirname "$(dirname "$tumble")")
 unset TUMBLE_ROOT TUMBLE_BUILD
+mkdir -p "$TUMBLE_SHARED"
+ninja -C "$TUMBLE_MAIN_BUILD" -t commands all | grep -F ' -o ' >"$TUMBLE_SHARED/commands"
+ninja -C "$TUMBLE_MAIN_BUILD" -t deps >"$TUMBLE_SHARED/deps"
+ninja -C "$TUMBLE_MAIN_BUILD" -n all >"$TUMBLE_SHARED/outdated"
+find assignments framework models tests handouts -type f | while read -r file; do ! cmp -s "$file" "$TUMBLE_MAIN/$file" || echo "$file"; done >"$TUMBLE_SHARED/same"
+cmake -S . -B build -G Ninja -DTUMBLE_CCACHE=OFF -DCMAKE_CXX_COMPILER_LAUNCHER="$TUMBLE_MAIN/tests/release/shared_object.sh" >build/configure.log
 fail() { echo "release_builds: $*" >&2; exit 1; }
 
 # expect CODES WORDS...: runs a command that may end with one of these codes; keeps what it said in $said.
@@ -57,5 +67,6 @@ expect 2 run ball_against_wall && says "does not compile"
 # The framework's own tests do not ask the student's file.
 ./tumble test
 cp stub.cpp "$stub" && rm stub.cpp
+printf '%s\n' "objects of the main build: $(grep -c ^shared "$TUMBLE_SHARED/log"), compiled anew: $(grep -c ^compiled "$TUMBLE_SHARED/log")"
 cd / && rm -rf "$folder"
 echo "the released tree builds, passes its tests whatever the student's file is, and every stub is not attempted"

@@ -9,6 +9,7 @@
 #include "framework/engines/judging/judge.h"
 #include "framework/engines/run.h"
 #include "framework/modules/load.h"
+#include "framework/modules/registry.h"
 #include "framework/scene/load_scene.h"
 #include "tests/support/test_laws.h"
 

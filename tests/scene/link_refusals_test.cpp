@@ -4,7 +4,7 @@
 #include "framework/core/error.h"
 #include "framework/scene/load_scene.h"
 
-namespace tumble::scene {
+namespace tumble::scene::link_refusals_test {
 namespace {
 
 const std::string kStart = R"({
@@ -120,4 +120,4 @@ TEST(LinkRefusals, AChainThatCannotBeLaid) {
 }
 
 }  // namespace
-}  // namespace tumble::scene
+}  // namespace tumble::scene::link_refusals_test

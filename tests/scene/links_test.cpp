@@ -11,7 +11,7 @@
 #include "framework/effects/spring/spring.h"
 #include "framework/scene/load_scene.h"
 
-namespace tumble::scene {
+namespace tumble::scene::links_test {
 namespace {
 
 const std::string kBodies = R"("bodies": [
@@ -139,4 +139,4 @@ TEST(Links, AChainOfSpringsIsAsLongAsItIsLaidUnlessSaidOtherwise) {
 }
 
 }  // namespace
-}  // namespace tumble::scene
+}  // namespace tumble::scene::links_test

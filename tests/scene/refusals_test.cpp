@@ -5,7 +5,7 @@
 #include "framework/scene/build_shape.h"
 #include "framework/scene/load_scene.h"
 
-namespace tumble::scene {
+namespace tumble::scene::refusals_test {
 namespace {
 
 const std::string kBall = R"({ "name": "ball", "shape": { "sphere": { "radius_m": 0.1 } }, "mass_kg": 1 })";
@@ -124,4 +124,4 @@ TEST(SceneRefusals, ListsWithinListsAreFollowedToSomeDepth) {
 TEST(SceneRefusals, ATrailingCommaIsNotJson) { expect_words(refusal(scene_with(kBall + ",")), {"not JSON", "none after the last"}); }
 
 }  // namespace
-}  // namespace tumble::scene
+}  // namespace tumble::scene::refusals_test

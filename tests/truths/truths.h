@@ -10,6 +10,7 @@
 #include "framework/engines/truths/families.h"
 #include "framework/engines/truths/module_truths.h"
 #include "framework/modules/load.h"
+#include "framework/modules/registry.h"
 
 namespace tumble::testing {
 

@@ -1,21 +1,15 @@
-/// Builds a submission's shared object from its source.
+/// Builds a submission's shared object from its source, in a course.
 #pragma once
 
 #include <filesystem>
 #include <string>
 
+#include "framework/grading/compiler/build_module.h"
 #include "framework/grading/course/course.h"
 
 namespace tumble::grading {
 
-struct BuiltSubmission {
-  enum class Outcome { kBuilt, kRefused, kGraderFault };
-  Outcome outcome = Outcome::kGraderFault;
-  std::string said;   // the compiler's errors; or why it could not run
-};
-
-/// Compiles in the sandbox, where only headers of the project are visible.
-/// @param object  written where the outcome is kBuilt
+/// See build_module.
 BuiltSubmission build_submission(const Course& course, const std::string& id, const std::filesystem::path& source, const std::filesystem::path& object);
 
 /// The header of an assignment's module.

@@ -19,10 +19,7 @@ int run_worker(int argc, char** argv) {
   keep_freed_memory();
   if (argc != 2) return 2;
   try {
-    modules::ModuleKind kind;
-    kind.id = kind.folder = Module::kId;
-    kind.exported_name = Module::kExportedName;
-    const modules::AnyModule module = modules::load_module(kind, argv[1]);
+    const modules::AnyModule module = modules::load_module({Module::kId, Module::kId, ""}, argv[1]);
     modules::Channel channel(kChannelFd, kChannelFd);
     modules::serve(*static_cast<const Module*>(module.get()), channel);
     return 0;

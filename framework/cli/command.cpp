@@ -1,0 +1,104 @@
+#include "framework/cli/command.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+
+#include <CLI/CLI.hpp>
+
+#include "framework/core/keep_memory.h"
+#include "framework/core/nearest_word.h"
+#include "framework/core/not_implemented.h"
+#include "framework/core/version.h"
+
+namespace tumble::cli {
+namespace {
+
+// The build tree is that of this program (build/bin/tumble); the source tree is given by the
+// launcher, else it is the parent of the build tree.
+void find_trees(Command& command) {
+  const auto program = std::filesystem::canonical("/proc/self/exe");
+  command.build = program.parent_path().parent_path();
+  const char* told = std::getenv("TUMBLE_ROOT");
+  command.root = told != nullptr ? std::filesystem::path(told) : command.build.parent_path();
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string all;
+  for (const std::string& word : words) all += (all.empty() ? "" : ", ") + word;
+  return all;
+}
+
+// The parser would only report a missing verb.
+void refuse_unknown_verb(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') return;
+  std::vector<std::string> known;
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; })) known.push_back(verb->get_name());
+  if (std::find(known.begin(), known.end(), argv[1]) != known.end()) return;
+  throw UserError(argv[1], "there is no such verb." + did_you_mean(argv[1], known), "Known: " + joined(known) + ". tumble --help says what each does.");
+}
+
+// The parser would only report an unexpected flag.
+void refuse_unknown_flag(const CLI::App& app) {
+  for (const CLI::App* verb : app.get_subcommands()) {
+    std::vector<std::string> known;
+    for (const CLI::Option* option : verb->get_options())
+      for (const std::string& name : option->get_lnames()) known.push_back("--" + name);
+    for (const std::string& word : verb->remaining()) {
+      const std::string flag = word.substr(0, word.find('='));
+      if (!flag.starts_with("-") || flag == "-") continue;
+      throw UserError(flag, verb->get_name() + " has no such flag." + did_you_mean(flag, known), "Known: " + joined(known) + ".");
+    }
+  }
+}
+
+// The parser reports a range of 309 digits where a number has to be positive.
+std::string without_digits(const std::string& told) {
+  constexpr const char* kRange = " not in range 0.000000 to 1797";   // the largest double
+  const std::size_t begin = told.find(kRange);
+  return begin == std::string::npos ? told : told.substr(0, begin) + " is not a number above 0";
+}
+
+int run(int argc, char** argv, Command& command, const std::function<void(CLI::App&)>& declare) {
+  find_trees(command);
+  for (int i = 0; i < argc; ++i) command.command_line += (i > 0 ? " " : "") + std::string(i > 0 ? argv[i] : "tumble");
+
+  CLI::App app{"Tumble: a course on rigid-body simulation that grades itself", "tumble"};
+  app.require_subcommand(1);
+  app.set_version_flag("--version", std::string("Tumble ") + kProgramVersion);
+  app.set_help_all_flag("--help-all", "Help of every verb");
+  declare(app);
+  refuse_unknown_verb(app, argc, argv);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ExtrasError& error) {
+    refuse_unknown_flag(app);
+    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUserError);
+  } catch (const CLI::ValidationError& error) {
+    throw UserError("tumble " + (argc > 1 ? std::string(argv[1]) : ""), without_digits(error.what()), "Run with --help for what each flag takes.");
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : static_cast<int>(ExitCode::kUserError);
+  }
+  return static_cast<int>(command.exit);
+}
+
+}  // namespace
+
+int run_verbs(int argc, char** argv, Command& command, const std::function<void(CLI::App&)>& declare) {
+  keep_freed_memory();
+  try {
+    return run(argc, argv, command, declare);
+  } catch (const UserError& error) {
+    std::fprintf(stderr, "tumble: %s\n", error.what());
+    return static_cast<int>(ExitCode::kUserError);
+  } catch (const NotImplemented& missing) {
+    std::fprintf(stderr, "tumble: not attempted: %s\n", missing.what());
+    return static_cast<int>(ExitCode::kNotAttempted);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "tumble: this is our bug, please report it with the command: %s\n", error.what());
+    return static_cast<int>(ExitCode::kOurBug);
+  }
+}
+
+}  // namespace tumble::cli

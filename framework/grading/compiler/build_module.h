@@ -1,0 +1,25 @@
+/// From a source that somebody handed in to a shared object of an assignment's module.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+namespace tumble::grading {
+
+struct BuiltSubmission {
+  enum class Outcome { kBuilt, kRefused, kGraderFault };
+  Outcome outcome = Outcome::kGraderFault;
+  std::string said;   // the compiler's words, cut short; or why it could not be asked
+};
+
+/// Compiles in the sandbox, where nothing of the project but headers can be seen.
+/// @param root, build   of the source tree and of the build tree
+/// @param folder        of the assignment, e.g. "a1_impulse"
+/// @param object        written where the outcome is kBuilt
+BuiltSubmission build_module(const std::filesystem::path& root, const std::filesystem::path& build, const std::string& folder,
+                             const std::filesystem::path& source, const std::filesystem::path& object);
+
+/// The header that says what the module of an assignment is, from the root.
+std::filesystem::path header_in(const std::string& folder);
+
+}  // namespace tumble::grading
