@@ -6,7 +6,7 @@ set(collision_files stepping/moving_world rd/retroactive rd/recorder)
 set(contact_files stepping/moving_world rd/retroactive rd/recorder)
 set(friction_files contact/contact_geometry contact/sequential_impacts rd/retroactive)
 set(callback_files events/advancement events/ordered)
-set(sleep_files stepping/moving_world stepping/path_turning rd/retroactive contact/meetings rd/recorder contact/persistent_contacts contact/contact_steps contact/contact_landings contact/contact_modes contact/sequential_impacts contact/sleeping)
+set(sleep_files stepping/moving_world stepping/path_turning rd/retroactive contact/impact_detection contact/world_step rd/recorder contact/persistent_contacts contact/contact_steps contact/contact_activation contact/contact_modes contact/sequential_impacts contact/sleeping)
 
 function(absent_effect_program name)
   add_executable(${name} EXCLUDE_FROM_ALL absent_effects.cpp ${ARGN})
