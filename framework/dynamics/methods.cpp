@@ -115,7 +115,7 @@ template <class Container>
 bool is_finite(const Container& state) { return std::all_of(state.begin(), state.end(), [](double value) { return std::isfinite(value); }); }
 
 /// Steps as long as the control allows, from t to t + h. A trial that goes wrong is one that was too long: it is taken back, and a quarter of it tried.
-/// @throws std::runtime_error where no step will do, and what blows up and asks for ever shorter steps would never end
+/// @throws std::runtime_error where no step will do: a solution that grows without bound asks for ever shorter steps
 template <class Controlled, class System, class Container>
 void advance(const Controlled& fresh, const System& system, Container& state, double t, double h, double first) {
   std::optional<Controlled> stepper(fresh);

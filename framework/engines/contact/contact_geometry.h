@@ -34,7 +34,7 @@ class ContactGeometry {
   double size_of(Pair pair) const;
   /// How far apart contacts are kept. [m]
   double margin(Pair pair) const;
-  /// The same in heaps, whose problems are solved by a few sweeps. [m]
+  /// The same in large islands, whose problems are solved by a few sweeps. [m]
   double large_island_margin(Pair pair) const;
 
   // In these places (states by body index):

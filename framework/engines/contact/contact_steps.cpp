@@ -72,7 +72,7 @@ void PersistentContacts::warm_start(const std::vector<StepContact>& contacts, co
         least = distance;
         nearest = &problem.contacts[i];
       }
-      // A longer step needs more where the force lasts, no more where it was a blow.
+      // A longer step needs more where the force lasts, no more where it was an impact.
       if (nearest) nearest->warm_start_world += std::min(1.0, h / known.duration) * known.impulse_world;
     }
   }
@@ -94,7 +94,7 @@ ContactSolution PersistentContacts::solve(const ContactIsland& island, const Con
       options.most_sweeps_alone = kContact.sweeps_in_step;
     }
     ContactSolution solution = laws_.friction_impulses ? laws_.friction_impulses(problem, options) : solve_contacts(problem, options);
-    if (!laws_.friction_impulses && !solution.converged && solution.residual > kContactSolved) {   // a guess can lead astray: once more from nothing, with every means
+    if (!laws_.friction_impulses && !solution.converged && solution.residual > kContactSolved) {   // a warm start can mislead: once more from zero, with every means
       ContactProblem afresh = problem;
       for (PushingContact& contact : afresh.contacts) contact.warm_start_world.setZero();
       ContactOptions every;
@@ -129,7 +129,7 @@ ContactSolution PersistentContacts::solve(const ContactIsland& island, const Con
     b[i] = (rate - c.target) / h;
   }
   const VectorXd f = naming("body '" + moving_.world().bodies[island.bodies.front()].name + "' and what it touches", [&] { return laws_.contact_forces(J * MJ, b); });
-  if (f.size() != m) throw StoppedRun("lasting contact (contact_forces of " + laws_.constraint_source + ") returned " + std::to_string(f.size()) + " forces for " + std::to_string(m) + " points");
+  if (f.size() != m) throw StoppedRun("persistent contact (contact_forces of " + laws_.constraint_source + ") returned " + std::to_string(f.size()) + " forces for " + std::to_string(m) + " points");
   const VectorXd change = MJ * (h * f);
   ContactSolution solution;
   for (Eigen::Index i = 0; i < m; ++i) {
@@ -144,7 +144,7 @@ ContactSolution PersistentContacts::solve(const ContactIsland& island, const Con
 }
 
 // Where a pair that slid and would stick at the end of the step stops sliding: when the friction that stops it is all there can be. What
-// stops the slip is A + F s, with F the steady forces along it, the friction at hand M s; two steps of different lengths tell A and F.
+// stops the slip is A + F s, with F the steady forces along it, the available friction M s; two steps of different lengths tell A and F.
 std::optional<double> PersistentContacts::stop_of_sliding(const ContactProblem& problem, const std::vector<StepContact>& contacts, const ContactSolution& solution, double h) {
   if (contacts.size() > kContact.few) return std::nullopt;
   const Pair* stopping = nullptr;
@@ -203,7 +203,7 @@ std::optional<double> PersistentContacts::stop_of_sliding(const ContactProblem& 
   return moving_.time() + h * std::max(least, kContact.soon);
 }
 
-// Does anything come down in this step that did not touch before?
+// Does a contact become active in this step that did not touch before?
 bool PersistentContacts::activates(const std::vector<StepContact>& contacts, const ContactSolution& solution) {
   for (std::size_t i = 0; i < contacts.size(); ++i)
     if (contacts[i].activates && solution.impulses_world[i].squaredNorm() > 0.0) return true;
@@ -313,7 +313,7 @@ bool PersistentContacts::set_paths(const ContactIsland& island, const std::vecto
       if (contacts[i].start_gap < kContact.activated * geometry_.margin(contacts[i].pair) && solution.impulses_world[i].squaredNorm() > 0.0) active.push_back({contacts[i].pair, contacts[i].point, &contacts_at});
   // Pairs that are not in contact may meet within the step: that is for the finding of impacts.
   const bool apart = correction_.correct_positions(island, island.pairs, ends, moving_.target(), active);
-  // The path goes where a shift has taken its end, however short the step: velocities along it are no momenta. What rods and joints hold is put
+  // The path goes where position correction has moved its end, however short the step: velocities along it are no momenta. What rods and joints hold is put
   // right where a step ends within it (MovingWorld::commit).
   for (const int body : island.bodies) {
     if (activation) set_straight_path(body, ends[body]);

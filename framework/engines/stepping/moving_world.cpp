@@ -28,7 +28,7 @@ double measure_path_bend(const Laws& laws) {
   try {
     return 2.0 * laws.integrate_step(fall, 0.0, VectorXd::Zero(2), 1.0)[kHeight];
   } catch (const StoppedRun&) {
-    return 1.0;   // the first step of a body fails in the same way, and says whose
+    return 1.0;   // the first step of a body fails in the same way, and names the body
   }
 }
 
@@ -330,7 +330,7 @@ void MovingWorld::begin_step_again(double target) {
 const RigidBodyState& MovingWorld::path_end(int body) {
   Path& path = paths_[body];
   if (!path.end_known) {
-    path.end_known = true;   // first: a series for the whole step is made by whoever asks for all of it
+    path.end_known = true;   // first: a series for the whole step is made by the caller that asks for all of it
     path.end = integrate(body, target_ - time_, time_, path.start);
   }
   return path.end;
