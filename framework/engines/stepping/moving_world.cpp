@@ -128,11 +128,11 @@ void MovingWorld::refuse_fast_turning(int body) const {
   constexpr double kMostTurnOnPath = 20 * std::numbers::pi;   // rad in a step: ten turns
   const Path& path = paths_[body];
   const double step = target_ - time_, speed = path.smooth->bounds().angular_speed;
-  const std::string who = fmt::format("body '{}'", world_.bodies[body].name);
-  if (!pack(path.end).allFinite() || std::isnan(speed)) throw StoppedRun(fmt::format("{}: its state is not a number (integrator: {})", who, laws_.integrator_source));
+  const std::string subject = fmt::format("body '{}'", world_.bodies[body].name);
+  if (!pack(path.end).allFinite() || std::isnan(speed)) throw StoppedRun(fmt::format("{}: its state is not a number (integrator: {})", subject, laws_.integrator_source));
   if (shapes_[body]->is_ball() || !(speed * step > kMostTurnOnPath)) return;   // a ball looks the same however it turns
   throw StoppedRun(fmt::format("{} turns at {:.3g} rad/s, {:.3g} rad in a step of {:.3g} s, which no step follows. Likely something drives it beyond measure: a motor that overshoots because it holds its torque too "
-                               "long (\"period_s\"), a force, a spring; else it turns too far in a step: make the step (\"step_s\") shorter", who, speed, speed * step, step));
+                               "long (\"period_s\"), a force, a spring; else it turns too far in a step: make the step (\"step_s\") shorter", subject, speed, speed * step, step));
 }
 
 LinkForces MovingWorld::measure_links(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts) {
