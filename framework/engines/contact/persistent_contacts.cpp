@@ -307,42 +307,6 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
   return std::nullopt;
 }
 
-void PersistentContacts::note_unsolved(const ContactIsland& island, const ContactSolution& solution, double h) {
-  const bool is_heap = island.large || (rules_.plastic_impacts == scene::PlasticImpacts::kInStep && solution.impulses_world.size() > kContact.many_contacts);
-  const double allowed = is_heap ? kContact.unsolved_in_large_island : kContactSolved;
-  if (solution.converged || solution.residual <= allowed) return;
-  unsolved_.note(RunWatch::Kind::kContactUnsolved, names_of(moving_.world(), island.bodies), {solution.residual, allowed, moving_.time(), h});
-}
-
-void PersistentContacts::require_numbers(const ContactIsland& island, const ContactSolution& solution) const {
-  for (std::size_t k = 0; k < island.bodies.size(); ++k)
-    if (!solution.velocities[k].linear_world.allFinite() || !solution.velocities[k].angular_world.allFinite())
-      throw StoppedRun("persistent contact: the impulses on body '" + moving_.world().bodies[island.bodies[k]].name + "' are not numbers");
-}
-
-// Puts a solution's impulses where the next problem of these pairs finds its warm start.
-void PersistentContacts::remember(const std::vector<StepContact>& contacts, const ContactProblem& problem, const ContactSolution& solution, double h, std::map<Pair, std::vector<KnownImpulse>>& store) const {
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    std::vector<KnownImpulse>& known = store[contacts[i].pair];
-    if (i == 0 || contacts[i].pair != contacts[i - 1].pair) known.clear();
-    const RigidBodyState& a = moving_.state(contacts[i].pair.first);
-    known.push_back({a.world_from_body.conjugate() * (problem.contacts[i].point_world - a.com_world), solution.impulses_world[i], h});
-  }
-}
-
-// What the next step remembers of this one's impulses.
-void PersistentContacts::keep_warm_start(const ContactIsland& island, const std::vector<StepContact>& contacts, const ContactProblem& problem, const ContactSolution& solution, double h) {
-  note_unsolved(island, solution, h);
-  remember(contacts, problem, solution, h, next_impulses_);
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const Vector3d force = solution.impulses_world[i] / h, point = problem.contacts[i].point_world;
-    const bool slides = solution.modes[i] == ContactMode::kSlide && !force.isZero(0.0) && slip_speed(problem, i, solution.velocities) > kCreep * restitution_threshold_;
-    if (i == 0 || contacts[i].pair != contacts[i - 1].pair) next_stuck_.insert(contacts[i].pair);
-    if (slides) next_stuck_.erase(contacts[i].pair);
-    if (!force.isZero(0.0)) forces_.push_back({contacts[i].pair.first, contacts[i].pair.second, point, contacts[i].point.normal_b_to_a_world, force});
-  }
-}
-
 void PersistentContacts::remove_overlaps_within_step(std::vector<RigidBodyState>& states, double t) {
   const RunCounters before = counters_;   // what is looked at must not show in what a run counts
   const double left = (moving_.target() - t) / (moving_.target() - moving_.time());
@@ -356,7 +320,7 @@ void PersistentContacts::remove_overlaps_within_step(std::vector<RigidBodyState>
       states[body].angular_momentum_world = left * start.angular_momentum_world + (1 - left) * end.angular_momentum_world;
     }
   }
-  const auto closed = [&](const Pair& pair) { return geometry_.least_gap_of(pair, states) < 0 && geometry_.distance_of(pair, states) < 0; };
+  const auto closed = [&](const Pair& pair) { return geometry_.overlap(pair, states); };
   bool any = true;
   for (int round = 0; round < kContact.frame_rounds && any; ++round) {   // one island's corrections may close another's gaps
     any = false;
@@ -372,7 +336,7 @@ void PersistentContacts::remove_overlaps_within_step(std::vector<RigidBodyState>
 
 void PersistentContacts::remove_overlaps(const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t) {
   const RunCounters before = counters_;   // as above
-  const auto closed = [&](const Pair& pair) { return geometry_.least_gap_of(pair, states) < 0 && geometry_.distance_of(pair, states) < 0; };
+  const auto closed = [&](const Pair& pair) { return geometry_.overlap(pair, states); };
   for (int round = 0; round < kContact.frame_rounds && std::any_of(pairs.begin(), pairs.end(), closed); ++round)
     for (const ContactIsland& island : islands(pairs)) {
       if (std::none_of(island.pairs.begin(), island.pairs.end(), closed)) continue;
