@@ -60,7 +60,7 @@ struct ContactSolution {
 struct ContactOptions {
   double tolerance = 1e-12;                                   // relative to the problem's speed
   double least_speed = 0.0;                                   // or a velocity this small [m/s]
-  int most_sweeps = 50;                                       // of block Gauss-Seidel where Newton's method from the guess fails; then 4 times so many
+  int most_sweeps = 50;                                       // of block Gauss-Seidel where Newton's method from the warm start fails; then 4 times so many
   int largest_direct = 600;                                   // contacts and rows: beyond, sweeps only
   double enough = 0.0;                                        // relative: what Newton's method and sweeps reach is taken if it is as good as this
   int most_sweeps_alone = 2000;                               // where the direct method is not called

@@ -126,7 +126,7 @@ System build_system(const ContactProblem& problem) {
   return system;
 }
 
-Impulses first_guess(const System& system, const ContactProblem& problem) {
+Impulses warm_start_of(const System& system, const ContactProblem& problem) {
   Impulses impulses;
   impulses.rows.assign(system.rows.size(), 0.0);
   impulses.contacts.reserve(system.contacts.size());

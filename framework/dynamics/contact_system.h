@@ -51,8 +51,8 @@ struct Impulses {
 };
 
 System build_system(const ContactProblem& problem);
-/// The guesses of the problem, made to obey |p_t| <= mu p_n.
-Impulses first_guess(const System& system, const ContactProblem& problem);
+/// The warm start of the problem, made to obey |p_t| <= mu p_n.
+Impulses warm_start_of(const System& system, const ContactProblem& problem);
 /// y from the impulses, summed anew in a fixed order: what rounding has gathered in y goes.
 void sum_impulses(const System& system, Impulses& impulses);
 

@@ -1,6 +1,6 @@
-/// The laws by which a world moves, as replaceable functions: an engine asks these and never knows who wrote them.
+/// The laws by which a world moves, as replaceable functions: an engine asks these and never knows their author.
 ///
-/// Each assignment fills the laws it is about (its `bind`); what nobody filled stays empty, and an engine that needs an
+/// Each assignment fills the laws it is about (its `bind`); what no module fills stays empty, and an engine that needs an
 /// empty law says which assignment provides it. `library_laws()` fills integration from a library, so that scenes run
 /// before a student has written an integrator.
 #pragma once
@@ -52,16 +52,16 @@ struct Laws {
   std::function<VectorXd(const MatrixXd& A, const VectorXd& b)> contact_forces;
   /// Impulses of contacts with friction. Empty: the framework's own solve_contacts.
   std::function<ContactSolution(const ContactProblem&, const ContactOptions&)> friction_impulses;
-  /// Whether a collision that came in this slowly is the beginning of a lasting contact.
+  /// Whether a collision that came in this slowly is the beginning of a persistent contact.
   std::function<bool(double approach_speed, double restitution, double restitution_threshold)> ends_in_contact;
 
   // Decisions of a timewarp scheduler (assignment a4). Filled: --engine tw asks them.
   Scheduling scheduling;
 
-  std::string impulse_source = "none";      // who provides the impulse laws, for pictures and records
-  std::string integrator_source = "none";   // who provides integration
-  std::string constraint_source = "none";   // who provides springs, rods and contact forces
-  std::string scheduling_source = "none";   // who provides the scheduler
+  std::string impulse_source = "none";      // which module provides the impulse laws, for pictures and records
+  std::string integrator_source = "none";   // which module provides integration
+  std::string constraint_source = "none";   // which module provides springs, rods and contact forces
+  std::string scheduling_source = "none";   // which module provides the scheduler
 };
 
 /// Laws of motion from Boost.Odeint (classical Runge-Kutta) and Boost.Math (TOMS 748 bracketing); no impulse laws.

@@ -86,7 +86,7 @@ VectorXd verlet(const OdeFunction& f, double t, const VectorXd& y, double h) {
 
 constexpr const char* kNotANumber = "a slope, or where it leads, is not a number";
 
-// The largest of several errors does not tell of one that is not a number: a slope that is none ends its trial.
+// std::max ignores NaN, so a derivative that is NaN must reject the trial step here.
 OdeFunction with_finite_slopes(const OdeFunction& f) {
   return [&f](double t, const VectorXd& y) {
     VectorXd slope = f(t, y);
@@ -114,8 +114,8 @@ std::optional<std::string> what_went_wrong(const Trial& trial) {
 template <class Container>
 bool is_finite(const Container& state) { return std::all_of(state.begin(), state.end(), [](double value) { return std::isfinite(value); }); }
 
-/// Steps as long as the control allows, from t to t + h. A trial that goes wrong is one that was too long: it is taken back, and a quarter of it tried.
-/// @throws std::runtime_error where no step will do, and what blows up and asks for ever shorter steps would never end
+/// Steps as long as the control allows, from t to t + h. A trial step that fails was too long: it is rejected, and a quarter of it tried.
+/// @throws std::runtime_error where no step will do: a solution that grows without bound asks for ever shorter steps
 template <class Controlled, class System, class Container>
 void advance(const Controlled& fresh, const System& system, Container& state, double t, double h, double first) {
   std::optional<Controlled> stepper(fresh);

@@ -34,7 +34,7 @@ PrincipalMoments principal_moments(const Inertia& inertia);
 /// @pre inertia is finite; nothing is assumed of the size of the disturbances. Always angular_speed <= largest |L| / I_min.
 /// Source: H. Goldstein, Classical Mechanics, sec. 5.6 (polhode).
 RotationBounds bound_rotation(const RigidBodyState& state, const Inertia& inertia, const Disturbance& disturbance);
-/// The same for one who asks often. @param principal  principal_moments(inertia)
+/// The same for a caller that asks often. @param principal  principal_moments(inertia)
 RotationBounds bound_rotation(const RigidBodyState& state, const Inertia& inertia, const PrincipalMoments& principal, const Disturbance& disturbance);
 
 }  // namespace tumble

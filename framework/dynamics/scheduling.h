@@ -51,7 +51,7 @@ struct Effect {
 
 /// What the framework found for a collision check when it looked at [safe_time, stamp.time].
 struct CheckFinding {
-  std::optional<Stamp> contact;           // the earliest impact there that nobody has worked at; nothing: disjoint throughout
+  std::optional<Stamp> contact;           // the earliest impact there that has not been resolved; nothing: disjoint throughout
   double gap = kUnset;                    // at stamp.time, >= 0 [m]
   double closing_speed = kUnset;          // at stamp.time: at most so fast the gap closes, >= 0 [m/s]
   double closing_acceleration = kUnset;   // bound, >= 0 [m/s^2]

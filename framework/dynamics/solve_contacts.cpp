@@ -1,6 +1,6 @@
 // How a contact problem is solved, cheapest first:
-//   1. the guess: at rest with last step's impulses nothing is left to do;
-//   2. Newton's method on Coulomb's law, from the guess: bodies at rest or sliding steadily. From no guess at all it finds the most even
+//   1. the warm start: at rest with last step's impulses nothing is left to do;
+//   2. Newton's method on Coulomb's law, from the warm start: bodies at rest or sliding steadily. From zero it finds the most even
 //      distribution among redundant contacts;
 //   3. what stands: contacts stick, or are open where they would have to pull. Coulomb's law can have several answers (a rod that jams while
 //      it slides, stones of an arch that could as well slip); this takes the one in which nothing slides, and what is symmetric stays so;
@@ -25,7 +25,7 @@ using contacts::Impulses;
 using contacts::Progress;
 using contacts::System;
 
-constexpr int kFirstNewtonSteps = 8;    // from the guess: at rest two or three do; where they wander, sweeps are cheaper
+constexpr int kFirstNewtonSteps = 8;    // from the warm start: at rest two or three do; where they wander, sweeps are cheaper
 constexpr int kNewtonSteps = 30;        // later
 constexpr int kSweepRounds = 2;         // each of four times as many sweeps as the one before
 constexpr int kFewSoftRounds = 10, kManySoftRounds = 200, kFinishEvery = 5;
@@ -191,7 +191,7 @@ ContactSolution solve_contacts(const ContactProblem& problem, const ContactOptio
   const double speed = system.speed > 0 ? system.speed : 1.0;
   const Goal goal{system, std::max(options.tolerance * speed, options.least_speed)};
   Progress progress;
-  progress.impulses = contacts::first_guess(system, problem);
+  progress.impulses = contacts::warm_start_of(system, problem);
   goal.measure(progress);
   if (!progress.accepted) iterate(goal, options, options.enough * speed, progress);
   ContactSolution solution = describe(problem, system, progress.impulses);

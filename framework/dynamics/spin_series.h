@@ -1,6 +1,6 @@
 /// The free turning of one body over a while, worked out once as a power series and asked for many times.
 ///
-/// FreeRotation gives any time to 1e-15 for microseconds a question; whoever asks a hundred times about one short while, as a search for
+/// FreeRotation gives any time to 1e-15 for microseconds a question; a caller that asks a hundred times about one short while, as a search for
 /// an impact does, pays for the coefficients once here.
 ///   (k+1) w1[k+1] = (I2 - I3) / I1  sum_j w2[j] w3[k-j]   and cyclic,     (k+1) q[k+1] = 1/2 sum_j q[j] (0, w[k-j])     (F.4, F.5)
 /// Source: A. Jorba, M. Zou, Experimental Mathematics 14, 2005 (free_rotation.cpp has the same in long double).

@@ -14,7 +14,7 @@ class StoppedRun : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Whatever is taken back or tried with a shorter step, it stays so, where another StoppedRun may be a consequence of what will be undone.
+/// No rollback and no shorter step changes it, where another StoppedRun may be a consequence of what will be undone.
 class StoppedForGood : public StoppedRun, public Final {
  public:
   using StoppedRun::StoppedRun;
@@ -26,13 +26,13 @@ class OutOfTime : public StoppedForGood {
   using StoppedForGood::StoppedForGood;
 };
 
-/// Does `work`; a StoppedRun out of it is told again with whom it happened to in front.
+/// Does `work`; a StoppedRun out of it is thrown again with the subject in front.
 template <class Work>
 auto naming(const std::string& subject, Work&& work) {
   try {
     return std::forward<Work>(work)();
   } catch (const OutOfTime&) {
-    throw;   // happened to nobody
+    throw;   // has no subject
   } catch (const StoppedForGood& stop) {
     throw StoppedForGood(subject + ": " + stop.what());
   } catch (const StoppedRun& stop) {

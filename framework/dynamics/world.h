@@ -40,7 +40,7 @@ struct World {
   std::vector<WorldBody> bodies;
   TypedLists effects;                             // what acts on them: lists of the types in framework/effects/NAME/NAME.h, such as effects.of<SpringLink>()
   std::optional<Vector3d> gravity_world;          // [m/s^2]
-  std::optional<scene::ContactSpec> contact;      // lasting contact; absent where the scene does not ask for it
+  std::optional<scene::ContactSpec> contact;      // persistent contact; absent where the scene does not ask for it
   std::optional<scene::StabilisationSpec> stabilisation;
   std::vector<std::pair<int, int>> apart;         // (i, j), i < j, sorted: pairs that do not collide; joined bodies are among them
 };

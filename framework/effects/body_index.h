@@ -12,17 +12,17 @@ class BodyIndex {
  public:
   explicit BodyIndex(const World& world);
 
-  /// @param who  for the error: "spring 'a'"
+  /// @param subject  for the error: "spring 'a'"
   /// @throws UserError where no body has that name
-  int of(const std::string& name, const std::string& who) const;
+  int of(const std::string& name, const std::string& subject) const;
   /// An anchor of the scene; with an empty name a point of the world.
-  Anchor anchor(const scene::AnchorSpec& spec, const std::string& who) const;
+  Anchor anchor(const scene::AnchorSpec& spec, const std::string& subject) const;
 
  private:
   std::map<std::string, int> index_;
 };
 
 /// @throws UserError where neither of two bodies can move (-1: the world)
-void refuse_immovable(int a, int b, const World& world, const std::string& who);
+void refuse_immovable(int a, int b, const World& world, const std::string& subject);
 
 }  // namespace tumble::effects

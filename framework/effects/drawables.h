@@ -35,7 +35,7 @@ struct DrawnBar {
   DrawnPoint a, b;
 };
 
-/// Where two bodies turn about each other: a small ball, or a pin along an axis. A weld is not drawn, and told of all the same.
+/// Where two bodies turn about each other: a small ball, or a pin along an axis. A weld is not drawn, but is reported.
 struct DrawnPivot {
   std::string name;
   enum class Kind { kBall, kPin, kWeld } kind;

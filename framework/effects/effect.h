@@ -165,13 +165,13 @@ struct Carrier {
 struct Pull {
   int body_a, body_b;          // -1: the world
   double force;                // its size [N]
-  std::string words;           // who pulls, by whose law: "spring 'a' (spring_force of reference)"
+  std::string words;           // what pulls, by which law: "spring 'a' (spring_force of reference)"
 };
 
 /// Where a body of a scene is in a frame, by its name; nullptr for the world (an empty name).
 using PoseOf = std::function<const BodyPose*(const std::string& body)>;
 
-/// A law that an effect asks, and whether somebody provides it.
+/// A law that an effect asks, and whether a module provides it.
 struct NeededLaw {
   bool is_there;
   std::string what;            // "the force of a spring"
@@ -227,7 +227,7 @@ class Effect : public scene::Words {
   virtual void append_held_rows(const World&, const std::vector<RigidBodyState>&, std::vector<Constraint>&) const {}
   virtual void append_carriers(const World&, std::vector<Carrier>&) const {}
 
-  // What is recorded and told of it ------------------------------------------------------------------------------------------------------
+  // What is recorded and reported of it ---------------------------------------------------------------------------------------------------
 
   /// Where a frame keeps what its entries pull with; nullptr where nothing of it is recorded.
   virtual std::vector<double> Frame::*measured_as() const { return nullptr; }

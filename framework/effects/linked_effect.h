@@ -55,7 +55,7 @@ inline void append_laws_of_rows(const scene::Scene& scene, const Laws& laws, std
     needed.push_back({static_cast<bool>(laws.baumgarte_acceleration), "Baumgarte's acceleration", "a3"});
 }
 
-/// Does `work`; a StoppedRun out of it is told again with the link in front. Words are made where they are needed only: this is asked at every stage.
+/// Does `work`; a StoppedRun out of it is thrown again with the link in front. Words are made where they are needed only: this is asked at every stage.
 template <class Work>
 auto naming_link(const char* kind, const std::string& name, Work&& work) {
   try {
@@ -105,9 +105,9 @@ class LinkedEffect : public ListedEffect<Spec, Held> {
   }
   /// Both anchors of a link. @throws UserError where neither can move
   std::pair<Anchor, Anchor> anchors_of(const Spec& spec, const BodyIndex& index, const World& world) const {
-    const std::string who = this->name() + " '" + spec.name + "'";
-    const std::pair<Anchor, Anchor> anchors{index.anchor(spec.a, who), index.anchor(spec.b, who)};
-    refuse_immovable(anchors.first.body, anchors.second.body, world, who);
+    const std::string subject = this->name() + " '" + spec.name + "'";
+    const std::pair<Anchor, Anchor> anchors{index.anchor(spec.a, subject), index.anchor(spec.b, subject)};
+    refuse_immovable(anchors.first.body, anchors.second.body, world, subject);
     return anchors;
   }
 };

@@ -2,11 +2,11 @@
 # Of an effect that is a folder the program gets a list of effects without it; of the others those files of the engines that know the effect are
 # compiled again. The linker takes these before the library's.
 set(engine_files ${CMAKE_SOURCE_DIR}/framework/engines)
-set(collision_files stepping/moving_world rd/retroactive rd/recorder)
-set(contact_files stepping/moving_world rd/retroactive rd/recorder)
+set(collision_files stepping/moving_world contact/world_step rd/retroactive rd/recorder)
+set(contact_files stepping/moving_world contact/world_step rd/retroactive rd/recorder)
 set(friction_files contact/contact_geometry contact/sequential_impacts rd/retroactive)
 set(callback_files events/advancement events/ordered)
-set(sleep_files stepping/moving_world stepping/path_turning rd/retroactive contact/impact_detection rd/recorder contact/persistent_contacts contact/contact_steps contact/contact_activation contact/contact_modes contact/sequential_impacts contact/sleeping)
+set(sleep_files stepping/moving_world stepping/path_turning rd/retroactive contact/impact_detection contact/world_step rd/recorder contact/persistent_contacts contact/contact_steps contact/contact_activation contact/contact_modes contact/sequential_impacts contact/sleeping)
 
 function(absent_effect_program name)
   add_executable(${name} EXCLUDE_FROM_ALL absent_effects.cpp ${ARGN})

@@ -120,7 +120,7 @@ TEST(LinkTrouble, AContactForceThatIsNotANumberIsNamed) {
   scene::Scene scene = scene_of({box("crate", {0.5, 0.5, 0.5}, 1.0, {0, 0, 0.5}, Vector3d::Zero()), plane("floor", Vector3d::Zero(), Vector3d::UnitZ())}, 1.0, Vector3d(0, 0, -9.81));
   for (scene::BodySpec& body : scene.bodies) body.restitution = 0.0;
   scene.contact.emplace();
-  expect_stopped(run(scene, clock.laws), {"t = 0.5", "'crate'", "lasting contact", "contact_forces", "not a number"}, 0.45, 0.55);
+  expect_stopped(run(scene, clock.laws), {"t = 0.5", "'crate'", "persistent contact", "contact_forces", "not a number"}, 0.45, 0.55);
 }
 
 TEST(LinkTrouble, ACallbackThatLeavesNoNumbersOrThrowsIsNamed) {

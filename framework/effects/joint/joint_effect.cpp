@@ -116,10 +116,10 @@ class JointEffect final : public ListedEffect<JointSpec, JointLink> {
   void check(const scene::Scene& scene, const scene::Refuse& refuse) const override {
     const scene::BodiesByName bodies(scene);
     for (const JointSpec& joint : specs(scene)) {
-      const std::string who = "joint '" + joint.name + "'";
-      if (joint.body_a == joint.body_b) refuse(joint.pointer, who + " joins body '" + joint.body_a + "' to itself", "Name another body as body_b.");
+      const std::string subject = "joint '" + joint.name + "'";
+      if (joint.body_a == joint.body_b) refuse(joint.pointer, subject + " joins body '" + joint.body_a + "' to itself", "Name another body as body_b.");
       if (!bodies.can_move(joint.body_a) && !bodies.can_move(joint.body_b))
-        refuse(joint.pointer, who + " joins " + (joint.body_b.empty() ? "'" + joint.body_a + "' to the world" : "'" + joint.body_a + "' and '" + joint.body_b + "'") + ": neither can move", "Name a movable body.");
+        refuse(joint.pointer, subject + " joins " + (joint.body_b.empty() ? "'" + joint.body_a + "' to the world" : "'" + joint.body_a + "' and '" + joint.body_b + "'") + ": neither can move", "Name a movable body.");
     }
   }
   std::string describe(const JointSpec& spec) const override {
@@ -202,7 +202,7 @@ class JointEffect final : public ListedEffect<JointSpec, JointLink> {
  private:
   /// The joint's own frame stands at the shared point; its z is the axis; x and y are any two across it, the same in both bodies.
   static JointLink link_of(const JointSpec& spec, const BodyIndex& index, const World& world) {
-    const std::string who = "joint '" + spec.name + "'";
+    const std::string subject = "joint '" + spec.name + "'";
     const Quaterniond world_from_joint = spec.kind == JointKind::kHinge ? shortest_turn(Vector3d::UnitZ(), spec.axis) : Quaterniond::Identity();
     const auto seen_from = [&](int body, Anchor& anchor, Quaterniond& body_from_joint) {
       anchor = {body, spec.point_m};
@@ -216,9 +216,9 @@ class JointEffect final : public ListedEffect<JointSpec, JointLink> {
     JointLink link;
     link.name = spec.name;
     link.kind = spec.kind;
-    seen_from(index.of(spec.body_a, who), link.a, link.a_from_joint);
-    seen_from(spec.body_b.empty() ? -1 : index.of(spec.body_b, who), link.b, link.b_from_joint);
-    refuse_immovable(link.a.body, link.b.body, world, who);
+    seen_from(index.of(spec.body_a, subject), link.a, link.a_from_joint);
+    seen_from(spec.body_b.empty() ? -1 : index.of(spec.body_b, subject), link.b, link.b_from_joint);
+    refuse_immovable(link.a.body, link.b.body, world, subject);
     return link;
   }
 

@@ -6,7 +6,7 @@
 
 namespace tumble::effects {
 
-/// Where a force begins or ends, as engines tell of it.
+/// Where a force begins or ends, as engines report it.
 Switch switch_of(const PointForce& force, int entry, bool on, double time);
 
 class ActingPointForces final : public SteadyForces {

@@ -47,9 +47,9 @@ class PointForceEffect final : public ListedEffect<PointForceSpec, PointForce> {
 
   void build(const scene::Scene& scene, const BodyIndex& index, World& world) const override {
     for (const PointForceSpec& spec : specs(scene)) {
-      const std::string who = "point force on '" + spec.body + "'";
-      const int body = index.of(spec.body, who);
-      if (world.bodies[static_cast<std::size_t>(body)].immovable()) throw UserError(who, "the body is immovable", "push a movable body");
+      const std::string subject = "point force on '" + spec.body + "'";
+      const int body = index.of(spec.body, subject);
+      if (world.bodies[static_cast<std::size_t>(body)].immovable()) throw UserError(subject, "the body is immovable", "push a movable body");
       world.effects.of<PointForce>().push_back({body, spec.force_n, spec.point_m, spec.start_s, spec.start_s + spec.duration_s});
     }
   }

@@ -154,7 +154,7 @@ void guard_constraints(const Laws& laws, Laws& safe) {
   };
   vector_law(safe.constraint_multipliers, "rods and joints", "constraint_multipliers");
   vector_law(safe.constraint_correction, "rods and joints", "constraint_correction");
-  vector_law(safe.contact_forces, "lasting contact", "contact_forces");
+  vector_law(safe.contact_forces, "persistent contact", "contact_forces");
 }
 
 }  // namespace

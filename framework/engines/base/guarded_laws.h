@@ -11,8 +11,8 @@ using tumble::StoppedForGood;
 using tumble::StoppedRun;
 using tumble::naming;
 
-/// The same laws; each throws StoppedRun where it fails, naming itself and who wrote it. `NotImplemented` and `UserError` pass
-/// through: a law that nobody has written is no failure of a run. A time of impact that is nonsense passes too: it is only a hint.
+/// The same laws; each throws StoppedRun where it fails, naming itself and its author. `NotImplemented` and `UserError` pass
+/// through: a law that is not written is no failure of a run. A time of impact that is nonsense passes too: it is only a hint.
 Laws guarded(const Laws& laws);
 
 }  // namespace tumble::engines

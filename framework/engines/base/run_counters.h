@@ -26,7 +26,7 @@ struct RunCounters {
   std::uint64_t contact_solves = 0, contact_points = 0, contact_sweeps = 0, contact_factorisations = 0, contact_unsolved = 0, contacts_begun = 0, contacts_ended = 0, contact_landings = 0, heap_steps = 0, friction_points = 0;
   std::uint64_t pair_checks = 0, anti_messages = 0, states_kept = 0;   // states_kept: the most at any time
   std::uint64_t bodies_put_to_sleep = 0, body_steps_asleep = 0;
-  std::uint64_t passages_begun = 0, passages_let_go = 0;   // of processes; fewer let go where the run ends on some, all by who goes back in time
+  std::uint64_t passages_begun = 0, passages_let_go = 0;   // of processes; fewer are let go where the run ends on some
   std::uint64_t impacts_at_home = 0, impacts_across = 0, least_of_a_thread = 0;   // of threads: see named()
   std::uint64_t rounds = 0, held_back = 0, most_states = 0;   // of threads; events that had to wait for global virtual time; of one body at any time
   collision::ImpactCost collision;

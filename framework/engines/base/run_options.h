@@ -33,7 +33,7 @@ struct Callback {
   std::function<void(int body, RigidBodyState& state)> act;
 };
 
-/// Who moves with whom at a frame that is committed, as the flights of that instant say: what tests of groups look at.
+/// Which bodies move together at a committed frame, by the flights of that instant: tests of islands look at it.
 struct Membership {
   double time;                     // [s]
   std::vector<int> segments;       // by body: of the process that it is part of; -1: it flies freely, or is immovable
@@ -49,14 +49,14 @@ struct RunOptions {
   FaultInjection faults;
   int threads = 1;                         // of the fast timewarp; what is committed is the same with any number
   int most_states = 0;                     // of a body that the fast timewarp keeps, at least 8; 0: as many as it takes
-  Engine timewarp;                         // what "tw" is where the laws hold no scheduling; empty: nobody has written a scheduler
+  Engine timewarp;                         // what "tw" is where the laws hold no scheduling; empty: there is no scheduler
   std::string propagator;                  // "laws": bodies go by the laws' integration; "auto": in closed form where nothing but gravity acts.
                                            // Empty: laws for rd, which shows a student's work; the others know closed forms only
   std::optional<double> step_s;            // overrides the scene's
   std::optional<double> duration_s;        // overrides the scene's
   double frame_rate_hz = 60.0;             // of recorded frames
   std::vector<Callback> callbacks;         // in order of time
-  std::function<void(const Membership&)> on_membership;   // told at each frame by the engines that go from event to event; empty: nobody asks
+  std::function<void(const Membership&)> on_membership;   // called at each frame by the engines that go from event to event; empty: not called
   std::string command;                     // for the record
 };
 

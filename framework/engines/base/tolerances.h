@@ -49,9 +49,9 @@ inline constexpr double kSeen = 1.1;
 
 // ---- Rest, of the restitution threshold
 /// Slower than this a body may be about to rest. Larger: slow swings are taken for rest. Smaller:
-/// heaps never sleep, and contacts that hop are pressed down.
+/// large islands never sleep, and slow separations are suppressed.
 inline constexpr double kSlow = 0.1;
-/// Slower than this nothing slides or strikes: 1e-7 m/s where the threshold is 1 mm/s, the creep
+/// Slower than this nothing slides or collides: 1e-7 m/s where the threshold is 1 mm/s, the creep
 /// that a sticking contact is allowed. Larger: slow sliding counts as sticking. Smaller: contacts
 /// that stick are reported as sliding.
 inline constexpr double kCreep = 1e-4;

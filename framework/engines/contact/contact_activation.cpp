@@ -1,4 +1,5 @@
-// Points that come down within a step: when they do, and the blow they strike. Part of PersistentContacts.
+// Contacts that become active within a step: when their gaps close, and the impact there.
+// Part of PersistentContacts.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -53,7 +54,7 @@ std::vector<Velocity> PersistentContacts::velocities_now(const ContactIsland& is
   return now;
 }
 
-// Points that touch and part at the step's start, more slowly than they could leave in it: they hop, and have come down again by its end,
+// Points that touch and separate at the step's start, more slowly than they could leave in it: their gap closes again by its end,
 //   gap(h) = h (v0 + v1) / 2 = 0,  so that  v1 = -v0.
 // Without that they would end at rest where half of their first velocity has taken them: an edge that rocks would be lifted by
 // v0 h / 2 each time, which is more energy than it has wherever v0 < g h. @return whether there are any
@@ -86,7 +87,7 @@ bool PersistentContacts::is_activated(const ContactIsland& island, const std::ve
   return false;
 }
 
-// When points that are apart come down where nothing holds them up, from the velocities at the step's ends:
+// When gaps close that nothing keeps open, from the velocities at the step's ends:
 //   gap(t) = r + v0 t + (v1 - v0) t^2 / (2 h).
 std::vector<PersistentContacts::Activation> PersistentContacts::predict_activations(const ContactIsland& island, const std::vector<StepContact>& contacts, double h) {
   std::vector<StepContact> active;
@@ -111,9 +112,9 @@ std::vector<PersistentContacts::Activation> PersistentContacts::predict_activati
   return activations;
 }
 
-// Points that are apart at the step's start: where one comes down faster than the rest speed the step ends; slower ones stay, with the
-// velocity at the end that takes them down by then; others must not come farther.
-// @return an earlier target (or the same after a blow) to begin the step again with
+// Points that are apart at the step's start: where one closes its gap faster than the restitution threshold the step ends; slower
+// ones stay, with the velocity at the end that closes the gap by then; others must not come nearer than that.
+// @return an earlier target (or the same after an impact) to begin the step again with
 std::optional<double> PersistentContacts::handle_activations(const ContactIsland& island, std::vector<StepContact>& contacts, double h) {
   const std::vector<Activation> activations = predict_activations(island, contacts, h);
   std::vector<bool> stays(contacts.size(), true);
@@ -126,7 +127,7 @@ std::optional<double> PersistentContacts::handle_activations(const ContactIsland
   for (const Activation& activation : activations) {
     StepContact& step_contact = contacts[activation.step_contact];
     stays[activation.step_contact] = !(activation.within && activation.speed > restitution_threshold_);
-    const double steady = 2 * (step_contact.point.gap - geometry_.margin(step_contact.pair)) / h;   // from this speed evenly to none it comes down at the step's end
+    const double steady = 2 * (step_contact.point.gap - geometry_.margin(step_contact.pair)) / h;   // from this speed evenly to none it closes its gap at the step's end
     step_contact.activates = false;
     step_contact.target = std::min(0.0, activation.approach - steady);
     if (activation.within && stays[activation.step_contact] && activation.approach > steady) impacts.push_back({step_contact.pair, step_contact.point, -steady, false});
@@ -144,7 +145,7 @@ std::optional<double> PersistentContacts::handle_activations(const ContactIsland
 // Points that touch and come together: their velocities jump. @return whether any did
 bool PersistentContacts::apply_impacts_of_active(const ContactIsland& island, const std::vector<StepContact>& contacts) {
   if (std::none_of(contacts.begin(), contacts.end(), [&](const StepContact& step_contact) { return is_active(step_contact); })) return false;
-  // Corners of an edge that comes down flat strike together, though rounding takes one of them down first.
+  // The corners of an edge that lands flat take part together, though by rounding one of them closes its gap first.
   std::vector<StepContact> down;
   for (const StepContact& step_contact : contacts) {
     const double size = geometry_.size_of(step_contact.pair);
@@ -166,7 +167,7 @@ bool PersistentContacts::apply_impact(const ContactIsland& island, std::vector<S
   std::stable_sort(down.begin(), down.end(), [](const StepContact& a, const StepContact& b) { return a.pair < b.pair; });
   const ContactProblem problem = problem_of(island, down, moving_.states(), 0.0);
   const std::vector<Velocity> before = velocities_of(problem);
-  // What goes less than a shell in a step is left to the step's impulses.
+  // An approach by less than a margin in a step is left to the step's impulses.
   const bool any = [&] {
     for (std::size_t i = 0; i < down.size(); ++i)
       if ((is_active(down[i]) || down[i].target < 0) && approach(problem, i, before) + down[i].target > std::max(kCreep * restitution_threshold_, geometry_.margin(down[i].pair) / memory_.longest_step)) return true;
@@ -187,7 +188,7 @@ bool PersistentContacts::apply_impact(const ContactIsland& island, std::vector<S
     moving_.set_state(body, state);
   }
   ++counters_.contact_landings;
-  // The energy of all, which the first event stands for; not told where links end in, or bodies touch, what is driven in different ways.
+  // The first event has the energy of all; none is given where links end in, or bodies touch, what is driven in different ways.
   const Vector3d driven = ImpactBodies(moving_, laws_).driven_velocity(touched_bodies(island, down)).value_or(Vector3d::Constant(kUnset));
   EnergyOfImpact energy;
   for (std::size_t k = 0; k < island.bodies.size(); ++k) {
@@ -195,7 +196,7 @@ bool PersistentContacts::apply_impact(const ContactIsland& island, std::vector<S
     energy.add(body.inertia, moving_.state(island.bodies[k]).world_from_body, before[k], solution.velocities[k], driven);
   }
   double excess = energy.excess(solution.converged ? work_of(problem, solution.impulses_world, before, solution.velocities) : energy.change);   // unsolved: never more is all that can be asked
-  for (std::size_t from = 0, to = 0; from < down.size(); from = to) {   // a pair's hardest blow stands for it
+  for (std::size_t from = 0, to = 0; from < down.size(); from = to) {   // the largest impulse of a pair stands for it
     std::size_t largest = from;
     for (; to < down.size() && down[to].pair == down[from].pair; ++to)
       if (solution.impulses_world[to].squaredNorm() > solution.impulses_world[largest].squaredNorm()) largest = to;

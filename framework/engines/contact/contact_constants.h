@@ -14,7 +14,7 @@ struct ContactConstants {
   /// of the smaller body: far above rounding, far below what is seen or measured. Larger:
   /// bodies rest visibly apart. Smaller: gaps drown in rounding
   double margin = 1e-10;
-  /// of the smaller body: takes up what sweeps leave in heaps. Larger: a heap rests visibly
+  /// of the smaller body: takes up what sweeps leave in large islands. Larger: a large island rests visibly
   /// apart. Smaller: more corrections a step
   double large_island_margin = 1e-4;
   /// margins: nearer than this two touch at the start of a step; farther, a point lands in it
@@ -26,7 +26,7 @@ struct ContactConstants {
   // ---- Manifolds: which points of two bodies are looked at
   /// of the smaller body: points farther away are not looked at in a step. Larger: slower
   double reach = 0.25;
-  /// of the smaller body: no step leads deeper, save in heaps; a point that is deeper gets a
+  /// of the smaller body: no step leads deeper, save in large islands; a point that is deeper gets a
   /// second look
   double deep = 0.01;
   /// of the penetration: how far the deepest point of a manifold may be from it. A point that is deeper is not part of the overlap;
@@ -63,21 +63,21 @@ struct ContactConstants {
   /// of the smaller body: how far a point may be from where an impulse acted to take it as
   /// its warm start
   double warm_start_within = 1e-2;
-  /// the same in heaps, where points come and go, and the sum of a pair's impulses is worth
+  /// the same in large islands, where points come and go, and the sum of a pair's impulses is worth
   /// more than their places
   double warm_start_within_in_large_island = 0.5;
   /// bodies, or contacts, of an island: so many are solved to the last digit, and their ends of sliding are located in time. Larger:
-  /// slower. Smaller: heaps of a few bodies lose their order
+  /// slower. Smaller: large islands of a few bodies lose their order
   std::size_t few = 12;
   /// contacts of an island: more are too many for the dense matrix of the laws' contact_forces, and are solved by a few sweeps in_step
   std::size_t many_contacts = 64;
 
-  // ---- Heaps: large islands without restitution, solved in steps and not at instants
-  /// of one island in a step: more make it a heap
+  // ---- Large islands: large islands without restitution, solved in steps and not at instants
+  /// of one island in a step: more make it a large island
   int most_located_impacts = 8;
-  /// of the heap's speed
+  /// of the large island's speed
   double solved_in_large_island = 1e-5;
-  /// of the heap's speed: what sweeps leave at the worst of hundreds of contacts (0.28 in the
+  /// of the large island's speed: what sweeps leave at the worst of hundreds of contacts (0.28 in the
   /// bowl of 200 models, whose energy and gaps are right) its margin and the next step take
   /// up; where as much is left as there was, no answer was found
   double unsolved_in_large_island = 1.0;
@@ -92,7 +92,7 @@ struct ContactConstants {
   /// of the way down: the step ends before the point lands, a second, short one takes it all
   /// the way
   double before_activation = 0.99;
-  /// of the restitution threshold: no better answer is asked of a heap, and what is nearer than this goes in the longest step is down
+  /// of the restitution threshold: no better answer is asked of a large island, and what is nearer than this goes in the longest step is down
   double still = 1e-3;
   /// of the longest step: what lands this soon is predicted to its third power, below a
   /// margin
@@ -102,7 +102,7 @@ struct ContactConstants {
   /// for ends of sliding within a step: bodies that chatter stop with the step
   int most_searches = 16;
 
-  // ---- Position correction: what turning and errors leave of overlaps is taken back
+  // ---- Position correction: what turning and errors leave of overlaps is removed
   /// rounds
   int most_corrections = 10;
   /// of the smaller body: what turning leaves between active contacts, at most
@@ -117,7 +117,7 @@ struct ContactConstants {
   double most_mass_ratio = 1e4;
   /// rounds
   int most_corrections_in_large_island = 24;
-  /// heap margins: nearer than this is taken back
+  /// large-island margins: nearer than this is taken back
   double too_near = 0.1;
   /// of the farthest: the next round takes the rest
   double correction_left_in_large_island = 1e-2;
@@ -125,10 +125,10 @@ struct ContactConstants {
   double correction_reach_in_large_island = 1.5;
   /// likewise, in what two bodies have moved by the last correction: levers make it long
   double correction_moved_in_large_island = 2.0;
-  /// heap margins: of larger gaps, and than the restitution threshold goes in a step, a bound
+  /// large-island margins: of larger gaps, and than the restitution threshold goes in a step, a bound
   /// will do
   double measured = 10.0;
-  /// of the heap margin: a pair that has moved less since keeps its manifold
+  /// of the large-island margin: a pair that has moved less since keeps its manifold
   double same_place = 0.05;
 
   // ---- Energy: contacts bring none in

@@ -1,6 +1,6 @@
 // Whether contacts have brought energy in. Part of PersistentContacts.
 //
-// What touches and does not rebound only ever takes energy away: friction does, and blows without rebound. An island that carries more than the
+// What touches and does not rebound only ever takes energy away: friction does, and impacts without rebound. An island that carries more than the
 // forces of the step can hold in balance (a heavy slab on a small ball, a box on the crest of another) topples faster than its step
 // follows: the impulses of the step's middle, found where the bodies would be without toppling, push along what has turned away since, and do work.
 #include <algorithm>

@@ -34,7 +34,7 @@ class ContactGeometry {
   double size_of(Pair pair) const;
   /// How far apart contacts are kept. [m]
   double margin(Pair pair) const;
-  /// The same in heaps, whose problems are solved by a few sweeps. [m]
+  /// The same in large islands, whose problems are solved by a few sweeps. [m]
   double large_island_margin(Pair pair) const;
 
   // In these places (states by body index):
@@ -48,6 +48,7 @@ class ContactGeometry {
   double distance_of(Pair pair, const std::vector<RigidBodyState>& states, double limit = std::numeric_limits<double>::infinity()) const;
   /// A bound from below, at once. [m]
   double least_gap_of(Pair pair, const std::vector<RigidBodyState>& states) const;
+  bool overlap(Pair pair, const std::vector<RigidBodyState>& states) const { return least_gap_of(pair, states) < 0 && distance_of(pair, states) < 0; }
 
   /// Where the force of a contact point acts. World frame. [m]
   Vector3d point_of(Pair pair, const collision::ManifoldPoint& point) const;

@@ -16,7 +16,7 @@ struct ContactIsland {
   std::vector<Pair> pairs;            // in contact
   std::vector<Pair> near;             // pairs with a body of the island that may meet in the step; those in contact among them
   std::vector<int> linked;            // places in MovingWorld::linked_groups()
-  bool large = false;                  // a heap: many bodies, solved in steps (large_islands.cpp)
+  bool large = false;                  // many bodies, solved in steps (large_islands.cpp)
 };
 
 /// Puts a body into a contact problem, once.

@@ -34,7 +34,7 @@ struct ContactMemory {
   // Warm start: of the last step, and of attempts at the one that has begun.
   std::map<Pair, std::vector<KnownImpulse>> last_impulses, tried_impulses;
   std::set<Pair> stuck;                   // pairs with friction that did not slide in the last step
-  // Heaps: bodies whose island has, or has had since it last came to rest, too many impacts a step to locate each.
+  // Large islands: bodies whose island has, or has had since it last came to rest, too many impacts a step to locate each.
   std::set<int> in_large_island;
   double impacts_counted_from = -kInfinity;   // impacts that cut a step were counted since [s], and how many of each island, by its first body
   std::map<int, int> impacts_counted;

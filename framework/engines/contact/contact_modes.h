@@ -1,10 +1,12 @@
-/// Which contacts with friction stick and which slide, told as events where that changes.
+/// Which contacts with friction stick and which slide; an event reports each change.
 ///
-/// A pair slides when the force is on the edge of Coulomb's cone at every point where the two push each other and one of these points
-/// slips, sticks when at none, and keeps its mode in between (a box that pivots about a corner). The force alone does not tell: on a slope as
-/// steep as friction holds it is at its limit and nothing slips. A contact begins sticking; it is a new one where the pair has not
-/// pushed for a twentieth of a second. What changes again sooner than that after it was told is told then, if it has not changed
-/// back: a heap that chatters does not tell of every step.
+/// A pair slides when the force is on the edge of Coulomb's cone at every point where the two push
+/// each other and one of these points slips. It sticks when the force is on the edge at none. In
+/// between (a box that pivots about a corner) it keeps its mode. The force alone does not decide: on
+/// a slope as steep as friction holds it is at its limit and nothing slips. A contact begins
+/// sticking; it is a new one where the pair has not pushed for a twentieth of a second. A change
+/// that follows a reported one sooner than that is reported at the end of that time, if it still
+/// holds: a chattering island does not report every step.
 #pragma once
 
 #include <map>

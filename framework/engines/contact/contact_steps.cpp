@@ -72,7 +72,7 @@ void PersistentContacts::warm_start(const std::vector<StepContact>& contacts, co
         least = distance;
         nearest = &problem.contacts[i];
       }
-      // A longer step needs more where the force lasts, no more where it was a blow.
+      // A longer step needs more where the force lasts, no more where it was an impact.
       if (nearest) nearest->warm_start_world += std::min(1.0, h / known.duration) * known.impulse_world;
     }
   }
@@ -94,7 +94,7 @@ ContactSolution PersistentContacts::solve(const ContactIsland& island, const Con
       options.most_sweeps_alone = kContact.sweeps_in_step;
     }
     ContactSolution solution = laws_.friction_impulses ? laws_.friction_impulses(problem, options) : solve_contacts(problem, options);
-    if (!laws_.friction_impulses && !solution.converged && solution.residual > kContactSolved) {   // a guess can lead astray: once more from nothing, with every means
+    if (!laws_.friction_impulses && !solution.converged && solution.residual > kContactSolved) {   // a warm start can mislead: once more from zero, with every means
       ContactProblem afresh = problem;
       for (PushingContact& contact : afresh.contacts) contact.warm_start_world.setZero();
       ContactOptions every;
@@ -129,7 +129,7 @@ ContactSolution PersistentContacts::solve(const ContactIsland& island, const Con
     b[i] = (rate - c.target) / h;
   }
   const VectorXd f = naming("body '" + moving_.world().bodies[island.bodies.front()].name + "' and what it touches", [&] { return laws_.contact_forces(J * MJ, b); });
-  if (f.size() != m) throw StoppedRun("lasting contact (contact_forces of " + laws_.constraint_source + ") returned " + std::to_string(f.size()) + " forces for " + std::to_string(m) + " points");
+  if (f.size() != m) throw StoppedRun("persistent contact (contact_forces of " + laws_.constraint_source + ") returned " + std::to_string(f.size()) + " forces for " + std::to_string(m) + " points");
   const VectorXd change = MJ * (h * f);
   ContactSolution solution;
   for (Eigen::Index i = 0; i < m; ++i) {
@@ -143,8 +143,44 @@ ContactSolution PersistentContacts::solve(const ContactIsland& island, const Con
   return solution;
 }
 
+void PersistentContacts::note_unsolved(const ContactIsland& island, const ContactSolution& solution, double h) {
+  const bool is_heap = island.large || (rules_.plastic_impacts == scene::PlasticImpacts::kInStep && solution.impulses_world.size() > kContact.many_contacts);
+  const double allowed = is_heap ? kContact.unsolved_in_large_island : kContactSolved;
+  if (solution.converged || solution.residual <= allowed) return;
+  unsolved_.note(RunWatch::Kind::kContactUnsolved, names_of(moving_.world(), island.bodies), {solution.residual, allowed, moving_.time(), h});
+}
+
+void PersistentContacts::require_numbers(const ContactIsland& island, const ContactSolution& solution) const {
+  for (std::size_t k = 0; k < island.bodies.size(); ++k)
+    if (!solution.velocities[k].linear_world.allFinite() || !solution.velocities[k].angular_world.allFinite())
+      throw StoppedRun("persistent contact: the impulses on body '" + moving_.world().bodies[island.bodies[k]].name + "' are not numbers");
+}
+
+// Puts a solution's impulses where the next problem of these pairs finds its warm start.
+void PersistentContacts::remember(const std::vector<StepContact>& contacts, const ContactProblem& problem, const ContactSolution& solution, double h, std::map<Pair, std::vector<KnownImpulse>>& store) const {
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    std::vector<KnownImpulse>& known = store[contacts[i].pair];
+    if (i == 0 || contacts[i].pair != contacts[i - 1].pair) known.clear();
+    const RigidBodyState& a = moving_.state(contacts[i].pair.first);
+    known.push_back({a.world_from_body.conjugate() * (problem.contacts[i].point_world - a.com_world), solution.impulses_world[i], h});
+  }
+}
+
+// What the next step remembers of this one's impulses.
+void PersistentContacts::keep_warm_start(const ContactIsland& island, const std::vector<StepContact>& contacts, const ContactProblem& problem, const ContactSolution& solution, double h) {
+  note_unsolved(island, solution, h);
+  remember(contacts, problem, solution, h, next_impulses_);
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    const Vector3d force = solution.impulses_world[i] / h, point = problem.contacts[i].point_world;
+    const bool slides = solution.modes[i] == ContactMode::kSlide && !force.isZero(0.0) && slip_speed(problem, i, solution.velocities) > kCreep * restitution_threshold_;
+    if (i == 0 || contacts[i].pair != contacts[i - 1].pair) next_stuck_.insert(contacts[i].pair);
+    if (slides) next_stuck_.erase(contacts[i].pair);
+    if (!force.isZero(0.0)) forces_.push_back({contacts[i].pair.first, contacts[i].pair.second, point, contacts[i].point.normal_b_to_a_world, force});
+  }
+}
+
 // Where a pair that slid and would stick at the end of the step stops sliding: when the friction that stops it is all there can be. What
-// stops the slip is A + F s, with F the steady forces along it, the friction at hand M s; two steps of different lengths tell A and F.
+// stops the slip is A + F s, with F the steady forces along it, the available friction M s; two steps of different lengths tell A and F.
 std::optional<double> PersistentContacts::stop_of_sliding(const ContactProblem& problem, const std::vector<StepContact>& contacts, const ContactSolution& solution, double h) {
   if (contacts.size() > kContact.few) return std::nullopt;
   const Pair* stopping = nullptr;
@@ -203,7 +239,7 @@ std::optional<double> PersistentContacts::stop_of_sliding(const ContactProblem& 
   return moving_.time() + h * std::max(least, kContact.soon);
 }
 
-// Does anything come down in this step that did not touch before?
+// Does a contact become active in this step that did not touch before?
 bool PersistentContacts::activates(const std::vector<StepContact>& contacts, const ContactSolution& solution) {
   for (std::size_t i = 0; i < contacts.size(); ++i)
     if (contacts[i].activates && solution.impulses_world[i].squaredNorm() > 0.0) return true;
@@ -313,7 +349,7 @@ bool PersistentContacts::set_paths(const ContactIsland& island, const std::vecto
       if (contacts[i].start_gap < kContact.activated * geometry_.margin(contacts[i].pair) && solution.impulses_world[i].squaredNorm() > 0.0) active.push_back({contacts[i].pair, contacts[i].point, &contacts_at});
   // Pairs that are not in contact may meet within the step: that is for the finding of impacts.
   const bool apart = correction_.correct_positions(island, island.pairs, ends, moving_.target(), active);
-  // The path goes where a shift has taken its end, however short the step: velocities along it are no momenta. What rods and joints hold is put
+  // The path goes where position correction has moved its end, however short the step: velocities along it are no momenta. What rods and joints hold is put
   // right where a step ends within it (MovingWorld::commit).
   for (const int body : island.bodies) {
     if (activation) set_straight_path(body, ends[body]);

@@ -75,7 +75,7 @@ class ImpactBodies {
       int group;
       MatrixXd velocities;                               // (6 a body of the group, directions): by the links, per unit impulse
     };
-    std::vector<Reaction> reactions;                     // empty: nothing holds them (or nobody has asked)
+    std::vector<Reaction> reactions;                     // empty: no rod or joint holds them, or they were not asked for
 
     double free_along(const Vector3d& direction) const { return direction.dot(free_world * direction); }
     /// Along the normal.

@@ -73,8 +73,8 @@ std::vector<ImpactDetection::Pair> ImpactDetection::pairs_of_boxes() {
   return pairs;
 }
 
-// In a step that has begun again a body that flies alone still has the box of the longer one: whoever met nobody there meets nobody here.
-// @return whether one of these has met somebody, so that it matters where its path ends now
+// In a step that has begun again a body without contacts still has the box of the longer one: where that met no box, neither does
+// the shorter one's. @return whether one of these met another, so that the end of its path matters now
 bool ImpactDetection::ask_for_ends(const std::vector<Pair>& pairs) {
   bool any = false;
   for (const auto& [a, b] : pairs)
@@ -162,7 +162,7 @@ std::optional<Earliest> ImpactDetection::find_missed(const std::vector<Pair>& pa
   return earliest;
 }
 
-// What rounding leaves of an overlap is taken back by moving the lighter body along the normal; a few roundings at most.
+// An overlap that rounding leaves is removed by moving the lighter body along the normal; a few roundings at most.
 void ImpactDetection::separate(const std::vector<Pair>& pairs) {
   for (int round = 0; round < 20; ++round) {
     bool clean = true;

@@ -41,7 +41,7 @@ double ApproachThreshold::value() const { return std::max(kSolverRounding * fast
 
 std::string left_approaching_message(const Laws& laws) {
   return fmt::format("collision (collision_impulse, apply_impulse of {}) left them approaching, however often it was applied: the impulse has no effect, the wrong sign or too "
-                     "little size, or a lasting contact is needed there", laws.impulse_source);
+                     "little size, or a persistent contact is needed there", laws.impulse_source);
 }
 
 double normal_velocity(const Contact& contact, const Body& a, const Body& b) {

@@ -46,9 +46,9 @@ inline constexpr int kMostImpactRounds = 10000;
 /// "collision (collision_impulse, ...) left them approaching ...": why a run stops whose law is still approached after all these rounds.
 std::string left_approaching_message(const Laws& laws);
 
-/// A pair without a lasting contact that gravity or turning presses together would meet infinitely often in no time: it is sent apart at the rest
+/// A pair without a persistent contact that gravity or turning presses together would meet infinitely often in no time: it is sent apart at the rest
 /// speed (a micro-collision, Mirtich 1996). Pushes at several points approach that speed together, each round by a part of what is missing.
-inline constexpr double kFastEnough = 0.5;   // of the rest speed: what separates so fast gets no further push
+inline constexpr double kFastEnough = 0.5;   // of the restitution threshold: what separates so fast gets no further push
 inline constexpr int kMostPushes = 200;      // rounds
 
 /// Not by the law that is being judged: a record of what the impulse did. [m/s]
@@ -70,7 +70,7 @@ struct BallOnSupport {
 };
 
 /// Whether it stays there: gravity presses it straight against the support (without friction a slope holds nothing), it turns evenly if it turns, and
-/// it moves more slowly than the rest speed (or does not bounce at all). That nothing else pushes it is the caller's to know.
+/// it moves more slowly than the restitution threshold (or does not bounce at all). That nothing else pushes it is the caller's to know.
 bool comes_to_rest(const BallOnSupport& ball);
 
 }  // namespace tumble::engines

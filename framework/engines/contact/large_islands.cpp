@@ -1,10 +1,13 @@
-// Steps of heaps: many bodies without restitution in one island, asked for in steps, not in instants. Part of PersistentContacts.
+// Steps of large islands: many bodies without restitution, solved in steps and not at instants.
+// Part of PersistentContacts.
 //
-// What one blow changes changes dozens of others in the same instant, so that nothing is gained by locating any of them. A heap goes
+// One impact changes dozens of others in the same instant, so nothing is gained by locating any of
+// them. A large island goes
 //   x' = x + h v',   q' = q turned by h omega'
-// with the velocities v' that solve the contact problem at the middle of the step, where its surfaces are faced evenly (Moreau's
-// midpoint); contacts that would be passed by then are faced at the start. The answer is good to a hundred-thousandth of the heap's
-// speed; a shell of that size around each body takes up what is missing, so that gaps stay open.
+// with the velocities v' that solve the contact problem at the middle of the step, where surfaces
+// are met evenly (Moreau's midpoint); contacts that would be passed by then are met at the start.
+// The answer is good to a hundred-thousandth of the island's speed; a margin of that size around
+// each body takes up the error, so that gaps stay open.
 // Source: J. J. Moreau, "Numerical aspects of the sweeping process", 1999.
 #include <algorithm>
 #include <cmath>
@@ -26,12 +29,12 @@ bool PersistentContacts::is_large(const ContactIsland& island) const {
 }
 
 void PersistentContacts::report_large_islands() {
-  const std::string words = fmt::format("heaps of more than {} bodies that strike more than {} blows a step go in steps until they lie (heap_steps): right to first order in the step. "
-                                        "\"contact\": {{ \"plastic_impacts\": \"located\" }} finds every blow at its instant, and takes longer", kContact.few, kContact.most_located_impacts);
+  const std::string words = fmt::format("islands of more than {} bodies with more than {} impacts a step are solved in steps until they rest (heap_steps): right to first order in the step. "
+                                        "\"contact\": {{ \"plastic_impacts\": \"located\" }} finds every impact at its instant, and takes longer", kContact.few, kContact.most_located_impacts);
   if (std::find(counters_.notices.begin(), counters_.notices.end(), words) == counters_.notices.end()) counters_.notices.push_back(words);
 }
 
-// A blow is about to cut the step for this island: too many of them, and it is asked for in steps from now on, until it rests or falls apart.
+// An impact is about to cut the step for this island. Too many of them, and it is solved in steps from now on, until it rests or separates.
 bool PersistentContacts::becomes_large(const ContactIsland& island) {
   if (rules_.plastic_impacts != scene::PlasticImpacts::kAutomatic || !island.linked.empty() || island.bodies.size() <= kContact.few) return false;
   if (!(moving_.time() < memory_.impacts_counted_from + memory_.longest_step)) {
@@ -72,7 +75,7 @@ std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_of_lar
         const Vector3d v = a.velocity_world + a.omega_world.cross(point - a.com_world) - b.velocity_world - b.omega_world.cross(point - b.com_world);
         target += 0.5 * p.normal_b_to_a_world.dot(v);
       }
-      if (target > 0) target = kContact.restored * std::max(0.0, margin - p.gap) / memory_.longest_step;   // not / h: in a step cut short that would be a blow
+      if (target > 0) target = kContact.restored * std::max(0.0, margin - p.gap) / memory_.longest_step;   // not / h: in a step cut short that would be an impact
       contacts.push_back({pair, p, target, false});
     }
   }
@@ -88,7 +91,7 @@ std::optional<double> PersistentContacts::take_large_island_step(const ContactIs
   options.tolerance = kContact.solved_in_large_island;
   options.least_speed = kContact.still * restitution_threshold_;
   options.most_sweeps_alone = kContact.sweeps_in_large_island;
-  if (locates()) {           // nobody has asked for steps: their problems are at least solved
+  if (locates()) {           // the scene does not ask for steps: their problems are solved at least
     options.enough = kContact.solved_in_large_island;
     options.most_sweeps = kContact.sweeps_in_large_island;
   } else {

@@ -47,7 +47,7 @@ void PersistentContacts::begin_where_touching(const std::vector<Pair>& pairs) {
   remove_overlaps();
 }
 
-// A scene's places are rounded: of bodies wedged between others no single shift takes that back.
+// Positions of a scene are rounded: for bodies wedged between others no single displacement removes the overlap.
 void PersistentContacts::remove_overlaps() {
   std::vector<RigidBodyState> states = moving_.states();
   const auto closed = [&](const Pair& pair) { return geometry_.distance_of(pair, states, 0.0) < 0; };
@@ -71,7 +71,7 @@ double PersistentContacts::reach(Pair pair) {
   return std::min(kContact.reach * size, way) + kContact.open_band * geometry_.margin(pair);
 }
 
-// Where blows are dealt with in the step, a body may be as fast by its end as any that can meet it. [m/s], by body
+// Where impacts are solved in the step, a body may be as fast by its end as any that can meet it. [m/s], by body
 std::vector<double> PersistentContacts::speeds_about(const std::vector<Pair>& candidates) {
   std::vector<double> speeds(moving_.size(), 0.0);
   std::vector<char> meets(moving_.size(), 0);
@@ -146,7 +146,7 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
     points_.emplace(pair, std::move(points));
   }
   if (touching.empty()) return std::nullopt;
-  // What touches or is linked is solved together, island by island; large islands without restitution are heaps.
+  // What touches or is linked is solved together, island by island; large islands without restitution are solved in steps.
   islands_ = islands(touching);
   for (ContactIsland& island : islands_) island.large = is_large(island);
   memory_.in_large_island.clear();
@@ -173,7 +173,7 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
 
 // Every island's step. @return the earliest target that one of them asks for: the step begins again for all, and once for many groups is
 // cheaper than once for each. Of ends of sliding, the one that is looked for is that of the earliest. The island that asked last is asked first,
-// and as long as it asks the others' steps would be in vain: one that lies at rest is not solved again for each blow of a pile elsewhere.
+// and as long as it asks the others' steps would be in vain: one at rest is not solved again for each impact of a large island elsewhere.
 std::optional<double> PersistentContacts::take_steps(double h) {
   const auto step = [&](const ContactIsland& island) { return island.large ? take_large_island_step(island, h) : take_step(island, h); };
   const auto first = std::find_if(islands_.begin(), islands_.end(), [&](const ContactIsland& island) { return std::binary_search(island.bodies.begin(), island.bodies.end(), memory_.asked_last); });
@@ -202,7 +202,7 @@ std::optional<double> PersistentContacts::take_steps(double h) {
   return earliest;
 }
 
-// A step has been cut once more: contacts that ask for ever shorter ones, or whose problems all stay unsolved, would take hours.
+// A step has been cut once more. Contacts that ask for ever shorter ones, or problems that all stay unsolved, would take hours.
 void PersistentContacts::require_progress() {
   const double t = moving_.time();
   if (!(memory_.cut_since <= t && t < memory_.cut_since + memory_.longest_step)) {
@@ -254,20 +254,20 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
   const bool located = locates(), moves = located && speed(island) > kContact.moving * restitution_threshold_;
   // Points that touch and approach: their velocities jump, without rebound, and the step begins again.
   if (moves && apply_impacts_of_active(island, contacts)) return moving_.target();
-  // The impulses that keep what touches from approaching; points that part slowly come down again by the step's end.
+  // The impulses that keep what touches from approaching; points that separate slowly close their gap again by the step's end.
   ContactProblem problem = problem_of(island, contacts, moving_.states(), h);
   const bool separates = allow_separation(island, contacts, problem);
   ContactSolution solution = solve(island, problem, h);
   remember(contacts, problem, solution, h, memory_.tried_impulses);
   bool activation = activates(contacts, solution);
-  // Points that come down within the step: it ends where the first does, or they are let down by its end. Too many of them make the island a heap.
+  // Contacts that become active within the step: it ends where the first does, or their gaps close by its end. Too many, and the island is solved in steps.
   if (moves && is_activated(island, contacts, problem, solution, h)) {
     if (becomes_large(island)) return moving_.target();
     if (const auto again = handle_activations(island, contacts, h)) return again;
     problem = problem_of(island, contacts, moving_.states(), h);
     solution = solve(island, problem, h);
     activation = false;
-  } else if (activation && separates) {   // on straight paths what hops has not left
+  } else if (activation && separates) {   // on straight paths what separates has not left
     keep_together(contacts, problem);
     solution = solve(island, problem, h);
     activation = activates(contacts, solution);
@@ -288,7 +288,7 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
     solution = solve(island, problem, h);
     activation = activates(used, solution);
     if (!activation || !separates) continue;
-    // A point lands after all: paths are straight then, and what was to hop stays.
+    // A contact becomes active after all: paths are straight then, and what was to separate stays.
     for (std::size_t i = 0; i < used.size(); ++i)
       if (!contacts[i].activates) problem.contacts[i].target = used[i].target -= contacts[i].target;
     solution = solve(island, problem, h);
@@ -297,7 +297,7 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
   require_numbers(island, solution);
   // A pair that stops sliding ends the step there.
   if (const auto stop = located ? stop_of_sliding(problem, contacts, solution, h) : std::nullopt) return stop;
-  // The bodies' paths, with overlaps taken back; where some stay, a shorter step may do. Contacts bring no energy in.
+  // The bodies' paths, with overlaps removed; where some stay, a shorter step may do. Contacts bring no energy in.
   if (!set_paths(island, used, middle.empty() ? moving_.states() : middle, problem, solution, h, activation, middle.empty() ? nullptr : &ends)) {
     if (!located && island.linked.empty()) return take_large_island_step(island, h);
     if (h > kContact.shortest_step * memory_.longest_step) return moving_.time() + 0.5 * h;
@@ -305,42 +305,6 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
   if (located && h > kContact.shortest_step_for_energy * memory_.longest_step && gains_energy(island)) return moving_.time() + 0.5 * h;
   keep_warm_start(island, contacts, problem, solution, h);
   return std::nullopt;
-}
-
-void PersistentContacts::note_unsolved(const ContactIsland& island, const ContactSolution& solution, double h) {
-  const bool is_heap = island.large || (rules_.plastic_impacts == scene::PlasticImpacts::kInStep && solution.impulses_world.size() > kContact.many_contacts);
-  const double allowed = is_heap ? kContact.unsolved_in_large_island : kContactSolved;
-  if (solution.converged || solution.residual <= allowed) return;
-  unsolved_.note(RunWatch::Kind::kContactUnsolved, names_of(moving_.world(), island.bodies), {solution.residual, allowed, moving_.time(), h});
-}
-
-void PersistentContacts::require_numbers(const ContactIsland& island, const ContactSolution& solution) const {
-  for (std::size_t k = 0; k < island.bodies.size(); ++k)
-    if (!solution.velocities[k].linear_world.allFinite() || !solution.velocities[k].angular_world.allFinite())
-      throw StoppedRun("lasting contact: the impulses on body '" + moving_.world().bodies[island.bodies[k]].name + "' are not numbers");
-}
-
-// Puts a solution's impulses where the next problem of these pairs finds its guesses.
-void PersistentContacts::remember(const std::vector<StepContact>& contacts, const ContactProblem& problem, const ContactSolution& solution, double h, std::map<Pair, std::vector<KnownImpulse>>& store) const {
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    std::vector<KnownImpulse>& known = store[contacts[i].pair];
-    if (i == 0 || contacts[i].pair != contacts[i - 1].pair) known.clear();
-    const RigidBodyState& a = moving_.state(contacts[i].pair.first);
-    known.push_back({a.world_from_body.conjugate() * (problem.contacts[i].point_world - a.com_world), solution.impulses_world[i], h});
-  }
-}
-
-// What the next step remembers of this one's impulses.
-void PersistentContacts::keep_warm_start(const ContactIsland& island, const std::vector<StepContact>& contacts, const ContactProblem& problem, const ContactSolution& solution, double h) {
-  note_unsolved(island, solution, h);
-  remember(contacts, problem, solution, h, next_impulses_);
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    const Vector3d force = solution.impulses_world[i] / h, point = problem.contacts[i].point_world;
-    const bool slides = solution.modes[i] == ContactMode::kSlide && !force.isZero(0.0) && slip_speed(problem, i, solution.velocities) > kCreep * restitution_threshold_;
-    if (i == 0 || contacts[i].pair != contacts[i - 1].pair) next_stuck_.insert(contacts[i].pair);
-    if (slides) next_stuck_.erase(contacts[i].pair);
-    if (!force.isZero(0.0)) forces_.push_back({contacts[i].pair.first, contacts[i].pair.second, point, contacts[i].point.normal_b_to_a_world, force});
-  }
 }
 
 void PersistentContacts::remove_overlaps_within_step(std::vector<RigidBodyState>& states, double t) {
@@ -356,9 +320,9 @@ void PersistentContacts::remove_overlaps_within_step(std::vector<RigidBodyState>
       states[body].angular_momentum_world = left * start.angular_momentum_world + (1 - left) * end.angular_momentum_world;
     }
   }
-  const auto closed = [&](const Pair& pair) { return geometry_.least_gap_of(pair, states) < 0 && geometry_.distance_of(pair, states) < 0; };
+  const auto closed = [&](const Pair& pair) { return geometry_.overlap(pair, states); };
   bool any = true;
-  for (int round = 0; round < kContact.frame_rounds && any; ++round) {   // one island's shifts may close another's gaps
+  for (int round = 0; round < kContact.frame_rounds && any; ++round) {   // one island's corrections may close another's gaps
     any = false;
     for (const ContactIsland& island : islands_) {
       if (std::none_of(island.near.begin(), island.near.end(), closed)) continue;
@@ -372,7 +336,7 @@ void PersistentContacts::remove_overlaps_within_step(std::vector<RigidBodyState>
 
 void PersistentContacts::remove_overlaps(const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t) {
   const RunCounters before = counters_;   // as above
-  const auto closed = [&](const Pair& pair) { return geometry_.least_gap_of(pair, states) < 0 && geometry_.distance_of(pair, states) < 0; };
+  const auto closed = [&](const Pair& pair) { return geometry_.overlap(pair, states); };
   for (int round = 0; round < kContact.frame_rounds && std::any_of(pairs.begin(), pairs.end(), closed); ++round)
     for (const ContactIsland& island : islands(pairs)) {
       if (std::none_of(island.pairs.begin(), island.pairs.end(), closed)) continue;

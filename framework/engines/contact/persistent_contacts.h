@@ -1,18 +1,27 @@
 /// Bodies that rest, slide, roll and are stacked: persistent contacts.
 ///
-/// A pair becomes a persistent contact where a collision would rebound more slowly than the restitution threshold (laws' ends_in_contact), or, with
-/// `"plastic_impacts": "in_step"`, as soon as two bodies without restitution come together. Every step the bodies first go where they
-/// would without each other (the laws' method, links included); then contact impulses, spread evenly over the step, keep what touches from
-/// approaching: v' = v_free + M^-1 J^T p, x' = x_free + h/2 M^-1 J^T p, which is exact for constant forces. Bodies that turn meet their
-/// contacts at the middle of the step, and fit the surfaces at its end. A point that comes down faster than the threshold ends the step
-/// there, and its impact is perfectly inelastic; a slower one is let down by the step's end. A heap that would cut a step many times for that
-/// goes in steps until it rests, unless the scene says "located". A pair that stops sliding ends the step there. Islands without friction ask the laws'
-/// contact_forces; friction, links inside an island, and large islands the framework's solve_contacts. What turning leaves of an overlap is taken back by
-/// position correction. A persistent contact does not bounce; it ends when the bodies come apart.
+/// A pair becomes a persistent contact where a collision would rebound more slowly than the
+/// restitution threshold (laws' ends_in_contact), or, with `"plastic_impacts": "in_step"`, as soon
+/// as two bodies without restitution come together. It does not bounce, and ends when the bodies
+/// separate. One step of an island:
+/// 1. The bodies first take the paths that they would take without each other (the laws' method,
+///    links included).
+/// 2. Contact impulses, spread evenly over the step, keep what touches from approaching:
+///    v' = v_free + M^-1 J^T p,  x' = x_free + h/2 M^-1 J^T p,  exact for constant forces. Bodies
+///    that rotate meet their contacts at the middle of the step, and fit the surfaces at its end.
+///    The laws' contact_forces solves islands without friction, the framework's solve_contacts
+///    those with friction or links, and large ones.
+/// 3. A contact that becomes active within the step faster than the threshold ends the step there,
+///    and its impact is perfectly inelastic; a slower one closes its gap by the step's end. A large
+///    island that would cut a step many times for that is solved in steps until it rests, unless
+///    the scene says "located". A pair that stops sliding ends the step there.
+/// 4. Position correction removes the overlaps that rotation leaves.
 ///
-/// Parts: contact_memory.h (what is remembered from step to step), contact_geometry.h (where bodies touch), contact_island.h (which bodies are
-/// solved together), position_correction.h; here the step, with its strategies: one island's step and its solver (contact_steps.cpp), points that come down
-/// within it (contact_activation.cpp), heaps (large_islands.cpp), energy (contact_energy.cpp). Tolerances: contact_constants.h.
+/// Parts: contact_memory.h (what is kept from step to step), contact_geometry.h (where bodies
+/// touch), contact_island.h (which bodies are solved together), position_correction.h; here the
+/// step, with its strategies: one island's step and its solver (contact_steps.cpp), contacts that
+/// become active within it (contact_activation.cpp), large islands (large_islands.cpp), energy
+/// (contact_energy.cpp). Tolerances: contact_constants.h.
 /// Sources: J. J. Moreau, CISM 302, 1988; D. Stewart, J. Trinkle 1996; D. Baraff, SIGGRAPH 1994.
 #pragma once
 
@@ -39,7 +48,7 @@ class PersistentContacts {
 
   /// A collision has become a persistent contact.
   void begin(Pair pair, const collision::Gap& gap);
-  /// Pairs that touch at the start and do not approach faster than the restitution threshold; overlaps of a rounding are taken back.
+  /// Pairs that touch at the start and do not approach faster than the restitution threshold; overlaps of a rounding are removed.
   void begin_where_touching(const std::vector<Pair>& pairs);
   bool lasts(Pair pair) const { return memory_.persistent.contains(pair); }
   const std::set<Pair>& lasting() const { return memory_.persistent; }
@@ -144,7 +153,7 @@ class PersistentContacts {
   bool apply_impact(const ContactIsland& island, StepContacts down);
   static std::vector<int> touched_bodies(const ContactIsland& island, const StepContacts& contacts);
 
-  // ---- Heaps (large_islands.cpp)
+  // ---- Large islands (large_islands.cpp)
   bool is_large(const ContactIsland& island) const;
   bool becomes_large(const ContactIsland& island);
   void report_large_islands();

@@ -10,7 +10,7 @@
 namespace tumble::engines {
 namespace {
 
-// A shift is no motion: where masses differ by more than a solver's digits bear, the lightest count as heavier ones.
+// A correction is no motion: where masses differ by more than a solver's digits bear, the lightest count as heavier ones.
 void limit_ratios(ContactProblem& problem) {
   double least = std::numeric_limits<double>::infinity();   // inverse mass of what moves
   for (const PushedBody& body : problem.bodies)
@@ -25,7 +25,7 @@ void limit_ratios(ContactProblem& problem) {
 
 }  // namespace
 
-// A contact of a problem of shifts: bodies of other groups stay where they are.
+// A contact of a correction: bodies of other islands stay where they are.
 void PositionCorrection::place_for_correction(const ContactIsland& island, Pair pair, const collision::ManifoldPoint& point, const std::vector<RigidBodyState>& states, double t, double margin,
                                       std::map<int, int>& places, ContactProblem& problem, PushingContact& contact) {
   contact.body_a = place_body(moving_, pair.first, t, places, states, nullptr, problem);
@@ -86,8 +86,8 @@ double PositionCorrection::add_corrections(const ContactIsland& island, const st
   return wrong;
 }
 
-// The smallest shift (in the measure of the masses) that leaves no gap of these pairs below its shell, and no rod or joint open; held
-// points come to lie at their shell.
+// The correction, minimal in the kinetic metric, that leaves no gap of these pairs below its margin, and no rod or joint open; active
+// contacts come to lie at their margin.
 // @return whether it was found
 bool PositionCorrection::correct_positions(const ContactIsland& island, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, const std::vector<ActiveContact>& active) {
   for (int i = 0; i < moving_.size(); ++i)
@@ -99,7 +99,7 @@ bool PositionCorrection::correct_positions(const ContactIsland& island, const st
     for (const int body : island.bodies) place_body(moving_, body, t, places, states, nullptr, problem);
     limit_ratios(problem);
     const double wrong = add_corrections(island, pairs, states, t, round < kContact.most_corrections / 2 ? active : std::vector<ActiveContact>{}, reach, places, problem);
-    if (kContact.correction_reach * wrong > reach) {   // what a shift this long may bring together has to be in it
+    if (kContact.correction_reach * wrong > reach) {   // what a correction this long may bring together has to be in it
       reach = 2 * kContact.correction_reach * wrong;
       if (round == 0) continue;
     }
@@ -127,7 +127,7 @@ bool PositionCorrection::correct_positions(const ContactIsland& island, const st
   return false;
 }
 
-// How far any point of a body goes by a shift, at most. [m]
+// How far any point of a body goes by a correction, at most. [m]
 double PositionCorrection::way_of(int body, const Velocity& correction) const {
   return correction.linear_world.norm() + correction.angular_world.norm() * moving_.shape(body).bounding_radius();
 }

@@ -1,7 +1,8 @@
-/// Position correction: takes back what turning, rounding and the errors of solvers leave of overlaps.
+/// Position correction: removes the overlaps that rotation, rounding and errors of solvers leave.
 ///
-/// Bodies are shifted by what is smallest in the kinetic metric (each body's shift weighs by its mass and inertia), so that no gap stays below its
-/// margin and no rod or joint opens; velocities stay. Linear complementarity for the gaps, equality for rows: the contact solver answers both.
+/// The correction is minimal in the kinetic (mass) metric, so that no gap stays below its margin
+/// and no rod or joint opens; velocities stay. Gaps are a linear complementarity problem, rows are
+/// equalities: the contact solver answers both.
 #pragma once
 
 #include <map>
@@ -31,7 +32,7 @@ class PositionCorrection {
 
   /// Takes back the overlaps of these pairs, in places of the time `t`. @return whether none is left
   bool correct_positions(const ContactIsland& island, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, const std::vector<ActiveContact>& active = {});
-  /// The same for a heap, by a few sweeps a round. @param gaps  bounds from below, by pair; as good as needed afterwards [m]
+  /// The same for a large island, by a few sweeps a round. @param gaps  bounds from below, by pair; as good as needed afterwards [m]
   bool correct_large_island(const ContactIsland& island, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, std::vector<double>& gaps);
 
  private:

@@ -16,14 +16,14 @@
 namespace tumble::engines {
 namespace {
 
-constexpr int kRoundsAmongContacts = 60;   // bodies in lasting contact pass a blow on in ever smaller parts
-constexpr std::size_t kMostEventsPerPair = 64;   // impulses at one instant: more are told as one a pair
+constexpr int kRoundsAmongContacts = 60;   // bodies in persistent contact pass an impact on in ever smaller parts
+constexpr std::size_t kMostEventsPerPair = 64;   // impulses at one instant: more are reported as one for each pair
 
 Contact contact_of(const TouchingPair& pair, const Vector3d& point_world) { return {point_world, pair.gap.normal_b_to_a_world}; }
 
 TouchedRegion region_of(const TouchingPair& pair) { return {pair.gap.normal_b_to_a_world, pair.points_world}; }
 
-// The blows that pairs have struck at one instant as one each: all they gave, from the fastest approach on. A heap hands a blow to and fro ten
+// The impulses of each pair at one instant as one event: their sum, from the fastest approach on. A large island passes an impact to and fro ten
 // thousand times.
 std::vector<Event> one_a_pair(const std::vector<Event>& events) {
   std::vector<Event> sums;
@@ -279,7 +279,7 @@ Resolution SequentialImpacts::resolve(MovingWorld& moving, const std::vector<Tou
     again = false;
     for (const TouchingPair& pair : pairs) again = collide(work, pair, threshold) || again;
   }
-  if (again && contact_threshold_) {   // what is left of a blow that many bodies in contact hand to and fro is taken from all at once
+  if (again && contact_threshold_) {   // what is left of an impact that many bodies in contact pass to and fro is resolved at all at once
     collide_together(work, pairs, threshold, false);
     again = false;
     work.result.events = one_a_pair(work.result.events);

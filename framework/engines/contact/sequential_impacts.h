@@ -1,15 +1,17 @@
 /// What happens at the instant of an impact: the sequential law.
 ///
-/// All pairs that touch at that instant are gone through in order of their body indices, lowest first; each pair that approaches
-/// gets the impulse of the laws: at the middle of the region where the two touch, or, when the middle does not approach, at the corner
-/// of that region that approaches fastest; the round is repeated until no pair approaches faster than round-off. For equal balls in a row
-/// and restitution 1 this is Newton's cradle. Where restitution is below 1 the outcome depends on the order, which is therefore
-/// part of the law.
+/// One round visits all pairs that touch at that instant, in the order of their body indices. A
+/// pair that approaches gets the impulse of the laws at the middle of the region where the two
+/// touch, or, when the middle does not approach, at the corner of that region that approaches
+/// fastest. Rounds follow until no pair approaches faster than round-off. For equal balls in a row
+/// and restitution 1 this is Newton's cradle. With restitution below 1 the outcome depends on the
+/// order, which is therefore part of the law.
 ///
-/// Bodies on rods and joints: the impulse acts on the constrained system (impact_bodies.h). Its size is that of the laws' collision_impulse
-/// for the free bodies, times K_free / K_held, so that the normal velocity after the links' reactions is what restitution says.
-/// Friction is solved together with the normal impulse (dynamics/point_impact.h): neither spoils what the other is to reach, and no impact
-/// creates energy.
+/// Bodies on rods and joints: the impulse acts on the constrained system (impact_bodies.h). Its
+/// size is that of the laws' collision_impulse for the free bodies, times K_free / K_held, so that
+/// the normal velocity after the links' reactions has the restitution. Friction is solved together
+/// with the normal impulse (dynamics/point_impact.h), so that both laws hold afterwards and no
+/// impact creates energy.
 #pragma once
 
 #include <functional>
@@ -33,21 +35,21 @@ struct TouchingPair {
 
 /// What one resolution did.
 struct Resolution {
-  std::vector<Event> events;    // one an impulse, in order; of a blow that bodies hand to and fro many times one a pair
+  std::vector<Event> events;    // one an impulse, in order; of an impact that bodies hand to and fro many times one a pair
   bool settled = true;          // false: the rounds did not end
   std::vector<TouchingPair> micro_impacts;   // pairs that meet again at once, or met without an impulse: see push_apart
 };
 
 struct ImpactRules {
   double restitution_threshold;            // [m/s]
-  double micro_interval;        // a pair that meets again within this, slower than the rest speed, has a micro-impact [s]
+  double micro_interval;        // a pair that meets again within this, slower than the restitution threshold, has a micro-impact [s]
 };
 
 class SequentialImpacts {
  public:
   SequentialImpacts(const Laws& laws, ImpactRules rules, RunCounters& counters) : laws_(laws), rules_(rules), counters_(counters) {}
 
-  /// Impacts that would rebound more slowly than the rest speed (laws' ends_in_contact) do not rebound: they begin a lasting contact.
+  /// Impacts that would rebound more slowly than the restitution threshold (laws' ends_in_contact) do not rebound: they begin a persistent contact.
   /// Pairs with friction slide less after an impact: Coulomb's law for the impulse, against the slip that is left. With the simultaneous law all touching pairs are
   /// solved together (Newton's law of restitution as complementarity): a row of equal balls hit by one then leaves with
   /// (-3/5, 2/5, 2/5, 2/5, 2/5) of its speed, not as Newton's cradle does. Where restitution at several points would create energy (unequal
@@ -60,18 +62,19 @@ class SequentialImpacts {
   /// When pairs met last: what a run that goes on from another time has to know. [s]
   const std::map<std::pair<int, int>, double>& last_impacts() const { return last_impacts_; }
   void remember(std::map<std::pair<int, int>, double> last_impacts) { last_impacts_ = std::move(last_impacts); }
-  /// Whether an impact of the pair at this speed begins a lasting contact.
+  /// Whether an impact of the pair at this speed begins a persistent contact.
   bool stays(const World& world, const TouchingPair& pair, double approach_speed) const;
 
   /// @param pairs    sorted by (a, b)
   /// @param trigger  which of them stopped the step
   Resolution resolve(MovingWorld& moving, const std::vector<TouchingPair>& pairs, std::size_t trigger);
 
-  /// Sends the pairs that had a micro-impact apart at the rest speed, where they separate more slowly, and with them the touching
-  /// pairs of bodies that this moves: else a stack would be pushed back and forth within one instant. Without a lasting contact, a
-  /// pair that gravity or turning presses together would meet infinitely often in no time. A body that lies on another therefore
-  /// hops: up to rest_speed^2 / 2g high; a hop adds an energy of the order of m * rest_speed^2, which the landing takes away where
-  /// restitution is below 1.
+  /// Separates the pairs that had a micro-impact at the restitution threshold u, where they separate
+  /// more slowly, and with them the touching pairs of bodies that this moves: else a stack would be
+  /// pushed back and forth within one instant. Without a persistent contact, a pair that gravity or
+  /// rotation presses together would meet infinitely often in no time. A body that rests on another
+  /// therefore rises by up to u^2 / 2g; this separation impulse adds an energy of the order of
+  /// m u^2, which the next impact removes where restitution is below 1.
   void push_apart(MovingWorld& moving, const std::vector<TouchingPair>& touching, const std::vector<TouchingPair>& micro_impacts);
 
  private:

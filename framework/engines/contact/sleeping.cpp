@@ -11,7 +11,7 @@ namespace tumble::engines {
 namespace {
 
 constexpr double kStillFor = 0.5;        // s: a swing that turns back within it is seen to swing
-constexpr double kMean = 0.01;           // of the rest speed, on the average: ten times what heaps are solved to, a step's fall times 1e-5
+constexpr double kMean = 0.01;           // of the restitution threshold, on the average: ten times what large islands are solved to, a step's fall times 1e-5
 
 }  // namespace
 
@@ -94,7 +94,7 @@ void Sleepers::look(const std::vector<Pair>& touching) {
     if (moving_.can_move(moving_.linked_groups()[k].bodies().front())) watch_control(k);
   const double latest = moving_.time() - kStillFor;
   for (int body = 0; body < moving_.size(); ++body)
-    if (moving_.can_move(body) && still_[body].roughly.since <= latest) {   // most of the time nobody is: no groups are made
+    if (moving_.can_move(body) && still_[body].roughly.since <= latest) {   // most of the time none is: no islands are formed
       for (auto& [first, group] : groups_of(touching))
         if (group.held && !group.driven && is_still(group, latest)) put_to_sleep(std::move(group));
       return;
@@ -131,7 +131,7 @@ bool Sleepers::wake(Pair pair) {
   return first || second;
 }
 
-// Whether lasting contacts would hold the two apart in this step, as if the sleeper were a wall.
+// Whether persistent contacts would hold the two apart in this step, as if the sleeper were a wall.
 bool Sleepers::would_touch(Pair pair) {
   if (contacts_.lasts(pair)) return true;
   const World& world = moving_.world();

@@ -1,18 +1,23 @@
-/// Bodies at rest that are left alone until something touches them (`"sleep": true` of a scene's contact).
+/// Bodies at rest that are left alone until something touches them (`"sleep": true` of a scene's
+/// contact).
 ///
-/// Bodies that touch each other or are linked are still or not as a group. A group falls asleep when for half a second none of its
-/// bodies was faster than a tenth of the rest speed, or left its place by more than a hundredth of the way that the rest speed makes in
-/// that time: 5 um at the rest speed that scenes start from, 1 mm/s. That is what a contact solver leaves of motion in heaps and, where
-/// there is no friction, in stacks. Where a pair of the group slides by friction, a hundredth of that is too much: 1e-7 m/s, the creep that a
-/// sticking contact is allowed. Something must hold the group, too: a body at the top of its path is slow for a while, and not at rest.
+/// An island sleeps or wakes as a whole. It falls asleep when for half a second none of its bodies
+/// was faster than a tenth of the restitution threshold, or left its position by more than a
+/// hundredth of the distance that the threshold makes in that time: 5 um at the default threshold,
+/// 1 mm/s. A contact solver leaves that much motion in large islands and, without friction, in
+/// stacks. Where a pair of the island slides with friction, the limit is a hundredth of that:
+/// 1e-7 m/s, the creep that a sticking contact is allowed. Something immovable must hold the
+/// island, too: a body at the top of its path is slow for a while, and not at rest.
 ///
-/// Asleep, a body keeps its place to the last bit and its velocity is zero; it is not integrated, its contacts are not solved, and it is
-/// no candidate with others that do not move. What its contacts carried in the last step stays on record. A group wakes as a whole, at
-/// the beginning of the step in which something moving meets it (that step is then taken with the group awake: the blow goes
-/// through it as through bodies that never slept), when a force on one of its bodies is switched, or a motor's law asks for
-/// another torque. What lies on something that moves by its own law, or is linked to it, does not sleep.
+/// Asleep, a body keeps its position to the last bit and its velocity is zero. It is not integrated,
+/// its contacts are not solved, and it is no candidate with others that do not move. The forces of
+/// its contacts in the last step stay on record. An island wakes at the beginning of the step in
+/// which something moving meets it (that step is then taken with the island awake: the impact acts
+/// as on bodies that never slept), when a force on one of its bodies is switched, or when a motor's
+/// law asks for another torque. Bodies that rest on a driven body, or are linked to one, do not sleep.
 ///
-/// What sleep takes away: the kinetic energy of the last half second, less than m v^2 / 2 of a tenth of the rest speed.
+/// Sleep removes the kinetic energy of the last half second: less than m v^2 / 2 at a tenth of the
+/// restitution threshold.
 #pragma once
 
 #include <map>

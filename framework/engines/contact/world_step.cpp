@@ -40,7 +40,7 @@ WorldStep::Taken WorldStep::take(double target, StepStages& stages) {
   const std::optional<Earliest> earliest = searches_ ? impact_detection_.earliest(taken.searched) : std::nullopt;
   if (earliest) taken.impact = taken.searched[earliest->pair];
   if (earliest && stages.wake(*taken.impact)) return give_up();
-  // The world goes there as a whole, and what is left of overlaps is taken back.
+  // The world goes there as a whole, and what is left of overlaps is removed.
   const double reached = earliest ? earliest->time : moving_.target();
   stages.before_commit(reached);
   moving_.commit(reached);

@@ -10,7 +10,7 @@
 namespace tumble::engines {
 namespace {
 
-// No pair whose gap is at least `smallest` changes it, and that of most is told by the balls around the two.
+// No pair whose gap is at least `smallest` changes it, and the balls around the two decide most.
 double smaller_gap(const MovingWorld& moving, const std::vector<RigidBodyState>& states, int i, int j, double smallest) {
   if (!moving.may_collide(i, j)) return smallest;
   const collision::CollisionShape& a = moving.shape(i);

@@ -110,7 +110,7 @@ void RetroactiveRun::switch_forces() {
   }
 }
 
-// Those whose time has come: the step ends there, and the next begins with what they have made of velocities.
+// Callbacks that are due. The step ends there, and the next begins with the velocities that they have set.
 void RetroactiveRun::run_callbacks() {
   if (!built::kCallback) return;
   for (; called_ < callbacks_.size() && callbacks_[called_].time <= moving_.time(); ++called_) {

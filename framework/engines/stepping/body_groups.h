@@ -8,7 +8,7 @@
 
 namespace tumble::engines {
 
-/// By body: the least index among the bodies it belongs together with; its own where it stands alone. What cannot move joins nobody.
+/// By body: the least index among the bodies it belongs together with; its own where it stands alone. An immovable body joins none.
 /// @param touching  pairs of bodies
 std::vector<int> group_leaders(const MovingWorld& moving, const std::vector<std::pair<int, int>>& touching);
 

@@ -260,7 +260,7 @@ std::vector<RigidBodyState> LinkedBodies::advance(const std::vector<RigidBodySta
     return derivative(time, state);
   };
   ++counters_.integrations;
-  const VectorXd end = naming(whose(), [&] { return laws_.integrate_step(f, t, y, h); });
+  const VectorXd end = naming(subject(), [&] { return laws_.integrate_step(f, t, y, h); });
   for (std::size_t i = 0; i < local.size(); ++i) {
     local[i] = unpack(end.segment(static_cast<Eigen::Index>(i) * kStateSize, kStateSize));
     local[i].world_from_body = laws_.renormalize(local[i].world_from_body);
@@ -299,7 +299,7 @@ LinkedBodies::Instant LinkedBodies::at_instant(const std::vector<RigidBodyState>
 } catch (const OutOfTime&) {
   throw;
 } catch (const StoppedRun& stop) {
-  throw StoppedRun(whose() + ": " + stop.what());
+  throw StoppedRun(subject() + ": " + stop.what());
 }
 
 VectorXd LinkedBodies::reaction(const Instant& instant, const VectorXd& change) try {
@@ -314,7 +314,7 @@ VectorXd LinkedBodies::reaction(const Instant& instant, const VectorXd& change) 
 } catch (const OutOfTime&) {
   throw;
 } catch (const StoppedRun& stop) {
-  throw StoppedRun(whose() + ": " + stop.what());
+  throw StoppedRun(subject() + ": " + stop.what());
 }
 
 void LinkedBodies::project_local(std::vector<RigidBodyState>& local, double t, bool places) try {
@@ -341,7 +341,7 @@ void LinkedBodies::project_local(std::vector<RigidBodyState>& local, double t, b
     bodies = place_bodies(local, t);
     all = rows(bodies);
   }
-  if (const double left = places ? open_part(bodies, all) : 0.0; !(left <= kNegligible)) counters_.watch.note(RunWatch::Kind::kProjectionOpen, whose(), {left, kNegligible, t, step_});
+  if (const double left = places ? open_part(bodies, all) : 0.0; !(left <= kNegligible)) counters_.watch.note(RunWatch::Kind::kProjectionOpen, subject(), {left, kNegligible, t, step_});
   const VectorXd change = correct(bodies, all, false);
   for (std::size_t i = 0; i < local.size(); ++i) {
     const Eigen::Index at = 6 * static_cast<Eigen::Index>(i);
@@ -351,7 +351,7 @@ void LinkedBodies::project_local(std::vector<RigidBodyState>& local, double t, b
 } catch (const OutOfTime&) {
   throw;
 } catch (const StoppedRun& stop) {
-  throw StoppedRun(whose() + ": " + stop.what());
+  throw StoppedRun(subject() + ": " + stop.what());
 }
 
 void LinkedBodies::project_velocities(std::vector<RigidBodyState>& states, double t) {
@@ -379,7 +379,7 @@ void LinkedBodies::watch(const std::vector<RigidBodyState>& states, double t, do
   for (const Terms& terms : terms_) terms.acting->note_open(bodies, note);
 }
 
-std::string LinkedBodies::whose() const { return "body '" + world_.bodies[bodies_.front()].name + "' and what is linked to it"; }
+std::string LinkedBodies::subject() const { return "body '" + world_.bodies[bodies_.front()].name + "' and what is linked to it"; }
 
 void LinkedBodies::measure(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts, LinkForces& measured) try {
   const std::vector<RigidBodyState> local = take(states);
@@ -400,7 +400,7 @@ void LinkedBodies::measure(const std::vector<RigidBodyState>& states, double t, 
 } catch (const OutOfTime&) {
   throw;
 } catch (const StoppedRun& stop) {
-  throw StoppedRun(whose() + ": " + stop.what());
+  throw StoppedRun(subject() + ": " + stop.what());
 }
 
 // The force on A at the point, its opposite on B.

@@ -92,7 +92,7 @@ class LinkedBodies final : effects::GroupPlaces {
   void measure(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts, LinkForces& forces);
 
  private:
-  std::string whose() const;   // in words
+  std::string subject() const;   // of messages
   double open_part(const std::vector<Body>& bodies, const std::vector<Constraint>& rows) const;
   bool has(int body) const override;
   int place_of(int body) override;

@@ -15,7 +15,7 @@ namespace {
 // Farther off than this many times its extent, a scene loses three digits and more: that is where local coordinates begin.
 constexpr double kFar = 1000.0;
 
-// Whoever writes 1000000.1 means a tenth more than 10^6, not the nearest number that a double can hold, which is 2e-11 less: a box would
+// A scene that says 1000000.1 means a tenth more than 10^6, not the nearest number that a double can hold, which is 2e-11 less: a box would
 // start in its floor. So what is before the point and what is behind it are taken apart, where a decimal says the place that every double
 // can tell from its neighbours (15 digits); a place of more digits was worked out, and is what it is.
 double difference_as_written(double place, double origin) {

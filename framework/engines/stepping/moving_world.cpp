@@ -28,7 +28,7 @@ double measure_path_bend(const Laws& laws) {
   try {
     return 2.0 * laws.integrate_step(fall, 0.0, VectorXd::Zero(2), 1.0)[kHeight];
   } catch (const StoppedRun&) {
-    return 1.0;   // the first step of a body fails in the same way, and says whose
+    return 1.0;   // the first step of a body fails in the same way, and names the body
   }
 }
 
@@ -128,11 +128,11 @@ void MovingWorld::refuse_fast_turning(int body) const {
   constexpr double kMostTurnOnPath = 20 * std::numbers::pi;   // rad in a step: ten turns
   const Path& path = paths_[body];
   const double step = target_ - time_, speed = path.smooth->bounds().angular_speed;
-  const std::string who = fmt::format("body '{}'", world_.bodies[body].name);
-  if (!pack(path.end).allFinite() || std::isnan(speed)) throw StoppedRun(fmt::format("{}: its state is not a number (integrator: {})", who, laws_.integrator_source));
+  const std::string subject = fmt::format("body '{}'", world_.bodies[body].name);
+  if (!pack(path.end).allFinite() || std::isnan(speed)) throw StoppedRun(fmt::format("{}: its state is not a number (integrator: {})", subject, laws_.integrator_source));
   if (shapes_[body]->is_ball() || !(speed * step > kMostTurnOnPath)) return;   // a ball looks the same however it turns
   throw StoppedRun(fmt::format("{} turns at {:.3g} rad/s, {:.3g} rad in a step of {:.3g} s, which no step follows. Likely something drives it beyond measure: a motor that overshoots because it holds its torque too "
-                               "long (\"period_s\"), a force, a spring; else it turns too far in a step: make the step (\"step_s\") shorter", who, speed, speed * step, step));
+                               "long (\"period_s\"), a force, a spring; else it turns too far in a step: make the step (\"step_s\") shorter", subject, speed, speed * step, step));
 }
 
 LinkForces MovingWorld::measure_links(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts) {
@@ -330,7 +330,7 @@ void MovingWorld::begin_step_again(double target) {
 const RigidBodyState& MovingWorld::path_end(int body) {
   Path& path = paths_[body];
   if (!path.end_known) {
-    path.end_known = true;   // first: a series for the whole step is made by whoever asks for all of it
+    path.end_known = true;   // first: a series for the whole step is made by the caller that asks for all of it
     path.end = integrate(body, target_ - time_, time_, path.start);
   }
   return path.end;

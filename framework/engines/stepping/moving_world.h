@@ -1,7 +1,7 @@
 /// A world on the move: where every body is at the last committed time, and where the laws take it from there.
 ///
 /// Within a step each body follows a path: the laws' integration from the committed state by any part of the step, always from
-/// the step's start. Bodies that depend on others (links, lasting contacts) follow the smooth path between the step's ends instead.
+/// the step's start. Bodies that depend on others (links, persistent contacts) follow the smooth path between the step's ends instead.
 /// Collision finding, rollback and pictures all look at this one path.
 #pragma once
 
@@ -122,7 +122,7 @@ class MovingWorld {
   /// Begins a step from the committed time: works out the motion's bounds and where all come out.
   void begin_step(double target);
   /// Begins the step under way again, because some bodies ask for an earlier target or have got other velocities. Nothing is integrated for
-  /// a body that flies alone and has kept its state: its path stays, or its new end is worked out when somebody asks for it.
+  /// a body that flies alone and has kept its state: its path stays, or its new end is worked out when it is asked for.
   void begin_step_again(double target);
   /// What the step under way has computed was in vain: it will be begun again.
   void give_up_step() { counters_.undone_integrations += integrations_in_step_; }
@@ -140,7 +140,7 @@ class MovingWorld {
   /// How fast any point of a body is in the step under way, from the speeds at its ends. [m/s]
   double fastest_in_step(int body);
   collision::SweptBox swept_box(int body);
-  /// Whether swept_box tells of a longer step: of a body whose path's end nobody has asked for. path_end(body) ends that.
+  /// Whether swept_box is that of a longer step: of a body whose path's end was not asked for. path_end(body) ends that.
   bool has_roomy_box(int body) const { return !paths_[body].end_known; }
   /// All bodies to where their paths are at t; what the step had computed beyond counts as undone when t is before its target.
   void commit(double t);

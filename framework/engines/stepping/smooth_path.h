@@ -14,7 +14,7 @@ namespace tumble::engines {
 class SmoothPath {
  public:
   SmoothPath() = default;
-  /// What a state between the ends takes for its momenta. Where a shift has taken back an overlap the path goes a way that no velocity
+  /// What a state between the ends takes for its momenta. Where position correction has removed an overlap the path goes where no velocity
   /// stands for, and the shorter the step the faster: momenta that change evenly from end to end know nothing of it.
   enum class Momenta { kOfPath, kEven };
 
@@ -22,7 +22,7 @@ class SmoothPath {
   SmoothPath(const RigidBodyState& start, const RigidBodyState& end, const Inertia& inertia, double t0, double t1, Momenta momenta = Momenta::kOfPath);
 
   /// Momenta that change evenly begin with those of `state`, where the path begins with a velocity of its own: a straight path has that of its end
-  /// from the start, which the blows and the weight of the whole step have made.
+  /// from the start, which the impacts and the weight of the whole step have made.
   void begin_momenta(const RigidBodyState& state) {
     momentum_[0] = state.momentum_world;
     angular_momentum_[0] = state.angular_momentum_world;

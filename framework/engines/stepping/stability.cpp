@@ -209,7 +209,7 @@ void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfAR
                    laws, steps, where, notices);
   for (const StepLimit& limit : judge_decays(world, laws, steps.step)) refuse_or_tell(limit, laws, steps, where, notices);
 } catch (const StoppedRun&) {
-  // A law that fails here fails in the first step too, which says of whom.
+  // A law that fails here fails in the first step too, and names the body.
 }
 
 std::optional<double> report_unstable_links(const World& world, const LinkForces& at_start, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices) try {
@@ -221,7 +221,7 @@ std::optional<double> report_unstable_links(const World& world, const LinkForces
   }
   std::optional<double> named;
   for (std::optional<StepLimit> limit : {judge_rods(world, carriers.all, loads.loads, laws, steps.step), judge_joints(world, carriers.all, loads.loads, laws, steps.step)}) {
-    // A method that lengthens every swing is told of by what it does to energy.
+    // A method that lengthens every swing is reported by its energy.
     if (!limit || !(limit->largest_step > 0) || !(growth_over(steps, limit->amplification) > std::log(kRuin))) continue;
     if (loads.by_falling) limit->largest_step *= kJerk;
     notices.push_back(words_of(*limit, laws, steps.step) + smaller_steps(*limit));
@@ -263,7 +263,7 @@ double terms_of_energy(const World& world, const std::vector<RigidBodyState>& st
   return terms;
 }
 
-// Of the bodies' sizes: how far what lies is lifted where it is kept apart. Shells are 1e-10 of the smaller body, those of heaps 1e-4.
+// Of the bodies' sizes: how far what lies is lifted where it is kept apart. Contact margins are 1e-10 of the smaller body, those of large islands 1e-4.
 constexpr double kLifted = 1e-5, kLiftedInLargeIslands = 1e-3;
 
 }  // namespace
@@ -271,7 +271,7 @@ constexpr double kLifted = 1e-5, kLiftedInLargeIslands = 1e-3;
 // What the world has to give: its kinetic energy, what its springs hold, and (available()) how far it falls.
 void EnergyWatch::begin(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums) {
   first_energy_ = least_energy_ = sums.kinetic_energy + sums.potential_energy;
-  constexpr double kCorners = 8.0;   // what does not bounce is sent off at the rest speed, a box by each of its corners
+  constexpr double kCorners = 8.0;   // a perfectly inelastic body is separated at the restitution threshold, a box by each of its corners
   lowest_potential_ = first_potential_ = sums.potential_energy;
   scale_ = energy_at_work(world, states, sums);
   const double gravity = world.gravity_world ? world.gravity_world->norm() : 0.0;
@@ -355,7 +355,7 @@ std::string runaway_message(double time, const World& world, const Runaway& runa
   for (const ContactPoint& contact : acting.contacts)
     pulls(contact.body_a, contact.body_b, contact.force_on_a_world.norm(), [&] {
       const int other = contact.body_a == runaway.body ? contact.body_b : contact.body_a;
-      return fmt::format("lasting contact with '{}' (contact_forces of {})", world.bodies[static_cast<std::size_t>(other)].name, laws.constraint_source);
+      return fmt::format("persistent contact with '{}' (contact_forces of {})", world.bodies[static_cast<std::size_t>(other)].name, laws.constraint_source);
     });
   if (runaway.by_blows >= 0.5 * (runaway.energy - runaway.first_energy)) effect = fmt::format("collision (collision_impulse, apply_impulse of {})", laws.impulse_source);
   else if (effect.empty()) effect = fmt::format("integration (integrate_step, state_derivative of {})", laws.integrator_source);

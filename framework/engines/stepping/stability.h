@@ -92,14 +92,14 @@ struct StepsOfARun {
   double step, duration;           // [s]
 };
 
-/// Refuses a run in which the method would lengthen a thousand times what effects or Baumgarte's term take part in; tells of one where it can be seen.
+/// Refuses a run in which the method would lengthen a thousand times what effects or Baumgarte's term take part in; reports one where it can be seen.
 /// @throws UserError naming the effect, the body or the term, what happens to it and the largest step that does not do it
 void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfARun& steps, const std::string& where, std::vector<std::string>& notices);
 
-/// Tells of rods and joints whose bodies swing too fast for the step of a method that has a range, with the step that follows them all through the run. Not
+/// Reports rods and joints whose bodies swing too fast for the step of a method that has a range, with the step that follows them all through the run. Not
 /// refused: what hangs straight does not swing.
 /// @param at_start  what rods and joints pull with where the run starts
-/// @return that step, where one is told [s]
+/// @return that step, where one is reported [s]
 std::optional<double> report_unstable_links(const World& world, const LinkForces& at_start, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices);
 
 /// Energy that nothing can have brought in.
@@ -134,7 +134,7 @@ class EnergyWatch {
   void begin(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums);
   double work_since(double time, const std::vector<RigidBodyState>& states);
   void note_rise(double time, double energy, double kinetic, const World& world, const std::vector<RigidBodyState>& states);
-  /// What the model itself is free to make: what moves slower than the rest speed, and lies, is lifted by this part of its size. [J]
+  /// What the model itself is free to make: what moves slower than the restitution threshold, and lies, is lifted by this part of its size. [J]
   double unseen(double lifted) const { return of_restitution_threshold_ + lifted * of_sizes_; }
   double available() const { return scale_ + given_ + (first_potential_ - lowest_potential_); }
 
@@ -144,7 +144,7 @@ class EnergyWatch {
   bool has_meters_ = false;
   double work_ = 0.0, given_ = 0.0;                    // what effects have brought in, at most, and without its sign [J]
   double first_energy_ = kUnset, scale_ = 0.0, first_potential_ = 0.0, lowest_potential_ = 0.0, by_blows_ = 0.0;   // [J]
-  double least_energy_ = 0.0, of_restitution_threshold_ = 0.0, of_sizes_ = 0.0;   // the least so far; of all bodies m v^2 of the rest speed, and m g size [J]
+  double least_energy_ = 0.0, of_restitution_threshold_ = 0.0, of_sizes_ = 0.0;   // the least so far; of all bodies m v^2 of the restitution threshold, and m g size [J]
   double rounding_ = 0.0;          // what it leaves of an energy, where one has risen [J]
   std::vector<Rise> rises_;        // each larger than the one before
 };

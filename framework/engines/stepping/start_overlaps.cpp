@@ -12,7 +12,7 @@
 namespace tumble::engines {
 namespace {
 
-constexpr double kUnseen = 1e-4;         // of the smaller body: a shift that nobody sees
+constexpr double kUnseen = 1e-4;         // of the smaller body: a displacement below what is seen
 constexpr int kMostSweeps = 1000;        // over the pairs: stacks take one, grids some tens
 
 double extent(const collision::CollisionShape& shape) { return shape.is_half_space() ? 0.0 : shape.bounding_radius(); }

@@ -1,5 +1,5 @@
 /// Bodies that overlap when a run begins: refused, or where the rounding of typed decimals and of single-precision models explains it
-/// taken back, and told of. One law for all engines.
+/// removed, and reported. One law for all engines.
 ///
 /// An engine collects what is near at the start and calls refuse_overlaps; run_scene catches what is thrown, moves bodies apart and
 /// begins again, or lets the refusal stand.
