@@ -27,7 +27,8 @@ scene::Scene find_scene(const Context& context, const std::string& word, std::op
 /// @throws UserError also for words about a model with a scene that is none
 scene::Scene scene_of_words(const Context& context, const RunWords& words, bool turns);
 
-/// A .3ds file by its path, or by its name in models/ with or without its ending; the word itself where there is none.
+/// A .3ds file by its path, or by its name in models/ with or without its ending; the word itself
+/// where there is none.
 std::filesystem::path find_model_file(const Context& context, const std::string& word);
 
 /// The names of all scenes: those of the assignments, then those with a size.

@@ -1,7 +1,10 @@
-// What an effect costs that a scene does not ask for. Run by absent_effects.sh under callgrind, once as it is and once built without the effect.
+// What an effect costs that a scene does not ask for. Run by absent_effects.sh under callgrind,
+// once as it is and once built without the effect.
 //
-//   bench_... cost EFFECT     runs a scene without the effect in which its absence is asked about often
-//   bench_... calls EFFECT    runs a scene that asks for the effect, and prints how often its code was called
+//   bench_... cost EFFECT     runs a scene without the effect in which its absence is asked about
+// often
+//   bench_... calls EFFECT    runs a scene that asks for the effect, and prints how often its code
+// was called
 #include <cstdio>
 #include <iostream>
 
@@ -76,7 +79,8 @@ scene::Scene scene_without(const std::string& effect) {
   return tied(4.0, "spring");   // of an effect that acts on groups
 }
 
-/// Callbacks come from a program, to the engines that go from event to event; other effects from the scene, in steps.
+/// Callbacks come from a program, to the engines that go from event to event; other effects from
+/// the scene, in steps.
 engines::RunOptions options_about(const std::string& effect) {
   engines::RunOptions options;
   if (effect == "callback") options.engine = "ca";

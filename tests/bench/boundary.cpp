@@ -1,4 +1,5 @@
-// What it costs to ask a function of a submission that lives in a sandbox: a call, a callback, a fresh worker.
+// What it costs to ask a function of a submission that lives in a sandbox: a call, a callback, a
+// fresh worker.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>

@@ -1,5 +1,6 @@
-// What rods, joints and lasting contact cost, beside what the project wants them to: one table, by CPU time of this machine. Ratios and
-// shares of real time matter, not seconds.   usage: bench_constraints, from the root of the tree
+// What rods, joints and lasting contact cost, beside what the project wants them to: one table, by
+// CPU time of this machine. Ratios and shares of real time matter, not seconds.   usage:
+// bench_constraints, from the root of the tree
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -34,7 +35,8 @@ double cpu_of(const scene::Scene& scene, double duration, Tally& tally) {
   return cpu_seconds() - begin;
 }
 
-/// Of the run alone: what it takes to load models and laws is measured by a run of one step, and taken off.
+/// Of the run alone: what it takes to load models and laws is measured by a run of one step, and
+/// taken off.
 Price price_of(const scene::Scene& scene) {
   Price price{1e300, scene.duration_s, 0.0};
   for (int k = 0; k < kRuns && (k == 0 || price.cpu_s < kShort); ++k) {

@@ -1,5 +1,6 @@
-// How much each tolerance of contacts matters: every constant of framework/engines/contact/contact_constants.h times ten and divided by ten,
-// and which scenes notice. A constant that nobody notices is a candidate to go.
+// How much each tolerance of contacts matters: every constant of
+// framework/engines/contact/contact_constants.h times ten and divided by ten, and which scenes
+// notice. A constant that nobody notices is a candidate to go.
 //
 //   bench_contact_constants                 all constants
 //   bench_contact_constants margin reach    these
@@ -74,7 +75,8 @@ double farthest_of(const Trajectory& a, const Trajectory& b) {
   return farthest;
 }
 
-/// In a process of its own: what does not end is ended. @return nothing where it took too long, or crashed
+/// In a process of its own: what does not end is ended. @return nothing where it took too long, or
+/// crashed
 std::optional<Looked> look(const Usual& usual) {
   int ends[2];
   if (::pipe(ends) != 0) return std::nullopt;

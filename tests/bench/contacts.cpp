@@ -16,7 +16,8 @@ ContactProblem with_guess(ContactProblem problem, const ContactSolution& solutio
   return problem;
 }
 
-/// 200 balls in 10 x 10 x 2 layers, each pressed on its four lower neighbours or the floor, and loosely on its neighbours: 800 contacts.
+/// 200 balls in 10 x 10 x 2 layers, each pressed on its four lower neighbours or the floor, and
+/// loosely on its neighbours: 800 contacts.
 ContactProblem pile() {
   ContactProblem problem;
   problem.bodies.push_back(fixed_body());

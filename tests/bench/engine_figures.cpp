@@ -54,9 +54,10 @@ void add_point(report::Curve& curve, double x, double y) {
 /// Slope in a doubly logarithmic plot, from the first to the last point.
 double slope_of(const report::Curve& curve) { return std::log(curve.y.back() / curve.y.front()) / std::log(curve.x.back() / curve.x.front()); }
 
-// ---- The paper's scenes ----------------------------------------------------------------------------------------------------
+// ---- The paper's scenes ------------------------------------------------------------------------
 
-/// At the paper's sizes. Retroactive detection needs hours for seconds of the heaviest: all are measured over the same part.
+/// At the paper's sizes. Retroactive detection needs hours for seconds of the heaviest: all are
+/// measured over the same part.
 struct PaperScene {
   const char* name;
   int n;
@@ -76,7 +77,8 @@ struct Compared {
 Compared compare(const PaperScene& paper) {
   scene::Scene scene = scene::make_sized_scene(paper.name, paper.n);
   if (paper.heaped_at > 0) scene = at_a_later_time(scene, paper.heaped_at);
-  // By the clock, as the goals are; none of them has more than one thread, and CPU times stand in the notes.
+  // By the clock, as the goals are; none of them has more than one thread, and CPU times stand in
+  // the notes.
   return {measure(scene, "tw", paper.duration, Clock::kWall), measure(scene, "rd_auto", paper.duration, Clock::kWall), measure(scene, "ca", paper.duration, Clock::kWall)};
 }
 
@@ -120,7 +122,8 @@ Chapter paper_scenes() {
   return chapter;
 }
 
-// Rocks roll, lie and hit each other close by: who waits for whom matters less than what is searched.
+// Rocks roll, lie and hit each other close by: who waits for whom matters less than what is
+// searched.
 Chapter heaped() {
   Chapter chapter{"The avalanche when it is heaped", {}, plot_of("The heap: time over timewarp's", "rocks", "time over timewarp's")};
   const Compared runs = compare(kHeaped);
@@ -132,7 +135,7 @@ Chapter heaped() {
   return chapter;
 }
 
-// ---- Growth ----------------------------------------------------------------------------------------------------------------
+// ---- Growth ------------------------------------------------------------------------------------
 
 Chapter growth() {
   Chapter chapter{"Cost a body at constant density", {}, plot_of("A gas: CPU time a body and simulated second", "balls", "time", "s")};
@@ -169,7 +172,7 @@ Chapter growth() {
   return chapter;
 }
 
-// ---- Collisions a second ---------------------------------------------------------------------------------------------------
+// ---- Collisions a second -----------------------------------------------------------------------
 
 Chapter collisions() {
   Chapter chapter{"Committed collisions of balls a second and core", {}, plot_of("A gas by timewarp: collisions a second of CPU", "balls", "collisions a second", "1/s")};
@@ -184,7 +187,7 @@ Chapter collisions() {
   return chapter;
 }
 
-// ---- Few bodies ------------------------------------------------------------------------------------------------------------
+// ---- Few bodies --------------------------------------------------------------------------------
 
 Chapter few_bodies() {
   Chapter chapter{"One body and two", {}, plot_of("A gas of one and two: time over retroactive detection's", "balls", "TW / RD")};
@@ -198,7 +201,7 @@ Chapter few_bodies() {
   return chapter;
 }
 
-// ---- Threads ---------------------------------------------------------------------------------------------------------------
+// ---- Threads -----------------------------------------------------------------------------------
 
 Chapter threads() {
   Chapter chapter{"Two threads, by the clock", {}, plot_of("The best engine on one thread over timewarp on two, by the clock", "movable bodies", "times quicker")};
@@ -227,7 +230,7 @@ Chapter threads() {
   return chapter;
 }
 
-// ---- All of it -------------------------------------------------------------------------------------------------------------
+// ---- All of it ---------------------------------------------------------------------------------
 
 bool holds(const Figure& figure) { return figure.at_least ? figure.found >= figure.goal : figure.found <= figure.goal; }
 

@@ -1,4 +1,5 @@
-/// The figures that timewarp is judged by (its goals stand in engine_figures.cpp): each measured in one run, with its goal, w h and a picture.
+/// The figures that timewarp is judged by (its goals stand in engine_figures.cpp): each measured in
+/// one run, with its goal, w h and a picture.
 #pragma once
 
 #include <filesystem>

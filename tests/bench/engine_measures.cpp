@@ -64,7 +64,8 @@ Once run_once(const scene::Scene& scene, const std::string& engine, double durat
 
 // What a neighbour's work on the machine adds is no engine's.
 Once best_of(const scene::Scene& scene, const std::string& engine, double duration, Clock clock, StackSamples& samples) {
-  // While samples are taken the system's clock of CPU time goes by ticks of milliseconds: short runs are timed without.
+  // While samples are taken the system's clock of CPU time goes by ticks of milliseconds: short
+  // runs are timed without.
   samples.begin();
   Once best = run_once(scene, engine, duration, clock);
   for (int k = 1; k < kShortRuns && best.seconds < kShort; ++k) run_once(scene, engine, duration, clock);

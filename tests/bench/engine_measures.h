@@ -42,13 +42,15 @@ struct Measured {
 
 enum class Clock { kCpu, kWall };                // CPU time is what neighbours on the machine do not lengthen; threads are compared by the wall's
 
-/// A scene as it stands at a later time, by timewarp: what heaps up needs its time, which is no part of what is compared. Bodies, links and all
-/// else are kept.
+/// A scene as it stands at a later time, by timewarp: what heaps up needs its time, which is no
+/// part of what is compared. Bodies, links and all else are kept.
 /// @param at  [s]
 scene::Scene at_a_later_time(const scene::Scene& scene, double at);
 
-/// A scene by one engine: the least disturbed of several runs where they are short. Pictures are no part of it.
-/// @param engine    rd, rd_auto (in closed form, as the others go), ca, tw, or tw2, tw4, ... (threads)
+/// A scene by one engine: the least disturbed of several runs where they are short. Pictures are no
+/// part of it.
+/// @param engine    rd, rd_auto (in closed form, as the others go), ca, tw, or tw2, tw4, ...
+///   (threads)
 /// @param duration  [s]
 Measured measure(const scene::Scene& scene, const std::string& engine, double duration, Clock clock = Clock::kCpu);
 /// The same for a scene with a size.

@@ -1,6 +1,8 @@
-// What each engine pays for the same scenes: its words are in kUsage. Without words: all figures that timewarp is judged by, one table, one
-// picture each (engine_figures.cpp), and where each engine's time went (engine_profiles.cpp). Ratios are of times in this very run. rd_auto is
-// rd in closed form, as the other two go. With tw2 or tw4 all times of the table are by the clock, on a machine that has nothing else to do.
+// What each engine pays for the same scenes: its words are in kUsage. Without words: all figures
+// that timewarp is judged by, one table, one picture each (engine_figures.cpp), and where each
+// engine's time went (engine_profiles.cpp). Ratios are of times in this very run. rd_auto is rd in
+// closed form, as the other two go. With tw2 or tw4 all times of the table are by the clock, on a
+// machine that has nothing else to do.
 #include <cstdio>
 #include <cstdlib>
 
@@ -15,8 +17,8 @@
 namespace tumble::testing {
 namespace {
 
-// Of two threads and more: what hardly depends on how busy the machine is, CPU of the busiest thread of each round and of what one does
-// alone, one after the other.
+// Of two threads and more: what hardly depends on how busy the machine is, CPU of the busiest
+// thread of each round and of what one does alone, one after the other.
 void print_critical_path(const Measured& run, double cpu_of_one) {
   if (!run.tally.stages.contains("threads_together")) return;
   const auto spent = [&](const char* stage) { return run.tally.stages.at(stage) - run.building.stages.at(stage); };

@@ -1,4 +1,5 @@
-// What one question to the collision folder costs: gaps, near points, bounds on impacts, pairs of boxes.
+// What one question to the collision folder costs: gaps, near points, bounds on impacts, pairs of
+// boxes.
 //   bench_narrow [WORD]   only the lines that hold the word
 #include <algorithm>
 #include <cstdio>
@@ -34,7 +35,8 @@ double cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// CPU time of one call, the least of several batches: the best is what a neighbour's work did not touch. [us]
+/// CPU time of one call, the least of several batches: the best is what a neighbour's work did not
+/// touch. [us]
 double microseconds(std::size_t calls_a_round, const std::function<void()>& round) {
   round();
   double least = 1e9;
@@ -144,7 +146,8 @@ Quaterniond any_turn(std::mt19937_64& random) {
   return Quaterniond(in(random, -1, 1), in(random, -1, 1), in(random, -1, 1), in(random, -1, 1)).normalized();
 }
 
-/// Two solids in any attitude, `gap` apart (a part of the smaller one's size) along a line through their middles.
+/// Two solids in any attitude, `gap` apart (a part of the smaller one's size) along a line through
+/// their middles.
 auto apart_by(double gap) {
   return [gap](const CollisionShape& a, const CollisionShape& b, std::mt19937_64& random) {
     const Vector3d line = any_direction(random);
@@ -162,7 +165,8 @@ auto apart_by(double gap) {
   };
 }
 
-/// A solid let down by `gap` above another that stands as it is, at (x, y) in a square of half side `spread`.
+/// A solid let down by `gap` above another that stands as it is, at (x, y) in a square of half side
+/// `spread`.
 auto let_down(double gap, double spread, bool upright) {
   return [=](const CollisionShape& a, const CollisionShape& b, std::mt19937_64& random) {
     Pose p{{in(random, -spread, spread), in(random, -spread, spread), 0}, upright ? Quaterniond(Eigen::AngleAxisd(in(random, 0, 6), Vector3d::UnitZ())) : any_turn(random)};

@@ -5,7 +5,7 @@
 
 namespace tumble::engines {
 
-// ---- An impact ---------------------------------------------------------------------------------------------------------
+// ---- An impact ---------------------------------------------------------------------------------
 
 void TaughtTimewarp::collide(int id, const FoundImpact& found, const CheckDecision& decision) {
   const EventStamp& key = found.key;
@@ -46,7 +46,7 @@ void TaughtTimewarp::begin_flights(const Discontinuity& discontinuity, double sa
   keep_group_checks(safe_time, time);
 }
 
-// ---- Groups --------------------------------------------------------------------------------------------------------------
+// ---- Groups ------------------------------------------------------------------------------------
 
 // The groups after an event follow from the contacts and links of its bodies; the scheduler must
 // find the same.
@@ -105,7 +105,7 @@ void TaughtTimewarp::check_group(int id) {
   begin_flights(discontinuity, decision.next.safe_time, decision.next.stamp.time);
 }
 
-// ---- A callback ------------------------------------------------------------------------------------------------------------
+// ---- A callback --------------------------------------------------------------------------------
 
 void TaughtTimewarp::expect_callback(const EventStamp& key) {
   const std::vector<int>& bodies = run_.receivers(key);

@@ -12,7 +12,7 @@ constexpr std::size_t kWorthPurging = 6;          // states of a body: with fewe
 
 }  // namespace
 
-// ---- Rollback ----------------------------------------------------------------------------------------------------------
+// ---- Rollback ----------------------------------------------------------------------------------
 
 void TaughtTimewarp::roll_back(const std::vector<Rollback>& first, const std::string& why) {
   std::vector<Effect> effects;
@@ -77,7 +77,7 @@ void TaughtTimewarp::roll_back_one(const Rollback& rollback, const std::string& 
   move(rollback.body, from, to);
 }
 
-// ---- Global virtual time -----------------------------------------------------------------------------------------------
+// ---- Global virtual time -----------------------------------------------------------------------
 
 void TaughtTimewarp::look_at_gvt(bool is_over) {
   since_asked_ = 0;
