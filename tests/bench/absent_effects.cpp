@@ -1,10 +1,9 @@
-// What an effect costs that a scene does not ask for. Run by absent_effects.sh under callgrind,
+// The cost of an effect that a scene does not call for. Run by absent_effects.sh under callgrind,
 // once as it is and once built without the effect.
 //
-//   bench_... cost EFFECT     runs a scene without the effect in which its absence is asked about
-// often
-//   bench_... calls EFFECT    runs a scene that asks for the effect, and prints how often its code
-// was called
+//   bench_... cost EFFECT     runs a scene without the effect that often tests for its absence
+//   bench_... calls EFFECT    runs a scene with the effect, and prints the number of calls of its
+//                             code
 #include <cstdio>
 #include <iostream>
 

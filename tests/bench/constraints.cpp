@@ -1,6 +1,6 @@
-// What rods, joints and lasting contact cost, beside what the project wants them to: one table, by
-// CPU time of this machine. Ratios and shares of real time matter, not seconds.   usage:
-// bench_constraints, from the root of the tree
+// The cost of rods, joints and persistent contacts against the project's goals: one table, by CPU
+// time of this machine. Ratios and fractions of real time matter, not seconds.
+//   usage: bench_constraints, from the root of the tree
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
