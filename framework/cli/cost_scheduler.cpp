@@ -179,11 +179,13 @@ void cost_of_scheduler(Context& context, const modules::ModuleKind& kind, const 
   std::vector<Way> ways = methods_of(context, kind, words);
   for (Way& way : ways) measuring.run(way);
 
+  // The sentences compare the scheduler with the reference.
   std::vector<SchedulerCurve> curves{ways[0].curve};
   if (ways.size() > 1 && ways[1].curve.is_reference) curves.push_back(ways[1].curve);
   const std::vector<SchedulerReading> readings = engines::read_scheduler(curves[0], curves.size() > 1 ? &curves[1] : nullptr);
   const std::string scenes = measuring.scene().title + (measuring.sized().empty() ? "" : "; and at growing size: " + scene::sized_scene_named(measuring.sized())->title);
 
+  // The same on stdout and on the page.
   fmt::print("{} ({}) on: {}\n", kind.id, words.modules.empty() ? "student" : words.modules, scenes);
   print(ways);
   report::Page page("What accuracy costs", fmt::format("{} ({}) on: {}", kind.id, words.modules.empty() ? "student" : words.modules, scenes));

@@ -147,6 +147,7 @@ ExitCode run_truths(const Context& context, const TruthsOptions& options) {
   if (!options.json) print_truths_head();
   std::vector<OddFile> odd;
   Progress progress(files.size());
+  // Compares file by file.
   for (const auto& file : files) {
     progress.tell();
     try {
@@ -164,6 +165,7 @@ ExitCode run_truths(const Context& context, const TruthsOptions& options) {
       std::fprintf(stderr, "tumble: %s\n", error.what());
     }
   }
+  // The result as JSON or as a table.
   if (options.json) {
     nlohmann::ordered_json all{{"command", context.command_line}, {"version", kProgramVersion}, {"modules", options.modules}};
     all.update(truths_to_json(results, skipped));
