@@ -1,4 +1,5 @@
-// What a contact problem costs: stacks cold and warm, forty contacts at rest, a pile of 200 bodies.
+// The cost of a contact problem: stacks with and without warm start, forty contacts at rest, a pile
+// of 200 bodies.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
