@@ -1,4 +1,5 @@
-// One surface for each way not to be a solid: what `tumble inspect` says of them teaches what a solid is.
+// One surface for each way not to be a solid: what `tumble inspect` says of them teaches what a
+// solid is.
 #include <cmath>
 #include <numbers>
 

@@ -30,12 +30,14 @@ TriangleMesh torus() {
   return revolve(profile, 48, true);
 }
 
-/// An L of three unit squares, a unit thick: the solid of Eberly's and Mirtich's examples, volume 3 by hand.
+/// An L of three unit squares, a unit thick: the solid of Eberly's and Mirtich's examples, volume 3
+/// by hand.
 TriangleMesh l_shape() {
   return extrude({{0, 0}, {2, 0}, {2, 1}, {1, 1}, {1, 2}, {0, 2}}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 5}, {3, 4, 5}}, 0.0, 1.0);
 }
 
-/// The handle that turns over in weightlessness: a bar across (along x) on a stem (along y), moments far apart.
+/// The handle that turns over in weightlessness: a bar across (along x) on a stem (along y),
+/// moments far apart.
 TriangleMesh t_handle() {
   const std::vector<Vector2d> outline = {{-0.5, 0.0},   {-0.075, 0.0}, {-0.075, -0.45}, {0.075, -0.45},
                                          {0.075, 0.0}, {0.5, 0.0},    {0.5, 0.15},     {-0.5, 0.15}};
@@ -50,19 +52,22 @@ TriangleMesh wedge() {
   return turned(extrude({{0, 0}, {1, 0}, {0, 0.5}}, {{0, 1, 2}}, -0.4, 0.4), Quaterniond(std::sqrt(0.5), std::sqrt(0.5), 0, 0));
 }
 
-/// An outline in the xz plane, counter-clockwise seen from -y, of a solid that reaches `half_width` to both sides.
+/// An outline in the xz plane, counter-clockwise seen from -y, of a solid that reaches `half_width`
+/// to both sides.
 TriangleMesh upright(const std::vector<Vector2d>& outline, double half_width) {
   return turned(extrude(outline, {{0, 1, 2}, {0, 2, 3}}, -half_width, half_width), Quaterniond(std::sqrt(0.5), std::sqrt(0.5), 0, 0));
 }
 
-/// A stone of a semicircular arch of 25, of middle radius 1 m and this thickness [m]; the arch's centre is the origin.
+/// A stone of a semicircular arch of 25, of middle radius 1 m and this thickness [m]; the arch's
+/// centre is the origin.
 TriangleMesh arch_stone(double thickness) {
   constexpr double kHalfAngle = kPi / 50;
   const double s = std::sin(kHalfAngle), c = std::cos(kHalfAngle), inner = 1 - thickness / 2, outer = 1 + thickness / 2;
   return upright({{-inner * s, inner * c}, {inner * s, inner * c}, {outer * s, outer * c}, {-outer * s, outer * c}}, 0.2);
 }
 
-/// A playing card to lean on another at 25 degrees: its top is cut so that the cut is upright when the card leans.
+/// A playing card to lean on another at 25 degrees: its top is cut so that the cut is upright when
+/// the card leans.
 TriangleMesh card() {
   constexpr double kThickness = 0.02, kLean = 25.0 / 180.0 * kPi;
   return upright({{-kThickness, 0}, {0, 0}, {0, 1}, {-kThickness, 1 + kThickness / std::tan(kLean)}}, 0.36);
@@ -106,9 +111,10 @@ double far_side(const Vector3d& direction, const Vector3d& centre, double radius
   return along + std::sqrt(std::max(0.0, along * along - centre.squaredNorm() + radius * radius));
 }
 
-/// H2O as balls of the van der Waals radii, 1 angstrom drawn as 0.25 m; the oxygen's centre, which all three balls hold, is
-/// the origin. Radii: oxygen 1.52 (A. Bondi, J. Phys. Chem. 68, 1964), hydrogen 1.10 (R. Rowland, R. Taylor, J. Phys. Chem.
-/// 100, 1996); bond 0.9584 angstrom, angle 104.45 degrees (A. Hoy, P. Bunker, J. Mol. Spectrosc. 74, 1979).
+/// H2O as balls of the van der Waals radii, 1 angstrom drawn as 0.25 m; the oxygen's centre, which
+/// all three balls hold, is the origin. Radii: oxygen 1.52 (A. Bondi, J. Phys. Chem. 68, 1964),
+/// hydrogen 1.10 (R. Rowland, R. Taylor, J. Phys. Chem. 100, 1996); bond 0.9584 angstrom, angle
+/// 104.45 degrees (A. Hoy, P. Bunker, J. Mol. Spectrosc. 74, 1979).
 TriangleMesh water_molecule() {
   constexpr double kScale = 0.25, kOxygen = 1.52, kHydrogen = 1.10, kBond = 0.9584, kHalfAngle = 104.45 / 2.0 * kPi / 180.0;
   const Vector3d left(-kBond * std::sin(kHalfAngle), 0.0, -kBond * std::cos(kHalfAngle));
@@ -119,7 +125,8 @@ TriangleMesh water_molecule() {
   return star_shaped(radius, 4);
 }
 
-/// The hull of the same three balls, each by 42 points: as many collisions a second as balls have are not to be had with thousands of faces.
+/// The hull of the same three balls, each by 42 points: as many collisions a second as balls have
+/// are not to be had with thousands of faces.
 TriangleMesh water_hull() {
   constexpr double kScale = 0.25, kOxygen = 1.52, kHydrogen = 1.10, kBond = 0.9584, kHalfAngle = 104.45 / 2.0 * kPi / 180.0;
   const double x = kScale * kBond * std::sin(kHalfAngle), z = -kScale * kBond * std::cos(kHalfAngle);

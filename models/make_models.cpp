@@ -1,4 +1,5 @@
-// make_models [FOLDER]: writes every model of the catalogue, the same bytes each time. FOLDER defaults to models/ of the source tree.
+// make_models [FOLDER]: writes every model of the catalogue, the same bytes each time. FOLDER
+// defaults to models/ of the source tree.
 #include <cstdio>
 #include <exception>
 #include <filesystem>

@@ -1,4 +1,5 @@
-/// Closed surfaces by construction: what the models are made of. Faces run counter-clockwise seen from outside.
+/// Closed surfaces by construction: what the models are made of. Faces run counter-clockwise seen
+/// from outside.
 #pragma once
 
 #include <functional>
@@ -18,17 +19,20 @@ TriangleMesh box(const Vector3d& low, const Vector3d& high);
 TriangleMesh extrude(const std::vector<Vector2d>& outline, const std::vector<Face>& triangles, double z_low, double z_high);
 
 /// A surface round the z axis.
-/// @param profile   (r, z) from the bottom to the top [m]; where r is 0 the surface closes in one vertex
+/// @param profile   (r, z) from the bottom to the top [m]; where r is 0 the surface closes in one
+///   vertex
 /// @param closed    the profile's end meets its start (a torus); else it starts and ends at r = 0
 /// @param segments  round the axis, at least 3
 TriangleMesh revolve(const std::vector<Vector2d>& profile, int segments, bool closed = false);
 
-/// A surface seen whole from the origin: an icosahedron, subdivided, each vertex moved to its distance.
+/// A surface seen whole from the origin: an icosahedron, subdivided, each vertex moved to its
+/// distance.
 /// @param radius        of a unit direction [m]
 /// @param subdivisions  20 * 4^n faces
 TriangleMesh star_shaped(const std::function<double(const Vector3d&)>& radius, int subdivisions);
 
-/// The convex hull of points in general position (no four in a plane), by trying every triple. Cost: O(n^4)
+/// The convex hull of points in general position (no four in a plane), by trying every triple.
+/// Cost: O(n^4)
 TriangleMesh convex_hull(const std::vector<Vector3d>& points);
 
 /// The same surface elsewhere.

@@ -1,6 +1,7 @@
-/// Writes .3ds files: the few chunks that a shape needs, so that the same surface gives the same bytes on every machine.
-/// Assimp's exporter is not used: its bytes depend on its version, it names objects after materials and it splits large meshes.
-/// The loader reads through assimp, so writer and reader check each other.
+/// Writes .3ds files: the few chunks that a shape needs, so that the same surface gives the same
+/// bytes on every machine. Assimp's exporter is not used: its bytes depend on its version, it names
+/// objects after materials and it splits large meshes. The loader reads through assimp, so writer
+/// and reader check each other.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +18,13 @@ struct Object {
   TriangleMesh mesh;  // the file's frame and unit; at most 65535 vertices and faces
 };
 
-/// The bytes of a .3ds file with these objects, coordinates rounded to float32, without materials, nodes or smoothing groups.
+/// The bytes of a .3ds file with these objects, coordinates rounded to float32, without materials,
+/// nodes or smoothing groups.
 /// @throws PreconditionError when a mesh is too large for the format
 std::string write_3ds(const std::vector<Object>& objects);
 
-/// Little-endian bytes, and a chunk (id u16, length u32, data) of them: for files that write_3ds does not make.
+/// Little-endian bytes, and a chunk (id u16, length u32, data) of them: for files that write_3ds
+/// does not make.
 std::string u16(std::uint16_t value);
 std::string u32(std::uint32_t value);
 std::string f32(double value);

@@ -1,4 +1,4 @@
-/// Which laws of a world the a1 module provides.
+/// The laws of a world that the a1 module provides.
 #pragma once
 
 #include "assignments/a1_impulse/a1_impulse.h"

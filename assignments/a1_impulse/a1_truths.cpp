@@ -1,5 +1,6 @@
-// Truths of impulses and of rays, computed with the functions of assignment 1.
-// Conventions of the files: world frame, normal from B to A, times along a ray in lengths of its direction.
+// Reference values of impulses and rays, compared with the functions of assignment 1.
+// Conventions of the files: world frame, normal from B to A, times along a ray in lengths of its
+// direction.
 #include "assignments/a1_impulse/a1_truths.h"
 
 #include <cmath>
@@ -15,7 +16,7 @@ using truths::Case;
 using truths::Comparison;
 using truths::Value;
 
-/// A collision as the files state it, and what the module makes of it.
+/// A collision of the files, and the module's results for it.
 struct Collision {
   Contact contact;
   Body a, b;
@@ -23,12 +24,12 @@ struct Collision {
 };
 
 double kinetic_energy(const Body& body, const Velocity& velocity) {
-  if (body.inertia.inverse_mass == 0.0) return 0.0;  // a wall's energy does not enter the files
+  if (body.inertia.inverse_mass == 0.0) return 0.0;  // the files leave out a wall's energy
   const Vector3d omega_body = body.world_from_body.conjugate() * velocity.angular_world;
   return 0.5 * body.inertia.mass * velocity.linear_world.squaredNorm() + 0.5 * omega_body.dot(body.inertia.inertia_body * omega_body);
 }
 
-/// The module's answer to a collision, in all the quantities that the files give.
+/// The module's results for a collision, in all the quantities of the files.
 struct Answer {
   double normal_velocity_before, normal_velocity_after, effective_inverse_mass, impulse, energy_before, energy_after;
   Velocity a_after, b_after;
@@ -39,7 +40,7 @@ Answer answer_of(const Module& module, const Collision& collision) {
   Answer answer;
   answer.normal_velocity_before = module.relative_normal_velocity(contact, a, b);
   answer.impulse = module.collision_impulse(contact, a, b, restitution);
-  // (A1.9) turned round: j k = -(1 + e) u_n. A wrong impulse shows here as well.
+  // (A1.9) solved for k: j k = -(1 + e) u_n. A wrong impulse shows here as well.
   answer.effective_inverse_mass = -(1.0 + restitution) * answer.normal_velocity_before / answer.impulse;
 
   const CollisionOutcome outcome = module.resolve_collision(contact, a, b, restitution);
@@ -54,7 +55,7 @@ Answer answer_of(const Module& module, const Collision& collision) {
   return answer;
 }
 
-/// Compares the output when the case has it: families differ in which they give.
+/// Compares the output when the case has it: families have different outputs.
 template <class Found>
 void compare_if_given(const Case& truth, Comparison& comparison, const std::string& output, const Found& found) {
   if (truth.has_output(output)) comparison.closed_form(truth, output, found);
@@ -73,10 +74,10 @@ Body body_at(const Inertia& inertia, const Vector3d& com_world, const Vector3d& 
   return {inertia, com_world, Quaterniond::Identity(), velocity_world, omega_world};
 }
 
-/// Any solid ball will do where the impulse passes through the centre: (2/5) m r^2.
+/// Any solid ball, because the impulse passes through the centre: (2/5) m r^2.
 Inertia ball_inertia(double mass, double radius) { return finite_inertia(mass, 0.4 * mass * radius * radius * Matrix3d::Identity()); }
 
-// ---- impulse_sphere_sphere -------------------------------------------------------------------------------------------
+// ---- impulse_sphere_sphere ---------------------------------------------------------------------
 
 void compare_sphere_sphere(const Module& module, const Case& truth, Comparison& comparison) {
   Collision collision;
@@ -94,13 +95,14 @@ void compare_sphere_sphere(const Module& module, const Case& truth, Comparison& 
   });
 }
 
-// ---- impulse_rod_ball ------------------------------------------------------------------------------------------------
+// ---- impulse_rod_ball --------------------------------------------------------------------------
 
 // Rod along x at rest, centre at the origin; ball A above it at distance d from the centre.
 void compare_rod_ball(const Module& module, const Case& truth, Comparison& comparison) {
   const double mass = truth.input("M_rod").number(), length = truth.input("L_rod").number(), d = truth.input("d").number();
   const double transverse = mass * length * length / 12.0;
-  // The moment about the rod's own axis plays no part: nothing turns about x. A thin rod has next to none.
+  // The moment about the rod's own axis has no effect: there is no rotation about x. A thin rod has
+  // almost none.
   const Inertia rod = finite_inertia(mass, Vector3d(1e-3 * transverse, transverse, transverse).asDiagonal());
   Collision collision;
   collision.contact = {Vector3d(d, 0, 0), truth.input("normal_rod_to_ball").vector3()};
@@ -120,7 +122,7 @@ void compare_rod_ball(const Module& module, const Case& truth, Comparison& compa
   });
 }
 
-// ---- impulse_box_corner ----------------------------------------------------------------------------------------------
+// ---- impulse_box_corner ------------------------------------------------------------------------
 
 void compare_box_corner(const Module& module, const Case& truth, Comparison& comparison) {
   const double mass = truth.input("m").number();
@@ -146,9 +148,10 @@ void compare_box_corner(const Module& module, const Case& truth, Comparison& com
   });
 }
 
-// ---- impulse_random --------------------------------------------------------------------------------------------------
+// ---- impulse_random ----------------------------------------------------------------------------
 
-/// Body A or B of a row, its tensor given in the world frame at the instant of impact: body and world axes coincide there.
+/// Body A or B of a row, its tensor given in the world frame at the instant of impact, when body
+/// and world axes coincide.
 Body body_of_row(const Value& inputs, const std::string& which) {
   const bool immovable = inputs.at("m" + which).text() == "infinite";
   const Inertia inertia = immovable ? infinite_inertia() : finite_inertia(inputs.at("m" + which).number(), inputs.at("I" + which + "_world").matrix3());
@@ -180,7 +183,8 @@ void compare_random_row(const Module& module, const Value& row, const std::strin
   const double k = outputs.at("effective_inverse_mass").number();
   comparison.closed_form(name + ".effective_inverse_mass", std::abs(answer.effective_inverse_mass - k),
                          k * impulse_floor / std::abs(outputs.at("j").number()));
-  // The rows give no floor of the energies: half m v^2 and half w I w have the relative rounding of their velocities, doubled.
+  // The rows have no floor for energies: half m v^2 and half w I w have twice the relative rounding
+  // of their velocities.
   const double before = row.at("kinetic_energy_before").number(), after = row.at("kinetic_energy_after").number();
   const double relative = 2.0 * velocity_floor / std::max(1.0, answer.a_after.linear_world.norm() + answer.b_after.linear_world.norm());
   comparison.closed_form(name + ".kinetic_energy_before", std::abs(answer.energy_before - before), before * relative);
@@ -195,9 +199,9 @@ void compare_random(const Module& module, const Case& truth, Comparison& compari
   }
 }
 
-// ---- ray_triangle ----------------------------------------------------------------------------------------------------
+// ---- ray_triangle ------------------------------------------------------------------------------
 
-/// What the file says of one ray against one triangle, against what the module says.
+/// Compares the file's values for one ray and one triangle with the module's.
 /// @param is_alone  whether no other triangle of the file can have a point on this one's edge
 void compare_hit(const Value& expected, bool exact_inputs, bool is_alone, const std::optional<RayHit>& hit, const Ray& ray, const Triangle& triangle,
                  const std::string& name, Comparison& comparison) {
@@ -208,7 +212,7 @@ void compare_hit(const Value& expected, bool exact_inputs, bool is_alone, const 
   const bool should_hit = expected.at("hit").boolean();
   const std::string& kind = expected.at("class").text();
   if (hit.has_value() != should_hit) {
-    // Inputs that are not binary fractions move by a rounding, and with them a point on the very edge.
+    // Inputs that are not binary fractions are rounded, and with them a point exactly on the edge.
     const bool undecidable = !exact_inputs && kind.rfind("on_", 0) == 0;
     const bool is_shared = !is_alone && should_hit && kind.rfind("on_", 0) == 0;
     if (is_shared) comparison.not_compared(name, kind + " of triangles that share it: rounding may decide which of them is hit, see any_hit");
@@ -219,14 +223,15 @@ void compare_hit(const Value& expected, bool exact_inputs, bool is_alone, const 
   comparison.agree(name, true, kind);
   if (!should_hit) return;
 
-  // The file's floor of t is 4 u max|coordinate| |N| / |N.d|, of a length along the ray. The point moves along the ray by
-  // that times |d|; the weights by that over the smallest height of the triangle.
+  // The file's floor of t is 4 u max|coordinate| |N| / |N.d|, of a length along the ray. The point
+  // moves along the ray by that times |d|, the weights by that over the smallest height of the
+  // triangle.
   const double floor = expected.at("t_tolerance_floor").number();
   comparison.closed_form(name + ".t", std::abs(hit->t - expected.at("t").number()), floor);
   const double moved = floor * ray.direction_world.norm();
   const Vector3d ab = triangle.b_world - triangle.a_world, ac = triangle.c_world - triangle.a_world, bc = triangle.c_world - triangle.b_world;
   const double height = ab.cross(ac).norm() / std::max({ab.norm(), ac.norm(), bc.norm()});
-  // Coordinates around the hit are rounded too, by u of the largest.
+  // Coordinates near the hit are rounded too, by u of the largest.
   const double size = std::max({triangle.a_world.norm(), triangle.b_world.norm(), triangle.c_world.norm(), ray.origin_world.norm(), 0.0});
   const double rounding = 0x1p-53 * std::max(size, hit->t * ray.direction_world.norm());
   comparison.closed_form(name + ".bary", truths::largest_difference(hit->barycentric, expected.at("bary").vector3()), 0x1p-53 + (moved + rounding) / height);
@@ -253,7 +258,7 @@ void compare_rays(const Module& module, const Case& truth, Comparison& compariso
         const std::string name = row.at("name").text() + (triangles.size() > 1 ? "[" + std::to_string(index) + "]" : "");
         compare_hit(expected, exact_inputs, triangles.size() == 1, hit, ray, triangles[index], name, comparison);
       }
-      // Of triangles that share an edge or a corner at least one is hit: nothing leaks through.
+      // Of triangles with a common edge or corner at least one is hit: no ray passes between them.
       if (!unanswerable && triangles.size() > 1)
         comparison.agree(row.at("name").text() + ".any_hit", any_hit == row.at("any_hit").boolean(), "at least one of the triangles around a shared edge or corner");
     });

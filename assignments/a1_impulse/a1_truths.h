@@ -1,4 +1,5 @@
-/// Truths that the a1 module's functions give directly: impulses, and rays against triangles.
+/// Comparisons of the a1 module's functions with reference values: impulses, and rays against
+/// triangles.
 #pragma once
 
 #include "framework/modules/registry.h"

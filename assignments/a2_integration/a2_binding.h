@@ -1,4 +1,4 @@
-/// Which laws of a world the a2 module provides.
+/// The laws of a world that the a2 module provides.
 #pragma once
 
 #include "assignments/a2_integration/a2_integration.h"

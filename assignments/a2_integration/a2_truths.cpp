@@ -29,7 +29,7 @@ struct Logistic {
   }
 };
 
-// Midpoint and Heun are in the files to compare with; no function of the module is about them.
+// Midpoint and Heun are in the files for comparison; no function of the module computes them.
 VectorXd midpoint_step(const OdeFunction& f, double t, const VectorXd& y, double h) {
   return y + h * f(t + 0.5 * h, y + 0.5 * h * f(t, y));
 }
@@ -47,7 +47,7 @@ double march(const Step& step, const Logistic& equation, double T, int steps) {
   return y[0];
 }
 
-// ---- One step, and what RK4 asks the derivative on its way -----------------------------------------------------------
+// ---- One step, and the stages of RK4 ---------------------------------------------------------
 
 void compare_stages(const Module& module, const Case& truth, const Logistic& equation, double h, Comparison& comparison) {
   std::vector<double> Y, k;
@@ -71,7 +71,7 @@ void compare_stages(const Module& module, const Case& truth, const Logistic& equ
   comparison.closed_form(truth, "rk4_one_step", result);
 }
 
-// ---- Convergence -----------------------------------------------------------------------------------------------------
+// ---- Convergence -------------------------------------------------------------------------------
 
 struct Method {
   std::string name;
@@ -87,9 +87,9 @@ void compare_table(const Method& method, const Case& truth, const Logistic& equa
   }
 }
 
-/// The order seen between the two smallest steps whose error still stands well above round-off.
+/// The observed order of the two smallest steps with an error well above round-off.
 void compare_order(const Method& method, const Case& truth, const Logistic& equation, double T, Comparison& comparison) {
-  constexpr int kMostSteps = 1 << 16;        // Euler reads 1 to 4 digits there; more would only cost time
+  constexpr int kMostSteps = 1 << 16;        // Euler has an error of 1 to 4 digits there; more would only cost time
   constexpr double kAboveRoundOff = 1000.0;  // floors: an error this large is known to 0.1 %, its log2 to 0.002
   const double floor = truth.floor("convergence_table_at_T");
   const double exact = equation.exact(T);
@@ -122,7 +122,7 @@ void compare_logistic(const Module& module, const Case& truth, Comparison& compa
   comparison.attempt("euler_step", [&] { comparison.closed_form(truth, "euler_one_step", module.euler_step(f, 0.0, y0, h)[0]); });
   comparison.attempt("rk4_step", [&] { compare_stages(module, truth, equation, h, comparison); });
 
-  // Orders to 0.05 and 0.1: issue 2 asks for it; half an order is what the commonest slips cost.
+  // Orders within 0.05 and 0.1; the commonest mistakes cost at least half an order.
   const Method methods[] = {{"euler", module.euler_step, 1.0, 0.05},
                             {"midpoint", midpoint_step, 2.0, 0.1},
                             {"heun", heun_step, 2.0, 0.1},

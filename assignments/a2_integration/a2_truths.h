@@ -1,4 +1,5 @@
-/// Truths that the a2 module's functions give directly: single steps and orders of convergence.
+/// Comparisons of the a2 module's functions with reference values: single steps and orders of
+/// convergence.
 #pragma once
 
 #include "framework/modules/registry.h"

@@ -2,7 +2,7 @@
 
 namespace tumble::a3 {
 
-// anchor_position and anchor_velocity have no law of their own: engines place anchors themselves.
+// anchor_position and anchor_velocity have no law: engines compute anchors themselves.
 void bind(const Module& module, Laws& laws) {
   laws.spring_force = module.spring_force;
   laws.rod_row = module.rod_row;

@@ -1,4 +1,4 @@
-/// Which laws of a world the a3 module provides.
+/// The laws of a world that the a3 module provides.
 #pragma once
 
 #include "assignments/a3_constraints/a3_constraints.h"

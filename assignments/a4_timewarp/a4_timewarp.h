@@ -28,7 +28,7 @@ namespace tumble::a4 {
 /// Whether x comes before y, in one total order of all events:
 ///   by time, then microstep, then kind, then body_a, then body_b; the smaller first                         (A4.1)
 /// The queue's front, the order of what is committed, and "at a stamp and later" all mean this order. It makes the result
-/// independent of the order in which impacts are found. The microstep (a microstep of superdense time) comes before the bodies:
+/// independent of the order in which impacts are found. The microstep (of superdense time) comes before the bodies:
 /// at one instant an effect follows its cause.
 /// @param x, y  stamps without NaN
 /// @return false for x == y

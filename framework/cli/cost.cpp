@@ -69,19 +69,19 @@ void run_cost(Context& context, const CostWords& words) {
 
 void add_cost(CLI::App& app, Context& context) {
   auto words = std::make_shared<CostWords>();
-  Verb verb(app, "cost", "What accuracy costs: error against CPU time by every method, step and engine, drawn and read");
+  Verb verb(app, "cost", "Error against CPU time by every method, step and engine, with plots and sentences");
   verb.option("scene", words->scene, "A scene file, the bare name of one, a scene with a size, an assignment (a1 to a4): the student's module against the reference; toi: root finders on times of impact; or all: every scene, and one table").required().type_name("SCENE");
   verb.option("--methods", words->methods, "Methods of integration, with commas: euler, symplectic, midpoint, verlet, rk4, dopri5, fehlberg78, bulirsch-stoer, rosenbrock4 (implicit); none").separated_by(',');
   verb.option("--engines", words->engines, "Beside rd with each method: auto (rd, in closed form where nothing but gravity acts), ca, tw, ordered; none").separated_by(',');
-  verb.option("--stabilisations", words->stabilisations, "What keeps rods and joints together, each with RK4: none, baumgarte, projection").separated_by(',');
+  verb.option("--stabilisations", words->stabilisations, "Stabilisation of rods and joints, each with RK4: none, baumgarte, projection").separated_by(',');
   verb.option("--impacts", words->impacts, "Which root finder looks for impacts, over its tolerance: bisection, newton, toms748").separated_by(',');
-  verb.option("--solvers", words->solvers, "Iterative solvers in place of direct ones, over their tolerance: gradients (rods and joints), sweeps, newton (lasting contacts)").separated_by(',');
-  verb.option("--steps", words->steps, "Steps of the ladder [s], as 1/30,1/60,0.001, instead of halvings until the budget is used").separated_by(',').type_name("STEPS");
+  verb.option("--solvers", words->solvers, "Iterative solvers in place of direct ones, over their tolerance: gradients (rods and joints), sweeps, newton (persistent contacts)").separated_by(',');
+  verb.option("--steps", words->steps, "Steps [s], such as 1/30,1/60,0.001, instead of halvings until the budget is used").separated_by(',').type_name("STEPS");
   verb.option("--tolerances", words->tolerances, "Tolerances of methods that control their error, instead of 0.1, 0.01, ... (with rods or joints from 1e-4 on)").separated_by(',').positive();
-  verb.option("--modules", words->modules, "Whose laws, as for tumble run; of an assignment: whose module is looked at (default student)").type_name("WORDS");
+  verb.option("--modules", words->modules, "Whose laws, as for tumble run; of an assignment: whose module is measured (default student)").type_name("WORDS");
   verb.option("--on", words->on, "Of an assignment: the scene that it is measured on").type_name("SCENE");
   verb.option("--duration-s", words->duration_s, "Simulated time [s] instead of the scene's").positive();
-  verb.option("--budget-s", words->budget_s, "CPU time of all ladders together [s], default 30, of all: 4 a scene; the truth takes 18 s at most beside").positive();
+  verb.option("--budget-s", words->budget_s, "CPU time of all methods together [s], default 30, with all: 4 per scene; the reference solution takes at most 18 s more").positive();
   verb.option("--n", words->n, "Size of a scene whose size is a parameter");
   verb.option("--out", words->out, "Folder in which the page SCENE/index.html is made").shows_default();
   verb.footer("Example: tumble cost double_pendulum\n         tumble cost a2 --modules mine/a2_integration.cpp\nTimes are CPU times in this run and are meant to be compared with each other only.");

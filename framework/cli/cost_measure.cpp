@@ -309,6 +309,7 @@ MeasuredCost measure_cost(const Context& context, const CostWords& asked) {
   options.timewarp = engines::fast_timewarp();
   options.progress = [](const std::string& what) { fmt::print(stderr, "tumble: {}\n", what); };
   options.most_of_search_s = std::clamp(kSearch * asked.budget(), kLeastSearch, options.most_of_search_s);
+  // Subject, reference solution, and the scene's own numbers where there is none.
   const auto [words, usual_n] = with_size_that_fits(context, asked, options);
   CostSubject subject = find_subject(context, words);
   options.duration_s = words.duration_s ? words.duration_s : subject.duration_s;
@@ -321,9 +322,11 @@ MeasuredCost measure_cost(const Context& context, const CostWords& asked) {
   if (found) check_with_files(context, subject.scene, subject.truth_laws, reference);
   if (reference.by_numbers || subject.scene.contact)   // there the method of integration hardly matters: the usual one comes first
     std::stable_partition(subject.methods.begin(), subject.methods.end(), [](const CostMethod& method) { return method.word == "rk4"; });
+  // Runs all methods within the budget.
   Refinements all(subject, reference, words, options);
   all.run();
   const std::vector<Refinement>& refinements = all.refinements;
+  // The page and its summary.
   MeasuredCost measured;
   measured.page = page_of(context, refinements, reference, subject);
   measured.page.not_run = subject.not_run;

@@ -119,7 +119,7 @@ class Measuring {
   void one(const scene::Scene& scene, const Laws& laws, const Way& way, const SchedulerRunOptions& trial, std::vector<SchedulerRun>& runs) const {
     runs.push_back(engines::run_scheduler(scene, laws, trial, engines::events_due(scene, laws, trial)));
     const SchedulerRun& run = runs.back();
-    const std::string found = run.is_right() ? fmt::format("{:.2f} integrations an event, {}", run.per_event(run.integrations), report::price_of(run.cpu_s)) : fmt::format("{} of {} events", run.committed, run.due);
+    const std::string found = run.is_right() ? fmt::format("{:.2f} integrations per event, {}", run.per_event(run.integrations), report::price_of(run.cpu_s)) : fmt::format("{} of {} events", run.committed, run.due);
     fmt::print(stderr, "{:<28} {:>3} processes, step {:<10} {:<44} at most {:.0f} s left\n", way.curve.name, run.processes, fmt::format("{:.3g} s", run.step_s), found, std::max(0.0, until_ - now_s()));
   }
 
@@ -162,7 +162,7 @@ report::Plot plot_of_prices(const std::vector<Way>& ways) {
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.2f}", value) : "-"; }
 
 void print(const std::vector<Way>& ways) {
-  fmt::print("{:<52} {:>9} {:>9} {:>12} {:>12} {:>10} {:>10} {:>7} {:>10}\n", "for each committed event:", "processes", "step [s]", "committed", "integrations", "taken back", "rollbacks", "states", "CPU");
+  fmt::print("{:<52} {:>9} {:>9} {:>12} {:>12} {:>10} {:>10} {:>7} {:>10}\n", "for each committed event:", "processes", "step [s]", "committed", "integrations", "undone", "rollbacks", "states", "CPU");
   for (const Way& way : ways)
     for (const auto* ladder : {&way.curve.by_step, &way.curve.by_size})
       for (const SchedulerRun& run : *ladder)
@@ -179,11 +179,13 @@ void cost_of_scheduler(Context& context, const modules::ModuleKind& kind, const 
   std::vector<Way> ways = methods_of(context, kind, words);
   for (Way& way : ways) measuring.run(way);
 
+  // The sentences compare the scheduler with the reference.
   std::vector<SchedulerCurve> curves{ways[0].curve};
   if (ways.size() > 1 && ways[1].curve.is_reference) curves.push_back(ways[1].curve);
   const std::vector<SchedulerReading> readings = engines::read_scheduler(curves[0], curves.size() > 1 ? &curves[1] : nullptr);
   const std::string scenes = measuring.scene().title + (measuring.sized().empty() ? "" : "; and at growing size: " + scene::sized_scene_named(measuring.sized())->title);
 
+  // The same on stdout and on the page.
   fmt::print("{} ({}) on: {}\n", kind.id, words.modules.empty() ? "student" : words.modules, scenes);
   print(ways);
   report::Page page("What accuracy costs", fmt::format("{} ({}) on: {}", kind.id, words.modules.empty() ? "student" : words.modules, scenes));

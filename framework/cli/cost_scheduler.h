@@ -7,7 +7,8 @@
 
 namespace tumble::cli {
 
-/// Writes OUT/a4/index.html and prints the sentences and the counts. @throws UserError as find_subject
+/// Writes OUT/a4/index.html and prints the sentences and the counts. @throws UserError as
+/// find_subject
 void cost_of_scheduler(Context& context, const modules::ModuleKind& kind, const CostWords& words);
 
 }  // namespace tumble::cli

@@ -210,6 +210,7 @@ EngineRun measure_engine(const Context& context, const scene::Scene& scene, cons
   options.step_s = choice.step_s;
   options.duration_s = choice.duration_s;
   options.command = context.command_line;
+  // The row of the table.
   EngineRun measured;
   EngineRow& row = measured.row;
   row.engine = choice.engine;
@@ -217,6 +218,7 @@ EngineRun measure_engine(const Context& context, const scene::Scene& scene, cons
   if (choice.engine == "rd") row.meaning += choice.propagator == "auto" ? ", in closed form" : ", by the laws' integrator";   // the others have closed forms
   row.label = choice.label.empty() ? choice.engine : choice.label;
   for (const scene::BodySpec& body : scene.bodies) row.bodies += body.immovable ? 0 : 1;
+  // One run for the time, one for the frames.
   engines::TimeShares shares;
   try {
     const auto seconds = choice.is_timed ? seconds_of_run(scene, chosen.laws, options, choice.by_the_clock, choice.most_s, row.counts, shares) : std::optional(kUnset);

@@ -158,6 +158,7 @@ EnginesScene show(const Context& context, const EnginesWords& words, const Shown
     const bool in_part = words.full && which.paper_duration > 0;
     if (in_part) shown.command += fmt::format(" --duration-s {:g}", which.paper_duration);
     const ChosenLaws chosen = choose_laws(context, scene, parse_module_words(modules_of(context, words), context.registry), words.engines);
+    // Runs of all engines, their agreement and judgement.
     std::vector<EngineRun> runs;
     for (EngineChoice choice : choices_of(words)) {
       if (in_part) choice.duration_s = which.paper_duration;
@@ -167,6 +168,7 @@ EnginesScene show(const Context& context, const EnginesWords& words, const Shown
     tell_agreement(runs);
     shown.rows = rows_of(runs);
     add_judgement(scene, runs, shown);
+    // Table, player, picture and video.
     const fs::path folder = out / which.name;
     report::write_engines_page(scene.title, scene.about, shown.rows, {}, record_of(context, scene), folder / "index.html");
     shown.page = fs::path(which.name) / "index.html";
@@ -220,6 +222,7 @@ void print_scene(const EnginesScene& scene) {
 void engines_of_all(Context& context, const EnginesWords& words) {
   if (words.n || words.duration_s || words.step_s || !words.sizes.empty()) throw UserError("tumble engines", "sizes, durations and steps belong to one scene", "Name a scene, or leave --n, --sizes, --duration-s and --step-s out.");
   engines_named(words.engines);
+  // The scenes of the page, and their shares of the time.
   std::vector<Shown> all;
   for (const Shown& shown : kShown)
     if (size_of(words, shown) > 0) all.push_back(shown);
@@ -231,6 +234,7 @@ void engines_of_all(Context& context, const EnginesWords& words) {
   report::EnginesIndex index;
   index.record = record_of(context);
   index.is_full = words.full;
+  // Runs over several sizes.
   progress.begin("atoms at several sizes");
   index.ladder = climb(context, words, "atoms", words.full ? kPaperLadder : words.small ? kSmallLadder : kLadder, std::numeric_limits<double>::infinity());
   progress.finish(ladder_share);
@@ -238,6 +242,7 @@ void engines_of_all(Context& context, const EnginesWords& words) {
   index.ghosts = climb(context, words, "pong_ghosts", words.small ? kSmallPong : kPong, kMostOfPong);
   index.pong = climb(context, words, "pong", words.small ? kSmallPong : kPong, kMostOfPong);
   progress.finish(kPongShare);
+  // The scenes.
   for (const Shown& shown : all) {
     progress.begin(shown.name);
     index.scenes.push_back(show(context, words, shown, words.out));

@@ -1,4 +1,5 @@
-/// `tumble engines` without a scene: the scenes of the course and the paper by every engine, on one page.
+/// `tumble engines` without a scene: the scenes of the course and the paper by every engine, on one
+/// page.
 #pragma once
 
 #include <optional>

@@ -261,7 +261,7 @@ void add_explain(CLI::App& app, Context& context) {
   verb.option("--modules", words->modules, "Whose laws, as for tumble run").type_name("WORDS").needs(run);
   verb.option("--duration-s", words->duration_s, "Simulated time [s] instead of the scene's").positive().needs(run);
   verb.flag("--json", words->json, "For machines");
-  verb.footer("Example: tumble explain bouncing_ball --run\nExit: 0 told, 1 the run was stopped, 2 something to repair, 4 not attempted.");
+  verb.footer("Example: tumble explain bouncing_ball --run\nExit: 0 fine, 1 the run was stopped, 2 something to repair, 4 not attempted.");
   verb.runs([&context, words] { explain(context, *words); });
 }
 

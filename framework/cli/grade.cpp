@@ -89,7 +89,7 @@ void add_grade(CLI::App& app, Context& context) {
   verb.option("--jobs", words->jobs, "Submissions at a time").between(1, 256).default_text("number of cores");
   verb.option("--budget-s", words->budget_s, "Time for all tests of one submission together; tests after it are out of time, not run").positive().shows_default();
   verb.flag("--no-media", words->no_media, "Without pictures, videos and pages that play: seconds instead of minutes a submission");
-  verb.footer("Exit: 0 all graded, 1 no file was found for somebody (that score is blank, the reason is told), 2 something to repair, "
+  verb.footer("Exit: 0 all graded, 1 a submission without a file (its score is blank, with the reason), 2 something to repair, "
               "3 the grader failed or the machine was too busy somewhere (those scores are blank; run it again).\n"
               "Earlier results count where they are signed by this machine's key ($TUMBLE_GRADER_KEY, else ~/.local/state/tumble/grader.key, made on first use).");
   verb.runs([&context, words] { grade(context, *words); });

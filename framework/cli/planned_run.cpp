@@ -153,6 +153,7 @@ void add_plan_words(Verb& verb, RunWords& words) {
 PlannedRun plan_run(const Context& context, const scene::Scene& scene, const ChosenLaws& chosen, const RunWords& words) {
   check_words(words);
   PlannedRun plan{scene, chosen.laws, {}, std::nullopt};
+  // A requested error or time: method and step come from a search.
   if (words.accuracy_m || words.budget_s) {
     plan.search = look(context, scene, chosen, words);
     const CostChoice& choice = plan.search->choice;
@@ -163,6 +164,7 @@ PlannedRun plan_run(const Context& context, const scene::Scene& scene, const Cho
     plan.options.command = context.command_line;
     return plan;
   }
+  // Otherwise from the flags.
   if (!words.method.empty()) {
     const CostMethod method = method_by_integrator(method_named(words.method), chosen.laws);
     plan.laws = method.laws;

@@ -1,4 +1,5 @@
-/// A submission as laws of a scene: compiled and called in the sandbox, never loaded into this process.
+/// A submission as laws of a scene: compiled and called in the sandbox, never loaded into this
+/// process.
 #pragma once
 
 #include <filesystem>

@@ -168,6 +168,7 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   engines::refuse_other_units(scene);
   check_page_words(context, words);
   for (const auto& notice : chosen.notices) fmt::print(stderr, "{}\n", notice);
+  // The run.
   PlannedRun plan = plan_run(context, scene, chosen, words);
   VirtualTimes times;   // of the fast scheduler; the teaching timewarp sends them to the recorder
   if (!words.html.empty()) plan.options.timewarp = engines::fast_timewarp(&times);
@@ -187,6 +188,7 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   if (!ended.empty()) run.stopped_by = ended;
   if (run.virtual_times.moves.empty()) run.virtual_times = std::move(times);
 
+  // Judgement and summary.
   const auto checks = engines::judge_run(judged_part(scene, words), run);
   const std::string searched = plan.search ? search_in_words(*plan.search, run, cpu_s) : "";
   if (words.json) print_json(scene, plan, run, checks, cpu_s);
@@ -196,6 +198,7 @@ void run_and_tell(Context& context, const scene::Scene& scene, const ChosenLaws&
   fmt::print(stderr, "{}\nran in {:.2f} s", record_of(run.info), seconds);
   for (const auto& [stage, spent] : run.counters.stage_seconds) fmt::print(stderr, " · {} {:.2f} s", stage, spent);
   fmt::print(stderr, "\n");
+  // Files.
   if (!words.trajectory.empty()) {
     write_trajectory(words.trajectory, run);
     fmt::print(stderr, "wrote {}\n", words.trajectory);

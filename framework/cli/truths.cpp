@@ -147,6 +147,7 @@ ExitCode run_truths(const Context& context, const TruthsOptions& options) {
   if (!options.json) print_truths_head();
   std::vector<OddFile> odd;
   Progress progress(files.size());
+  // Compares file by file.
   for (const auto& file : files) {
     progress.tell();
     try {
@@ -164,6 +165,7 @@ ExitCode run_truths(const Context& context, const TruthsOptions& options) {
       std::fprintf(stderr, "tumble: %s\n", error.what());
     }
   }
+  // The result as JSON or as a table.
   if (options.json) {
     nlohmann::ordered_json all{{"command", context.command_line}, {"version", kProgramVersion}, {"modules", options.modules}};
     all.update(truths_to_json(results, skipped));
@@ -181,10 +183,10 @@ ExitCode run_truths(const Context& context, const TruthsOptions& options) {
 
 void add_truths(CLI::App& app, Context& context) {
   auto options = std::make_shared<TruthsOptions>();
-  Verb verb(app, "truths", "Compare what is computed here with reference values of high precision");
-  verb.option("folder", options->folder, "Folder of truth files, or one file (tests/truths)").required();
+  Verb verb(app, "truths", "Compare results with reference values of high precision");
+  verb.option("folder", options->folder, "Folder of files of reference values, or one file (tests/truths)").required();
   verb.option("--modules", options->modules, "student, reference, PATH.cpp, PATH.so, a folder of them; or a1=WORD,a2=WORD").default_text("reference where this tree has one, else student");
-  verb.flag("--each", options->each, "Show every output, not only the one closest to its mark");
+  verb.flag("--each", options->each, "Show every output, not only the one closest to its tolerance");
   verb.flag("--json", options->json, "The same for machines");
   verb.runs([&context, options] { context.exit = run_truths(context, *options); });
 }

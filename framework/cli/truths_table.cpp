@@ -71,7 +71,7 @@ void print_stubs(const CaseResult& result, std::set<std::string>& said) {
 }  // namespace
 
 void print_truths_head() {
-  std::printf("%-40s %-20s %7s %7s %7s  %s\n", "case", "closest to its mark", "error", "floor", "mark", "verdict");
+  std::printf("%-40s %-20s %7s %7s %7s  %s\n", "case", "worst output", "error", "floor", "allowed", "verdict");
 }
 
 void print_truths_case(const CaseResult& result, bool each, std::set<std::string>& said) {

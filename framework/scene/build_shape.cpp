@@ -16,7 +16,8 @@ namespace {
 
 constexpr double kPointGyrationRadius = 1.0;   // m: of a point mass; without effect, see build_shape.h
 
-/// Surface, volume, and moments of inertia at unit mass (about the centre of mass, body axes) [m^2].
+/// Surface, volume, and moments of inertia at unit mass (about the centre of mass, body axes)
+/// [m^2].
 struct UnitSolid {
   Shape shape = HalfSpace{};
   double volume_m3 = kUnset;

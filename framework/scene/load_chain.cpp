@@ -1,7 +1,9 @@
 // A chain is expanded into bodies and the springs, rods or joints between them.
 //
-//   rods, springs:  anchor --- link_1 --- link_2 --- ... --- link_n [--- end]      ties between centres of mass, spacing apart
-//   joints:         anchor o==link_1==o==link_2==o ... ==link_n== [o end]          ties at the links' ends, links spacing long
+//   rods, springs:  anchor --- link_1 --- link_2 --- ... --- link_n [--- end]      ties between
+// centres of mass, spacing apart
+//   joints:         anchor o==link_1==o==link_2==o ... ==link_n== [o end]          ties at the
+// links' ends, links spacing long
 #include <Eigen/Geometry>
 
 #include "framework/core/shortest_turn.h"

@@ -122,6 +122,7 @@ Scene parse_scene(const std::string& text, const std::filesystem::path& file) {
   scene.duration_s = root.at("duration_s");
   read(root, "step_s", scene.step_s);
   read(root, "rest_speed_m_s", scene.rest_speed_m_s);
+  // Bodies first, then the entries that name them.
   read_bodies(document, scene);
   Anchors anchors(document, scene);
   read_chains(document, anchors, scene);

@@ -24,7 +24,8 @@ bool names_model(const std::string& word);
 
 /// Every object of the file becomes a body, oriented as in the file; several are placed side by
 /// side without contact. With checks.
-/// @throws UserError when the file cannot be read, or an object is not closed (with each defect and its remedy)
+/// @throws UserError when the file cannot be read, or an object is not closed (with each defect and
+///   its remedy)
 Scene make_model_scene(const std::filesystem::path& file, const ModelSceneOptions& options = {});
 
 }  // namespace tumble::scene

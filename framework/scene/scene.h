@@ -22,7 +22,8 @@ namespace tumble::scene {
 
 struct SphereSpec { double radius_m; };
 struct BoxSpec { Vector3d half_extents_m; };
-/// Half-space: the solid on the negative side of the plane through the body's position; the body's +z is the normal.
+/// Half-space: the solid on the negative side of the plane through the body's position; the body's
+/// +z is the normal.
 struct PlaneSpec { double drawn_half_extent_m = 5.0; };
 /// Axes along the body's; collides with planes only. A centre other than the centre of mass needs
 /// explicit moments of inertia.
@@ -37,7 +38,8 @@ struct ModelSpec {
 };
 using ShapeSpec = std::variant<SphereSpec, BoxSpec, PlaneSpec, ModelSpec, EllipsoidSpec>;
 
-/// Motion of an immovable body along its own law: position = start + velocity t + amplitude sin(angular_frequency t).
+/// Motion of an immovable body along its own law: position = start + velocity t + amplitude
+/// sin(angular_frequency t).
 struct PrescribedMotion {
   Vector3d velocity_m_s = Vector3d::Zero();
   Vector3d amplitude_m = Vector3d::Zero();

@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kMostBodies = 2'000'000;
 
-// ---- Atoms: balls and molecules of water in a box, divided by a wall down the middle --------------------------------
+// ---- Atoms: balls and molecules of water in a box, divided by a wall down the middle -----------
 
 // Balls fill 5 % of the room: a ball of speed 1.5 m/s then collides about sqrt(2) pi d^2 v rho =
 // 3.2 times per second (d its diameter, rho the bodies per volume; R. Clausius' mean free path),
@@ -166,7 +166,7 @@ Scene atoms(int n) {
   return scene;
 }
 
-// ---- Pong: balls on a table between four walls ---------------------------------------------------------------------
+// ---- Pong: balls on a table between four walls -------------------------------------------------
 
 constexpr double kPongBall = 0.07;    // radius [m]
 constexpr double kPongApart = 0.41;   // [m]

@@ -54,7 +54,7 @@ double gap_rate(const Contact& contact, const Body& a, const Velocity& velocity_
 
 namespace {
 
-// A number that is not nothing; a vector of them.
+// A number other than 0; a vector of them.
 bool is_something(double x) { return std::isfinite(x) && x != 0.0; }
 bool is_something(const Vector3d& v) { return v.allFinite() && v != Vector3d::Zero(); }
 
@@ -78,7 +78,7 @@ const Contact kUnderIt{{0, 0, 0}, Vector3d::UnitZ()};
 bool gives_hits() {
   const Triangle triangle{{0, 0, 0}, {4, 0, 0}, {0, 2, 0}};
   bool came = false;
-  for (const double side : {1.0, -1.0}) {   // either face will do
+  for (const double side : {1.0, -1.0}) {   // either side of the triangle
     const auto hit = student().intersect_ray_triangle({{0.5, 0.75, 2 * side}, {0, 0, -side}}, triangle);
     came = came || (hit && std::isfinite(hit->t) && is_something(hit->barycentric));
   }
@@ -173,7 +173,7 @@ Encounter random_encounter(Random& random, int number) {
   }
   e.contact.point_world = 0.5 * (e.a.com_world + e.b.com_world) + random_vector(random, 1.0);
   e.contact.normal_b_to_a_world = random_direction(random);
-  // Turning the normal round is the only change that makes any two bodies approach.
+  // Reversing the normal is the only change that makes any two bodies approach.
   if (gap_rate(e.contact, e.a, velocity_of(e.a), e.b, velocity_of(e.b)) > 0.0) e.contact.normal_b_to_a_world *= -1.0;
   return e;
 }
@@ -183,7 +183,7 @@ Encounter skew_encounter() {
   e.a.world_from_body = third_turn();
   e.a.velocity_world = {1, -2, -6};
   e.a.omega_world = {0.5, -1, 2};
-  // Another tensor, another mass, and a turn whose axis and angle are skew: (1, 2, 4, 2) / 5.
+  // Another tensor, another mass, and a rotation with a skew axis and angle: (1, 2, 4, 2) / 5.
   Matrix3d inertia;
   inertia << 2, -1, 1, -1, 3, 0.5, 1, 0.5, 2.5;
   e.b.inertia = finite_inertia(4.0, inertia);
@@ -223,7 +223,7 @@ std::string show(const Units& units) {
   return times(units.length, "lengths") + times(units.mass, "masses") + times(units.time, "times");
 }
 
-// ---- (A1.5) and (A1.9) with a slip in them -----------------------------------------------------------------------------
+// ---- (A1.5) and (A1.9) with a mistake in them ------------------------------------------------
 
 Matrix3d inverse_inertia_by(const Body& body, InertiaSlip slip) {
   if (body.inertia.inverse_mass == 0.0) return Matrix3d::Zero();
@@ -269,7 +269,7 @@ double collision_impulse_by(const Encounter& e, double restitution, const Formul
 
 namespace {
 
-// Slips that a formula may have, in words for a velocity and for an impulse alike.
+// Possible mistakes in a formula, with names for a velocity and for an impulse alike.
 std::vector<std::pair<FormulaSlip, std::string>> formula_slips() {
   return {{{.spin_of_a = false, .spin_of_b = false}, "relative velocity without rotation: the touching point moves at v + w x r"},
           {{.spin_of_a = false}, "the spin of A left out: u_a = v_a + w_a x r_a"},
@@ -297,7 +297,8 @@ std::vector<std::pair<FormulaSlip, std::string>> denominator_slips() {
   return slips;
 }
 
-/// Slips that change nothing here are none: an answer that is nearly right must not be named after them.
+/// A mistake that changes nothing here is left out: an answer that is almost right must not be
+/// named after it.
 Slips<Vector3d> without(const Vector3d& right, Slips<Vector3d> slips) {
   std::erase_if(slips, [&](const auto& slip) { return (slip.first - right).norm() <= 1e3 * kSameAnswer * right.norm(); });
   return slips;
@@ -326,7 +327,7 @@ Slips<double> slips_of_impulse(const Encounter& e, double restitution) {
   add_if_wrong(slips, 2.0 * plastic, j, "a perfect bounce whatever e is: (1 + e), also for e = 0");
   for (const auto& [slip, words] : formula_slips()) add_if_wrong(slips, collision_impulse_by(e, restitution, slip), j, words);
   for (const auto& [slip, words] : denominator_slips()) add_if_wrong(slips, collision_impulse_by(e, restitution, slip), j, words);
-  // A slip in one place only: the velocity or the denominator.
+  // A mistake in one place only: the velocity or the denominator.
   for (const auto& [slip, words] : formula_slips())
     add_if_wrong(slips, j * relative_normal_velocity_by(e, slip) / relative_normal_velocity_by(e), j, words);
   const double speed = relative_normal_velocity_by(e);

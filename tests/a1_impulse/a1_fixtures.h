@@ -1,4 +1,5 @@
-/// What the tests of a1 share: bodies with easy numbers, and words for a wrong answer that a known slip gives.
+/// Shared by the tests of a1: bodies with simple numbers, and names of known mistakes for wrong
+/// answers.
 #pragma once
 
 #include <algorithm>
@@ -24,41 +25,43 @@ inline const a1::Module& student() { return modules::under_test<a1::Module>(); }
 /// Handout anchor of equation (A1.n).
 inline std::string equation(const std::string& n) { return "handouts/a1_impulse.md#eq-a1-" + n; }
 
-// ---- Bodies --------------------------------------------------------------------------------------------------------
+// ---- Bodies ------------------------------------------------------------------------------------
 
-/// Turns a third of a full turn about (1, 1, 1): x to y to z to x. Its four numbers are exact, and a matrix made from it
-/// differs from its transpose, unlike that of a half or a quarter turn of a diagonal tensor.
+/// A third of a full turn about (1, 1, 1): x to y to z to x. Its four numbers are exact, and its
+/// matrix differs from its transpose, unlike a half or a quarter turn with a diagonal tensor.
 inline Quaterniond third_turn() { return {0.5, 0.5, 0.5, 0.5}; }
 
-/// At rest, not turned: 2 kg with principal moments 1, 2, 4 kg m^2.
+/// At rest, not rotated: 2 kg with principal moments 1, 2, 4 kg m^2.
 Body block(const Vector3d& com_world);
-/// At rest, not turned: 2 kg, lopsided: no axis of its body frame is a principal one, so that a formula for principal axes is found out.
+/// At rest, not rotated: 2 kg, with no axis of its body frame a principal one, so that a formula
+/// for principal axes fails.
 ///   I = (4, -2, -2; -2, 5, -1; -2, -1, 6) kg m^2,   I^-1 = (29, 14, 12; 14, 20, 8; 12, 8, 16) / 64
 Body bracket(const Vector3d& com_world);
 /// At rest: a solid ball, moments 2/5 m r^2.
 Body ball(double mass, double radius, const Vector3d& com_world);
-/// Immovable; its inertia_body is NaN, because nobody may use it.
+/// Immovable; its inertia_body is NaN, because it must not be used.
 Body wall(const Vector3d& com_world);
 
-// ---- Judging -------------------------------------------------------------------------------------------------------
+// ---- Judging -----------------------------------------------------------------------------------
 
-/// Angular momentum about the world's origin [kg m^2/s], and kinetic energy [J], of a movable body at some velocity.
+/// Angular momentum about the world's origin [kg m^2/s], and kinetic energy [J], of a movable body
+/// at some velocity.
 Vector3d angular_momentum(const Body& body, const Velocity& velocity);
 double kinetic_energy(const Body& body, const Velocity& velocity);
 inline Velocity velocity_of(const Body& body) { return {body.velocity_world, body.omega_world}; }
-/// How fast the gap grows when the bodies have these velocities [m/s].
+/// Rate of the gap for these velocities [m/s].
 double gap_rate(const Contact& contact, const Body& a, const Velocity& velocity_a, const Body& b, const Velocity& velocity_b);
 
-/// A wrong answer, and the slip that gives it.
+/// A wrong answer, and the mistake that gives it.
 template <class Value>
 using Slips = std::vector<std::pair<Value, std::string>>;
 
 inline const std::string kNotANumber =
     "no number came out: infinite mass (use inverse_mass and inverse_inertia_body, never mass or inertia_body) or a division by 0";
 
-inline constexpr double kSameAnswer = 1e-9;  // relative: far above rounding, far below any slip
+inline constexpr double kSameAnswer = 1e-9;  // relative: far above rounding, far below any mistake
 
-/// The words of the slip whose answer was found; `otherwise` when it is none of them.
+/// The name of the mistake whose answer was found; `otherwise` for none.
 inline std::string likely(double found, const Slips<double>& slips, const std::string& otherwise) {
   for (const auto& [gives, words] : slips) {
     if (std::abs(found - gives) <= kSameAnswer * std::max(std::abs(found), std::abs(gives))) return words;
@@ -75,10 +78,11 @@ std::string likely(const Eigen::Matrix<double, n, 1>& found, const Slips<Eigen::
   return found.allFinite() ? otherwise : kNotANumber;
 }
 
-// ---- First something, then nothing -------------------------------------------------------------------------------------
-// A miss is an answer only from a function that can hit: a test whose right answer is "nothing" asks first for a case in which
-// something must come. What comes is judged elsewhere; here it must only be there, so that a slip is paid for once.
-// @return false when nothing came: the test has failed with that story, and should end
+// ---- First an answer, then none --------------------------------------------------------------
+// A test whose right answer is "nothing" first calls the function for a case with an answer,
+// because a function that never answers would pass. That answer is judged elsewhere; here it must
+// only exist, so that a mistake costs points once.
+// @return false without an answer: the test has failed with that story, and should end
 
 bool gives_hits();
 bool gives_linear_acceleration();
@@ -91,37 +95,43 @@ bool gives_impulses_without_rotation();
 bool moves_a_struck_body();
 bool moves_colliding_bodies();
 
-// ---- Seeded random scenes --------------------------------------------------------------------------------------------
+// ---- Seeded random scenes ----------------------------------------------------------------------
 
 Vector3d random_vector(Random& random, double size);
 Vector3d random_direction(Random& random);
 Quaterniond random_rotation(Random& random);
-/// Anything: mass 0.1 to 10 kg, moments of a real solid (no one exceeds the sum of the others), any pose and motion.
+/// Any: mass 0.1 to 10 kg, moments of a real solid (none exceeds the sum of the others), any pose
+/// and motion.
 Body random_body(Random& random);
 
 struct Encounter {
   Contact contact;
   Body a, b;
 };
-/// Two random bodies touching at a random point, approaching. Every fourth time B is a moving wall.
+/// Two random bodies in contact at a random point, approaching. Every fourth time B is a moving
+/// wall.
 Encounter random_encounter(Random& random, int number);
 
-/// Two lopsided bodies in skew poses that meet on a skew normal, both spinning: nothing is 0, 1, diagonal, equal or along an axis, so
-/// that every term of (A1.5) and (A1.9) has a share of its own in the answer.
+/// Two asymmetric bodies in skew poses that collide along a skew normal, both rotating: no number
+/// is 0, 1, equal to another, or along an axis, so that every term of (A1.5) and (A1.9)
+/// contributes.
 Encounter skew_encounter();
-/// The same with units of length, mass and time changed: every power of two shifts exponents only, so that answers scale exactly.
+/// The same with units of length, mass and time changed: every power of two shifts exponents only,
+/// so that answers scale exactly.
 Encounter scaled(const Encounter& e, double length, double mass, double time);
 Body scaled(const Body& body, double length, double mass, double time);
-/// Changes of unit that a threshold of a millionth in any quantity would notice: lengths, masses, times, up and down.
+/// Changes of unit that a threshold of a millionth in any quantity would notice: lengths, masses,
+/// times, up and down.
 struct Units {
   double length, mass, time;
 };
 std::vector<Units> changes_of_unit();
 std::string show(const Units& units);
-/// The slip where an answer is wrong in other units. Where the same question in plain units is answered wrongly too, no threshold is to blame.
+/// The slip where an answer is wrong in other units. Where the same question in plain units is
+/// answered wrongly too, no threshold is to blame.
 std::string slip_of_units(bool right_in_plain_units, const std::string& slip);
 
-// ---- (A1.5) and (A1.9) with a slip in them -----------------------------------------------------------------------------
+// ---- (A1.5) and (A1.9) with a slip in them -----------------------------------------------------
 
 enum class InertiaSlip { kNone, kBodyAxes, kTransposed, kDiagonal, kOneByOne, kNotInverted };
 
@@ -140,7 +150,8 @@ double relative_normal_velocity_by(const Encounter& e, const FormulaSlip& slip =
 double collision_impulse_by(const Encounter& e, double restitution, const FormulaSlip& slip = {});
 Matrix3d inverse_inertia_by(const Body& body, InertiaSlip slip = InertiaSlip::kNone);
 
-/// What known slips would give for this encounter, with their words; slips that change nothing here are left out.
+/// What known slips would give for this encounter, with their words; slips that change nothing here
+/// are left out.
 Slips<double> slips_of_relative_velocity(const Encounter& e);
 Slips<double> slips_of_impulse(const Encounter& e, double restitution);
 /// The same for the angular velocity that an impulse gives, and for w' of (A1.4).

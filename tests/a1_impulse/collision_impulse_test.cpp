@@ -4,8 +4,9 @@
 namespace tumble::testing {
 namespace {
 
-// At most 30 roundings, each of relative size eps / 2, none amplified (no cancellation in these scenes): every correct order
-// of evaluation passes. The nearest slip is off by a tenth or more.
+// At most 30 roundings, each of relative size eps / 2, none amplified (no cancellation in these
+// scenes): every correct order of evaluation passes. The nearest mistake is wrong by a tenth or
+// more.
 constexpr double kImpulseRoundoff = 15 * kEps;
 
 const std::string kForgotOnePlusE = "the (1 + e) is missing";
@@ -175,7 +176,8 @@ TEST(CollisionImpulse, BothBodiesYield) {
                .handout = equation("9")});
 }
 
-// Rounding: u_n is a sum of twelve products of up to 3 m/s that is -5 m/s, the denominator one of nine times nine; kImpulseRoundoff * 10 times j.
+// Rounding: u_n is a sum of twelve products of up to 3 m/s that is -5 m/s, the denominator one of
+// nine times nine; kImpulseRoundoff * 10 times j.
 constexpr double kSkewRoundoff = 10 * kImpulseRoundoff;
 
 TEST(CollisionImpulse, TwoTurnedBodiesMeetOnASkewNormal) {

@@ -1,4 +1,5 @@
-// Before the blow: relative normal velocity (A1.5), its three cases (A1.6), contact normals in the plane (A1.7).
+// Before the impact: relative normal velocity (A1.5), its three cases (A1.6), contact normals in
+// the plane (A1.7).
 #include "tests/a1_impulse/a1_fixtures.h"
 
 namespace tumble::testing {
@@ -157,8 +158,9 @@ TEST(ContactNormal2d, VertexEdgeIsPerpendicularTowardsTheVertex) {
                .handout = equation("7")});
 }
 
-// Edges along an axis or a diagonal: there the corner is on the line in every order of evaluation, since both parts of the normal are
-// 0, or the same number. (Of an edge along (3, 4) the unit normal rounds, and with it the side.)
+// Edges along an axis or a diagonal: there the corner is on the line in every order of evaluation,
+// because both parts of the normal are 0, or the same number. (For an edge along (3, 4) the unit
+// normal is rounded, and with it the side.)
 TEST(ContactNormal2d, VertexExactlyOnTheEdgeTakesTheOutsideOfACounterClockwiseBody) {
   struct Edge {
     Vector2d start, end, vertex, right;
@@ -175,7 +177,7 @@ TEST(ContactNormal2d, VertexExactlyOnTheEdgeTakesTheOutsideOfACounterClockwiseBo
   }
 }
 
-// Edges of a nanometre and of a million kilometres: nothing is small by itself.
+// Edges of a nanometre and of a million kilometres: no absolute size is small.
 TEST(ContactNormal2d, IsRightInEveryUnit) {
   for (const double size : {0x1p-30, 0x1p30}) {
     for (const double side : {1.0, -1.0}) {

@@ -58,7 +58,7 @@ TEST(AngularAcceleration, FromRestIsTorqueOverInertia) {
 TEST(AngularAcceleration, TurnedBlockNeedsItsInertiaInTheWorldFrame) {
   Body body = block({5, 3, 1});
   body.world_from_body = third_turn();
-  const Vector3d torque(4, 8, 12);  // three numbers, so that a turn of the torque shows
+  const Vector3d torque(4, 8, 12);  // three different numbers, so that a rotation of the torque shows
   const Vector3d found = student().angular_acceleration(body, torque);
   expect_near(found, Vector3d(1, 8, 6), kRoundoff * 8, "rad/s^2",
               {.scene = "torque (4, 8, 12) N m on the resting block turned by 120 degrees: moments 4, 1, 2 about world x, y, z",
@@ -154,7 +154,7 @@ TEST(AngularAcceleration, WallHasNone) {
                .no_number = "infinite mass: inertia_body is not to be used; a zero inverse inertia means no acceleration"});
 }
 
-// What a click does, from the pixel's ray to two accelerations.
+// From a click to motion: the pixel's ray, the force, and two accelerations.
 TEST(UserForce, ClickOnABlockMovesAndTurnsIt) {
   const Body body = block({0, 0, 0.5});
   const Ray ray{{0.5, -0.5, 3}, {0, 0, -2}};

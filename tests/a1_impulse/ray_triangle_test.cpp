@@ -4,7 +4,8 @@
 namespace tumble::testing {
 namespace {
 
-// Inputs here are small dyadic numbers, so that products and sums are exact; only a division or two rounds.
+// Inputs here are small dyadic numbers, so that products and sums are exact; only a division or two
+// rounds.
 constexpr double kRayRoundoff = 8 * kEps;
 const std::string kHandout = equation("1");
 
@@ -120,9 +121,9 @@ TEST(RayTriangle, FindsATriangleSeenNearlyEdgeOn) {
               .handout = kHandout});
 }
 
-// Any two triangles that share an edge; any ray aimed at a point of that edge. In exact arithmetic it may pass on either
-// side by the rounding of its aim, but never between them. A test whose signs come from quantities that the two triangles
-// round differently loses about one ray in ten here.
+// Any two triangles that share an edge; any ray aimed at a point of that edge. In exact arithmetic
+// it may pass on either side by the rounding of its aim, but never between them. A test whose signs
+// come from quantities that the two triangles round differently loses about one ray in ten here.
 TEST(RayTriangle, LetsNothingThroughASeam) {
   Random random(1001);
   const int rays = 400;
@@ -131,10 +132,11 @@ TEST(RayTriangle, LetsNothingThroughASeam) {
     const Vector3d p = random_vector(random, 1), q = random_vector(random, 1);
     const Vector3d left = random_vector(random, 1), from = random_vector(random, 3);
     const Vector3d aim = p + random.unit() * (q - p);
-    // The other triangle lies on the other side of the edge as the eye sees it.
+    // The other triangle is on the other side of the edge as seen from the eye.
     const Vector3d right = aim + (aim - left) + random.between(-0.2, 0.2) * (q - p);
     const Ray ray{from, aim - from};
-    // The seam is at t = 1. How far off a hit may be depends on how flat the triangle is seen: 1e-3 tells hits from answers without a thought.
+    // The seam is at t = 1. The error of a hit depends on how flat the triangle is seen: 1e-3
+    // distinguishes hits from arbitrary answers.
     const auto meets = [&](const Triangle& triangle) {
       const auto hit = student().intersect_ray_triangle(ray, triangle);
       return hit && std::abs(hit->t - 1.0) < 1e-3;

@@ -1,4 +1,4 @@
-// What an impulse does: to one body (A1.10), to both (A1.11).
+// The effect of an impulse: on one body (A1.10), on both (A1.11).
 #include "tests/a1_impulse/a1_fixtures.h"
 
 namespace tumble::testing {
@@ -64,7 +64,7 @@ TEST(ApplyImpulse, ProductsOfInertiaCount) {
                 {.scene = scene,
                  .slip = found.linear_world == body.velocity_world ? "an absolute threshold: an impulse changes the velocity, however small it is" : "v' = v + J / m",
                  .handout = equation("10")});
-    // The arm is some metre long, the smallest moment 1.39 kg m^2.
+    // The arm is about a metre long, the smallest moment 1.39 kg m^2.
     expect_near(found.angular_world, Vector3d(body.omega_world + inverse_inertia_by(body) * (point - body.com_world).cross(impulse)), kRoundoff * 6 / units.time, "rad/s",
                 {.scene = scene, .slip = likely<3>(found.angular_world, slips_of_apply(body, impulse, point), "w' = w + I^-1 (r x J) with the whole tensor, in the world frame"), .handout = equation("10")});
   }
@@ -84,7 +84,8 @@ TEST(ApplyImpulse, WallKeepsItsVelocities) {
   expect_near(found.angular_world, body.omega_world, 0.0, "rad/s", story);
 }
 
-// The block falls on a resting 2 kg ball, 1 m off its own centre: j = 4 N s at e = 0.5, and 16/3 at e = 1.
+// The block falls on a resting 2 kg ball, 1 m off its own centre: j = 4 N s at e = 0.5, and 16/3 at
+// e = 1.
 struct BlockOnBall {
   Body a = block({5, 3, 1});
   Body b = ball(2.0, 1.0, {6, 3, -1});
@@ -194,7 +195,8 @@ TEST(ResolveCollision, SeparatingBodiesFlyOn) {
   expect_near(found.b.linear_world, scene.b.velocity_world, 0.0, "m/s", story);
 }
 
-// Two calls of each function in one process: a static variable is filled by the first, and spoils the second.
+// Two calls of each function in one process: the first fills a static variable, which makes the
+// second wrong.
 TEST(Impulse, KeepsNothingBetweenCalls) {
   const Encounter first = skew_encounter();
   Encounter second = first;
@@ -208,7 +210,7 @@ TEST(Impulse, KeepsNothingBetweenCalls) {
   const auto apply = [&](const Body& body, const Vector3d& at) { return student().apply_impulse(body, J, at).angular_world; };
   const auto j = [](const Encounter& e) { return One(student().collision_impulse(e.contact, e.a, e.b, 0.5)); };
   const auto u = [](const Encounter& e) { return One(student().relative_normal_velocity(e.contact, e.a, e.b)); };
-  constexpr double kAllowed = 100 * kRoundoff;  // numbers up to 10; a slip is off by a tenth and more
+  constexpr double kAllowed = 100 * kRoundoff;  // numbers up to 10; a mistake is wrong by a tenth and more
   const Vector3d w1 = student().angular_acceleration(first.a, torque), w2 = student().angular_acceleration(second.a, torque);
   expect_kept_nothing(w1, angular_acceleration_by(first.a, torque), w2, angular_acceleration_by(second.a, torque), kAllowed, "rad/s^2", story("angular_acceleration", "4"));
   const One u1 = u(first), u2 = u(second);

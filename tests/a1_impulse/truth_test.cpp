@@ -1,5 +1,6 @@
-// The functions of a1 against reference values computed in exact rational arithmetic: tests/truths/ray_triangle__*.json and
-// impulse_*.json. Numbers there are decimal strings; `tolerance_floor` is the error that rounding the inputs alone forces.
+// The functions of a1 against reference values computed in exact rational arithmetic:
+// tests/truths/ray_triangle__*.json and impulse_*.json. Numbers there are decimal strings;
+// `tolerance_floor` is the error that rounding the inputs alone forces.
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -14,7 +15,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-// A closed form of some tens of operations stays well within 100 floors; the slips are off by 1e13 floors.
+// A closed form of some tens of operations stays well within 100 floors; the known mistakes are
+// wrong by 1e13 floors.
 constexpr double kFloors = 100;
 
 double number(const Json& text) { return std::strtod(text.get<std::string>().c_str(), nullptr); }
@@ -37,10 +39,11 @@ std::vector<Json> truths_of_family(const std::string& family) {
   return truths;
 }
 
-// ---- Rays ----------------------------------------------------------------------------------------------------------
+// ---- Rays --------------------------------------------------------------------------------------
 
-// A ray aimed exactly at a seam passes within rounding of it, on either side: there each triangle alone may say hit or miss, and the law
-// is that one of them is hit (Woop's own order of evaluation shears the corners first, and takes one of the two).
+// A ray aimed exactly at a seam passes within rounding of it, on either side: there each triangle
+// alone may be hit or missed, and the law is that one of them is hit (Woop's own order of
+// evaluation shears the corners first, and chooses one of the two).
 bool at_least_one_is_hit(const Json& ray, const Json& triangles) {
   return std::any_of(ray["per_triangle"].begin(), ray["per_triangle"].end(), [&](const Json& expected) {
     const Json& corners = triangles[expected["triangle"].get<std::size_t>()];
@@ -48,7 +51,7 @@ bool at_least_one_is_hit(const Json& ray, const Json& triangles) {
   });
 }
 
-/// Two triangles or more, and the ray goes through what they share.
+/// Two triangles or more, and the ray passes through a point that they share.
 bool meets_a_seam(const Json& ray) {
   const Json& all = ray["per_triangle"];
   return all.size() > 1 && std::all_of(all.begin(), all.end(), [](const Json& one) { return one["class"].get<std::string>().starts_with("on_"); });
@@ -79,7 +82,7 @@ TEST(RayTriangle, AgreesWithTheTruths) {
   }
 }
 
-// ---- Impacts -------------------------------------------------------------------------------------------------------
+// ---- Impacts -----------------------------------------------------------------------------------
 
 struct Impact {
   std::string id;
@@ -93,7 +96,7 @@ Body body_at(const Inertia& inertia, const Vector3d& com_world, const Vector3d& 
   return {inertia, com_world, Quaterniond::Identity(), velocity_world, omega_world};
 }
 
-/// A ball whose size does not matter.
+/// A ball whose size has no effect.
 Body ball_at(double mass, const Vector3d& com_world, const Vector3d& velocity_world) {
   return body_at(finite_inertia(mass, Matrix3d::Identity() * mass), com_world, velocity_world, Vector3d::Zero());
 }
@@ -135,7 +138,7 @@ Impact rod_ball(const Json& truth) {
   const auto out = [&](const char* name) { return truth["outputs"][name]; };
   const double M = number(in("M_rod")), L = number(in("L_rod"));
   const Vector3d at(number(in("d")), 0, 0), up = vector(in("normal_rod_to_ball"));
-  // The moment about the rod's own axis does not matter here: nothing turns it that way.
+  // The moment about the rod's own axis has no effect: there is no rotation about it.
   const Body rod = body_at(finite_inertia(M, Matrix3d::Identity() * (M * L * L / 12.0)), {0, 0, 0}, {0, 0, 0}, {0, 0, 0});
   const Vector3d v = up * number(out("ball_vz_after")["value"]), V = up * number(out("rod_vz_after")["value"]);
   const Vector3d W(0, number(out("rod_wy_after")["value"]), 0);
@@ -187,7 +190,7 @@ std::vector<Impact> all_impacts() {
 
 const std::string kElsewhere = "none of the slips that the simpler tests name gives this number: a term that they do not reach (both arms, full tensors, walls that move), or digits lost on the way";
 
-/// What a wrong impulse would make of A's velocity.
+/// A's velocity with a wrong impulse.
 Slips<Vector3d> slips_of_velocity(const Impact& impact) {
   const Vector3d before = impact.encounter.a.velocity_world, change = impact.after.a.linear_world - before;
   Slips<Vector3d> slips = {{before - change, "the sign: A gets +j n"}, {before, "no impulse reached A"}};

@@ -50,7 +50,8 @@ void expect_orders(const std::vector<double>& found, double order, double tolera
 
 namespace {
 
-/// Weights in sixths of h, and the slopes of which each stage is made: `stage(i, k)` is the share of slope k in stage i, in h.
+/// Weights in sixths of h, and the slopes of each stage: `stage(i, k)` is the weight of slope k in
+/// stage i, in h.
 struct SeenRk4 {
   Eigen::Vector4d sixths = Eigen::Vector4d::Constant(kUnset);
   Eigen::Matrix4d stage = Eigen::Matrix4d::Constant(kUnset);
@@ -72,15 +73,16 @@ SeenRk4 look_at_rk4() {
   return seen;
 }
 
-/// Two steps that share nothing but their function: the answer of the first must not come again, whole or in its slopes.
+/// Two steps with only their function in common: the result of the first must not come again, whole
+/// or in its slopes.
 bool rk4_keeps_something() {
   const auto step = [](double slope, double h) {
     Diary diary;
     const VectorXd y = a2_module().rk4_step(scripted(diary, std::vector<VectorXd>(4, vector({slope}))), 0.0, vector({8}), h);
-    return y.size() == 1 ? (y[0] - 8) / (slope * h) : kUnset;   // 1, whatever the slope and the step
+    return y.size() == 1 ? (y[0] - 8) / (slope * h) : kUnset;   // 1, for any slope and step
   };
   const double first = step(2, 0.5), other_slope = step(16, 0.5), other_step = step(2, 4);
-  constexpr double kNear = 1e-6;   // more than float's rounding, which is no memory
+  constexpr double kNear = 1e-6;   // more than float's rounding, which is no memory of the first step
   return std::abs(first - other_slope) > kNear || std::abs(first - other_step) > kNear;
 }
 
@@ -217,8 +219,8 @@ void expect_impact(const RootResult& found, const Approach& approach, const Look
   Story of_time = because(slip + (is_early ? "; or the search ends too early: the bracket must be smaller than the tolerance, however many steps it takes" : ""));
   of_time.iterates = true;
   expect_near(found.time, approach.time_of_impact, tolerance + round_off, "s", of_time);
-  if (!std::isfinite(found.time)) return;  // said above; the gap of no time says nothing more
-  // The gap is the caller's own function of the same number: its sign is known without any tolerance.
+  if (!std::isfinite(found.time)) return;  // reported above; without a time there is no gap
+  // The gap is the caller's own function of the same number: its sign needs no tolerance.
   expect_true(gap >= 0, "gap(time) >= 0", "gap(" + show(found.time) + ") = " + show(gap),
               because("the wrong side of the bracket is returned: the one where the gap has closed already"));
   expect_near(found.residual, gap, 0.0, "m", because("residual is not g at the time returned"));

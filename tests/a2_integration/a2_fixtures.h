@@ -1,5 +1,5 @@
-/// What the tests of a2 share: equations with known solutions, callbacks that keep a diary, and words for the slip behind
-/// a wrong answer.
+/// What the tests of a2 share: equations with known solutions, callbacks that keep a diary, and
+/// words for the slip behind a wrong answer.
 #pragma once
 
 #include <cmath>
@@ -27,7 +27,7 @@ inline const a2::Module& a2_module() { return modules::under_test<a2::Module>();
 /// Handout anchor of equation (A2.n).
 inline std::string equation(int n) { return "handouts/a2_integration.md#eq-a2-" + std::to_string(n); }
 
-// ---- Words for a slip --------------------------------------------------------------------------------------------------
+// ---- Words for a slip --------------------------------------------------------------------------
 
 /// A wrong answer, and the slip that gives it.
 template <class Value>
@@ -48,7 +48,7 @@ std::string likely(const Found& found, const Slips<Value>& slips, const std::str
   return otherwise;
 }
 
-// ---- Steps -------------------------------------------------------------------------------------------------------------
+// ---- Steps -------------------------------------------------------------------------------------
 
 using Step = std::function<VectorXd(const OdeFunction&, double t, const VectorXd& y, double h)>;
 
@@ -64,12 +64,14 @@ struct Diary {
 };
 /// The same function, with each call written down.
 OdeFunction noting(Diary& diary, OdeFunction f);
-/// Answers call number i with slopes[i] whatever the arguments: what a step does with its slopes shows bare.
+/// Answers call number i with slopes[i] whatever the arguments: what a step does with its slopes
+/// shows bare.
 OdeFunction scripted(Diary& diary, std::vector<VectorXd> slopes);
 
 /// y(t_end) by `steps` equal steps of the method.
 VectorXd integrate(const Step& step, const OdeFunction& f, double t_start, const VectorXd& y, double t_end, int steps);
-/// log2 of the error's fall at each doubling of the number of steps, `first_steps` being the fewest.
+/// log2 of the error's fall at each doubling of the number of steps, `first_steps` being the
+/// fewest.
 std::vector<double> observed_orders(const Step& step, const OdeFunction& f, double t_start, const VectorXd& y, double t_end,
                                     const VectorXd& exact, int first_steps, int halvings);
 /// Every order lies within `tolerance` of `order`, or the story is told with all of them.
@@ -78,21 +80,25 @@ void expect_orders(const std::vector<double>& found, double order, double tolera
 /// The lecture's logistic equation y' = 6 y - 0.007 y^2, y(0) = 10.
 VectorXd logistic(double t, const VectorXd& y);
 inline constexpr double kLogisticAtHalf = 164.276752310393929949275357847;  // y(0.5), exact to double precision
-/// Euler's equations of a free top in its own axes: I w' = -w x (I w), moments 1, 2, 3 kg m^2. y = w_body.
+/// Euler's equations of a free top in its own axes: I w' = -w x (I w), moments 1, 2, 3 kg m^2. y =
+/// w_body.
 VectorXd free_top(double t, const VectorXd& omega_body);
 
-/// What is wrong with the rk4_step under test, read off it: asked with slopes of which one is 1 and the others 0, it shows the weight of
-/// each slope and where each stage is taken. `otherwise` where weights and stages are right.
+/// What is wrong with the rk4_step under test, read off it: asked with slopes of which one is 1 and
+/// the others 0, it shows the weight of each slope and where each stage is taken. `otherwise` where
+/// weights and stages are right.
 std::string rk4_slip(const std::string& otherwise);
 
-// ---- Rigid bodies ------------------------------------------------------------------------------------------------------
+// ---- Rigid bodies ------------------------------------------------------------------------------
 
-/// Turns a third of a full turn about (1, 1, 1): x to y to z to x. Its numbers are exact, and so are those of its matrix.
+/// Turns a third of a full turn about (1, 1, 1): x to y to z to x. Its numbers are exact, and so
+/// are those of its matrix.
 inline Quaterniond third_turn() { return {0.5, 0.5, 0.5, 0.5}; }
 /// 2 kg, principal moments 1, 2, 4 kg m^2.
 Inertia block();
 /// 2 kg, lopsided: no axis of its body frame is a principal one.
-///   I = (4, -2, -2; -2, 5, -1; -2, -1, 6) kg m^2,   I^-1 = (29, 14, 12; 14, 20, 8; 12, 8, 16) / 64, exact
+///   I = (4, -2, -2; -2, 5, -1; -2, -1, 6) kg m^2,   I^-1 = (29, 14, 12; 14, 20, 8; 12, 8, 16) /
+/// 64, exact
 Inertia bracket();
 /// A turn whose axis and angle are skew: (1, 2, 4, 2) / 5.
 inline Quaterniond skew_turn() { return {0.2, 0.4, 0.8, 0.4}; }
@@ -104,7 +110,7 @@ inline Wrench no_wrench() { return {Vector3d::Zero(), Vector3d::Zero()}; }
 Vector3d random_vector(Random& random, double size);
 Quaterniond random_rotation(Random& random);
 
-// ---- Impacts -----------------------------------------------------------------------------------------------------------
+// ---- Impacts -----------------------------------------------------------------------------------
 
 /// A gap with its rate and the time at which it closes.
 struct Approach {
@@ -128,8 +134,9 @@ struct Looks {
 };
 ScalarFunction noting(Looks& looks, ScalarFunction f);
 
-/// What every right answer satisfies: converged, open at `time`, within `tolerance` before the impact; residual and
-/// evaluations true. `round_off` is the time by which rounding inside the gap may move its root [s].
+/// What every right answer satisfies: converged, open at `time`, within `tolerance` before the
+/// impact; residual and evaluations true. `round_off` is the time by which rounding inside the gap
+/// may move its root [s].
 void expect_impact(const RootResult& found, const Approach& approach, const Looks& looks, double tolerance, double round_off,
                    const std::string& slip, int equation_number);
 /// Status kNoSignChange, no time, no search.
@@ -137,16 +144,19 @@ void expect_no_impact(const RootResult& found, const Looks& looks, const std::st
 
 /// A root finder on an approach, its looks counted: what both of them must do is asked of either.
 using Finder = std::function<RootResult(const Approach&, double tolerance, Looks&)>;
-/// kNotConverged with the last open time, wherever NaN stands: at either end, all over, around the impact.
+/// kNotConverged with the last open time, wherever NaN stands: at either end, all over, around the
+/// impact.
 void expect_finder_notices_nan(const Finder& find);
-/// The width of the bracket ends the search, not the size of the gap: the same approach in units of 1e-12 and 1e12 m.
+/// The width of the bracket ends the search, not the size of the gap: the same approach in units of
+/// 1e-12 and 1e12 m.
 /// @param most  calls of the gap that it may take
 void expect_finder_looks_at_the_bracket(const Finder& find, int most);
 /// kNoSignChange where the gap is closed from the start, whether it opens or not.
 void expect_finder_refuses_overlap(const Finder& find);
 
-/// "No impact", "stays as it is" and "few calls" are answers only from a function that can find, change and call something: a
-/// test whose right answer is such a nothing asks first for a case in which something must come. What comes is judged elsewhere.
+/// "No impact", "stays as it is" and "few calls" are answers only from a function that can find,
+/// change and call something: a test whose right answer is such a nothing asks first for a case in
+/// which something must come. What comes is judged elsewhere.
 /// @return false when nothing came: the test has failed with that story, and should end
 bool bisection_finds_something();
 bool newton_finds_something();

@@ -4,7 +4,8 @@
 namespace tumble::a2_testing {
 namespace {
 
-// Rounding inside the gap (a few eps of 5 m) divided by its slope (some 7 m/s or more) moves the root by this at most.
+// Rounding inside the gap (a few eps of 5 m) divided by its slope (some 7 m/s or more) moves the
+// root by this at most.
 constexpr double kRoundOffTime = 1e-15;  // s
 constexpr double kTolerance = 1e-6;      // s
 
@@ -24,7 +25,8 @@ TEST(ImpactTimeBisection, FindsTheFallOfABall) {
 }
 
 TEST(ImpactTimeBisection, ReturnsTheSideWhereTheGapIsStillOpen) {
-  // Every tolerance ends the search at another bracket: whoever returns its far end, or its middle, is found out.
+  // Every tolerance ends the search at another bracket: a function that returns its far end or its
+  // middle fails.
   for (const double tolerance : {0.3, 1e-2, 1e-4, 1e-9}) {
     Looks looks;
     const Approach ball = thrown_ball();
@@ -36,7 +38,8 @@ TEST(ImpactTimeBisection, StopsWhenTheBracketIsSmallEnough) {
   if (!bisection_finds_something()) return;
   Looks looks;
   bisect(thrown_ball(), kTolerance, looks);
-  // 3 s / 1e-6 s is 2^21.5: 22 halvings, 2 ends, and 2 calls for whoever looks at an end twice.
+  // 3 s / 1e-6 s is 2^21.5: 22 halvings, 2 ends, and 2 calls for a function that evaluates an end
+  // twice.
   expect_true(looks.calls <= 26, "at most 26 calls of the gap", std::to_string(looks.calls) + " calls",
               {.scene = "an interval of 3 s, tolerance 1e-6 s", .slip = "the search goes on when the bracket is small enough, or the gap is asked twice for the same time", .handout = equation(11)});
 }
@@ -60,8 +63,9 @@ TEST(ImpactTimeNewton, FindsTheThrownBallInFewSteps) {
   Looks looks;
   const Approach ball = thrown_ball();
   expect_impact(newton(ball, 1e-12, looks), ball, looks, 1e-12, kRoundOffTime, "t - g / g', and the sign in front of it", 12);
-  // Newton doubles the digits with each step: from t = 3 s it is off by 1.8, 0.6, 0.1, 6e-3, 2e-5, 1e-10 s. Now and then rounding leads the
-  // last step back to where it is, and a safeguard that then halves the bracket takes as long as bisection: so balls are counted together.
+  // Newton doubles the digits with each step: from t = 3 s the error is 1.8, 0.6, 0.1, 6e-3, 2e-5,
+  // 1e-10 s. Sometimes rounding makes the last step return to its start, and a safeguard that then
+  // halves the bracket takes as long as bisection: so balls are counted together.
   int calls = 0;
   constexpr int kBalls = 10;
   for (int i = 0; i < kBalls; ++i) {
@@ -114,14 +118,15 @@ TEST(ImpactTimeNewton, NoticesAGapThatIsNoNumber) { expect_finder_notices_nan(ne
 TEST(ImpactTimeNewton, LooksAtTheBracketNotAtTheGap) { expect_finder_looks_at_the_bracket(newton, 146); }
 
 TEST(ImpactTimeNewton, StopsABulletBeforeAThinWall) {
-  // 1000 m/s, steps of 10 ms: 10 m a step, through a wall of 1 mm. The distance to both sides of the wall is positive
-  // before and after the step; the distance to the face that it comes from changes sign, and is what to ask.
+  // 1000 m/s, steps of 10 ms: 10 m per step, through a wall of 1 mm. The distance to both sides of
+  // the wall is positive before and after the step; the distance to the nearer face changes sign,
+  // and is the right gap.
   const Approach bullet{"a bullet of radius 5 mm at 1000 m/s, 10.5 m before a 1 mm wall, in a step from 10 to 20 ms: gap = 10.5 - 1000 t",
                         [](double t) { return 10.5 - 1000 * t; }, [](double) { return -1000.0; }, 0.01, 0.02, 0.0105};
   Looks looks;
   // Rounding of 10.5 m moves the root by 2e-18 s; time itself is spaced by 1.7e-18 s here.
   expect_impact(newton(bullet, 1e-12, looks), bullet, looks, 1e-12, 1e-17, "t - g / g', and the open side", 12);
-  const auto distance_to_wall = [](double t) { return std::abs(10.5055 - 1000 * t) - 0.0005; };  // tunnelling, as it looks to a step
+  const auto distance_to_wall = [](double t) { return std::abs(10.5055 - 1000 * t) - 0.0005; };  // tunnelling, as a step sees it
   Looks unsigned_looks;
   const RootResult unseen = a2_module().impact_time_newton(noting(unsigned_looks, distance_to_wall), [](double) { return -1000.0; }, 0.01, 0.02, 1e-12);
   expect_no_impact(unseen, unsigned_looks, "the same step, asked for the distance to the wall, which is open at both ends", "an impact is reported where both ends are open");

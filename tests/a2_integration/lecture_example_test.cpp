@@ -1,4 +1,5 @@
-// The lecture's worked example, y' = 6 y - 0.007 y^2, y(0) = 10, one step of 0.5: the table of the handout, number by number.
+// The lecture's worked example, y' = 6 y - 0.007 y^2, y(0) = 10, one step of 0.5: the table of the
+// handout, number by number.
 #include "tests/a2_integration/a2_fixtures.h"
 
 namespace tumble::a2_testing {
@@ -28,7 +29,8 @@ TEST(LectureExample, StagesAreThoseOfTheHandoutNotOfTheSlide) {
   a2_module().rk4_step(noting(diary, logistic), 0.0, vector({10}), 0.5);
   expect_near(static_cast<double>(diary.calls()), 4.0, 0.0, "calls of the derivative", {.scene = "one step", .slip = "four slopes", .handout = kReadExample});
   if (diary.calls() != 4) return;
-  // y of the stage, and the slope there. The slide prints 263.0 for k3, yet goes on with 141.0 = 10 + 0.5 * 262.04.
+  // y of the stage, and the slope there. The slide prints 263.0 for k3, but continues with 141.0 =
+  // 10 + 0.5 * 262.04.
   const double stages[4][2] = {{10, 59.3}, {24.825, 144.636035625}, {46.15900890625, 262.0394747150491322509765625},
                                {141.01973735752456612548828125, 706.912459874450928853386449959}};
   for (std::size_t i = 0; i < 4; ++i) {

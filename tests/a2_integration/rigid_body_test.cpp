@@ -91,11 +91,13 @@ TEST(RigidBodyDerivative, KnowsInWhichFrameItTurns) {
   state.world_from_body = third_turn();
   state.angular_momentum_world = {4, 2, 0};
   // World moments 4, 1, 2: w_world = (1, 2, 0), w_body = R^T w = (2, 0, 1).
-  // (0, w) q = (-w.v, q_w w + w x v) with v = (.5, .5, .5): (-1.5; 0.5 + 1, 1 - 0.5, 0 - 0.5), and half of it.
+  // (0, w) q = (-w.v, q_w w + w x v) with v = (.5, .5, .5): (-1.5; 0.5 + 1, 1 - 0.5, 0 - 0.5), and
+  // half of it.
   VectorXd found = a2_module().rigid_body_derivative(state, block(), no_wrench());
   if (found.size() != kStateSize) found = VectorXd::Constant(kStateSize, kUnset);
   const VectorXd q_rate = found.segment<4>(3);
-  // What the slips give: body angular velocity from the left, world from the right, inertia not turned, R for R^T.
+  // Results of the known mistakes: body angular velocity from the left, world from the right,
+  // inertia not rotated, R for R^T.
   const auto half_product = [](const Vector3d& w, bool from_left) {
     const Quaterniond spin(0, w.x(), w.y(), w.z()), rate = from_left ? spin * third_turn() : third_turn() * spin;
     return vector({rate.w() / 2, rate.x() / 2, rate.y() / 2, rate.z() / 2});
@@ -116,7 +118,8 @@ TEST(RigidBodyDerivative, KnowsInWhichFrameItTurns) {
                .handout = equation(5)});
 }
 
-// In units from a nanometre's to a giant's: nothing is small by itself. Powers of two, so that answers scale exactly.
+// In units from a nanometre to a million kilometres: no absolute size is small. Powers of two, so
+// that answers scale exactly.
 TEST(RigidBodyDerivative, ProductsOfInertiaCountInEveryUnit) {
   bool is_right_in_plain_units = false;
   for (const auto& [inertia_unit, momentum_unit] : {std::pair{1.0, 1.0}, {1.0, 0x1p-30}, {0x1p-30, 0x1p-30}, {0x1p30, 1.0}, {1.0, 0x1p30}}) {
@@ -171,7 +174,8 @@ TEST(RigidBodyDerivative, InfiniteMassStaysWhereItIs) {
 }
 
 TEST(RigidBodyDerivative, FollowsASymmetricTop) {
-  // A disc, moments 1, 1, 2, precesses about L at |L| / 1 and spins in itself at w3 (1 - 2) / 1: q(t) = q_L(|L| t) q_3(-5 t).
+  // A disc, moments 1, 1, 2, precesses about L at |L| / 1 and rotates in itself at w3 (1 - 2) / 1:
+  // q(t) = q_L(|L| t) q_3(-5 t).
   const Vector3d L(0.4, 0.3, 10.0);
   const auto q_at = [&](double t) {
     return Quaterniond(Eigen::AngleAxisd(L.norm() * t, L.normalized())) * Quaterniond(Eigen::AngleAxisd(-5.0 * t, Vector3d::UnitZ()));

@@ -6,7 +6,8 @@ namespace {
 
 const std::string kReadRk4 = equation(2);
 
-// Slopes chosen so that every known slip gives another answer. With h = 0.5 every stage is exact in binary.
+// Slopes chosen so that every known mistake gives another result. With h = 0.5 every stage is exact
+// in binary.
 std::vector<VectorXd> slopes() { return {vector({1}), vector({2}), vector({5}), vector({9})}; }
 const std::string kScript = "y = 10, h = 0.5 s, and a derivative that answers k1 = 1, k2 = 2, k3 = 5, k4 = 9 whatever it is asked";
 
@@ -76,14 +77,15 @@ TEST(Rk4Step, IsExactForCubicsInTime) {
   // y' = 4 t^3 - 6 t, so y = t^4 - 3 t^2 + c. Simpson's rule is exact up to degree 3.
   const OdeFunction f = [](double t, const VectorXd&) { return vector({4 * t * t * t - 6 * t}); };
   const VectorXd found = a2_module().rk4_step(f, 1.0, vector({-2}), 2.0);
-  expect_near(found, vector({54}), kRoundoff * 200, "",  // 4 * 27 is the largest number on the way; weighted, 200
+  expect_near(found, vector({54}), kRoundoff * 200, "",  // 4 * 27 is the largest number in between; weighted, 200
               {.scene = "y' = 4 t^3 - 6 t from y(1) = -2, one step of 2 s to y(3) = 54",
                .slip = rk4_slip(likely(found, Slips<VectorXd>{{vector({-6}), "time stands still inside the step"}}, "times of the stages: t, t + h/2, t + h/2, t + h")),
                .handout = kReadRk4});
 }
 
 TEST(Rk4Step, IsOfOrderFour) {
-  // The truth's own orders here are 3.95, 3.975, 3.987; every slip in a stage or weight shows 3 or less.
+  // The orders of the exact method here are 3.95, 3.975, 3.987; every mistake in a stage or weight
+  // shows 3 or less.
   const auto found = observed_orders(a2_module().rk4_step, logistic, 0.0, vector({10}), 0.5, vector({kLogisticAtHalf}), 32, 3);
   expect_orders(found, 4.0, 0.1,
                 {.scene = "y' = 6 y - 0.007 y^2, y(0) = 10, to t = 0.5 s",
@@ -110,7 +112,8 @@ TEST(Rk4Step, FreeTopKeepsEnergyAndAngularMomentumToOrderFour) {
   const auto momentum = [&](const VectorXd& w) { return moments.cwiseProduct(Vector3d(w)).norm(); };
   for (const int steps : {100, 200, 400}) {
     const VectorXd w = integrate(a2_module().rk4_step, free_top, 0.0, start, 10.0, steps);
-    // Truncation: a correct step drifts by 0.009 to 0.015 h^4 here (measured at the three sizes); a method of order 2 by 17 h^4 or more.
+    // Truncation: a correct step drifts by 0.009 to 0.015 h^4 here (measured at the three sizes); a
+    // method of order 2 by 17 h^4 or more.
     const double allowed = 0.03 * std::pow(10.0 / steps, 4);
     const Story story{.scene = "a free top, moments 1, 2, 3 kg m^2, turns about its middle axis and tumbles for 10 s",
                       .steps = std::to_string(steps) + " steps",
@@ -121,7 +124,8 @@ TEST(Rk4Step, FreeTopKeepsEnergyAndAngularMomentumToOrderFour) {
   }
 }
 
-// Two calls of each function in one process: a static variable is filled by the first, and spoils the second.
+// Two calls of each function in one process: the first fills a static variable, which makes the
+// second wrong.
 TEST(Integration, KeepsNothingBetweenCalls) {
   const auto story = [](const std::string& function, int n) { return Story{.scene = "two calls of " + function + ", each with other numbers", .slip = function + " itself: see its own tests", .handout = equation(n)}; };
   const OdeFunction decay = [](double, const VectorXd& y) { return VectorXd(-y); };

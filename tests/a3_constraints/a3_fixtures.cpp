@@ -63,7 +63,7 @@ Rig hanging_chain(const std::vector<double>& masses) {
   for (std::size_t i = 0; i < masses.size(); ++i) {
     rig.bodies.push_back(point_mass(masses[i]));
     const int lower = static_cast<int>(i) + 1;
-    // Every other rod has its upper body as A, so that both sides of a row are looked at.
+    // Every other rod has its upper body as A, so that both sides of a row are tested.
     if (i % 2 == 0) rig.rows.push_back(rod_between(lower, Vector3d::Zero(), lower - 1, Vector3d::Zero(), -Vector3d::UnitZ()));
     else rig.rows.push_back(rod_between(lower - 1, Vector3d::Zero(), lower, Vector3d::Zero(), Vector3d::UnitZ()));
   }

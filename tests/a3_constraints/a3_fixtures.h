@@ -1,5 +1,5 @@
-/// What the tests of a3 share: bodies, scenes with known forces, the laws that every right answer obeys, and words for the slip
-/// behind a wrong one.
+/// What the tests of a3 share: bodies, scenes with known forces, the laws that every right answer
+/// obeys, and words for the slip behind a wrong one.
 #pragma once
 
 #include <cmath>
@@ -28,7 +28,7 @@ inline const a3::Module& a3_module() { return modules::under_test<a3::Module>();
 /// Handout anchor of equation (A3.n).
 inline std::string equation(int n) { return "handouts/a3_constraints.md#eq-a3-" + std::to_string(n); }
 
-// ---- Words for a slip --------------------------------------------------------------------------------------------------
+// ---- Words for a slip --------------------------------------------------------------------------
 
 /// A wrong answer, and the slip that gives it.
 template <class Value>
@@ -40,7 +40,8 @@ double distance(const Eigen::MatrixBase<A>& a, const Eigen::MatrixBase<B>& b) {
   return a.rows() == b.rows() && a.cols() == b.cols() ? (a - b).norm() : INFINITY;
 }
 
-/// The words of the slip whose answer was found, to 1e-9 of its size; `otherwise` when it is none of them.
+/// The words of the slip whose answer was found, to 1e-9 of its size; `otherwise` when it is none
+/// of them.
 template <class Found, class Value = Found>
 std::string likely(const Found& found, const Slips<Value>& slips, const std::string& otherwise) {
   for (const auto& [gives, words] : slips)
@@ -52,9 +53,10 @@ inline VectorXd vector(std::initializer_list<double> numbers) {
   return Eigen::Map<const VectorXd>(numbers.begin(), static_cast<Eigen::Index>(numbers.size()));
 }
 
-// ---- Bodies ------------------------------------------------------------------------------------------------------------
+// ---- Bodies ------------------------------------------------------------------------------------
 
-/// Turns a third of a full turn about (1, 1, 1): x to y to z to x. Its numbers are exact, and so are those of its matrix.
+/// Turns a third of a full turn about (1, 1, 1): x to y to z to x. Its numbers are exact, and so
+/// are those of its matrix.
 inline Quaterniond third_turn() { return {0.5, 0.5, 0.5, 0.5}; }
 /// 2 kg, at com_world, not turned, at rest.
 Body resting_at(const Vector3d& com_world);
@@ -67,7 +69,7 @@ Body random_body(Random& random);
 /// (v, omega) of a body, world frame.
 Vector6d velocity_of(const Body& body);
 
-// ---- Systems of bodies and rows ----------------------------------------------------------------------------------------
+// ---- Systems of bodies and rows ----------------------------------------------------------------
 
 /// Bodies with the rows between them, as the two solving functions get them.
 struct Rig {
@@ -86,9 +88,11 @@ ConstrainedBody point_mass(double mass);   // a small ball: moments 1e-2 of its 
 ConstrainedBody ceiling();
 /// A row that holds two points: n from B to A, arms from the centres of mass.
 Constraint rod_between(int a, const Vector3d& arm_a, int b, const Vector3d& arm_b, const Vector3d& n, double velocity_product = 0.0);
-/// Masses that hang one below the other from the ceiling, the first rod first; body 0 is the ceiling.
+/// Masses that hang one below the other from the ceiling, the first rod first; body 0 is the
+/// ceiling.
 Rig hanging_chain(const std::vector<double>& masses);
-/// A tree of bodies with some closed loops, random masses, inertias, arms, accelerations and velocity products; rows independent.
+/// A tree of bodies with some closed loops, random masses, inertias, arms, accelerations and
+/// velocity products; rows independent.
 Rig random_rig(Random& random, int bodies, int extra_rows);
 
 /// Sum of J^T lambda for each body, (6n).

@@ -1,4 +1,4 @@
-// Place and velocity of a point fixed in a body (A3.1), (A3.2).
+// Position and velocity of a point fixed in a body (A3.1), (A3.2).
 #include "tests/a3_constraints/a3_fixtures.h"
 
 namespace tumble::a3_testing {
@@ -39,7 +39,8 @@ TEST(AnchorVelocity, AddsTheTurningToTheMoving) {
 }
 
 TEST(AnchorVelocity, IsTheRateOfThePosition) {
-  // In closed form: a body turns about z at 2 rad/s and flies straight; its point circles. v = d/dt (x + R_z(2 t) p).
+  // In closed form: a body rotates about z at 2 rad/s and moves straight; its point circles. v =
+  // d/dt (x + R_z(2 t) p).
   for (const double t : {0.0, 0.7, 3.0}) {
     Body body = resting_at(Vector3d(3, -1, 2) * t);
     body.velocity_world = {3, -1, 2};

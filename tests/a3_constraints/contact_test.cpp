@@ -33,7 +33,7 @@ TEST(ContactForces, PushOnlyAtTheEndThatWouldSink) {
 }
 
 TEST(ContactForces, ChooseWhoPushesAmongThree) {
-  // By hand: 1 and 3 push. Whoever lets go in the wrong order ends with 2.
+  // By hand: 1 and 3 push. An algorithm that removes contacts in the wrong order ends with 2.
   const MatrixXd A = (MatrixXd(3, 3) << 4, 3, 1, 3, 4, 3, 1, 3, 4).finished();
   const VectorXd b = vector({-5, -4, -5});
   const VectorXd found = forces_of(A, b);
@@ -65,7 +65,8 @@ TEST(ContactForces, CarryAStackOfTen) {
 }
 
 TEST(ContactForces, CarryAHeavyBoxOnALightOne) {
-  // A ton on ten grams, on four corners each. Sweeps over the contacts one by one pass on a 1e-5th of the weight each: 10,000 leave a tenth.
+  // A ton on ten grams, on four corners each. Sweeps over single contacts transfer 1e-5 of the
+  // weight each: after 10,000 a tenth is left.
   constexpr double kLight = 1e-2, kHeavy = 1e3;
   Rig rig;
   rig.bodies = {ceiling(), movable(kLight, Matrix3d::Identity() * 6 / kLight), movable(kHeavy, Matrix3d::Identity() * 6 / kHeavy)};
@@ -76,7 +77,8 @@ TEST(ContactForces, CarryAHeavyBoxOnALightOne) {
     }
   const VectorXd f = forces_of(dense_matrix(rig), accelerations_of_rows(rig, VectorXd::Zero(8)));
   const double weight = (kLight + kHeavy) * kGravity;
-  // A's numbers are some 600 / kg: rounding of 1e-16 * 600 * 1e4 N over 1 / 1e-2 kg is 1e-12 of the weight.
+  // A's numbers are some 600 / kg: rounding of 1e-16 * 600 * 1e4 N over 1 / 1e-2 kg is 1e-12 of the
+  // weight.
   expect_near(Vector2d(f.head(4).sum(), f.tail(4).sum()), Vector2d(weight, kHeavy * kGravity), 1e-8 * weight, "N (sum of the lower four, of the upper four)",
               {.scene = "a box of 1,000 kg on a box of 10 g on the floor, four contacts each", .slip = "an iteration that stops too early: find who pushes, and solve for them directly", .handout = equation(9),
                .no_number = "redundant contacts: A is singular, and a pivot of 0 is divided by", .iterates = true});

@@ -22,7 +22,8 @@ VectorXd rows_times(const Rig& rig, const VectorXd& x) {
 }
 
 TEST(ConstraintCorrection, SharesTheWayByInverseMass) {
-  // 1 and 3 kg on a rod along x that is 0.4 m too long: the light one goes three quarters of the way.
+  // 1 and 3 kg on a rod along x that is 0.4 m too long: the light one moves by three quarters of
+  // it.
   Rig rig;
   rig.bodies = {point_mass(1), point_mass(3)};
   rig.rows.push_back(rod_between(0, Vector3d::Zero(), 1, Vector3d::Zero(), Vector3d::UnitX()));
@@ -57,7 +58,8 @@ TEST(ConstraintCorrection, RemovesEveryError) {
 TEST(ConstraintCorrection, LeavesWallsAlone) {
   Rig rig = hanging_chain({1, 2});
   const VectorXd found = corrected(rig, vector({0.1, -0.2}));
-  // Rod 1 holds body 1 (A) below the ceiling, rod 2 body 2 (B) below body 1: z of body 1 rises by 0.1, that of body 2 by 0.1 - 0.2.
+  // Rod 1 holds body 1 (A) below the ceiling, rod 2 body 2 (B) below body 1: z of body 1 rises by
+  // 0.1, that of body 2 by 0.1 - 0.2.
   VectorXd expected = VectorXd::Zero(18);
   expected[8] = 0.1;
   expected[14] = -0.1;
@@ -66,7 +68,8 @@ TEST(ConstraintCorrection, LeavesWallsAlone) {
 }
 
 TEST(ConstraintCorrection, IsTheSmallestOfAll) {
-  // The least x . M x with J x = -error is at right angles, as the masses measure, to every motion that the rods allow.
+  // The minimal x . M x with J x = -error is orthogonal, in the kinetic (mass) metric, to every
+  // motion that the rods allow.
   Random random(303);
   Rig rig = random_rig(random, 5, 2);
   const VectorXd x = corrected(rig, rig.wanted);
@@ -83,14 +86,14 @@ TEST(ConstraintCorrection, IsTheSmallestOfAll) {
     expect_true(false, "a change", "none", {.scene = rig.scene, .slip = "the function gives nothing (0 or NaN)", .handout = equation(8)});
     return;
   }
-  // Motions that the rods allow: a random u less its part that they do not, by a projection in plain numbers.
+  // Motions that the rods allow: a random u minus its other part, by a projection in plain numbers.
   MatrixXd J = MatrixXd::Zero(rig.size(), x.size());
   for (Eigen::Index i = 0; i < rig.size(); ++i) {
     const Constraint& c = rig.rows[static_cast<std::size_t>(i)];
     J.row(i).segment<6>(6 * c.body_a) += c.row.jacobian_a.transpose();
     J.row(i).segment<6>(6 * c.body_b) += c.row.jacobian_b.transpose();
   }
-  J.leftCols(6).setZero();  // the ceiling stays
+  J.leftCols(6).setZero();  // the ceiling is fixed
   for (int k = 0; k < 5; ++k) {
     VectorXd u(x.size());
     for (Eigen::Index i = 0; i < u.size(); ++i) u[i] = random.between(-1, 1);

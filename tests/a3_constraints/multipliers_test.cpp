@@ -84,7 +84,8 @@ TEST(ConstraintMultipliers, EachRodCarriesWhatHangsBelow) {
 }
 
 TEST(ConstraintMultipliers, ARodOffTheCentreTurnsTheBody) {
-  // A bar of 3 kg and 2 m, held at one end by a vertical rod: falling would turn it. 1/lambda = 1/m + r^2/I, I = m l^2 / 12.
+  // A bar of 3 kg and 2 m, held at one end by a vertical rod: it rotates as it falls. 1/lambda =
+  // 1/m + r^2/I, I = m l^2 / 12.
   const double mass = 3, moment = mass * 4 / 12;
   Rig rig;
   rig.bodies = {ceiling(), movable(mass, Vector3d(1 / moment, 1 / moment, 1e3).asDiagonal())};
@@ -98,7 +99,7 @@ TEST(ConstraintMultipliers, ARodOffTheCentreTurnsTheBody) {
                .handout = equation(7)});
 }
 
-/// The same by a dense solution: what the multipliers are, or would be of a rig with a slip in it.
+/// The same by a dense solution: the multipliers, or those of a rig with a mistake.
 VectorXd dense_multipliers(const Rig& rig) {
   const VectorXd free = accelerations_of_rows(rig, VectorXd::Zero(rig.size()));
   return solve_symmetric(dense_matrix(rig), rig.wanted - free);
@@ -136,8 +137,8 @@ TEST(ConstraintMultipliers, AreRightInEveryUnit) {
 }
 
 TEST(ConstraintMultipliers, FourUnevenLinksInMotionMatchTheTruth) {
-  // Tensions by an independent computation at 60 digits: chain/links4_uneven, rod_tensions_t0 (masses, lengths, angles from the
-  // vertical and their rates as below).
+  // Tensions by an independent computation at 60 digits: chain/links4_uneven, rod_tensions_t0
+  // (masses, lengths, angles from the vertical and their rates as below).
   const double masses[] = {0.5, 1, 0.25, 2}, lengths[] = {0.3, 0.5, 0.4, 0.2}, rates[] = {0, 1, -1, 2};
   const double angles[] = {1.57079632679489661923132169164, 1.0, 0.5, -0.25};
   const VectorXd tensions = vector({0.479514394938375751888112651527, 0.569852560094922844398921471009, 0.458717843186065026537737822276, 0.476123324278267257725946445336});
@@ -148,7 +149,7 @@ TEST(ConstraintMultipliers, FourUnevenLinksInMotionMatchTheTruth) {
     rig.rows.push_back(rod_between(i + 1, kNoArm, i, kNoArm, Vector3d(std::sin(angles[i]), 0, -std::cos(angles[i])), lengths[i] * rates[i] * rates[i]));
   }
   rig.wanted = VectorXd::Zero(4);
-  // Terms up to g m are summed to these tensions; A's condition is some 50.
+  // Terms up to g m are summed to these tensions; A's condition is about 50.
   expect_near(rig.multipliers(), VectorXd(-tensions), 200 * kEps * 2 * kGravity, "N",
               {.scene = "a chain of 0.5, 1, 0.25 and 2 kg on rods of 0.3, 0.5, 0.4 and 0.2 m, in motion", .slip = "A where rods share a body, or the velocity product", .handout = equation(7)});
 }
@@ -158,7 +159,8 @@ TEST(ConstraintMultipliers, AHundredLinksCarryTheirWeight) {
   const VectorXd found = rig.multipliers();
   VectorXd expected(100);
   for (int i = 0; i < 100; ++i) expected[i] = -(100 - i) * 0.1 * kGravity;
-  // Condition (2 n / pi)^2 = 4000: 1e-10 leaves room for every order of elimination, none for an iteration that stops early.
+  // Condition (2 n / pi)^2 = 4000: 1e-10 allows every order of elimination, and no iteration that
+  // stops early.
   expect_near(found, expected, 1e-10 * 98.1, "N",
               {.scene = "a chain of 100 links of 0.1 kg hangs at rest", .slip = found.size() == 100 && found.allFinite() && std::abs(found[0]) < 98 ? "an iteration that stops too early: A is solved directly" : "A where rods share a body", .handout = equation(7), .iterates = true});
 }
@@ -192,7 +194,7 @@ TEST(ConstraintMultipliers, WhatMovesNothingCarriesNothing) {
                .iterates = true});
 }
 
-/// Wall time of one answer [s]: the shortest of up to `tries`, until one is short enough.
+/// Wall time of one call [s]: the shortest of up to `tries`, until one is short enough.
 double seconds_of(const Rig& rig, double enough, int tries) {
   double best = INFINITY;
   for (int i = 0; i < tries && best > enough; ++i) {
@@ -204,9 +206,10 @@ double seconds_of(const Rig& rig, double enough, int tries) {
 }
 
 TEST(ConstraintMultipliers, AreSolvedAsTheChainTheyAre) {
-  // Longer and longer, so that a dense solution is found out where it still ends. Sparse, 2,000 rods take some milliseconds; dense, their
-  // 2.7e9 multiplications take seconds. The header asks for 1,000 in 0.1 s. Slow is what takes 0.4 s and eight times more than the
-  // links have grown: a machine that is busy elsewhere stretches the short chain, too.
+  // Longer and longer chains, so that a dense solution is detected where it still ends. Sparse,
+  // 2,000 rods take some milliseconds; dense, their 2.7e9 multiplications take seconds. The header
+  // requires 1,000 in 0.1 s. Too slow is 0.4 s and eight times more than the chains have grown: a
+  // busy machine slows the short chain, too.
   constexpr double kPatience = 0.4;  // s
   constexpr int kShort = 125;
   const auto chain = [](int links) { return hanging_chain(std::vector<double>(static_cast<std::size_t>(links), 0.1)); };

@@ -1,4 +1,5 @@
-// A rod as an equation (A3.4), (A3.5), and Baumgarte's way back to it (A3.6); when a bounce is worth one (A3.10).
+// A rod as an equation (A3.4), (A3.5), and its Baumgarte stabilisation (A3.6); the restitution
+// threshold (A3.10).
 #include "tests/a3_constraints/a3_fixtures.h"
 
 namespace tumble::a3_testing {
@@ -6,8 +7,9 @@ namespace {
 
 constexpr double kRodRoundoff = 40 * kEps;  // relative to the largest term: two rotations, cross products, a norm and a division
 
-// A at (10, 20, 30), turned by a third; its point (1, 2, 4) is at r = (4, 1, 2), hence at (14, 21, 32).
-// B at (10, 21, 32), not turned; its point (1, -4, 0) is at (11, 17, 32). d = (3, 4, 0).
+// A at (10, 20, 30), rotated by a third; its point (1, 2, 4) is at r = (4, 1, 2), hence at (14, 21,
+// 32).
+// B at (10, 21, 32), not rotated; its point (1, -4, 0) is at (11, 17, 32). d = (3, 4, 0).
 Body body_a() {
   Body body = resting_at({10, 20, 30});
   body.world_from_body = third_turn();
@@ -105,7 +107,8 @@ TEST(RodRow, DrivenBodiesMoveToo) {
   }
 }
 
-// A rod of nanometres, and one of a million kilometres: powers of two, so that answers scale exactly.
+// A rod of nanometres, and one of a million kilometres: powers of two, so that answers scale
+// exactly.
 TEST(RodRow, IsRightAtEveryLength) {
   const ConstraintRow plain = a3_module().rod_row(body_a(), kPointA, body_b(), kPointB, 2.0);
   for (const double size : {0x1p-30, 0x1p30}) {
@@ -123,7 +126,8 @@ TEST(RodRow, IsRightAtEveryLength) {
 }
 
 TEST(RodRow, AccelerationOfASwingingPoint) {
-  // A mass circles a fixed point at 3 m/s on 0.5 m, at 1 m/s outwards: |d|'' = v_across^2 / |d| while no force acts.
+  // A mass circles a fixed point at 3 m/s on 0.5 m, at 1 m/s outwards: |d|'' = v_across^2 / |d|
+  // without forces.
   Body mass = resting_at({0.5, 0, 0});
   mass.velocity_world = {1, 3, 0};
   Body wall = resting_at({0, 0, 0});
@@ -145,8 +149,10 @@ TEST(RodRow, AccelerationOfASwingingPoint) {
 }
 
 TEST(RodRow, AccelerationOfATurningBody) {
-  // A wheel turns about z at 2 rad/s; its rim point at r = (0.5, 0, 0) accelerates towards the hub at omega^2 r = 2 m/s^2.
-  // The rod leads on along x to a point that moves with the rim, so that d' = 0 and the second term is none.
+  // A wheel rotates about z at 2 rad/s; its rim point at r = (0.5, 0, 0) accelerates towards the
+  // hub at omega^2 r = 2 m/s^2.
+  // The rod continues along x to a point that moves with the rim, so that d' = 0 and the second
+  // term is 0.
   Body wheel = resting_at({0, 0, 0}), other = resting_at({2.5, 0, 0});
   wheel.omega_world = {0, 0, 2};
   other.velocity_world = {0, 1, 0};
@@ -233,7 +239,7 @@ TEST(EndsInContact, CountsTheBorder) {
   expect_true(a3_module().ends_in_contact(2, 0, 0), "true", "false", with_scene("met at 2 m/s, e = 0, rest speed 0"));
 }
 
-// The border is sharp, at every speed.
+// The threshold is sharp, at every speed.
 TEST(EndsInContact, HasNoMarginOfItsOwn) {
   for (const double unit : {0x1p-30, 1.0, 0x1p30}) {
     for (const double off : {-0x1p-20, 0x1p-20}) {
@@ -245,7 +251,8 @@ TEST(EndsInContact, HasNoMarginOfItsOwn) {
   }
 }
 
-// Two calls of each function in one process: a static variable is filled by the first, and spoils the second.
+// Two calls of each function in one process: the first fills a static variable, which makes the
+// second wrong.
 TEST(Constraints, KeepNothingBetweenCalls) {
   const auto story = [](const std::string& function, int number) { return Story{.scene = "two calls of " + function + ", each with other numbers", .slip = function + " itself: see its own tests", .handout = equation(number)}; };
   const Spring spring{.stiffness = 10, .damping = 0, .rest_length = 2};

@@ -40,7 +40,8 @@ TEST(SpringForce, PushesThemApartWhenCompressed) {
 }
 
 TEST(SpringForce, DampsAlongTheSpringOnly) {
-  // At its rest length, so that only the damper acts. B moves along the spring at 2 m/s, across at 5; A at -1 m/s along it.
+  // At its rest length, so that only the damper acts. B moves along the spring at 2 m/s, across it
+  // at 5; A at -1 m/s along it.
   const Spring spring{.stiffness = 10, .damping = 3, .rest_length = 5};
   const Vector3d n(0.6, 0.8, 0), across(-0.8, 0.6, 0);
   AnchorState a = kNear, b = kFar;

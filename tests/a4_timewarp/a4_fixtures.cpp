@@ -91,7 +91,7 @@ void expect_times(const ScheduledEvent& found, const ScheduledEvent& before, dou
   expect_true(is_same, show(expected), show(found) + (found.receivers == before.receivers ? "" : ", other receivers"), story);
 }
 
-// ---- Whole scenes ------------------------------------------------------------------------------------------------------
+// ---- Whole scenes ------------------------------------------------------------------------------
 
 scene::BodySpec ball(const std::string& name, const Vector3d& position, const Vector3d& velocity) {
   scene::BodySpec body;
@@ -157,8 +157,8 @@ scene::Scene heap_of_balls(const Vector3d& last_at, double duration_s) {
 
 namespace {
 
-// Balls of one mass that pass on what they have along the normal, and walls that throw it back: enough for these scenes. What does not bounce
-// stays: restitution is 0 or 1.
+// Balls of one mass that exchange their normal velocities, and walls that reverse them: enough for
+// these scenes. Restitution is 0 or 1.
 Laws laws_of_equal_balls() {
   Laws laws = library_laws();
   laws.relative_normal_velocity = [](const Contact& contact, const Body& a, const Body& b) { return contact.normal_b_to_a_world.dot(a.velocity_world - b.velocity_world); };

@@ -1,5 +1,5 @@
-/// What the tests of a4 share: events and effects in few words, words for what was found, and small scenes driven by the scheduler
-/// under test.
+/// What the tests of a4 share: events and effects in few words, words for what was found, and small
+/// scenes driven by the scheduler under test.
 #pragma once
 
 #include <cmath>
@@ -34,7 +34,7 @@ inline const a4::Module& a4_module() { return modules::under_test<a4::Module>();
 /// Handout anchor of equation (A4.n).
 inline std::string equation(int n) { return "handouts/a4_timewarp.md#eq-a4-" + std::to_string(n); }
 
-// ---- Events in few words -----------------------------------------------------------------------------------------------
+// ---- Events in few words -----------------------------------------------------------------------
 
 inline Stamp impact(double time, std::int32_t a, std::int32_t b, std::uint32_t microstep = 0) { return {time, microstep, WorkKind::kCollision, a, b}; }
 /// @param receivers  empty: both bodies
@@ -47,7 +47,7 @@ Effect effect(double time, std::int32_t a, std::int32_t b, std::vector<std::int3
 /// A body back to before the impact of two others, or of itself and another.
 inline Rollback back(std::int32_t body, const Stamp& stamp) { return {body, stamp}; }
 
-// ---- Words -------------------------------------------------------------------------------------------------------------
+// ---- Words -------------------------------------------------------------------------------------
 
 bool same(const Stamp& x, const Stamp& y);
 bool same(const Rollback& x, const Rollback& y);
@@ -63,7 +63,7 @@ void expect_rollbacks(const std::vector<Rollback>& found, const std::vector<Roll
 /// The two times that a decision may change; the rest must be as it was.
 void expect_times(const ScheduledEvent& found, const ScheduledEvent& before, double safe_time, double time, const Story& story);
 
-// ---- Whole scenes ------------------------------------------------------------------------------------------------------
+// ---- Whole scenes ------------------------------------------------------------------------------
 
 /// Balls of radius 0.1 m and 1 kg, restitution 1.
 scene::BodySpec ball(const std::string& name, const Vector3d& position, const Vector3d& velocity);
@@ -72,13 +72,14 @@ scene::BodySpec wall(const std::string& name, const Vector3d& position, const Ve
 scene::Scene scene_of(std::vector<scene::BodySpec> bodies, double duration_s, double step_s);
 /// n balls at lot's places in a box of walls, at speeds of about 1 m/s.
 scene::Scene balls_in_a_box(int n, std::uint64_t seed, double duration_s);
-/// Balls that do not bounce and have friction: one drops between two that touch on a floor, a heap that slides apart, and a last one falls on it
-/// from `last_at`. Contact groups form and split.
+/// Balls that do not bounce and have friction: one drops between two that touch on a floor, a heap
+/// that slides apart, and a last one falls on it from `last_at`. Contact groups form and split.
 scene::Scene heap_of_balls(const Vector3d& last_at, double duration_s);
 
 /// The scene by the framework's teaching timewarp on the decisions under test.
 Trajectory run_by_the_scheduler(const scene::Scene& scene);
-/// The same, which must end well: every committed event the ordered reference's, and at least so many of them.
+/// The same, which must end well: every committed event the ordered reference's, and at least so
+/// many of them.
 Trajectory expect_the_references_trace(const scene::Scene& scene, std::size_t least_events, const std::string& what);
 
 }  // namespace tumble::a4_testing

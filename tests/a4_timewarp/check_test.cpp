@@ -1,4 +1,4 @@
-// When to look again (A4.2), and what to do with a collision check (A4.3).
+// The time of the next check (A4.2), and the decision on a collision check (A4.3).
 #include "tests/a4_timewarp/a4_fixtures.h"
 
 namespace tumble::a4_testing {
@@ -8,7 +8,7 @@ constexpr double kStep = 0.125;   // exact in doubles, as are the times below
 
 void expect_next(double gap, double speed, double acceleration, double expected, const std::string& slip) {
   const double found = a4_module().next_check_time(2.0, gap, speed, acceleration, kStep);
-  // A square root, a division and a handful of sums on numbers of size 10.
+  // A square root, a division and some sums of numbers of size 10.
   expect_near(found, expected, 10 * kEps * 10, "s",
               {.scene = "t = 2 s, gap " + show(gap) + " m, closing at most at " + show(speed) + " m/s, acceleration at most " + show(acceleration) + " m/s^2, h = 0.125 s", .slip = slip, .handout = equation(2)});
 }
@@ -34,17 +34,18 @@ TEST(NextCheckTime, IsAtMostTenStepsAhead) {
 }
 
 TEST(NextCheckTime, IsRightInEveryUnit) {
-  // A gap in nanometres that closes at nanometres a second, and one of a million kilometres: s is the same, in powers of two exactly.
+  // A gap in nanometres that closes at nanometres per second, and one of a million kilometres: s is
+  // the same, in powers of two exactly.
   const bool plain = std::abs(a4_module().next_check_time(2.0, 2.0, 1.0, 2.0, kStep) - 3.0) < 1e-12;
   const std::string slip = plain ? "an absolute threshold: only a gap of exactly 0, or a speed and an acceleration of exactly 0, are cases of their own" : "the same in metres is wrong, too: see the tests before this one";
   for (const double unit : {0x1p-40, 0x1p40}) {
     expect_next(2.0 * unit, 1.0 * unit, 2.0 * unit, 3.0, slip);
     expect_next(1.0 * unit, 2.0 * unit, 0.0, 2.5, slip);
   }
-  expect_next(1.0, 1.0, 0x1p-45, 3.0, slip);   // the school form of the root cancels here; s is 1 less 1.4e-14
+  expect_next(1.0, 1.0, 0x1p-45, 3.0, slip);   // the textbook form of the root cancels here; s is 1 less 1.4e-14
 }
 
-// ---- Collision checks --------------------------------------------------------------------------------------------------
+// ---- Collision checks --------------------------------------------------------------------------
 
 CheckFinding disjoint(double gap) { return {std::nullopt, gap, 2.0, 0.0}; }
 

@@ -53,7 +53,7 @@ TEST(OnGroupCheck, OnlyTheFirstOpeningCounts) {
   expect_near(found.next.safe_time, 1.125, 0.0, "s (safe time)", {.scene = "the same row", .slip = "the earliest of all, not the first in the list", .handout = equation(5)});
 }
 
-// ---- Callbacks ---------------------------------------------------------------------------------------------------------
+// ---- Callbacks ---------------------------------------------------------------------------------
 
 TEST(OnCallback, WhoIsLaterComesBack) {
   ScheduledEvent event = callback(A, 0.5);

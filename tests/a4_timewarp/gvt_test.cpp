@@ -1,4 +1,4 @@
-// Global virtual time (A4.10), what it lets happen (A4.11), what it lets be forgotten (A4.12).
+// Global virtual time (A4.10), commits up to it (A4.11), and fossil collection before it (A4.12).
 #include <algorithm>
 
 #include "tests/a4_timewarp/a4_fixtures.h"
@@ -81,7 +81,8 @@ TEST(StatesToPurge, TimesAreComparedAsTheyAre) {
   expect_true(found == 2, "2 of them", std::to_string(found), {.scene = "states at 0, 0.125 s, one double before 0.25 s and one after; global virtual time is 0.25 s", .slip = "a margin: a state that is earlier is the last one before global virtual time, however little it is earlier", .handout = equation(12)});
 }
 
-// Two calls of each function in one process: a static variable is filled by the first, and spoils the second.
+// Two calls of each function in one process: the first fills a static variable, which makes the
+// second wrong.
 TEST(Decisions, KeepNothingBetweenCalls) {
   const auto expect_kept = [](bool first_is_right, bool second_is_right, const std::string& function, int number) {
     expect_true(first_is_right && second_is_right, "two right answers", !first_is_right ? "the first is wrong" : "the first is right, the second is wrong",

@@ -1,4 +1,4 @@
-// The total order of all that happens (A4.1).
+// The total order of events (A4.1).
 #include "tests/a4_timewarp/a4_fixtures.h"
 
 namespace tumble::a4_testing {
@@ -36,7 +36,7 @@ TEST(ComesBefore, TiesGoByKindThenBodies) {
 }
 
 TEST(ComesBefore, NothingIsBeforeItself) {
-  expect_before(impact(1.0, A, B), impact(2.0, A, B), "not the order of time");   // else a function that always says no were right here
+  expect_before(impact(1.0, A, B), impact(2.0, A, B), "not the order of time");   // otherwise a function that always returns false would pass
   for (const Stamp& stamp : {impact(1.0, A, B), redraw(2.0).stamp, callback(C, 0.0).stamp})
     expect_true(!a4_module().comes_before(stamp, stamp), "not before itself", "before itself", {.scene = show(stamp), .slip = "<= in place of <: queues do not survive an order in which equals come before each other", .handout = equation(1)});
 }

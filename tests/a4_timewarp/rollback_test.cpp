@@ -1,4 +1,4 @@
-// Who goes back, and how far (A4.7, A4.8); what becomes of events then (A4.9).
+// The bodies of a rollback and their times (A4.7, A4.8); events after it (A4.9).
 #include <algorithm>
 
 #include "tests/a4_timewarp/a4_fixtures.h"
@@ -6,7 +6,7 @@
 namespace tumble::a4_testing {
 namespace {
 
-const Stamp kHit = impact(0.5, A, E);   // what sends A back in these stories
+const Stamp kHit = impact(0.5, A, E);   // the impact that rolls A back in these stories
 
 TEST(AntiMessages, UnsendWhatCameAfter) {
   const std::vector<Effect> effects{effect(0.25, A, B), effect(0.75, A, C), effect(1.0, A, D)};
@@ -49,9 +49,10 @@ TEST(PlanRollback, TheEarliestMessageCounts) {
 }
 
 TEST(PlanRollback, ADeeperMessageIsFollowedAgain) {
-  // C is reached first at 1.25 (nothing of it after), then at 0.75, which takes its impact with D along.
+  // C is rolled back first to 1.25 (no effect of it after that), then to 0.75, which includes its
+  // impact with D.
   std::vector<Effect> effects{effect(1.25, A, C), effect(1.0, C, D), effect(0.75, B, C), effect(0.625, A, B)};
-  for (int order = 0; order < 2; ++order, std::reverse(effects.begin(), effects.end()))   // in whatever order they come
+  for (int order = 0; order < 2; ++order, std::reverse(effects.begin(), effects.end()))   // in any order
     expect_rollbacks(a4_module().plan_rollback(effects, {back(A, kHit)}), {back(A, kHit), back(B, impact(0.625, A, B)), back(C, impact(0.75, B, C)), back(D, impact(1.0, C, D))},
                    {.scene = "A hit B at 0.625 s, B hit C at 0.75 s, C hit D at 1 s, A hit C at 1.25 s. A goes back to 0.5 s", .slip = "C is reached at 1.25 s and then deeper, at 0.75 s: only the deeper one reaches D", .handout = equation(8)});
 }
@@ -63,7 +64,7 @@ TEST(PlanRollback, TakesSeveralRollbacksAtOnce) {
                    {.scene = "B hit D at 0.25 s and C at 0.75 s; A and B go back to 0.5 s, and B is told 0.625 s as well", .slip = "each body once, to the earliest of its stamps, by body", .handout = equation(8)});
 }
 
-// ---- Events after a rollback -------------------------------------------------------------------------------------------
+// ---- Events after a rollback -------------------------------------------------------------------
 
 const ScheduledEvent kCheck = collision_check(A, B, 0.5, 0.75);
 
@@ -77,7 +78,7 @@ TEST(AfterRollback, BeforeTheSafeTimeTheCheckMovesThere) {
 }
 
 TEST(AfterRollback, FromTheSafeTimeOnTheCheckStays) {
-  expect_after(kCheck, {back(A, impact(0.25, A, C))}, 0.25, 0.25, "A goes back to 0.25 s", "before the safe time the check moves");   // else who never moves one were right here
+  expect_after(kCheck, {back(A, impact(0.25, A, C))}, 0.25, 0.25, "A goes back to 0.25 s", "before the safe time the check moves");   // otherwise a function that never moves a check would pass
   const std::string slip = "[safe, time] has yet to be looked at, on whatever motion there is then";
   expect_after(kCheck, {back(A, impact(0.5, A, C))}, 0.5, 0.75, "A goes back to 0.5 s, its safe time", slip);
   expect_after(kCheck, {back(A, impact(0.625, A, C))}, 0.5, 0.75, "A goes back to 0.625 s, between safe time and time", slip);

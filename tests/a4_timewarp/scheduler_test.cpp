@@ -1,5 +1,6 @@
-// Whole scenes by the framework's teaching timewarp on the decisions under test, against the ordered run. Every decision takes part, so
-// one that is wrong may fail all of these: see first that the tests of each are right.
+// Whole scenes by the framework's teaching timewarp with the decisions under test, against the
+// ordered run. Every decision takes part, so a wrong one may fail all of these: the tests of each
+// decision should pass first.
 #include <algorithm>
 
 #include "tests/a4_timewarp/a4_fixtures.h"
@@ -29,7 +30,7 @@ TEST(Scheduler, HandsABlowAlongARow) {
 TEST(Scheduler, KeepsABoxOfBallsInOrder) { expect_the_references_trace(balls_in_a_box(6, 401, 2.5), 15, "six balls in a box"); }
 
 TEST(Scheduler, DoesNotDisturbWhoIsFarAway) {
-  // Left: a pair that meets often. Right: a ball that meets nobody.
+  // Left: a pair that collides often. Right: a ball without partners.
   std::vector<scene::BodySpec> bodies{wall("left", {-0.5, 0, 0}, {1, 0, 0}), ball("A", {-0.2, 0, 0}, {1, 0, 0}), ball("B", {0.2, 0, 0}, {-1.3, 0, 0}), ball("lone", {30, 0, 0}, {0, 0.4, 0})};
   const Trajectory run = expect_the_references_trace(scene_of(bodies, 3.0, 0.25), 3, "A and B meet near a wall; 30 m away a lone ball goes its way");
   for (const VirtualTimes::Move& move : run.virtual_times.moves)
@@ -46,7 +47,8 @@ TEST(Scheduler, SplitsAHeapWhereItsContactsOpen) {
 
 TEST(Scheduler, ForgetsWhatIsCertain) {
   const Trajectory run = expect_the_references_trace(balls_in_a_box(3, 402, 8.0), 25, "three balls in a box for 8 s");
-  // 80 steps a ball and more than as many states of checks and impacts, if nothing were forgotten. No check waits longer than ten steps, so no more than some 20 states a ball are needed.
+  // 80 steps per ball and more than as many states of checks and impacts, if nothing were
+  // discarded. No check waits longer than ten steps, so at most some 20 states per ball are needed.
   expect_true(count(run, "states_kept") <= 3 * 30, "at most 90 states at any time", std::to_string(count(run, "states_kept")), {.scene = "three balls in a box for 8 s, steps of 0.1 s", .slip = "states_to_purge forgets nothing, or global virtual time lags behind", .handout = equation(12)});
 }
 

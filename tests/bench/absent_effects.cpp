@@ -1,7 +1,9 @@
-// What an effect costs that a scene does not ask for. Run by absent_effects.sh under callgrind, once as it is and once built without the effect.
+// The cost of an effect that a scene does not call for. Run by absent_effects.sh under callgrind,
+// once as it is and once built without the effect.
 //
-//   bench_... cost EFFECT     runs a scene without the effect in which its absence is asked about often
-//   bench_... calls EFFECT    runs a scene that asks for the effect, and prints how often its code was called
+//   bench_... cost EFFECT     runs a scene without the effect that often tests for its absence
+//   bench_... calls EFFECT    runs a scene with the effect, and prints the number of calls of its
+//                             code
 #include <cstdio>
 #include <iostream>
 
@@ -16,7 +18,7 @@
 namespace tumble::testing {
 namespace {
 
-/// Twelve bodies in two rows; they fly apart and touch nobody.
+/// Twelve bodies in two rows; they fly apart without contact.
 scene::Scene flying(double duration) {
   std::vector<scene::BodySpec> bodies;
   for (int i = 0; i < 6; ++i) {
@@ -27,14 +29,14 @@ scene::Scene flying(double duration) {
   return scene_of(bodies, duration);
 }
 
-/// The same, and they may not meet.
+/// The same, and they must not collide.
 scene::Scene passing(double duration) {
   scene::Scene scene = flying(duration);
   for (scene::BodySpec& body : scene.bodies) body.collides = false;
   return scene;
 }
 
-/// As they fly, tied in pairs by one kind of link.
+/// The same flight, linked in pairs by one kind of link.
 scene::Scene tied(double duration, const std::string& link) {
   scene::Scene scene = flying(duration);
   for (int i = 0; i < 6; ++i) {
@@ -48,7 +50,7 @@ scene::Scene tied(double duration, const std::string& link) {
   return scene;
 }
 
-/// Three boxes on one another; loose ones bounce on the floor instead.
+/// Three boxes on one another; without contacts they bounce on the floor instead.
 scene::Scene stack(double duration, double friction, bool lasting) {
   scene::Scene scene = scene_of({plane("floor", Vector3d::Zero(), Vector3d::UnitZ())}, duration, Vector3d(0, 0, -9.81));
   for (int i = 0; i < 3; ++i) {
@@ -73,10 +75,10 @@ scene::Scene scene_without(const std::string& effect) {
   if (effect == "contact" || effect == "callback") return stack(5.0, 0.0, false);
   if (effect == "friction") return stack(1.0, 0.0, true);
   if (effect == "sleep") return stack(1.0, 0.5, true);
-  return tied(4.0, "spring");   // of an effect that acts on groups
+  return tied(4.0, "spring");   // for an effect that acts on islands
 }
 
-/// Callbacks come from a program, to the engines that go from event to event; other effects from the scene, in steps.
+/// Callbacks come from a program, for event-driven engines; other effects from the scene, in steps.
 engines::RunOptions options_about(const std::string& effect) {
   engines::RunOptions options;
   if (effect == "callback") options.engine = "ca";
@@ -98,7 +100,7 @@ std::uint64_t calls_of(std::string effect) {
   try {
     result = run(scene, reference_laws());
   } catch (const UserError&) {
-    return 0;   // nobody here knows the effect
+    return 0;   // an unknown effect
   }
   std::uint64_t calls = 0;
   for (const std::string& counter : kCountersOf.at(effect)) calls += result.counters.counts.at(counter);

@@ -1,4 +1,4 @@
-// What it costs to ask a function of a submission that lives in a sandbox: a call, a callback, a fresh worker.
+// The cost of a function of a submission in a sandbox: a call, a callback, a new worker.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -14,7 +14,7 @@ using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
 struct Figure {
-  double median_us, best_us;   // of batches: the best is what a neighbour's work did not touch
+  double median_us, best_us;   // of batches: the best one was not disturbed by other programs
 };
 
 template <class Work>

@@ -1,5 +1,6 @@
-// What rods, joints and lasting contact cost, beside what the project wants them to: one table, by CPU time of this machine. Ratios and
-// shares of real time matter, not seconds.   usage: bench_constraints, from the root of the tree
+// The cost of rods, joints and persistent contacts against the project's goals: one table, by CPU
+// time of this machine. Ratios and fractions of real time matter, not seconds.
+//   usage: bench_constraints, from the root of the tree
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -16,8 +17,8 @@
 namespace tumble::testing {
 namespace {
 
-constexpr int kRuns = 3;         // the least disturbed counts
-constexpr double kShort = 2.0;   // s: what takes longer is run once
+constexpr int kRuns = 3;         // the fastest counts
+constexpr double kShort = 2.0;   // s: longer runs are not repeated
 
 scene::Scene scene_of_a3(const std::string& name) { return scene::load_scene(std::filesystem::path(TUMBLE_SOURCE_DIR) / "assignments/a3_constraints/scenes" / (name + ".json")); }
 
@@ -34,7 +35,8 @@ double cpu_of(const scene::Scene& scene, double duration, Tally& tally) {
   return cpu_seconds() - begin;
 }
 
-/// Of the run alone: what it takes to load models and laws is measured by a run of one step, and taken off.
+/// Of the run alone: the set-up of models and laws is measured by a run of one step, and
+/// subtracted.
 Price price_of(const scene::Scene& scene) {
   Price price{1e300, scene.duration_s, 0.0};
   for (int k = 0; k < kRuns && (k == 0 || price.cpu_s < kShort); ++k) {
@@ -61,7 +63,7 @@ bool measure_all() {
   all_hold &= tell("a step of a chain of 1,000 over one of 100", thousand / hundred, 12.0, "", std::to_string(1e6 * hundred) + " and " + std::to_string(1e6 * thousand) + " us");
   scene::Scene stack = scene_of_a3("stack_of_50");
   stack.step_s = 1.0 / 60;
-  stack.contact->sleep = false;   // what is asleep is not solved for
+  stack.contact->sleep = false;   // sleeping contacts are not solved
   const Price awake = price_of(stack);
   all_hold &= tell("a stack of 50 at rest, awake, steps of 1/60 s", awake.cpu_s / awake.simulated_s, 1.0, "of real time", "");
   const Price bowl = price_of(scene_of_a3("bowl"));

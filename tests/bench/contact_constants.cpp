@@ -1,5 +1,6 @@
-// How much each tolerance of contacts matters: every constant of framework/engines/contact/contact_constants.h times ten and divided by ten,
-// and which scenes notice. A constant that nobody notices is a candidate to go.
+// The sensitivity to each tolerance of contacts: every constant of
+// framework/engines/contact/contact_constants.h times ten and divided by ten, and the scenes that
+// change. A constant without effect is a candidate for removal.
 //
 //   bench_contact_constants                 all constants
 //   bench_contact_constants margin reach    these
@@ -36,15 +37,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kLongest = 1.5;     // s of CPU: scenes that take longer are left out
-constexpr double kMoreTime = 10.0;   // times the usual: then the run is cut off and counts as slow
+constexpr double kLongest = 1.5;     // s of CPU: scenes with longer runs are left out
+constexpr double kMoreTime = 10.0;   // times the usual: then the run is stopped and counts as slow
 constexpr double kLeastTime = 3.0;   // s
-constexpr double kSeen = 1e-9;       // m: a change of places that is worth a word
+constexpr double kSeen = 1e-9;       // m: a change of positions that is reported
 
-/// One scene, run as the constants are.
+/// One scene, run with changed constants.
 struct Looked {
   bool is_right = false;
-  double farthest = 0.0;   // from the usual run, any place at any frame [m]; infinite where the two have other frames
+  double farthest = 0.0;   // from the usual run, of any position at any frame [m]; infinite where the frames differ
   double cpu_s = 0.0;
 };
 
@@ -74,7 +75,8 @@ double farthest_of(const Trajectory& a, const Trajectory& b) {
   return farthest;
 }
 
-/// In a process of its own: what does not end is ended. @return nothing where it took too long, or crashed
+/// In a process of its own, which is ended if it hangs. @return nothing where it took too long, or
+/// crashed
 std::optional<Looked> look(const Usual& usual) {
   int ends[2];
   if (::pipe(ends) != 0) return std::nullopt;
@@ -135,12 +137,12 @@ std::vector<Usual> usual_runs() {
       Trajectory run = run_of(scene);
       const double cpu_s = cpu_seconds() - before;
       if (cpu_s <= kLongest && is_right(scene, run)) usual.push_back({scene, std::move(run), cpu_s});
-    } catch (const std::exception&) {   // a broken scene that is refused is nothing to look at
+    } catch (const std::exception&) {   // a broken scene that is refused is left out
     }
   return usual;
 }
 
-/// "2 wrong (arch, drop_a_gear), 3e-06 m, CPU 1.8": nothing where no scene notices.
+/// "2 wrong (arch, drop_a_gear), 3e-06 m, CPU 1.8": nothing where no scene changes.
 std::string noticed(const std::vector<Usual>& all) {
   std::vector<std::string> wrong, slow;
   double farthest = 0.0, cpu = 0.0, usual_cpu = 0.0;

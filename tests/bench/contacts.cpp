@@ -1,4 +1,5 @@
-// What a contact problem costs: stacks cold and warm, forty contacts at rest, a pile of 200 bodies.
+// The cost of a contact problem: stacks with and without warm start, forty contacts at rest, a pile
+// of 200 bodies.
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
@@ -16,7 +17,8 @@ ContactProblem with_guess(ContactProblem problem, const ContactSolution& solutio
   return problem;
 }
 
-/// 200 balls in 10 x 10 x 2 layers, each pressed on its four lower neighbours or the floor, and loosely on its neighbours: 800 contacts.
+/// 200 balls in 10 x 10 x 2 layers, each pressed on its four lower neighbours or the floor, and
+/// loosely on its neighbours: 800 contacts.
 ContactProblem pile() {
   ContactProblem problem;
   problem.bodies.push_back(fixed_body());

@@ -19,23 +19,23 @@
 namespace tumble::testing {
 namespace {
 
-/// One goal, and what was found.
+/// One goal, and the measured figure.
 struct Figure {
   std::string what;
   double found;
   bool at_least;
   double goal;
-  double w_h;                 // of timewarp's run; NaN where the figure is of several
+  double w_h;                 // of timewarp's run; NaN for a figure of several runs
   int n;
   std::string note = {};
 };
 
-/// Figures that come from the same runs, and their picture.
+/// Figures of the same runs, and their picture.
 struct Chapter {
   std::string name;
   std::vector<Figure> figures;
   report::Plot plot;
-  std::vector<report::StackedBars> bars = {};   // where the time of its runs went
+  std::vector<report::StackedBars> bars = {};   // the parts of the time of its runs
 };
 
 report::Plot plot_of(const std::string& title, const std::string& x, const std::string& y, const std::string& unit = "") {
@@ -54,21 +54,22 @@ void add_point(report::Curve& curve, double x, double y) {
 /// Slope in a doubly logarithmic plot, from the first to the last point.
 double slope_of(const report::Curve& curve) { return std::log(curve.y.back() / curve.y.front()) / std::log(curve.x.back() / curve.x.front()); }
 
-// ---- The paper's scenes ----------------------------------------------------------------------------------------------------
+// ---- The paper's scenes ------------------------------------------------------------------------
 
-/// At the paper's sizes. Retroactive detection needs hours for seconds of the heaviest: all are measured over the same part.
+/// At the paper's sizes. Retroactive detection needs hours for seconds of the heaviest: all are
+/// measured over the same part.
 struct PaperScene {
   const char* name;
   int n;
   double duration;            // [s]
-  double goal_rd, goal_ca;    // of times against timewarp's
-  double heaped_at = 0.0;     // begun there instead of at the scene's start [s]
+  double goal_rd, goal_ca;    // of times relative to timewarp's
+  double heaped_at = 0.0;     // started there instead of at the scene's start [s]
 };
 constexpr PaperScene kPaper[] = {{"atoms", 300, 2.0, 20, 30}, {"cars", 400, 2.0, 5, 5}, {"robots", 20, 0.8, 3, 3}, {"avalanche", 300, 0.7, 5, 5}};
 constexpr PaperScene kHeaped = {"avalanche", 300, 0.1, 1.5, 1.5, 3.0};   // rocks lie on each other at the foot of the mountain
 constexpr double kMostUndone = 0.15;
 
-/// Three runs of one scene, and what they say.
+/// Three runs of one scene, and their figures.
 struct Compared {
   Measured tw, rd, ca;
 };
@@ -76,7 +77,8 @@ struct Compared {
 Compared compare(const PaperScene& paper) {
   scene::Scene scene = scene::make_sized_scene(paper.name, paper.n);
   if (paper.heaped_at > 0) scene = at_a_later_time(scene, paper.heaped_at);
-  // By the clock, as the goals are; none of them has more than one thread, and CPU times stand in the notes.
+  // By wall time, as the goals are; none of them has more than one thread, and CPU times are in the
+  // notes.
   return {measure(scene, "tw", paper.duration, Clock::kWall), measure(scene, "rd_auto", paper.duration, Clock::kWall), measure(scene, "ca", paper.duration, Clock::kWall)};
 }
 
@@ -120,7 +122,7 @@ Chapter paper_scenes() {
   return chapter;
 }
 
-// Rocks roll, lie and hit each other close by: who waits for whom matters less than what is searched.
+// Rocks roll, rest and collide close together: scheduling matters less than the search for impacts.
 Chapter heaped() {
   Chapter chapter{"The avalanche when it is heaped", {}, plot_of("The heap: time over timewarp's", "rocks", "time over timewarp's")};
   const Compared runs = compare(kHeaped);
@@ -132,7 +134,7 @@ Chapter heaped() {
   return chapter;
 }
 
-// ---- Growth ----------------------------------------------------------------------------------------------------------------
+// ---- Growth ------------------------------------------------------------------------------------
 
 Chapter growth() {
   Chapter chapter{"Cost a body at constant density", {}, plot_of("A gas: CPU time a body and simulated second", "balls", "time", "s")};
@@ -141,7 +143,7 @@ Chapter growth() {
   std::vector<Measured> all;
   double w_h = 0.0;
   for (const int n : {100, 1000, 10'000, 100'000}) {
-    const Measured tw = measure("gas", n, "tw", 2.0);   // as long for each: going on for the first time is part of it
+    const Measured tw = measure("gas", n, "tw", 2.0);   // the same duration for each: the first advances are part of it
     steps.push_back(tw.a_body_second(tw.count("integrations")));
     checks.push_back(tw.a_body_second(tw.count("pair_checks")));
     times.push_back(tw.a_body_second(tw.seconds));
@@ -157,7 +159,7 @@ Chapter growth() {
     for (const auto& [curve, engine] : {std::pair{1, "rd_auto"}, {2, "ca"}}) {
       const Measured run = measure("gas", n, engine, duration);
       add_point(chapter.plot.curves[static_cast<std::size_t>(curve)], n, run.a_body_second(run.seconds));
-      add_point(integrations[curve - 1], n, run.count("integrations") / run.count("discontinuities"));   // a small gas meets its walls more often
+      add_point(integrations[curve - 1], n, run.count("integrations") / run.count("discontinuities"));   // a small gas hits its walls more often
     }
   const auto spread = [](const std::vector<double>& values) { return *std::max_element(values.begin(), values.end()) / *std::min_element(values.begin(), values.end()); };
   chapter.figures.push_back({"gas of 10^2 to 10^5: most over least integrations a body", spread(steps), false, 1.5, w_h, 100'000});
@@ -169,7 +171,7 @@ Chapter growth() {
   return chapter;
 }
 
-// ---- Collisions a second ---------------------------------------------------------------------------------------------------
+// ---- Collisions a second -----------------------------------------------------------------------
 
 Chapter collisions() {
   Chapter chapter{"Committed collisions of balls a second and core", {}, plot_of("A gas by timewarp: collisions a second of CPU", "balls", "collisions a second", "1/s")};
@@ -184,7 +186,7 @@ Chapter collisions() {
   return chapter;
 }
 
-// ---- Few bodies ------------------------------------------------------------------------------------------------------------
+// ---- Few bodies --------------------------------------------------------------------------------
 
 Chapter few_bodies() {
   Chapter chapter{"One body and two", {}, plot_of("A gas of one and two: time over retroactive detection's", "balls", "TW / RD")};
@@ -198,7 +200,7 @@ Chapter few_bodies() {
   return chapter;
 }
 
-// ---- Threads ---------------------------------------------------------------------------------------------------------------
+// ---- Threads -----------------------------------------------------------------------------------
 
 Chapter threads() {
   Chapter chapter{"Two threads, by the clock", {}, plot_of("The best engine on one thread over timewarp on two, by the clock", "movable bodies", "times quicker")};
@@ -208,7 +210,7 @@ Chapter threads() {
     const char* name;
     int n;
     double duration, goal;
-    double part_of_rd;        // of the duration: where retroactive detection would take minutes, its time is that of this part times what it is of all
+    double part_of_rd;        // of the duration: where retroactive detection would take minutes, the time of this part is scaled to all of it
   };
   const std::vector<Sized> all = {{"atoms", 3000, 2.0, 1.5, 0.01}, {"avalanche", 300, 0.7, 1.3, 1.0}};
   for (std::size_t k = 0; k < all.size(); ++k) {
@@ -227,7 +229,7 @@ Chapter threads() {
   return chapter;
 }
 
-// ---- All of it -------------------------------------------------------------------------------------------------------------
+// ---- All of it ---------------------------------------------------------------------------------
 
 bool holds(const Figure& figure) { return figure.at_least ? figure.found >= figure.goal : figure.found <= figure.goal; }
 

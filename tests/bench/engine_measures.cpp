@@ -17,9 +17,9 @@
 namespace tumble::testing {
 namespace {
 
-constexpr double kShort = 1.0;        // [s]: what takes longer is run once
+constexpr double kShort = 1.0;        // [s]: longer runs are not repeated
 constexpr int kShortRuns = 5;         // at least, and
-constexpr double kLongEnough = 0.3;   // until so much time is spent on it [s]: of milliseconds the least disturbed comes late
+constexpr double kLongEnough = 0.3;   // until this much time is spent [s]: for runs of milliseconds an undisturbed one comes late
 constexpr int kMostRuns = 200;
 constexpr double kNothing = 1e-9;     // [s], simulated
 constexpr double kOneFrame = 1e-3;    // [1/s]
@@ -51,7 +51,7 @@ Once run_once(const scene::Scene& scene, const std::string& engine, double durat
   options.timewarp = engines::fast_timewarp();
   options.duration_s = duration;
   options.frame_rate_hz = kOneFrame;
-  const clockid_t of_cpu = options.threads > 1 ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_THREAD_CPUTIME_ID;   // the former goes by ticks after samples were taken
+  const clockid_t of_cpu = options.threads > 1 ? CLOCK_PROCESS_CPUTIME_ID : CLOCK_THREAD_CPUTIME_ID;   // the former has a coarse resolution after samples were taken
   const clockid_t clock = by == Clock::kWall ? CLOCK_MONOTONIC : of_cpu;
   Once once;
   const double begin = seconds_by(clock), cpu_begin = seconds_by(of_cpu);
@@ -62,9 +62,10 @@ Once run_once(const scene::Scene& scene, const std::string& engine, double durat
   return once;
 }
 
-// What a neighbour's work on the machine adds is no engine's.
+// Other programs on the machine must not count.
 Once best_of(const scene::Scene& scene, const std::string& engine, double duration, Clock clock, StackSamples& samples) {
-  // While samples are taken the system's clock of CPU time goes by ticks of milliseconds: short runs are timed without.
+  // While samples are taken, the system's clock of CPU time has a resolution of milliseconds: short
+  // runs are timed without samples.
   samples.begin();
   Once best = run_once(scene, engine, duration, clock);
   for (int k = 1; k < kShortRuns && best.seconds < kShort; ++k) run_once(scene, engine, duration, clock);

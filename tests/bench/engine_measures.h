@@ -1,4 +1,4 @@
-/// What benchmarks of the engines share: one run of a scene with a size, its counts and its time.
+/// Shared by benchmarks of the engines: one run of a scene with a size, its counters and its time.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace tumble::testing {
 
-/// Keeps counters, and counts events, where a recorder would keep them all.
+/// Keeps counters, and counts events without storing them.
 class Tally final : public TrajectorySink {
  public:
   void begin(const TrajectoryInfo&, const std::vector<TrajectoryBody>&) override {}
@@ -28,27 +28,28 @@ class Tally final : public TrajectorySink {
 };
 
 struct Measured {
-  double seconds = 0.0, cpu = 0.0;               // of the run without what comes before its first step; CPU of all threads [s]
-  engines::TimeShares shares;                    // where its time went, of all the runs that were made
+  double seconds = 0.0, cpu = 0.0;               // of the run without its set-up; CPU of all threads [s]
+  engines::TimeShares shares;                    // the parts of its time, of all runs that were made
   Tally tally, building;                         // of the run; of a run that ends before its first step
   int bodies = 0;                                // movable
   double simulated = 0.0, step = 0.0;            // [s]
 
   double count(const char* what) const;
-  double undone() const;                         // part of all integrations
-  double w_h() const;                            // discontinuities a body and largest step, each counted for its two bodies
+  double undone() const;                         // fraction of all integrations
+  double w_h() const;                            // discontinuities per body and largest step, each counted for its two bodies
   double a_body_second(double amount) const { return amount / bodies / simulated; }
 };
 
-enum class Clock { kCpu, kWall };                // CPU time is what neighbours on the machine do not lengthen; threads are compared by the wall's
+enum class Clock { kCpu, kWall };                // CPU time is independent of other programs on the machine; threads are compared by wall time
 
-/// A scene as it stands at a later time, by timewarp: what heaps up needs its time, which is no part of what is compared. Bodies, links and all
-/// else are kept.
+/// A scene in its state at a later time, by timewarp: a pile needs time to form, which is not part
+/// of the comparison. Bodies, links and all else are kept.
 /// @param at  [s]
 scene::Scene at_a_later_time(const scene::Scene& scene, double at);
 
-/// A scene by one engine: the least disturbed of several runs where they are short. Pictures are no part of it.
-/// @param engine    rd, rd_auto (in closed form, as the others go), ca, tw, or tw2, tw4, ... (threads)
+/// A scene by one engine: the fastest of several runs where they are short. Without pictures.
+/// @param engine    rd, rd_auto (in closed form, as the others are), ca, tw, or tw2, tw4, ...
+///   (threads)
 /// @param duration  [s]
 Measured measure(const scene::Scene& scene, const std::string& engine, double duration, Clock clock = Clock::kCpu);
 /// The same for a scene with a size.

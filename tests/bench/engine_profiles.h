@@ -1,4 +1,4 @@
-/// Why a figure is what it is: where each engine's time went, beside the figure.
+/// The reason of a figure: the parts of each engine's time, beside the figure.
 #pragma once
 
 #include <string>
@@ -10,17 +10,19 @@
 
 namespace tumble::testing {
 
-/// A bar a run, in shares; its name says how long it took.
+/// One bar per run, in fractions; its name gives its time.
 report::StackedBars bars_of(const std::string& title, const std::vector<std::pair<std::string, const Measured*>>& runs, const std::string& caption = "");
 
-/// Of timewarp's run: its parts, and what `best` over its time would be if all that is not physics cost nothing: what no scheduler can exceed
-/// that has the same pairs searched and the same contacts solved.
+/// Of timewarp's run: its parts, and `best` over its time if everything except physics were free:
+/// an upper bound for any scheduler with the same searched pairs and solved contacts.
 std::string why(const Measured& tw, const Measured& best);
 
-/// What one committed collision takes: integrations, pair checks, time in each part. Where the counts stay and times grow, they wait for memory.
+/// The cost of one committed collision: integrations, pair checks, time in each part. Where the
+/// counts are constant and times grow, memory latency is the cause.
 std::string a_collision_of(const Measured& tw);
 
-/// Of two threads: rounds, time together, time of one alone, and what is left of the time by the clock: waiting.
+/// Of two threads: epochs, concurrent time, sequential time, and the rest of the wall time:
+/// waiting.
 std::string threads_of(const Measured& two);
 
 }  // namespace tumble::testing

@@ -1,6 +1,8 @@
-// What each engine pays for the same scenes: its words are in kUsage. Without words: all figures that timewarp is judged by, one table, one
-// picture each (engine_figures.cpp), and where each engine's time went (engine_profiles.cpp). Ratios are of times in this very run. rd_auto is
-// rd in closed form, as the other two go. With tw2 or tw4 all times of the table are by the clock, on a machine that has nothing else to do.
+// The cost of each engine for the same scenes: the words are in kUsage. Without words: all figures
+// by which timewarp is judged, in one table with a picture each (engine_figures.cpp), and the parts
+// of each engine's time (engine_profiles.cpp). Ratios are of times in this run. rd_auto is rd in
+// closed form, as the other two are. With tw2 or tw4 all times of the table are wall times, on an
+// otherwise idle machine.
 #include <cstdio>
 #include <cstdlib>
 
@@ -15,8 +17,8 @@
 namespace tumble::testing {
 namespace {
 
-// Of two threads and more: what hardly depends on how busy the machine is, CPU of the busiest thread of each round and of what one does
-// alone, one after the other.
+// With several threads: figures that hardly depend on the load of the machine, CPU time of the
+// busiest thread of each epoch and of the sequential parts, in sequence.
 void print_critical_path(const Measured& run, double cpu_of_one) {
   if (!run.tally.stages.contains("threads_together")) return;
   const auto spent = [&](const char* stage) { return run.tally.stages.at(stage) - run.building.stages.at(stage); };
@@ -45,7 +47,7 @@ void table(const std::string& scene, int n, const std::vector<std::string>& engi
     if (engine != "tw") std::printf("%-10s %7d %s/tw %.2f in time\n", scene.c_str(), n, engine.c_str(), time / seconds["tw"]);
 }
 
-/// Elastic collisions lose nothing: over a million of them only roundings add up.
+/// Elastic collisions conserve energy: over a million of them only rounding adds up.
 void energy_over_a_million() {
   engines::RunOptions options;
   options.engine = "tw";

@@ -1,4 +1,5 @@
-// What one question to the collision folder costs: gaps, near points, bounds on impacts, pairs of boxes.
+// What one question to the collision folder costs: gaps, near points, bounds on impacts, pairs of
+// boxes.
 //   bench_narrow [WORD]   only the lines that hold the word
 #include <algorithm>
 #include <cstdio>
@@ -25,7 +26,7 @@ using collision::Motion;
 using collision::MotionState;
 using collision::Pose;
 
-constexpr std::size_t kPlaces = 24;   // each figure is a mean over as many ways to lie
+constexpr std::size_t kPlaces = 24;   // each figure is a mean over this many relative positions
 constexpr double kStep = 1.0 / 240, kEndless = std::numeric_limits<double>::infinity();
 
 double cpu_seconds() {
@@ -34,7 +35,8 @@ double cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// CPU time of one call, the least of several batches: the best is what a neighbour's work did not touch. [us]
+/// CPU time of one call, the least of several batches: the best one was not disturbed by other
+/// programs. [us]
 double microseconds(std::size_t calls_a_round, const std::function<void()>& round) {
   round();
   double least = 1e9;
@@ -101,7 +103,7 @@ class Bench {
     const double reach = 1e-2 * size;
     const double near = ask(places, [&](const Pose& p, const Pose& q) { collision::manifold_points(a, p, b, q, reach); });
     for (const auto& [p, q] : poses) found += collision::manifold_points(a, p, b, q, reach).size();
-    // Asked again with what was kept of the pair, as lasting contacts are.
+    // Queried again with the cached data of the pair, as in persistent contacts.
     std::vector<collision::PairCache> caches(kPlaces);
     const double kept = microseconds(kPlaces, [&] {
       for (std::size_t k = 0; k < kPlaces; ++k) collision::manifold_points(a, poses[k].first, b, poses[k].second, reach, &caches[k]);
@@ -110,7 +112,7 @@ class Bench {
       for (std::size_t k = 0; k < kPlaces; ++k) collision::compute_gap(a, poses[k].first, b, poses[k].second, &caches[k]);
     });
     const double tight = ask(places, [&](const Pose& p, const Pose& q) { collision::manifold_points(a, p, b, q, 1e-7 * size); });
-    // Falls towards the other and turns, by 1e-2 of its size in the step; the other stays.
+    // One falls towards the other and rotates, by 1e-2 of its size in the step; the other is fixed.
     int hits = 0;
     const auto impact = [&](const Pose& p, const Pose& q) {
       const Vector3d velocity = 1e-2 * size / kStep * (q.com_world - p.com_world).normalized(), omega(0.4, -0.3, 0.2);
@@ -144,7 +146,8 @@ Quaterniond any_turn(std::mt19937_64& random) {
   return Quaterniond(in(random, -1, 1), in(random, -1, 1), in(random, -1, 1), in(random, -1, 1)).normalized();
 }
 
-/// Two solids in any attitude, `gap` apart (a part of the smaller one's size) along a line through their middles.
+/// Two solids in any orientation, `gap` apart (relative to the smaller one's size) along a line
+/// through their centres.
 auto apart_by(double gap) {
   return [gap](const CollisionShape& a, const CollisionShape& b, std::mt19937_64& random) {
     const Vector3d line = any_direction(random);
@@ -162,7 +165,7 @@ auto apart_by(double gap) {
   };
 }
 
-/// A solid let down by `gap` above another that stands as it is, at (x, y) in a square of half side `spread`.
+/// A solid `gap` above another, unrotated one, at (x, y) in a square of half side `spread`.
 auto let_down(double gap, double spread, bool upright) {
   return [=](const CollisionShape& a, const CollisionShape& b, std::mt19937_64& random) {
     Pose p{{in(random, -spread, spread), in(random, -spread, spread), 0}, upright ? Quaterniond(Eigen::AngleAxisd(in(random, 0, 6), Vector3d::UnitZ())) : any_turn(random)};
@@ -181,7 +184,7 @@ auto let_down(double gap, double spread, bool upright) {
 
 Shape model(const std::string& name) { return load_solid(std::string(TUMBLE_SOURCE_DIR) + "/models/" + name + ".3ds").solid; }
 
-/// A slab whose top is a bowl of `cells` x `cells` squares, cut in two each.
+/// A slab whose top is a bowl of `cells` x `cells` squares, of two triangles each.
 Shape bowl(int cells) {
   TriangleMesh mesh;
   const double half = 10.0;

@@ -1,4 +1,4 @@
-// tumble check as a student runs it, on files of our own beside the stub.
+// tumble check as a student runs it, on files of this test beside the stub.
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
@@ -22,7 +22,7 @@ ProgramOutcome check(const std::vector<std::string>& more) {
   return run_program(words, Output::kCaptured, 100.0);
 }
 
-// In a folder whose name has a space: students' folders have.
+// In a folder whose name has a space, as students' folders may have.
 struct File {
   explicit File(const std::string& text) { write_whole(path, text); }
   ~File() { fs::remove_all(path.parent_path()); }
@@ -52,14 +52,14 @@ TEST(Check, AnErrorInsideEigenBeginsWithTheStudentsLine) {
   expect_said(check({file.path.string()}), 1, {"    mine.cpp:4:14: error: required from here\n", "    4 |   return a + b;", "YOU_MIXED_MATRICES_OF_DIFFERENT_SIZES"});
 }
 
-// The student's file as it is here; the tests below add their lines to it.
+// The student's file of this tree; the tests below add their lines to it.
 std::string stub() {
   std::ifstream in(TUMBLE_SOURCE_DIR "/assignments/a1_impulse/a1_impulse.cpp");
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-// Nobody has worked in it: every test is not attempted. Always so where the reference is; in a released tree a student's half-written
-// file is no defect of this test.
+// An untouched file: every test is not attempted. Always so in a tree with the reference; in a
+// released tree a student's unfinished file is no failure of this test.
 bool untouched() {
   if (fs::exists(TUMBLE_SOURCE_DIR "/solutions_private")) return true;
   static const bool is = check({File(stub()).path.string()}).code == 4;
@@ -79,7 +79,7 @@ TEST(Check, AnInitialValueThatDoesNotEndIsOutOfTime) {
   expect_said(check({file.path.string(), "PointForce.*"}), 1, {"no answer within 2 s"});
 }
 
-// A path that is not one's own is not let out of the sandbox: it sees none of the tree.
+// A file outside the own folder stays in the sandbox: it sees nothing of the tree.
 TEST(Check, AnotherFileRunsInTheSandbox) {
   SKIP_UNLESS_UNTOUCHED();
   std::string text = stub();
@@ -96,7 +96,7 @@ TEST(Check, AnEndlessLoopIsKnownWithinSeconds) {
   std::string text = stub();
   text.insert(text.find("throw NotImplemented("), "for (;;) {}\n  ");   // without side effects: the compiler may not drop it
   const File file(text);
-  check({file.path.string(), "PointForce.*"});   // builds what there is to build
+  check({file.path.string(), "PointForce.*"});   // builds what is missing
   const auto start = std::chrono::steady_clock::now();
   const ProgramOutcome outcome = check({file.path.string()});
   const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

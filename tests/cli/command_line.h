@@ -1,4 +1,4 @@
-/// The program as a person types it: words in an empty folder, and what it said.
+/// The program on the command line: a command in an empty folder, and its output.
 #pragma once
 
 #include <cstdlib>
@@ -26,7 +26,7 @@ struct Said {
   std::string out, err;
 };
 
-/// Types words in an empty folder, which ends with the test.
+/// Runs commands in an empty folder, which is deleted after the test.
 class CommandLine : public ::testing::Test {
  protected:
   CommandLine() : folder_(fs::temp_directory_path() / ("tumble words " + std::to_string(::getpid()))) { fs::create_directories(folder_); }

@@ -1,4 +1,4 @@
-// What accuracy costs, as a person types it: tumble cost, and tumble run --accuracy and --budget-s.
+// Error against cost on the command line: tumble cost, and tumble run --accuracy and --budget-s.
 #include <regex>
 
 #include <fmt/format.h>
@@ -50,7 +50,7 @@ TEST_F(CommandLine, CostOfTimesOfImpactReadsEachRootFinder) {
 }
 
 #ifdef TUMBLE_HAS_REFERENCE
-TEST_F(CommandLine, CostWorksOnScenesOfEveryKind) {   // closed form, springs, contacts, a truth that holds for a while; each for half a second of ladders
+TEST_F(CommandLine, CostWorksOnScenesOfEveryKind) {   // closed form, springs, contacts, a reference solution for a limited time; half a second of refinements each
   for (const char* scene : {"bullet_thin_wall", "hung_by_spring", "beam_on_two_supports", "collide_off_centre_e0"}) {
     const Said said = type(std::string("cost ") + scene + " --modules reference --methods rk4 --engines none --budget-s 0.5");
     EXPECT_EQ(said.code, 0) << scene << '\n' << said.err;
@@ -62,7 +62,7 @@ TEST_F(CommandLine, CostShowsSolversOverTheirTolerance) {
   const Said said = type("cost double_pendulum --modules reference --methods none --solvers gradients --duration-s 0.5 --tolerances 1e-1,1e-6 --budget-s 2");
   EXPECT_EQ(said.code, 0) << said.err;
   EXPECT_TRUE(holds(said.out, "links by conjugate gradients gets to")) << said.out;
-  EXPECT_FALSE(holds(contents_of(folder_ / "out" / "cost" / "double_pendulum" / "index.html"), "nothing to draw"));   // of steps, where nothing has one
+  EXPECT_FALSE(holds(contents_of(folder_ / "out" / "cost" / "double_pendulum" / "index.html"), "nothing to draw"));   // of steps, where no method has one
   EXPECT_TRUE(holds(type("cost t_handle --modules reference --solvers gradients").err, "has no rods and no joints"));
 }
 
@@ -96,13 +96,14 @@ TEST_F(CommandLine, AChoiceIsReportedBeforeItsRun) {
   EXPECT_TRUE(holds(said.err.substr(chosen), ": expected are ")) << said.err;
 }
 
-// Flight, impacts, springs, rods, and a contact that slides until it rolls: what is asked for is what comes out. A search that took its trial's
-// error at another step, or the run's other frames, would be off by orders.
+// Flight, impacts, springs, rods, and a contact that slides until it rolls: the error of the run is
+// within the request. A search that measured its error at another step, or with other frames, would
+// be wrong by orders of magnitude.
 TEST_F(CommandLine, AnAccuracyIsReachedInScenesOfEveryKind) {
   for (const char* scene : {"t_handle", "pong_1", "hung_by_spring", "double_pendulum", "sliding_to_rolling"})
     for (const double asked_m : {1e-3, 1e-6}) {
       const Said said = type(fmt::format("run {} --modules reference --accuracy {:g} --duration-s 0.5 --json", scene, asked_m));
-      ASSERT_TRUE(said.code == 0 || said.code == 1) << scene << '\n' << said.err;   // 1: the scene's own numbers ask for more
+      ASSERT_TRUE(said.code == 0 || said.code == 1) << scene << '\n' << said.err;   // 1: the scene's own checks are stricter
       const nlohmann::json search = nlohmann::json::parse(said.out).at("search");
       EXPECT_LE(search.at("error_m").get<double>(), asked_m) << scene;
       EXPECT_LT(search.at("truth_error_m").get<double>(), asked_m) << scene;

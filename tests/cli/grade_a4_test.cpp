@@ -1,4 +1,5 @@
-// tumble grade and tumble audit of the scheduler's assignment, as people run them, on one submission and one known-wrong solution.
+// tumble grade and tumble audit of the scheduler's assignment, as on the command line, on one
+// submission and one known-wrong solution.
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -32,7 +33,7 @@ class GradingOfTimewarp : public ::testing::Test {
   fs::path root = scratch_.path();
 };
 
-// Half right: some points and not all; each lost one by a test whose story is kept.
+// Partly right: some points and not all; each lost point comes from a test whose story is kept.
 TEST_F(GradingOfTimewarp, AFlawedSubmissionGetsPartOfThePointsAndAStoryForEachItLoses) {
   fs::create_directories(root / "in/flawed");
   fs::copy_file(kSolutions / "flawed_submission/a4_timewarp.cpp", root / "in/flawed/a4_timewarp.cpp");
@@ -55,10 +56,10 @@ TEST_F(GradingOfTimewarp, AFlawedSubmissionGetsPartOfThePointsAndAStoryForEachIt
   EXPECT_LT(sum, 80.0);
 }
 
-// One slip is caught, by a story that names it; no right solution is accused.
+// One slip is caught, by a story that names it; every right solution is accepted.
 TEST_F(GradingOfTimewarp, AnAuditCatchesASlipByNameAndAcceptsAllOthers) {
   fs::create_directories(root / "wrong");
-  std::vector<fs::path> slips;   // the first by name will do
+  std::vector<fs::path> slips;   // the first by name suffices
   for (const auto& entry : fs::directory_iterator(kSolutions / "mutants")) slips.push_back(entry.path());
   ASSERT_FALSE(slips.empty());
   const fs::path slip = *std::min_element(slips.begin(), slips.end());
@@ -80,10 +81,11 @@ TEST_F(GradingOfTimewarp, AnAuditCatchesASlipByNameAndAcceptsAllOthers) {
     EXPECT_LT(result.at("score"), result.at("possible")) << result;
   }
   EXPECT_EQ(wrong, 1);
-  EXPECT_GE(right, 2);   // the reference, and one that goes about it otherwise
+  EXPECT_GE(right, 2);   // the reference, and another right solution
 }
 
-// The first slip by name, with the first line of a block that `mark` begins written anew: its text, and the number of that line.
+// The first slip by name, with the first line of a block that starts with `mark` replaced: its
+// text, and the number of that line.
 std::pair<std::string, int> spoilt_slip(char mark, const std::string& line) {
   std::vector<fs::path> slips;
   for (const auto& entry : fs::directory_iterator(kSolutions / "mutants"))
@@ -99,7 +101,7 @@ std::pair<std::string, int> spoilt_slip(char mark, const std::string& line) {
   return {text, spoilt};
 }
 
-// A slip that does not compile, and one that its base has left behind, are told at their own lines.
+// A slip that does not compile, and one whose base has changed, are reported at their own lines.
 TEST_F(GradingOfTimewarp, AnAuditReportsTheWrongLineOfASlip) {
   const auto [broken, at] = spoilt_slip('+', "  undeclared;");
   write_whole(root / "wrong/s.slip", broken);

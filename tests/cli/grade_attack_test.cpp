@@ -1,4 +1,5 @@
-// Attacks on the grader from outside the sandbox: results planted, folders that overlap, names, rubrics, two at once, a kill at any time.
+// Attacks on the grader from outside the sandbox: results planted, folders that overlap, names,
+// rubrics, two at once, a kill at any time.
 #include <algorithm>
 #include <chrono>
 #include <set>
@@ -15,7 +16,7 @@ namespace {
 
 class GradeAttack : public Grading {
  protected:
-  // Starts a grading that goes on for long; its end is the caller's.
+  // Starts a grading that takes long; the caller ends it.
   pid_t start_grading(const std::string& out) const {
     const std::vector<std::string> words = words_for(out, {"--no-media", "--jobs", "1"});
     const pid_t child = ::fork();
@@ -38,7 +39,8 @@ class GradeAttack : public Grading {
 TEST_F(GradeAttack, ResultsPlantedAmongSubmissionsDestroyNothingAndEarnNothing) {
   put("alice/a1_impulse.cpp", text_of(kStub));
   put("bob/a1_impulse.cpp", text_of(kStub));
-  // A forger's best: another student's perfect record, with everything that makes it look whole.
+  // The best forgery: another student's perfect record, with everything that makes it look
+  // complete.
   put("alice/record.json", R"({"assignment": "a1", "folder": "alice", "name": "alice", "state": "judged", "score": 100, "possible": 100, "mac": ""})");
   put("alice/results.json", R"({"score": 100})");
   put(".tumble-grade.json", R"({"assignment": "a1", "folders": ["alice", "bob"]})");
@@ -57,14 +59,15 @@ TEST_F(GradeAttack, ARecordThatThisMachineDidNotSignIsGradedAgainAndSaidSo) {
   put("alice/a1_impulse.cpp", text_of(kStub));
   grade("out");
   const auto before = files("out");
-  // Forged in place, as whoever may write there could: all fields, the digests of files too, but not the code.
+  // Forged in place, as by a process that may write there: all fields, the digests of files too,
+  // but not the code.
   auto record = nlohmann::ordered_json::parse(text_of(root / "out/alice/record.json"));
   record["score"] = 100.0;
   write_whole(root / "out/alice/record.json", record.dump());
   const ProgramOutcome again = grade("out");
   EXPECT_TRUE(says(again, "alice: the earlier result is not reused, because its record is not signed by this machine's key; graded again")) << again.printed;
   EXPECT_EQ(files("out"), before);
-  // The key lost: no result is trusted, and that is said; the results are the same.
+  // The key is lost: no earlier result is trusted, which is reported; the results are the same.
   fs::remove(root / "grader.key");
   const ProgramOutcome keyless = grade("out");
   EXPECT_EQ(keyless.code, 0) << keyless.printed;
@@ -119,7 +122,7 @@ TEST_F(GradeAttack, EqualFilesAreRemarkedForTheGraderAlone) {
   EXPECT_EQ(text_of(root / "out/alice/index.html").find("bob"), std::string::npos);
 }
 
-// The assignment's rubrics and headers, to be changed; all else is the tree's own.
+// The assignment's rubrics and headers, to be changed; everything else is the tree's.
 class OtherRubric : public GradeAttack {
  protected:
   OtherRubric() {
@@ -159,7 +162,7 @@ TEST_F(OtherRubric, AnEntryWithoutATestAndATestWithoutAnEntryAreNamedBeforeAnyth
 }
 
 TEST_F(OtherRubric, PointsAloneAreAddedUpAgainAndEveryChangedTestIsNamed) {
-  // A stub but for one test: something to move points from and to.
+  // A stub except for one test: a test between which points can be moved.
   put("alice/a1_impulse.cpp", text_of(kReference));
   EXPECT_EQ(grade("out").code, 0);
   EXPECT_EQ(results("alice")["score"], 100.0);
@@ -197,7 +200,7 @@ TEST_F(GradeAttack, TwoGradingsDoNotMeetInOneFolderAndAKilledOneLeavesItFree) {
 TEST_F(GradeAttack, ChildrenOfAKilledGradingThatDieSlowlyAreWaitedFor) {
   put("alice/a1_impulse.cpp", text_of(kStub));
   EXPECT_EQ(grade("out").code, 0);
-  // A process that holds the lock of a run that is gone, for longer than a living one is waited for.
+  // A process that holds the lock of a finished run, for longer than a live one is waited for.
   const pid_t gone = ::fork();
   if (gone == 0) ::_exit(0);
   ::waitpid(gone, nullptr, 0);
@@ -243,7 +246,7 @@ TEST_F(GradeAttack, TwoSubmissionsOfOneNameAreSaid) {
 TEST_F(GradeAttack, MediaMadeBeforeStayWithoutMedia) {
   put("alice/a1_impulse.cpp", text_of(kStub));
   grade("out");
-  // Pictures as an earlier run leaves them: signed, so made by the grader; one file is enough.
+  // Pictures of an earlier run: signed, so made by the grader; one file suffices.
   fs::create_directories(root / "out/alice/media");
   write_whole(root / "out/alice/media/pong.png", "picture");
   put("alice/a1_impulse.cpp", text_of(kStub) + "// changed\n");
@@ -252,7 +255,8 @@ TEST_F(GradeAttack, MediaMadeBeforeStayWithoutMedia) {
 }
 
 TEST_F(GradeAttack, ABuildThatTakesTheProgramsAwayDisturbsNoGrading) {
-  // The programs are copied first; here a build tree of links whose judge goes while the grading runs.
+  // The programs are copied first; here the build tree consists of links whose judge is deleted
+  // during the grading.
   const fs::path build = root / "build";
   fs::create_directories(build / "bin");
   for (const char* program : {"judge_a1", "worker_a1", "sandbox_init", "tumble"}) fs::copy_file(fs::path(TUMBLE_BINARY_DIR) / "bin" / program, build / "bin" / program);

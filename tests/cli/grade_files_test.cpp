@@ -1,4 +1,5 @@
-// What grading reads and writes: odd folders, hostile names, results for Gradescope and Canvas, records.
+// Input and output of grading: odd folders, hostile names, results for Gradescope and Canvas,
+// records.
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
@@ -63,7 +64,7 @@ TEST_F(FindSubmissions, NothingIsPassedOverInSilence) {
   put("__MACOSX/._adam");
   const FoundSubmissions found = find_submissions(root, kind);
   ASSERT_EQ(found.all.size(), 2u);
-  EXPECT_EQ(found.all[0].name, ".zoe");   // a dot before a name makes nobody invisible
+  EXPECT_EQ(found.all[0].name, ".zoe");   // a dot before a name hides no submission
   EXPECT_EQ(found.all[0].source, root / ".zoe/a9_thing.cpp");
   EXPECT_EQ(found.passed_over, (std::vector<std::string>{".git (a folder of a tool)", "roster.csv (neither a folder nor a source)"}));
 }
@@ -174,7 +175,7 @@ TEST_F(FindSubmissions, AFolderThatCannotBeReadIsNamedWithWhatToDo) {
   put("adam/upload/a9_thing.cpp");
   fs::permissions(root / "adam/upload", fs::perms::none);
   fs::permissions(root, fs::perms::owner_all | fs::perms::group_all | fs::perms::others_all);
-  const bool is_root = ::geteuid() == 0;   // who may read everything: for a moment somebody who may not
+  const bool is_root = ::geteuid() == 0;   // root may read everything: drop its rights for a moment
   if (is_root) {
     ASSERT_EQ(::seteuid(65534), 0);
   }
@@ -192,7 +193,7 @@ TEST_F(FindSubmissions, NoFolderIsAUserError) { EXPECT_THROW(find_submissions(ro
 
 TEST(FolderOf, PlainNamesStayAndOthersCannotLeaveTheFolder) {
   EXPECT_EQ(folder_of("alice_b-2.x"), "alice_b-2.x");
-  // A name that looks like one made here is made anew, so that nobody takes another's place.
+  // A name like one made by the grader is replaced, so that no submission takes another's folder.
   EXPECT_NE(folder_of(folder_of("a b")), folder_of("a b"));
   for (const std::string name : {"..", ".", "-rf", "a b", "<i>", "index.html", "a\nb", "\xff", "gr\u00fcn", ""}) {
     const std::string folder = folder_of(name);
@@ -274,7 +275,7 @@ TEST(Gradebook, NeitherSpaceNorTabNorAWideSignHidesAFormula) {
     const std::string csv = gradebook_csv("Thing", {graded(name, {})});
     std::string cell = csv.substr(csv.find("100\n") + 4);
     if (cell.starts_with('"')) cell.erase(0, 1);
-    // Either marked as text, or begun by what was written out.
+    // Either marked as text, or starting with text of the grader.
     EXPECT_TRUE(cell.starts_with("'") || cell.starts_with("\\")) << csv;
     EXPECT_EQ(csv.find('\t'), std::string::npos);
   }

@@ -1,4 +1,5 @@
-// Where results go: a folder of the grader's own, or nobody's. What is trusted of an earlier run: what this machine's key signed.
+// The folder of results: one of the grader's own, or an empty one. Of an earlier run only what this
+// machine's key signed is trusted.
 #include <cstdlib>
 #include <fstream>
 
@@ -54,7 +55,7 @@ TEST(Folders, OfTheDeadAreSweptAndOfTheLivingNot) {
   const std::string dead = std::to_string(gone);
   for (const std::string& name : {"t-" + dead + "-a", "t-" + dead + "-held", "t-" + std::to_string(::getpid()) + "-a", "t-" + dead, "u-" + dead + "-a"}) write_whole(where.path() / name / "file", "x");
   fs::create_directory_symlink(where.path() / ("u-" + dead + "-a"), where.path() / ("t-" + dead + "-link"));
-  const int held = hold_folder(where.path() / ("t-" + dead + "-held"));   // as by a process of another container, whose number is nobody's here
+  const int held = hold_folder(where.path() / ("t-" + dead + "-held"));   // as by a process of another container, whose number is unused here
   sweep_folders_of_the_dead(where.path(), "t-");
   EXPECT_FALSE(fs::exists(where.path() / ("t-" + dead + "-a")));
   for (const std::string& name : {"t-" + dead + "-held", "t-" + std::to_string(::getpid()) + "-a", "t-" + dead, "u-" + dead + "-a"}) EXPECT_TRUE(fs::exists(where.path() / name / "file")) << name;
@@ -80,7 +81,7 @@ TEST_F(Key, IsMadeOnFirstUseForThisUserAloneAndKept) {
   EXPECT_EQ(about.st_mode & 07777, 0600u);
 }
 
-// The file may be somebody's: named by a slip in TUMBLE_GRADER_KEY.
+// The file may belong to another purpose: named by mistake in TUMBLE_GRADER_KEY.
 void expect_refused(const fs::path& file, const std::string& why) {
   try {
     machine_key();
@@ -226,7 +227,7 @@ TEST_F(Output, WhatAKilledRunLeftIsSwept) {
   EXPECT_TRUE(fs::exists(root() / "out/alice/record.json"));
 }
 
-// ---- Records -----------------------------------------------------------------------------------------------------------
+// ---- Records -----------------------------------------------------------------------------------
 
 class Record : public ::testing::Test {
  protected:

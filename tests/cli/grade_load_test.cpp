@@ -1,4 +1,5 @@
-// What a submission gets does not depend on what else the machine does; what it sleeps, it pays for.
+// A submission's result does not depend on the load of the machine; but the time that it sleeps
+// counts.
 #include <signal.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -8,7 +9,7 @@
 namespace tumble::grading {
 namespace {
 
-// Programs that compute for nothing beside a test.
+// Programs that load the machine beside a test.
 class BusyLoops {
  public:
   explicit BusyLoops(int count) {

@@ -1,4 +1,4 @@
-// tumble grade and tumble check as people run them.
+// tumble grade and tumble check on the command line.
 #include <cstring>
 #include <set>
 
@@ -26,7 +26,7 @@ TEST_F(Grading, OddFoldersAreGradedOnceAndTakenOverAfterwards) {
   EXPECT_EQ(crash["tests"][0]["extra_data"]["verdict"], "crashed") << crash["tests"][0];
   EXPECT_NE(text_of(root / "out/typo/index.html").find("a1_impulse.cpp:1:"), std::string::npos);
 
-  // Again: nothing is run. Elsewhere with two jobs: the same bytes.
+  // Again: nothing is run. In another folder with two jobs: the same bytes.
   const auto before = files("out");
   const ProgramOutcome second = grade("out");
   EXPECT_NE(second.printed.find("unchanged since the last run"), std::string::npos) << second.printed;
@@ -34,7 +34,7 @@ TEST_F(Grading, OddFoldersAreGradedOnceAndTakenOverAfterwards) {
   grade("other", {"--no-media", "--jobs", "2"});
   EXPECT_EQ(files("other"), before);
 
-  // A result that was tampered with, and a submission that was mended, are graded again; the rest is not.
+  // A forged result and a corrected submission are graded again; the rest is not.
   write_whole(root / "out/crash/results.json", "{\"score\": 100}");
   put("typo/a1_impulse.cpp", text_of(kStub));
   const ProgramOutcome third = grade("out");
@@ -54,7 +54,7 @@ TEST_F(Grading, ARunThatIsKilledLeavesNothingHalfWrittenAndGoesOn) {
     ::execl(kProgram.c_str(), "tumble", "grade", "a1", in.c_str(), "--out", out.c_str(), "--no-media", "--jobs", "1", nullptr);
     ::_exit(127);
   }
-  // Killed as soon as the first is in place, so in the middle of the second.
+  // Killed when the first result is complete, so in the middle of the second.
   for (int i = 0; i < 6000 && !fs::exists(root / "out/a/record.json"); ++i) ::usleep(10'000);
   ::kill(child, SIGKILL);
   ::waitpid(child, nullptr, 0);
@@ -79,14 +79,14 @@ TEST_F(Grading, ARunThatIsAskedToEndLeavesNothingBehind) {
       ::execl(kProgram.c_str(), "tumble", "grade", "a1", in.c_str(), "--out", out.c_str(), "--no-media", "--jobs", "2", nullptr);
       ::_exit(127);
     }
-    const auto stages = [] {   // of processes that are alive or not: whoever made them
+    const auto stages = [] {   // of running and finished processes
       std::set<std::string> names;
       for (const auto& entry : fs::directory_iterator("/tmp"))
         if (entry.path().filename().string().starts_with("tumble-stage-")) names.insert(entry.path().filename());
       return names;
     };
     const auto before = stages();
-    // In the middle of judging: the loop's worker is in its sandbox then.
+    // In the middle of judging: the worker of the endless loop is in its sandbox then.
     for (int i = 0; i < 3000 && !fs::exists(root / "out/.making-a/a/.a1.so"); ++i) ::usleep(10'000);
     ::usleep(1'500'000);
     ::kill(child, signal);
@@ -100,7 +100,7 @@ TEST_F(Grading, ARunThatIsAskedToEndLeavesNothingBehind) {
       const pid_t maker = static_cast<pid_t>(std::atol(stage.c_str() + std::strlen("tumble-stage-")));
       EXPECT_TRUE(before.contains(stage) || ::kill(maker, 0) == 0) << "left behind: " << stage;
     }
-    // Nobody works on: no process has our folder among its words.
+    // No process is left: none has this folder among its arguments.
     for (const auto& entry : fs::directory_iterator("/proc")) {
       const bool is_process = entry.path().filename().string().find_first_not_of("0123456789") == std::string::npos;
       if (!is_process) continue;

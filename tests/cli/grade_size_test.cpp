@@ -1,4 +1,5 @@
-// Vectors of the wrong size cost the tests of their own function, and nothing else: the judge lives and says what is needed.
+// A vector of the wrong size fails the tests of its own function only: the judge survives and
+// reports the right size.
 #include "tests/cli/grading_fixture.h"
 
 namespace tumble::grading {
@@ -13,7 +14,8 @@ class GradeSizes : public Grading {
     EXPECT_NE(at, std::string::npos) << head;
     return text.insert(at + 1, "\n  " + does + "\n");
   }
-  // Every test of these suites is wrong by its story, every other test right, none a fault of the grader.
+  // Every test of these suites fails with its story, every other test passes, and none is a fault
+  // of the grader.
   void expect_wrong(const std::map<std::string, std::string>& stories) const {
     const auto all = results("ann");
     EXPECT_EQ(all["extra_data"]["final"], true);
@@ -32,7 +34,7 @@ class GradeSizes : public Grading {
 TEST_F(GradeSizes, OfStatesAndDerivativesOfA2) {
   id = "a2";
   std::string text = text_of(solution("a2_integration"));
-  text = with_slip(text, "rk4_step", "{ VectorXd unset; f(t, unset); }");   // an honest slip: declared and forgotten
+  text = with_slip(text, "rk4_step", "{ VectorXd unset; f(t, unset); }");   // a common mistake: declared and not set
   text = with_slip(text, "euler_step", "return VectorXd();");
   text = with_slip(text, "rigid_body_derivative", "return VectorXd::Zero(1'000'000);");
   put("ann/a2_integration.cpp", text);

@@ -1,4 +1,5 @@
-/// The grader as a person runs it: folders of submissions made on the spot, and what it wrote.
+/// The grader on the command line: folders of submissions made by the test, and the grader's
+/// output.
 #pragma once
 
 #include <cstdlib>
@@ -29,7 +30,7 @@ inline std::string text_of(const fs::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// A stub whose ray test does something else than throw.
+/// A stub whose ray test has a body instead of the throw.
 inline std::string stub_that(const std::string& does) {
   std::string text = text_of(kStub);
   const auto at = text.find("throw NotImplemented(");
@@ -38,7 +39,7 @@ inline std::string stub_that(const std::string& does) {
 
 inline bool says(const ProgramOutcome& outcome, const std::string& words) { return outcome.printed.find(words) != std::string::npos; }
 
-/// Folders in, in/NAME/..., and what is graded into out. The key of this machine is one of the test's own.
+/// Submissions in, in/NAME/..., and results in out. The test has a machine key of its own.
 class Grading : public ::testing::Test {
  protected:
   Grading() {
@@ -55,7 +56,7 @@ class Grading : public ::testing::Test {
     return run_program(words_for(out, more), Output::kCaptured, 580.0);
   }
   nlohmann::json results(const std::string& name, const std::string& out = "out") const { return nlohmann::json::parse(text_of(root / out / name / "results.json")); }
-  /// Every file but the times, by its path below root.
+  /// Every file except times, by its path below root.
   std::map<std::string, std::string> files(const std::string& out) const {
     std::map<std::string, std::string> all;
     for (const auto& entry : fs::recursive_directory_iterator(root / out))

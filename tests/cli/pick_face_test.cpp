@@ -1,4 +1,4 @@
-// What a click picks: the face that a loop over all faces would find, asked of the law once.
+// The face of a click: the face that a loop over all faces finds, with one call of the law.
 #include <cmath>
 #include <limits>
 #include <random>
@@ -12,7 +12,7 @@
 namespace tumble::cli {
 namespace {
 
-// A plain law: the plane's point, then the side of it on which each edge leaves it.
+// A simple law: the point in the plane, then its side of each edge.
 std::optional<RayHit> plane_and_edges(const Ray& ray, const Triangle& triangle) {
   const auto& [a, b, c] = triangle;
   const Vector3d normal = (b - a).cross(c - a);
@@ -47,7 +47,7 @@ void count_calls(Asked& asked) {
   asked.laws.intersect_ray_triangle = [&asked](const Ray& ray, const Triangle& triangle) { return ++asked.calls, plane_and_edges(ray, triangle); };
 }
 
-// Face and distance that asking the law about every face gives.
+// Face and distance from a call of the law for every face.
 std::optional<PickedFace> ask_every_face(const scene::Scene& scene, const Ray& ray) {
   const scene::BodySpec& body = scene.bodies.front();
   const TriangleMesh surface = surface_of(scene::build_solids(scene, TUMBLE_SOURCE_DIR).front().shape);
@@ -65,7 +65,7 @@ std::optional<PickedFace> ask_every_face(const scene::Scene& scene, const Ray& r
   return nearest;
 }
 
-// A ray from outside towards a point near the body; its direction is no unit vector.
+// A ray from outside towards a point near the body; its direction is not a unit vector.
 Ray aimed(const scene::Scene& scene, double radius, std::mt19937& random) {
   std::normal_distribution<double> normal;
   const Vector3d from = scene.bodies.front().position_m + 4 * radius * Vector3d(normal(random), normal(random), normal(random)).normalized();
@@ -75,7 +75,7 @@ Ray aimed(const scene::Scene& scene, double radius, std::mt19937& random) {
 
 class PickFace : public ::testing::TestWithParam<const char*> {};
 
-// Random rays meet no edge: one face is nearest, and both ways must name it.
+// Random rays hit no edge: one face is nearest, and both methods must name it.
 TEST_P(PickFace, IsTheFaceThatALoopOverAllFacesFinds) {
   constexpr int kRays = 60;
   const scene::Scene scene = scene_of(GetParam());
@@ -98,7 +98,8 @@ TEST_P(PickFace, IsTheFaceThatALoopOverAllFacesFinds) {
 }
 INSTANTIATE_TEST_SUITE_P(Models, PickFace, ::testing::Values("chess_pawn", "gear", "torus", "rock_1", "water_molecule"));
 
-// A law that sees only the faces it is shown from behind: the tree's face is not its answer, so every face is asked.
+// A law that sees only faces from behind: the tree's face is not its answer, so it is called for
+// every face.
 TEST(PickFaceOfAnotherOpinion, IsWhatTheLawSays) {
   const scene::Scene scene = scene_of("rock_1");
   const Ray ray{scene.bodies.front().position_m + Vector3d(0, -10, 0), Vector3d(0.02, 1, 0.01)};

@@ -1,4 +1,4 @@
-// The program as a person types it: what it prints where, what it exits with, what it leaves behind.
+// The program on the command line: its output, exit codes, and files.
 #include <fstream>
 #include <regex>
 #include <sstream>
@@ -48,7 +48,7 @@ TEST_F(CommandLine, HelpListsEveryVerb) {
 }
 
 #ifdef TUMBLE_HAS_REFERENCE
-// Every engine tells w h, in words and as JSON: 2 x discontinuities x step over bodies and time.
+// Every engine reports w h, in words and as JSON: 2 x discontinuities x step over bodies and time.
 TEST_F(CommandLine, RunReportsDiscontinuitiesPerBodyAndStepForEveryEngine) {
   for (const std::string engine : {"rd", "ca", "ordered", "tw"}) {
     const std::string words = "run gas --n 8 --modules reference --duration-s 1 --propagator auto --engine " + engine;
@@ -126,7 +126,7 @@ TEST_F(CommandLine, InspectWeighsABox) {
   EXPECT_TRUE(object.at("closed").get<bool>());
 }
 
-// Golden facts of a box: every line that a person looks for, and its number.
+// Known facts of a box: every line of the output, with its number.
 TEST_F(CommandLine, InspectPrintsEveryLineOfAGoodModel) {
   const Said said = type("inspect box --density 1200");
   EXPECT_EQ(said.code, 0) << said.err;
@@ -135,8 +135,9 @@ TEST_F(CommandLine, InspectPrintsEveryLineOfAGoodModel) {
                            "about the centre of mass", "principal axes"})
     EXPECT_TRUE(holds(said.out, line)) << line << "\n" << said.out;
   EXPECT_FALSE(holds(said.out, "wrong") || holds(said.out, "remedy")) << said.out;
-  // Whatever the box's size: mass is density times volume, volume is that of the bounding box, and a box's moment about an axis is
-  // m (b^2 + c^2) / 12. Its corners are float32 in the file: 1e-6 of a number.
+  // For any size of the box: mass is density times volume, volume is that of the bounding box, and
+  // a box's moment about an axis is m (b^2 + c^2) / 12. Its corners are float32 in the file: 1e-6
+  // relative.
   const auto low = object.at("bounding_box_m").at("low"), high = object.at("bounding_box_m").at("high");
   double size[3], volume = 1.0;
   for (int i = 0; i < 3; ++i) size[i] = high.at(i).get<double>() - low.at(i).get<double>(), volume *= size[i];
@@ -203,7 +204,7 @@ TEST_F(CommandLine, CountsAreATableOfWhatHappened) {
     EXPECT_TRUE(!holds(line, "evaluations") || line.size() <= 120) << line;
 }
 
-// Two balls of radius 0.5 whose centres are 0.8 apart lie 0.2 m in each other.
+// Two balls of radius 0.5 whose centres are 0.8 apart overlap by 0.2 m.
 TEST_F(CommandLine, BodiesThatOverlapAtTheStartAreRefusedByNameDepthAndRemedy) {
   write_whole(folder_ / "deep.json", R"({"title": "t", "duration_s": 1, "bodies": [
     {"name": "left", "shape": {"sphere": {"radius_m": 0.5}}, "mass_kg": 1, "position_m": [0, 0, 0], "velocity_m_s": [1, 0, 0]},
@@ -214,11 +215,11 @@ TEST_F(CommandLine, BodiesThatOverlapAtTheStartAreRefusedByNameDepthAndRemedy) {
   EXPECT_FALSE(fs::exists(folder_ / "p.png"));
 }
 
-// A run is a function of its scene: the same words give the same bytes.
+// A run is a function of its scene: the same command gives the same bytes.
 TEST_F(CommandLine, TheSameWordsGiveTheSameBytes) {
   ASSERT_EQ(type("run pong_1 --modules reference --duration-s 1 --trajectory a.run").code == 3, false);
   ASSERT_EQ(type("run pong_1 --modules reference --duration-s 1 --trajectory b.run").code == 3, false);
-  // The command line is kept in the file, hence equal lengths of name.
+  // The command line is kept in the file, so the names have equal lengths.
   std::string a = contents_of(folder_ / "a.run"), b = contents_of(folder_ / "b.run");
   ASSERT_GT(a.size(), 1000u);
   for (std::size_t at; (at = b.find("b.run")) != std::string::npos;) b[at] = 'a';
@@ -232,14 +233,14 @@ TEST_F(CommandLine, AFileThatCannotBeWrittenIsReportedAndNothingIsLeft) {
   EXPECT_TRUE(left_nothing());
 }
 
-// 40 N for 0.2 s along y on a free body: momentum 8 kg m/s, whatever was hit and wherever.
+// 40 N for 0.2 s along y on a free body: momentum 8 kg m/s, for any point of the force.
 TEST_F(CommandLine, APokeGivesMomentumForceTimesTime) {
   const Said said = type("poke poked_box --modules reference --ray -0.6,-10,0.85,0,1,0 --force 0,40,0 --duration-s 0.2");
   EXPECT_EQ(said.code, 0) << said.out << said.err;
   EXPECT_TRUE(holds(said.out + said.err, "face")) << said.out;
 }
 
-// The pixel that README and handout use for a first try.
+// The pixel of the first example in README and handout.
 TEST_F(CommandLine, ThePixelOfTheReadmeHitsTheBox) {
   EXPECT_TRUE(holds(contents_of(TUMBLE_SOURCE_DIR "/README.md"), "poke poked_box --pixel 200,250 --force 0,40,0"));
   EXPECT_TRUE(holds(contents_of(TUMBLE_SOURCE_DIR "/handouts/a1_impulse.md"), "poke poked_box --pixel 200,250 --force 0,40,0"));
@@ -315,7 +316,8 @@ TEST_F(CommandLine, AnEngineAndASizeThatThereAreNotAreRefusedWithWhatThereIs) {
   EXPECT_TRUE(holds(scene.err, "sleep") && holds(scene.err, "use --engine rd")) << scene.err;
 }
 
-// Whose a2 and a3 are not done tries a scheduler on scenes that need them nevertheless: where there are right ones, these.
+// A student whose a2 and a3 are unfinished still runs a scheduler on scenes that need them: right
+// modules are used where the tree has them.
 TEST_F(CommandLine, ASchedulerIsTriedOnScenesOfOtherAssignments) {
   for (const char* id : {"a3", "a4"})
     if (!std::ifstream(std::string(TUMBLE_BINARY_DIR "/modules/") + id + "_reference.so")) GTEST_SKIP() << "this tree has no " << id << " but the student's";
@@ -337,7 +339,8 @@ TEST_F(CommandLine, RunAndPokeTakeAModelAtOnce) {
   EXPECT_EQ(type("explain t_handle.3ds").code, 0);
 }
 
-// What students get: the stub, which is not attempted and no error of anybody. (In their own tree the file may be anything.)
+// The student's tree: the stub is not attempted, which is no error. (In a student's own tree the
+// file may contain anything.)
 TEST_F(CommandLine, AStubIsNotAttempted) {
   const Said said = type("run ball_against_wall --modules a1=student,a2=reference");
   EXPECT_EQ(said.code, 4) << said.out << said.err;
@@ -373,7 +376,7 @@ TEST_F(CommandLine, InspectSaysHowToSeeAModelMove) {
   EXPECT_FALSE(holds(type("inspect '" TUMBLE_SOURCE_DIR "/models/broken/missing_face.3ds'").out, "tumble run"));
 }
 
-// A number would be compared with metres whatever its label says.
+// A number would be compared as metres whatever its label.
 TEST_F(CommandLine, ACheckInAUnitThatIsNotItsKindsIsRefusedAtItsLine) {
   write_whole(folder_ / "cm.json", R"({"title": "t", "duration_s": 1, "bodies": [{"name": "b", "shape": {"sphere": {"radius_m": 1}}, "mass_kg": 1}],
     "checks": [{"kind": "final_position", "body": "b", "expected": [0, 0, 0], "tolerance": 1,

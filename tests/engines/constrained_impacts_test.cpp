@@ -294,7 +294,7 @@ TEST(ImpactsOnLinks, FrictionOnABobSlidesOrSticksWithItsRod) {
   }
 }
 
-// ---- Drawn at random -------------------------------------------------------------------------------------------------------
+// ---- Drawn at random ---------------------------------------------------------------------------
 
 Vector3d direction(Random& random) {
   const double z = random.between(-1, 1), angle = random.between(0, 2 * std::numbers::pi), r = std::sqrt(1 - z * z);
@@ -396,7 +396,7 @@ TEST(ImpactsOnLinks, KeepTheirLawsInTreesAndLoopsDrawnAtRandom) {
   EXPECT_GT(struck, 400);
 }
 
-// ---- What links leave no impulse to do, and what the judge sees ---------------------------------------------------------------
+// ---- What links leave no impulse to do, and what the judge sees --------------------------------
 
 // A rod from a driven body drives a bob straight into a wall: nothing can give.
 TEST(ImpactsOnLinks, WhereRodsHoldBothBodiesNoImpulseSeparatesThemAndTheRunReportsIt) {

@@ -293,7 +293,7 @@ TEST(Engines, FollowAShakenPlaneAndABallAtRest) {
   expect_the_references_trace(scene_of(bodies, 3.0, Vector3d(0, 0, -9.81)), 10);
 }
 
-// ---- w h -------------------------------------------------------------------------------------------------------------------
+// ---- w h ---------------------------------------------------------------------------------------
 
 // A ball between two walls at 1.8 m/s with 1.8 m for its centre: a bounce each second, the first at
 // 0.5 s. In 10 s that is D = 10, and w h = 2 D h / T.

@@ -139,7 +139,7 @@ TEST(LinkTrouble, ACallbackThatLeavesNoNumbersOrThrowsIsNamed) {
       }
 }
 
-// ---- Energy from nowhere ----------------------------------------------------------------------------------------------------
+// ---- Energy from nowhere -----------------------------------------------------------------------
 
 void expect_runaway(const scene::Scene& scene, const Laws& laws, const std::vector<std::string>& words) {
   const Trajectory result = run(scene, laws);

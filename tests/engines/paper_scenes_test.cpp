@@ -98,7 +98,7 @@ TEST(PaperScenes, DominoesWithLocatedImpactsAgree) {
   EXPECT_LT(farthest_apart(tw, rd, scene.duration_s), 1e-9);   // m: 1e-11 from rounding, multiplied by the alternating impacts of corners
 }
 
-// ---- The first collisions of each body, by all engines ----------------------------------------------------------------------
+// ---- The first collisions of each body, by all engines -----------------------------------------
 
 constexpr std::size_t kFirst = 5;          // per body: after so many a rounding has grown to a millionth of its path
 constexpr double kSameInstant = 1e-6;      // s

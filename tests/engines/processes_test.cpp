@@ -39,7 +39,7 @@ void expect_one_trace(const scene::Scene& scene, std::size_t least) {
   for (const char* engine : {"tw", "ca"}) EXPECT_EQ(difference(reference, run_with(engine, scene)), "") << engine;
 }
 
-// ---- One trace ---------------------------------------------------------------------------------------------------------
+// ---- One trace ---------------------------------------------------------------------------------
 
 TEST(LogicalProcesses, LinkedInTheCoursesScenesCommitTheReferencesTrace) {
   expect_one_trace(course_scene("newtons_cradle", 1.0), 4);
@@ -134,7 +134,7 @@ TEST(LogicalProcesses, OnSeveralThreadsCommitTheReferencesTrace) {
   }
 }
 
-// ---- Bounds ----------------------------------------------------------------------------------------------------------------
+// ---- Bounds ------------------------------------------------------------------------------------
 
 // For rocks a body's history of flights would grow too long; for bobs, which swing on one flight,
 // the steps of their segments.
@@ -164,7 +164,7 @@ TEST(CapOfStates, OfEightIsKeptByProcessesAndChangesNothing) {
   }
 }
 
-// ---- Callbacks -------------------------------------------------------------------------------------------------------------
+// ---- Callbacks ---------------------------------------------------------------------------------
 
 Trajectory run_with_callbacks(const std::string& engine, const scene::Scene& scene, const std::vector<engines::Callback>& callbacks, const FaultInjection& faults = {}) {
   engines::RunOptions options;

@@ -78,7 +78,7 @@ double worst_rod(const scene::Scene& scene, const Trajectory& run) {
   return worst;
 }
 
-// ---- The ledger ----------------------------------------------------------------------------------------------------------
+// ---- The ledger --------------------------------------------------------------------------------
 
 TEST(RunWatch, KeepsTheFirstTheWorstAndTheirNumber) {
   RunWatch watch;
@@ -118,7 +118,7 @@ TEST(RunWatch, AFaultIsACheckThatFailed) {
   EXPECT_NE(checks[0].detail.find("first at t = 0.1 s, 3 times in all"), std::string::npos) << checks[0].detail;
 }
 
-// ---- What energy is compared with -------------------------------------------------------------------------------------------
+// ---- What energy is compared with --------------------------------------------------------------
 
 /// A ball at a height that moves sideways first at one speed, then at another, and has gone `lift` up between two looks 1/60 s apart.
 std::vector<RunFault> told_of_ball(double radius, double mass, double height, double speed, double then, double lift) {
@@ -146,7 +146,7 @@ TEST(EnergyRises, IsNotHiddenByAFarOriginNorMadeByItsRounding) {
   EXPECT_EQ(told_of_ball(1e-3, 1e-3, 1e9, 1e-3, 1e-3, std::nextafter(1e9, 2e9) - 1e9).size(), 0u);
 }
 
-// ---- Runs that cannot be trusted -------------------------------------------------------------------------------------------
+// ---- Runs that cannot be trusted ---------------------------------------------------------------
 
 /// A light bob on a rod above one `ratio` times as heavy, held out sideways. Rods of 1 m. The seed draws the angles.
 scene::Scene light_above_heavy(double ratio, unsigned seed) {
@@ -257,7 +257,7 @@ TEST(NamedSteps, AreStepsAtWhichItRunsRight) {
   }
 }
 
-// ---- Contacts dealt with in the step give no energy ------------------------------------------------------------------------
+// ---- Contacts dealt with in the step give no energy --------------------------------------------
 
 // Boxes that touch along edges, one of which a medium slows: what draws them apart is no velocity.
 TEST(InStep, NoEnergyComesOfPositionCorrections) {
@@ -308,7 +308,7 @@ TEST(InStep, BoxesThatTouchByLotGainNothing) {
   }
 }
 
-// ---- What is shown does not overlap --------------------------------------------------------------------------------------------
+// ---- What is shown does not overlap ------------------------------------------------------------
 
 /// Two small boxes that fall on a plate and on each other, turned by lot.
 scene::Scene falling_boxes(unsigned seed) {
@@ -337,7 +337,7 @@ TEST(ShownWithinAStep, NothingOverlaps) {
     }
 }
 
-// ---- What lies on a body weighs on its links --------------------------------------------------------------------------------
+// ---- What lies on a body weighs on its links ---------------------------------------------------
 
 scene::BodySpec slab(const std::string& name, const Vector3d& half, double mass, const Vector3d& at, double friction = 0.0) {
   scene::BodySpec body = box(name, half, mass, at, Vector3d::Zero());

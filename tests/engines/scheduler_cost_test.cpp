@@ -35,22 +35,22 @@ TEST(SchedulerCost, WorkEqualToTheReferencesIsReported) {
 TEST(SchedulerCost, UnnecessaryRollbacksAreNamedAsTheCause) {
   const engines::SchedulerCurve reference = scheduler(10, 15, 100, 20);
   const std::string told = told_of(scheduler(32, 48, 100, 20), &reference);
-  EXPECT_NE(told.find("undoes 3.2 times what the reference undoes"), std::string::npos) << told;
-  EXPECT_NE(told.find("sends back 4.8 bodies where 1.5 have to go: bodies that the collision did not touch"), std::string::npos) << told;
-  EXPECT_EQ(told.find("further than to the impact"), std::string::npos) << told;   // each goes as far as in the reference
+  EXPECT_NE(told.find("rolls back 3.2 times what the reference rolls back"), std::string::npos) << told;
+  EXPECT_NE(told.find("rolls back 4.8 bodies where 1.5 suffice: bodies that the collision did not touch"), std::string::npos) << told;
+  EXPECT_EQ(told.find("further back than to the impact"), std::string::npos) << told;   // each goes as far as in the reference
 }
 
 TEST(SchedulerCost, GoingBackTooFarIsAnotherCause) {
   const engines::SchedulerCurve reference = scheduler(10, 15, 100, 20);
   const std::string told = told_of(scheduler(40, 15, 100, 20), &reference);
-  EXPECT_NE(told.find("further than to the impact"), std::string::npos) << told;
+  EXPECT_NE(told.find("further back than to the impact"), std::string::npos) << told;
   EXPECT_EQ(told.find("did not touch"), std::string::npos) << told;
 }
 
 TEST(SchedulerCost, ChecksAndStatesHaveSentencesOfTheirOwn) {
   const engines::SchedulerCurve reference = scheduler(10, 15, 100, 20);
   const std::string told = told_of(scheduler(10, 15, 500, 200), &reference);
-  EXPECT_NE(told.find("looks at its pairs 5.0 times as often"), std::string::npos) << told;
+  EXPECT_NE(told.find("checks its pairs 5.0 times as often"), std::string::npos) << told;
   EXPECT_NE(told.find("keeps 10 times as many states"), std::string::npos) << told;
 }
 
@@ -62,13 +62,13 @@ TEST(SchedulerCost, AWrongRunIsReportedFirstAndNotCounted) {
   EXPECT_NEAR(wrong.by_step[1].error(), 0.6, 1e-15);   // 6 of 10
   const std::vector<engines::SchedulerReading> readings = engines::read_scheduler(wrong, &reference);
   EXPECT_EQ(readings.front().kind, engines::SchedulerReading::Kind::kWrong);
-  EXPECT_NE(readings.front().text.find("in 1 of 2 runs. With steps of 1/20 s it gets through 4 of 10 events: committed event 5"), std::string::npos) << readings.front().text;
-  EXPECT_NE(readings.at(1).text.find("3.20 integrations an event, where 1.00"), std::string::npos) << readings.at(1).text;   // of the right run
+  EXPECT_NE(readings.front().text.find("in 1 of 2 runs. With steps of 1/20 s it commits 4 of 10 events: committed event 5"), std::string::npos) << readings.front().text;
+  EXPECT_NE(readings.at(1).text.find("3.20 integrations per event, where 1.00"), std::string::npos) << readings.at(1).text;   // of the right run
 }
 
 TEST(SchedulerCost, WithoutAReferenceItsOwnNumbersAreGiven) {
   const std::string told = told_of(scheduler(32, 48, 100, 20), nullptr);
-  EXPECT_NE(told.find("sends back 4.8 bodies: two take part in one"), std::string::npos) << told;
+  EXPECT_NE(told.find("rolls back 4.8 bodies: two take part in one"), std::string::npos) << told;
   EXPECT_EQ(told.find("reference pays"), std::string::npos) << told;
 }
 

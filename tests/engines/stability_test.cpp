@@ -104,7 +104,7 @@ TEST(LargestStep, OfATurningThatAJointHoldsIsNone) {
   EXPECT_TRUE(holds(answer(scene, reference_laws(), 1.0 / 120), "refused"));
 }
 
-// ---- Springs and their dampers --------------------------------------------------------------------------------------
+// ---- Springs and their dampers -----------------------------------------------------------------
 
 /// A ball of 0.5 kg on a spring of no length to the world, pulled 1 m along it.
 scene::Scene on_springs(const std::vector<std::pair<double, double>>& stiffness_and_damping) {

@@ -32,7 +32,7 @@ TEST(TaughtTimewarp, CommitsTheReferencesTrace) {
   }
 }
 
-// ---- Groups and callbacks ------------------------------------------------------------------------------------------------
+// ---- Groups and callbacks ----------------------------------------------------------------------
 
 void expect_the_references_trace_of(const scene::Scene& scene, std::size_t least, const std::vector<engines::Callback>& callbacks = {}) {
   const Trajectory reference = run_taught(scene, taught_reference_laws(), callbacks, "ordered"), run = run_taught(scene, taught_reference_laws(), callbacks);

@@ -215,7 +215,7 @@ TEST(Threads, AreRefusedInWordsWhereTheirNumberMakesNoSense) {
   EXPECT_EQ(run_on({1, faults}, sized("gas", 40, 0.1)).stopped_by, "");
 }
 
-// ---- Bounds ----------------------------------------------------------------------------------------------------------------
+// ---- Bounds ------------------------------------------------------------------------------------
 
 // A random order far ahead of global virtual time keeps many states, unless there is a limit.
 TEST(CapOfStates, OfEightIsKeptAndChangesNothing) {
@@ -268,7 +268,7 @@ TEST(Memory, OfABusyBodyAmongVeryManyStaysFlat) {
   }
 }
 
-// ---- A late event at the first of a row ----------------------------------------------------------------------------------
+// ---- A late event at the first of a row --------------------------------------------------------
 
 // A ball hits the next one, that one the next, and so on; when the last has been hit, a callback
 // turns the first back before it began. All of it is rolled back.
@@ -331,7 +331,7 @@ TEST(LateEvent, AtTheFirstOfARowTakesCpuTimeLinearInTheirNumber) {
   EXPECT_NEAR((count * xy - x * y) / (count * xx - x * x), 1.0, 0.1);
 }
 
-// ---- Energy ----------------------------------------------------------------------------------------------------------------
+// ---- Energy ------------------------------------------------------------------------------------
 
 TEST(RunawayEnergy, StopsEveryEventEngineAndNamesBodyTimeAndLaws) {
   Laws laws = test_laws();

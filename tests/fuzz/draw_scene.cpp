@@ -15,17 +15,17 @@ namespace {
 
 struct Model {
   const char* file;
-  double reach;   // radius of a ball about the centre of mass that holds it, at 1 m a unit, rounded up [m]
+  double reach;   // radius of the bounding ball about the centre of mass, at 1 m per unit, rounded up [m]
 };
 constexpr std::array<Model, 8> kModels{{{"box.3ds", 0.9}, {"wedge.3ds", 0.9}, {"rock_1.3ds", 0.9}, {"rock_2.3ds", 0.9}, {"rock_3.3ds", 0.9}, {"rod.3ds", 0.6}, {"l_shape.3ds", 2.0}, {"t_handle.3ds", 0.9}}};
 
 Json as_json(const Vector3d& v) { return Json::array({v.x(), v.y(), v.z()}); }
 
-/// What is drawn of one movable body before it has a place.
+/// The random properties of one movable body before it has a position.
 struct Drawn {
   Json body;
   double reach;        // of its bounding ball [m]
-  double half_height;  // of what can be stacked (a level box, a ball): centre to top [m]; 0: it cannot
+  double half_height;  // of a shape that can be stacked (a level box, a ball): centre to top [m]; 0: it cannot
   double mass;         // [kg]
 };
 
@@ -67,10 +67,10 @@ class SceneMaker {
   double gravity_ = 0.0;     // [m/s^2], along -z
   double step_ = 0.0, duration_ = 0.0;
   double spread_ = 1.0;      // sizes and masses differ by up to this factor
-  bool rounded_ = false;     // places are decimals, as people type them
+  bool rounded_ = false;     // positions are decimals, as in files written by hand
   double grid_ = 1000.0;
   bool has_contact_ = false, has_floor_ = false, is_linked_ = false, has_ellipsoids_ = false;
-  Vector3d origin_ = Vector3d::Zero();   // the scene's middle: often far from the world's origin
+  Vector3d origin_ = Vector3d::Zero();   // the scene's centre: often far from the world's origin
 };
 
 Vector3d SceneMaker::direction() {
@@ -128,11 +128,12 @@ Drawn SceneMaker::draw_body(int index) {
 
 void SceneMaker::draw_motion(Json& body) {
   if (chance(0.7)) body["velocity_m_s"] = as_json(decimals(speed_ * random_.unit() * direction()));
-  // Up to half a radian a step: faster turns are refused or noted by name, which a few scenes try.
+  // Up to half a radian per step: faster rotations are refused or reported, which a few scenes
+  // test.
   if (chance(0.4)) body["angular_velocity_rad_s"] = as_json((chance(0.9) ? 0.5 : 5.0) / step_ * random_.unit() * random_.unit() * direction());
 }
 
-/// On a lattice, wide enough for the balls around them: above the floor, turned by lot.
+/// On a lattice, wide enough for the bounding balls: above the floor, with random orientations.
 void SceneMaker::place_apart(std::vector<Drawn>& drawn) {
   double reach = 0.0;
   for (const Drawn& one : drawn) reach = std::max(reach, one.reach);
@@ -142,7 +143,7 @@ void SceneMaker::place_apart(std::vector<Drawn>& drawn) {
   for (int i = 0; i < static_cast<int>(drawn.size()); ++i) {
     const Vector3d at(cell * (i % side), cell * (i / side % side), height + cell * (i / (side * side)));
     Vector3d place = origin_ + at;
-    if (rounded_) place = decimals(place);   // shifts by half a grid cell at most, which is 1e-3 of the size
+    if (rounded_) place = decimals(place);   // shifts by at most half a grid cell, which is 1e-3 of the size
     Json& body = drawn[static_cast<std::size_t>(i)].body;
     body["position_m"] = as_json(place);
     if (chance(0.5)) body["orientation"] = {{"rotation_vector_rad", as_json(random_.between(0.0, 3.0) * direction())}};
@@ -150,7 +151,8 @@ void SceneMaker::place_apart(std::vector<Drawn>& drawn) {
   }
 }
 
-/// One on the other, exactly touching as decimals and roundings allow, or a hair apart; at rest or hardly moving.
+/// One on the other, touching exactly up to decimals and rounding, or with a tiny gap; at rest or
+/// nearly so.
 void SceneMaker::place_stacked(std::vector<Drawn>& drawn) {
   const double hair = one_of<double>({0.0, 0.0, 1e-12, 1e-9});
   const bool is_still = chance(0.7);
@@ -193,7 +195,7 @@ void SceneMaker::add_link(const Drawn& a, const Drawn* b) {
   const int kind = among(0, 4);
   if (kind == 0) {
     Json spring{{"a", {{"body", name_a}}}, {"b", end_b}};
-    const double rate = random_.between(0.02, 0.7) / step_;   // omega h below RK4's limit for most: beyond it a run is refused by name
+    const double rate = random_.between(0.02, 0.7) / step_;   // omega h below RK4's limit for most: beyond it a run is refused
     spring["stiffness_n_m"] = lighter * rate * rate * 0.5;
     if (chance(0.5)) spring["damping_n_s_m"] = lighter * rate * random_.between(0.0, 0.5);
     if (chance(0.3)) spring["rest_length_m"] = (to - from).norm() * random_.between(0.5, 1.5);
@@ -250,7 +252,7 @@ void SceneMaker::add_repeat() {
 }
 
 void SceneMaker::add_effects(const std::vector<Drawn>& drawn) {
-  constexpr double kFrame = 1.0 / 60.0;   // forces switch at frames, so that their work can be added up from the frames alone
+  constexpr double kFrame = 1.0 / 60.0;   // forces switch at frames, so that their work can be summed from the frames alone
   if (chance(0.2)) {
     const Drawn& body = one_of(drawn);
     Json drag{{"body", body.body["name"]}, {"linear_n_s_m", body.mass * random_.between(0.0, 0.3) / step_}};
@@ -282,7 +284,8 @@ Json SceneMaker::make() {
     gravity_ = chance(0.8) ? 9.81 : log_between(0.1, 100.0);
     scene_["gravity_m_s2"] = as_json(Vector3d(0, 0, -gravity_));
   }
-  // Speeds: some sizes a second, or what falls of sizes; now and then anything up to 1000 m/s.
+  // Velocities: some sizes per second, or the speed of a fall by some sizes; sometimes anything up
+  // to 1000 m/s.
   speed_ = chance(0.85) ? std::min(1000.0, size_ * log_between(0.1, 30.0)) : log_between(0.01, 1000.0);
   has_contact_ = chance(0.65);
   if (has_contact_) {

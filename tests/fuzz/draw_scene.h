@@ -1,5 +1,6 @@
-/// Scenes drawn from one number, as JSON that `tumble run FILE` takes: every shape and every effect of the schema, sizes from 1 mm to
-/// 100 m, masses from 1e-3 to 1e4 kg, speeds up to 1000 m/s, bodies that start apart, in a heap, or touching.
+/// Random scenes from one number, as JSON for `tumble run FILE`: every shape and every effect of
+/// the schema, sizes from 1 mm to 100 m, masses from 1e-3 to 1e4 kg, velocities up to 1000 m/s,
+/// bodies that start apart, in a pile, or in contact.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +12,8 @@ namespace tumble::fuzz {
 using Json = nlohmann::ordered_json;
 
 struct DrawOptions {
-  bool quick = false;      // at most four bodies and 60 steps: for the sample that runs with every change
-  bool all_engines = false; // nothing that an engine refuses by name: no sleep
+  bool quick = false;      // at most four bodies and 60 steps: for the sample of the regular tests
+  bool all_engines = false; // without entries that an engine refuses: no sleep
 };
 
 /// The same number gives the same scene on every machine.

@@ -1,12 +1,14 @@
-// Draws scenes by lot, runs each in a process of its own, and says how each ended. --program build/bin/tumble runs them by the program
-// itself; without it by its engines, which is faster.
+// Draws random scenes, runs each in a process of its own, and reports how each ended. --program
+// build/bin/tumble runs them by the program itself; without it by its engines, which is faster.
 //
-//   fuzz_scenes --from 1 --count 200 [--engine rd|ca|tw|ordered|all] [--quick] [--shrink] [--out FOLDER]
-//   fuzz_scenes --print 17        writes scene 17 to stdout, with --quick and --engine as it was drawn with them
+//   fuzz_scenes --from 1 --count 200 [--engine rd|ca|tw|ordered|all] [--quick] [--shrink] [--out
+//   FOLDER]
+//   fuzz_scenes --print 17        writes scene 17 to stdout, with --quick and --engine as it was
+//   drawn with them
 //   fuzz_scenes --judge FILE      runs a scene file and judges it; the recorded run stays in FOLDER
 //
-// A failure (a crash, a hang, a wrong run that ends with 0) is written to FOLDER with what came and the command that makes it again,
-// as small as it gets with --shrink. Exit 1 where there was one.
+// A failure (a crash, a hang, a wrong run that ends with 0) is written to FOLDER with its result
+// and the command that repeats it, as small as possible with --shrink. Exit 1 where there was one.
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -32,10 +34,10 @@ struct Words {
   std::uint64_t from = 1, count = 100;
   std::vector<std::string> engines{"rd"};
   bool quick = false, shrink = false, verbose = false;
-  int shrunk_a_family = 1;          // failures of a family that are made small
+  int shrunk_a_family = 1;          // failures of a family that are shrunk
   fs::path out = "out/fuzz", program, judge;
   std::uint64_t print = 0;
-  double silence_s = 60.0;   // of CPU without a frame; tumble run says how far it is after 5 s, and every 10 s from then on
+  double silence_s = 60.0;   // of CPU without a frame; tumble run reports progress after 5 s, and every 10 s from then on
 };
 
 Words parse(int argc, char** argv) {

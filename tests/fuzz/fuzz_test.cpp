@@ -1,4 +1,5 @@
-// A sample of scenes drawn by lot: none crashes, hangs, opens, overlaps or gains energy in silence. fuzz_scenes draws thousands.
+// A sample of random scenes: none crashes, hangs, opens, overlaps or gains energy without a report.
+// fuzz_scenes draws thousands.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -45,7 +46,8 @@ TEST(Fuzz, ARunIsJudgedFromItsPlaces) {
   EXPECT_EQ(verdict_of(odd, "rd").outcome, Outcome::kRefused);
 }
 
-// Found by lot: heavy bodies on light and small ones, and boxes that rock. Their contacts brought energy in, and the runs ended with 0.
+// Found by fuzzing: heavy bodies on light and small ones, and rocking boxes. Their contacts added
+// energy, and the runs ended with 0.
 TEST(Fuzz, ContactsThatGainedEnergyGainNoneNow) {
   for (const char* name : {"slab_on_small_balls", "light_balls_under_a_heavy_one", "rocking_boxes"}) {
     const PrivateFolder folder;

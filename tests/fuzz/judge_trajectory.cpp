@@ -20,17 +20,22 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kEps = std::numeric_limits<double>::epsilon();
-// Energy above the least before, as a part of what moves: methods of integration are off by their step, and a scene is not wrong for
-// that. The run itself calls one percent wrong; this is three times as much, as what there was to begin with is summed another way here.
+// Energy above the least so far, relative to the moving energy: methods of integration have
+// truncation errors, which is no fault. The run itself reports one per cent; this is three times as
+// much, because the initial energy is summed differently here.
 constexpr double kEnergyGrowth = 0.03;
-// A body that lies may be moved by roundings and position correction: by this part of its size, which nobody sees.
+// Rounding and position correction may move a resting body: by this fraction of its size, which is
+// invisible.
 constexpr double kStir = 1e-5;
-// Overlap as a part of the smaller body's size. Contacts are kept apart to roundings of sizes and places; this is above all of them.
+// Overlap relative to the smaller body's size. Contacts are kept apart up to rounding of sizes and
+// positions; this is above all of them.
 constexpr double kOverlap = 1e-8;
-// How far rods and joints may be open, as a part of the arms they hang on. Projection leaves 1e-10; a run that opens a joint leaves more.
+// Largest error of rods and joints, relative to their lever arms. Projection leaves 1e-10; a run
+// that opens a joint leaves more.
 constexpr double kOpen = 1e-6;
-// A frame between two steps is read off a curve through their ends; links are held at the ends. Of fourth order: a tenth of a radian a step
-// leaves 1e-5 at the middle, and a run that opens a joint is at its ends, too.
+// A frame between two steps is interpolated between their ends, where links hold. The error is of
+// fourth order: a tenth of a radian per step gives 1e-5 in the middle, and a run that opens a joint
+// does so at the ends, too.
 constexpr double kOpenBetween = 1e-4;
 
 struct Judge {
@@ -46,7 +51,7 @@ struct Judge {
     return at.com_world + at.world_from_body * anchor.point_body;
   }
 
-  /// Whether a frame then is read off a curve between the ends of two steps.
+  /// Whether a frame at this time is interpolated between the ends of a step.
   bool is_between_steps(double time) const { return std::abs(time / run.info.step_s - std::round(time / run.info.step_s)) > 1e-6; }
 
   bool is_finite();
@@ -72,7 +77,7 @@ void Judge::check_end() {
   if (run.frames.empty() || end < scene.duration_s - 1.0 / 60.0 - 1e-9) faults.push_back({"short", fmt::format("the last frame is at {:.6g} s of {:.6g} s", end, scene.duration_s)});
 }
 
-/// Energy of a frame, and how large the sums were that it came from.
+/// Energy of a frame, and the size of the sums from which it was computed.
 struct Energy {
   double kinetic = 0.0, potential = 0.0, in_springs = 0.0, terms = 0.0;
 };
@@ -101,7 +106,8 @@ Energy energy_of(const Judge& judge, const Frame& frame) {
   return energy;
 }
 
-/// What constant forces have done from one frame to the next: force times the way of their point. Forces switch at frames.
+/// The work of constant forces from one frame to the next: force times the displacement of its
+/// point. Forces switch at frames.
 double work_of_point_forces(const Judge& judge, const Frame& from, const Frame& to) {
   double work = 0.0;
   for (const effects::PointForce& force : judge.world.effects.of<effects::PointForce>()) {
@@ -113,7 +119,8 @@ double work_of_point_forces(const Judge& judge, const Frame& from, const Frame& 
   return work;
 }
 
-/// The most that motors can have done: their largest torque times how far the joint turned, twice for what frames do not show.
+/// Bound on the work of motors: their largest torque times the rotation of the joint, twice to
+/// allow for motion between frames.
 double work_of_motors(const Judge& judge, const Frame& from, const Frame& to) {
   double work = 0.0;
   for (const effects::Motor& motor : judge.world.effects.of<effects::Motor>()) {
@@ -129,11 +136,11 @@ double work_of_motors(const Judge& judge, const Frame& from, const Frame& to) {
 }
 
 void Judge::check_energy() {
-  for (const WorldBody& body : world.bodies)   // a driven body does work that frames do not tell
+  for (const WorldBody& body : world.bodies)   // a driven body does work that frames do not show
     if (body.immovable() && body.collides && (!body.motion.velocity_m_s.isZero(0) || !body.motion.amplitude_m.isZero(0))) return;
-  double stir = 0.0;   // what position correction may lift
+  double stir = 0.0;   // energy that position correction may add
   for (const WorldBody& body : world.bodies)
-    if (!body.immovable()) stir += 8.0 * body.inertia.mass * scene.rest_speed_m_s * scene.rest_speed_m_s;   // what does not bounce is sent off at it, a box by each of its corners
+    if (!body.immovable()) stir += 8.0 * body.inertia.mass * scene.rest_speed_m_s * scene.rest_speed_m_s;   // a perfectly inelastic body separates at this speed, a box at each of its corners
   double largest = 0.0;
   for (const WorldBody& body : world.bodies)
     if (!body.immovable()) largest = std::max(largest, bounding_radius(body.shape));
@@ -151,12 +158,12 @@ void Judge::check_energy() {
     energies.push_back(energy_of(*this, frame));
     fall = std::max(fall, first.potential - energies.back().potential);
   }
-  const double scale = first.kinetic + first.in_springs + fall + given;   // all that the run has to give
+  const double scale = first.kinetic + first.in_springs + fall + given;   // all energy that the run has available
   double least = first.kinetic + first.potential;
   for (std::size_t k = 1; k < run.frames.size(); ++k) {
-    if (is_between_steps(run.frames[k].time)) continue;   // what turns by a radian a step has less energy on the curve between its ends
+    if (is_between_steps(run.frames[k].time)) continue;   // a body that rotates by a radian per step has less energy on the interpolation between its ends
     const double total = energies[k].kinetic + energies[k].potential - work[k];
-    // Sums of terms of this size, rounded once a frame and once a step by the engine.
+    // Sums of terms of this size, rounded once per frame, and once per step by the engine.
     const double rounding = 16.0 * kEps * energies[k].terms * (1.0 + run.frames[k].time / scene.step_s);
     const double gained = total - least - stir - rounding;
     least = std::min(least, total);
@@ -184,7 +191,7 @@ void Judge::check_gaps() {
         const collision::Pose at_a{pose(frame, i).com_world, pose(frame, i).world_from_body}, at_b{pose(frame, j).com_world, pose(frame, j).world_from_body};
         if (collision::least_gap(shape_a, at_a, shape_b, at_b) > 0) continue;
         const double gap = collision::compute_gap(shape_a, at_a, shape_b, at_b).distance;
-        const bool is_on_a_curve = has_links && is_between_steps(frame.time);   // linked bodies are drawn on a cubic there, as joints are
+        const bool is_on_a_curve = has_links && is_between_steps(frame.time);   // linked bodies are on a cubic there, as joints are
         const double allowed = (is_on_a_curve ? kOpenBetween : kOverlap) * size + 16.0 * kEps * (collision::gap_scale(shape_a, at_a, shape_b, at_b) + at_a.com_world.norm() + at_b.com_world.norm());
         if (gap >= -allowed || gap / size >= worst) continue;
         worst = gap / size;
@@ -195,9 +202,9 @@ void Judge::check_gaps() {
 }
 
 void Judge::check_links() {
-  // Without stabilisation, and with Baumgarte's, links drift by design; the scene says so.
+  // Without stabilisation, and with Baumgarte's, links drift by design, and the scene states it.
   if (!world.stabilisation || world.stabilisation->kind != scene::StabilisationKind::kProjection) return;
-  double worst = 1.0;   // of what is allowed
+  double worst = 1.0;   // relative to the tolerance
   std::string words;
   const auto look = [&](const std::string& name, double open, double arm, double far, double time) {
     const double part = (open - 64.0 * kEps * far) / arm, allowed = is_between_steps(time) ? kOpenBetween : kOpen;

@@ -1,6 +1,6 @@
-/// What a recorded run shows to somebody who does not believe the program: energy from nowhere, bodies in each other, open joints,
-/// numbers that are none. Worked out from places and velocities in the frames and from the scene alone; nothing that the run says of
-/// itself (its energies, its gaps, its checks) is looked at.
+/// An independent judgement of a recorded run: energy from nowhere, overlapping bodies, open
+/// joints, values that are not finite. Computed from positions and velocities in the frames and
+/// from the scene alone, without the run's own energies, gaps and checks.
 #pragma once
 
 #include <string>
@@ -11,13 +11,13 @@
 
 namespace tumble::fuzz {
 
-/// One thing that cannot be.
+/// One impossible result.
 struct Fault {
   std::string kind;    // one word: "energy", "overlap", "open", "number", "short"
-  std::string words;   // what was found, where and when, with units
+  std::string words;   // value, place and time, with units
 };
 
-/// The worst fault of each kind; empty for a run that may be right.
+/// The worst fault of each kind; empty for a run without faults.
 std::vector<Fault> faults_of(const scene::Scene& scene, const Trajectory& run);
 
 }  // namespace tumble::fuzz

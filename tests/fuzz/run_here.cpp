@@ -21,7 +21,7 @@ const Laws& laws() {
   return all;
 }
 
-/// Leaves a byte for each frame, for who watches from outside.
+/// Writes a byte for each frame, for the watching process.
 class Footprints final : public TrajectorySink {
  public:
   Footprints(TrajectorySink& sink, const std::filesystem::path& file) : sink_(sink), file_(file, std::ios::trunc) {}

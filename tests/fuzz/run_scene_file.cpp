@@ -33,13 +33,13 @@ std::string contents_of(const fs::path& file) {
 /// User and system time of a running process, from /proc. [s]
 double cpu_of(pid_t process) {
   const std::string text = contents_of(fmt::format("/proc/{}/stat", process));
-  const std::size_t end = text.rfind(')');   // of the name, which may hold anything
+  const std::size_t end = text.rfind(')');   // of the name, which may contain anything
   unsigned long user = 0, system = 0;
   if (end == std::string::npos || std::sscanf(text.c_str() + end + 1, " %*c %*d %*d %*d %*d %*d %*u %*u %*u %*u %*u %lu %lu", &user, &system) != 2) return 0.0;
   return static_cast<double>(user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }
 
-/// Lines of a run that say how far it is; that it stands still is a word, but none of progress.
+/// Lines of a run that report progress; a line that it stands still is output, but no progress.
 std::uintmax_t words_of_progress(const fs::path& err) {
   std::ifstream in(err);
   std::uintmax_t lines = 0;
@@ -57,7 +57,7 @@ struct Ended {
   const int to_out = ::open(out.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644), to_err = ::open(err.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
   ::dup2(to_out, 1);
   ::dup2(to_err, 2);
-  const rlimit no_core{0, 0}, memory{8UL << 30, 8UL << 30};   // a run that eats memory ends with words or a signal, not with the machine
+  const rlimit no_core{0, 0}, memory{8UL << 30, 8UL << 30};   // a run that uses too much memory ends with a message or a signal, and does not affect the machine
   ::setrlimit(RLIMIT_CORE, &no_core);
   ::setrlimit(RLIMIT_AS, &memory);
   if (wish.program.empty()) {
@@ -73,7 +73,7 @@ struct Ended {
   ::_exit(127);
 }
 
-/// Waits for the end, and ends what says nothing for too long.
+/// Waits for the end, and ends a process without output for too long.
 Ended run_and_watch(const fs::path& scene_file, const fs::path& record, const fs::path& out, const fs::path& err, const RunWish& wish) {
   if (wish.program.empty()) load_laws();
   std::fflush(nullptr);
@@ -81,7 +81,7 @@ Ended run_and_watch(const fs::path& scene_file, const fs::path& record, const fs
   if (child < 0) throw UserError("fork", "no process can be started", "Close other programs.");
   if (child == 0) run_in_child(scene_file, record, out, err, wish);
   Ended ended;
-  double heard_at = 0.0;        // CPU when the last word came
+  double heard_at = 0.0;        // CPU time at the last output
   std::uintmax_t heard = 0;     // bytes
   for (useconds_t pause = 1000;; pause = std::min<useconds_t>(pause * 2, 100000)) {
     rusage usage{};
@@ -102,7 +102,7 @@ Ended run_and_watch(const fs::path& scene_file, const fs::path& record, const fs
   }
 }
 
-/// What equal messages share: numbers and names are taken out, and no more than the beginning is kept.
+/// The common part of equal messages: without numbers and names, and only the beginning.
 std::string skeleton(std::string words) {
   words = std::regex_replace(words, std::regex("'[^']*'"), "X");
   words = std::regex_replace(words, std::regex("[-+]?[0-9][-+.0-9e]*"), "#");
@@ -110,7 +110,7 @@ std::string skeleton(std::string words) {
   return words.substr(0, 90);
 }
 
-std::string without_place(const std::string& words) {   // "tumble: FILE:LINE: /pointer: what is wrong"
+std::string without_place(const std::string& words) {   // "tumble: FILE:LINE: /pointer: problem"
   static const std::regex place("^.*\\.json(:[0-9]+)?: (/[^ :]*: )?");
   return std::regex_replace(words, place, "");
 }
@@ -141,7 +141,7 @@ Verdict verdict_of_end(const Ended& ended, const fs::path& scene_file, const fs:
     kinds += (kinds.empty() ? "" : ", ") + fault.kind;
     words += (words.empty() ? "" : "; ") + fault.words;
   }
-  for (const std::string notice : page["notices"]) {   // what was done to the start is no word about what came of it
+  for (const std::string notice : page["notices"]) {   // a notice about the start says nothing about the result
     if (notice.find("the start ") != std::string::npos) continue;
     return verdict(Outcome::kNoted, kinds, words + "; the note: " + notice);
   }

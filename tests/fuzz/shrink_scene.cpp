@@ -14,7 +14,7 @@ bool names(const Json& value, const std::string& body) {
   return false;
 }
 
-/// Without the entry, and without whatever names it.
+/// The scene without an entry, and without all entries that name it.
 Json without_body(Json scene, std::size_t index) {
   const std::string name = scene["bodies"][index]["name"];
   scene["bodies"].erase(index);
@@ -25,7 +25,7 @@ Json without_body(Json scene, std::size_t index) {
       bool is_about = false;
       for (const std::string& one : gone) is_about = is_about || names(scene[list][i], one);
       if (!is_about) continue;
-      if (scene[list][i].contains("name")) gone.push_back(scene[list][i]["name"]);   // a joint takes its motor along
+      if (scene[list][i].contains("name")) gone.push_back(scene[list][i]["name"]);   // with a joint its motor is removed
       scene[list].erase(i);
     }
     if (scene[list].empty()) scene.erase(list);
@@ -33,7 +33,7 @@ Json without_body(Json scene, std::size_t index) {
   return scene;
 }
 
-/// Numbers with so many digits.
+/// Numbers with this many digits.
 void round_numbers(Json& value, int digits) {
   if (value.is_number_float()) {
     const double number = value;
@@ -53,7 +53,7 @@ std::vector<Json> smaller(const Json& scene) {
     if (scene.contains(key)) {
       found.push_back(scene);
       found.back().erase(key);
-      if (std::string(key) == "contact")   // friction goes with it
+      if (std::string(key) == "contact")   // friction is removed with it
         for (auto& body : found.back()["bodies"]) body.erase("friction");
     }
   for (const char* list : {"motors", "springs", "rods", "joints", "drag", "point_forces"})

@@ -1,4 +1,4 @@
-/// Makes a scene that fails as small as it gets while it still fails in the same way.
+/// Reduces a failing scene as long as it fails in the same way.
 #pragma once
 
 #include <functional>
@@ -7,8 +7,9 @@
 
 namespace tumble::fuzz {
 
-/// @param still_fails  whether a smaller scene fails as the first did; may be asked for scenes that are refused
-/// @param most_trials  after so many the smallest scene found so far is good enough
+/// @param still_fails  whether a smaller scene has the same failure; may be called with scenes that
+///   are refused
+/// @param most_trials  number of trials after which the smallest scene so far is returned
 Json shrink_scene(Json scene, const std::function<bool(const Json&)>& still_fails, int most_trials = 200);
 
 }  // namespace tumble::fuzz

@@ -1,4 +1,4 @@
-// Every demo scene, run by right laws, is judged right at every frame; run by wrong ones, it is judged wrong.
+// Every demo scene passes its checks at every frame with right laws; with wrong laws it fails.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -32,7 +32,8 @@ scene::Scene demo_scene(const std::string& name) {
   throw std::runtime_error("no demo scene " + name);
 }
 
-/// Right laws of all assignments: impulses and motion in other words than any solution, springs, rods, contacts and scheduling the reference's.
+/// Right laws of all assignments: impulses and motion by code independent of any solution, springs,
+/// rods, contacts and scheduling by the reference.
 Laws right_laws() {
   modules::Registry registry;
   register_assignments(registry);
@@ -72,7 +73,7 @@ TEST(DemoScenes, AreJudgedRightAndNeverOverlap) {
   for (const auto& file : demo_scenes()) {
     SCOPED_TRACE(file.stem().string());
     const scene::Scene scene = scene::load_scene(file);
-    engines::RunOptions options;   // a frame at the end of each step, where steps are shorter than pictures: what is committed is looked at, all of it
+    engines::RunOptions options;   // a frame at the end of each step where steps are shorter than frames, so that everything committed is checked
     options.frame_rate_hz = std::max(options.frame_rate_hz, 1.0 / scene.step_s);
     const Trajectory result = run(scene, right_laws(), options);
     EXPECT_EQ(result.stopped_by, "");
@@ -107,7 +108,8 @@ TEST(DemoScenes, ContactForcesThatAreNotThereAreJudgedWrong) {
   for (const std::string name : {"stack_of_10", "beam_on_two_supports"}) EXPECT_TRUE(fails(demo_scene(name), laws)) << name;
 }
 
-// Without friction it is the student's forces that hold the box: too strong, they throw it up again and again.
+// Without friction the student's forces hold the box: forces that are too large make it bounce
+// repeatedly.
 TEST(DemoScenes, ContactForcesThatAreHalfTooLargeAreJudgedWrong) {
   Laws laws = right_laws();
   laws.contact_forces = [right = laws.contact_forces](const MatrixXd& A, const VectorXd& b) { return VectorXd(1.5 * right(A, b)); };
@@ -133,7 +135,7 @@ TEST(DemoScenes, AForgottenArmIsJudgedWrong) {
   laws.wrench_of_point_force = [](const Vector3d& force, const Vector3d& point, const Vector3d&) { return Wrench{force, point.cross(force)}; };
   scene::Scene scene = demo_scene("poked_box");
   scene.checks.clear();
-  scene::CheckSpec check;   // torque times time, to what a push of 1 ms leaves
+  scene::CheckSpec check;   // torque times time, up to the change of the arm in a push of 1 ms
   check.kind = "angular_momentum";
   auto& push = scene.effects.of<effects::PointForceSpec>().front();
   push.duration_s = 1e-3;
@@ -160,7 +162,7 @@ TEST(DemoScenes, AForgottenRestLengthIsJudgedWrong) {
   for (const std::string name : {"hung_by_spring", "newtons_cradle_springs", "newtons_cradle_springs_2", "newtons_cradle_springs_3"}) EXPECT_TRUE(fails(demo_scene(name), laws)) << name;
 }
 
-// A rod that pulls one of its two bodies only: the common centre of mass leaves its parabola.
+// A rod with a force on one of its two bodies only: the common centre of mass leaves its parabola.
 TEST(DemoScenes, ARodThatPullsOneEndOnlyIsJudgedWrong) {
   Laws laws = right_laws();
   laws.rod_row = [right = laws.rod_row](const Body& a, const Vector3d& point_a, const Body& b, const Vector3d& point_b, double length) {

@@ -1,4 +1,4 @@
-// An effect is on exactly where an entry asks for it, and says which.
+// An effect is on exactly where an entry calls for it, and names that entry.
 #include "framework/scene/effects.h"
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ TEST(Effects, AnAskerIsFoundByItsLine) {
 
 TEST(Effects, WhatSeemsToBeAskedForAndIsNotSaysWhy) {
   Scene scene = scene_with("", R"(, "contact": {})");
-  scene.bodies[1].friction = 0.5;   // only one of the two has friction: of a pair, the smaller counts
+  scene.bodies[1].friction = 0.5;   // only one of the two has friction: the smaller coefficient of a pair counts
   for (const EffectUse& effect : effects_of(scene))
     if (effect.name == "friction") {
       EXPECT_FALSE(effect.is_on());

@@ -1,4 +1,5 @@
-// What cannot be, or would do nothing, between bodies: refused with the line, the JSON pointer, what was found and what to do.
+// Impossible links, or links without effect, are refused with the line, the JSON pointer, the value
+// found and the remedy.
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
@@ -14,7 +15,7 @@ const std::string kStart = R"({
   { "name": "ball", "shape": { "sphere": { "radius_m": 0.1 } }, "mass_kg": 1, "position_m": [0, 0, 2] },
   { "name": "bob", "shape": { "sphere": { "radius_m": 0.1 } }, "mass_kg": 1, "position_m": [0, 0, 1] }
 ],
-)";   // what follows stands in line 8
+)";   // the next text is in line 8
 
 std::string refusal(const std::string& more) {
   try {

@@ -1,4 +1,5 @@
-// What ties bodies together is read as it is meant: anchors in the body's frame, lengths measured at the start, chains written out.
+// Links are read as intended: anchors in the body's frame, lengths measured at the start, chains
+// expanded.
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -34,7 +35,7 @@ TEST(Links, ASceneThatNamesNoneHasNone) {
 }
 
 TEST(Links, AnchorsAreFoundInTheBodysOwnFrame) {
-  // The box is turned by 90 degrees about z: its own +x looks along the world's +y.
+  // The box is rotated by 90 degrees about z: its own +x points along the world's +y.
   const Scene scene = scene_with(R"("springs": [
     { "a": { "body": "box", "point_world_m": [0, 1, 5] }, "b": { "body": "ball" }, "stiffness_n_m": 10 },
     { "a": { "body": "box", "point_body_m": [0, 1, 0] }, "b": { "point_world_m": [-1, 0, 7] }, "stiffness_n_m": 10, "damping_n_s_m": 2, "rest_length_m": 0.5 },

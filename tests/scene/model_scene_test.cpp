@@ -1,4 +1,5 @@
-// A scene made of a .3ds file: all is seen, sizes follow the model, what is not closed is refused with the loader's words.
+// A scene made of a .3ds file: the picture shows all of it, sizes follow the model, an open surface
+// is refused with the loader's message.
 #include "framework/scene/model_scene.h"
 
 #include <cmath>
@@ -17,7 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 const fs::path kModels = TUMBLE_SOURCE_DIR "/models";
 
-/// The largest angle between the camera's axis and a point of a ball about a body, over half the field of view. Up to 1 is in the picture.
+/// The largest angle between the camera's axis and a point of a body's bounding ball, over half the
+/// field of view. Up to 1 is in the picture.
 double largest_angle(const scene::Scene& scene) {
   const Vector3d sight = scene.camera.target_m - scene.camera.eye_m;
   double largest = 0.0;
@@ -49,7 +51,7 @@ TEST(ModelScene, ShowsEveryShippedModelWholeWhateverItsSize) {
   EXPECT_GE(seen, 60);
 }
 
-// A fall by its own radius takes sqrt(2 r / g) whatever the model: steps and duration scale with it.
+// A fall by its own radius takes sqrt(2 r / g) for any model: steps and duration scale with it.
 TEST(ModelScene, TakesStepsInProportionToTheTimeOfAFall) {
   const scene::Scene one = scene::make_model_scene(kModels / "gear.3ds", {0.01, 1000.0, true, true}), hundred = scene::make_model_scene(kModels / "gear.3ds", {0.0001, 1000.0, true, true});
   EXPECT_NEAR(one.duration_s / hundred.duration_s, 10.0, 1e-9);

@@ -1,4 +1,5 @@
-// What people mistype in a scene: each is refused with the file's line, the JSON pointer, what was found and what to do.
+// Common mistakes in scene files: each is refused with the file's line, the JSON pointer, the value
+// found and the remedy.
 #include <gtest/gtest.h>
 
 #include "framework/core/error.h"
@@ -14,7 +15,7 @@ std::string scene_with(const std::string& body, const std::string& more = "") {
   return "{\n  \"title\": \"t\",\n  \"duration_s\": 1,\n  \"bodies\": [\n" + body + "\n  ]" + more + "\n}\n";
 }
 
-/// The words with which a text is refused; "" where it is accepted.
+/// The message of a refused text; "" where it is accepted.
 std::string refusal(const std::string& text) {
   try {
     const Scene scene = parse_scene(text, "s.json");
@@ -108,7 +109,8 @@ TEST(SceneRefusals, ADurationOrStepThatIsNotAboveZeroSaysSo) {
     }
 }
 
-// 1e-320 kg has no inverse in doubles, and (1e200 m/s)^2 no value: nothing that follows from them would be named after its cause.
+// 1e-320 kg has no inverse in doubles, and (1e200 m/s)^2 no value: errors that follow from them
+// would not name their cause.
 TEST(SceneRefusals, NumbersThatDoublesCannotSquareAreNamed) {
   for (const std::string mass : {"1e-320", "1e-61", "1e300", "1e61"}) expect_words(refusal(scene_with(body_with("\"mass_kg\": " + mass))), {"s.json:5", "/bodies/0/mass_kg", "found", "reckon"});
   expect_words(refusal(scene_with(body_with(R"("mass_kg": 1, "velocity_m_s": [0, -1e200, 0])"))), {"/bodies/0/velocity_m_s/1", "too large"});

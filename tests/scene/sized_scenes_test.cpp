@@ -1,4 +1,5 @@
-// Scenes whose size is a parameter: as many bodies as asked for, at kept density, the same each time.
+// Scenes whose size is a parameter: the requested number of bodies, at constant density, the same
+// each time.
 #include <algorithm>
 #include <limits>
 #include <set>
@@ -34,9 +35,10 @@ TEST(SizedScenes, HaveAsManyBodiesAsAskedForWithNamesOfTheirOwn) {
     }
 }
 
-// Room a body, where walls stand around it: between the left and the right, the near and the far one, floor and ceiling.
+// Volume per body of a scene with walls: between the left and the right, the near and the far one,
+// floor and ceiling.
 TEST(SizedScenes, InARoomKeepTheirDensity) {
-  for (const auto& [name, tolerance] : {std::pair("gas", 0.02), {"atoms", 0.12}}) {   // layers that are not full: of atoms two of 11 are, at n = 1000
+  for (const auto& [name, tolerance] : {std::pair("gas", 0.02), {"atoms", 0.12}}) {   // incomplete layers: 2 of 11 of the atoms at n = 1000
     const auto room = [&](int n) {
       const scene::Scene scene = scene::make_sized_scene(name, n);
       return 8.0 * scene.bodies[1].position_m.x() * scene.bodies[3].position_m.y() * scene.bodies[5].position_m.z() / n;
@@ -52,7 +54,8 @@ TEST(SizedScenes, InARoomKeepTheirDensity) {
   }
 }
 
-// Ground a body: of the box around where they begin; along a row, length a body. A scene that kept its width would be off by the ratio of sizes.
+// Ground per body: of the box around the start positions; for a row, length per body. A scene with
+// constant width would be wrong by the ratio of sizes.
 TEST(SizedScenes, OnTheGroundKeepTheirDensity) {
   const auto ground = [](const char* name, const char* kind, int n, bool is_row) {
     const scene::Scene scene = scene::make_sized_scene(name, n);
@@ -66,7 +69,7 @@ TEST(SizedScenes, OnTheGroundKeepTheirDensity) {
     EXPECT_NEAR(ground(name, kind, few, is_row), ground(name, kind, many, is_row), 0.25 * ground(name, kind, many, is_row)) << name;   // the outermost have half their place outside the box: 19 % of 10 rows by 10
 }
 
-// 1.54 m wide: at 20,000 pendula 200 vehicles have 141 m for a row.
+// 1.54 m wide: at 20,000 pendula there are 141 m for a row of 200 vehicles.
 TEST(SizedScenes, OfManyCarsHaveRoomForEachVehicle) {
   for (const int n : {400, 4000, 20'000}) {
     std::vector<Vector3d> wheels;
@@ -89,13 +92,13 @@ TEST(SizedScenes, AreTheSameEachTime) {
   EXPECT_NE(once.digest, scene::make_sized_scene("atoms", 31).digest);
 }
 
-// The scene places the block of ground by its centre of mass, which it knows as numbers.
+// The scene places the block of ground by its centre of mass, which is a number in the code.
 TEST(SizedScenes, PlaceTheMountainWhereItsModelIs) {
   const SolidModel mountain = load_solid(std::filesystem::path(TUMBLE_SOURCE_DIR) / "models/mountainside.3ds");
   const scene::Scene scene = scene::make_sized_scene("avalanche", 3);
   const auto piece = std::find_if(scene.bodies.begin(), scene.bodies.end(), [](const scene::BodySpec& body) { return body.name == "mountain_1"; });
   ASSERT_NE(piece, scene.bodies.end());
-  EXPECT_LT((piece->position_m - mountain.com_mesh).norm(), 1e-4);   // m: its toe lies 10 cm deep in the valley's floor
+  EXPECT_LT((piece->position_m - mountain.com_mesh).norm(), 1e-4);   // m: its toe is 10 cm deep in the valley's floor
   EXPECT_TRUE(piece->immovable);
 }
 

@@ -20,7 +20,7 @@ truths::Case truth(const std::string& id) {
 }
 
 // The reference's laws where this tree has it; else the library's integration only, and what needs more says so.
-battery::Given given_at_hand() {
+battery::Given available_laws() {
   modules::Registry registry;
   register_assignments(registry);
   battery::Given given{library_laws(), false, truth};
@@ -37,7 +37,7 @@ class Stability : public ::testing::TestWithParam<battery::Case> {};
 
 TEST_P(Stability, HoldsItsThresholds) {
   if (!GetParam().run) GTEST_SKIP() << GetParam().not_part;
-  static const battery::Given given = given_at_hand();
+  static const battery::Given given = available_laws();
   const report::BatteryRow row = battery::run(GetParam(), given);
   for (const report::Measure& m : row.measures) {
     const report::Outcome outcome = report::outcome_of(m);

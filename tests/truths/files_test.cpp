@@ -1,4 +1,5 @@
-// The truth files of this folder with the reference; a spoilt law must fail; odd files are refused with their place.
+// The files of reference values in this folder with the reference modules; a wrong law must fail;
+// invalid files are refused with the position.
 #include <fstream>
 
 #include <gtest/gtest.h>
@@ -81,7 +82,7 @@ TEST(TruthFiles, AStubIsNotAttempted) {
     EXPECT_EQ(truths::verdict_of(stub.compare(truth_named(name))), Verdict::kNotAttempted) << name;
 }
 
-/// What reading and computing a logistic case says when one piece of its text is replaced.
+/// The message for a logistic case in which one piece of its text is replaced.
 std::string complaint(const std::string& from, const std::string& to) {
   std::ifstream source(std::filesystem::path(TUMBLE_SOURCE_DIR) / "tests/truths/logistic__lecture_to_T2.json");
   std::string text(std::istreambuf_iterator<char>(source), {});

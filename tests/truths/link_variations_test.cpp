@@ -1,4 +1,4 @@
-// Other springs, pendulums, tops, blocks and rollers than those of the files, against closed forms.
+// Springs, pendulums, tops, blocks and rollers other than those of the files, against closed forms.
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ void expect_right(const MadeCase& made, const std::string& what) {
   EXPECT_EQ(truths::verdict_of(lines), Verdict::kRight) << what << failures(lines);
 }
 
-// ---- Springs ---------------------------------------------------------------------------------------------------------
+// ---- Springs -----------------------------------------------------------------------------------
 
 struct Oscillation {
   double x, v;
@@ -40,7 +40,8 @@ TEST(LinkVariations, SpringsOfOtherMassesStiffnessesAndDampings) {
   for (const auto& s : cases) {
     const double w = std::sqrt(s.k / s.m), b = s.c / (2 * s.m), size = std::hypot(s.x0, s.v0 / w);
     const Oscillation end = oscillation(w, b, s.x0, s.v0, s.t);
-    // Phases are rounded at their own size; a damped start at x = 0 stands on a spring of finite length, whose rounding does not decay.
+    // Phases are rounded at their own size; a damped start at x = 0 has a spring of finite length,
+    // whose rounding does not decay.
     const double floor = kUlp * 4.0 * size * (1.0 + w * s.t);
     const double energy = 0.5 * s.m * end.v * end.v + 0.5 * s.k * end.x * end.x;
     MadeCase made("spring_mass");
@@ -53,7 +54,8 @@ TEST(LinkVariations, SpringsOfOtherMassesStiffnessesAndDampings) {
   }
 }
 
-// A bob that goes round in a level circle of radius r below the anchor: k (L - L0) cos(a) = m g, k (L - L0) sin(a) = m w^2 r.
+// A bob on a horizontal circle of radius r below the anchor: k (L - L0) cos(a) = m g, k (L - L0)
+// sin(a) = m w^2 r.
 TEST(LinkVariations, ElasticConicalPendulum) {
   const double m = 0.7, k = 90.0, L0 = 0.6, L = 0.8, force = k * (L - L0), cosine = m * kGravity / force, r = L * std::sqrt(1 - cosine * cosine);
   const double w = std::sqrt(force / L / m), h = L * cosine, t = 2.5, turn = w * t;
@@ -65,9 +67,9 @@ TEST(LinkVariations, ElasticConicalPendulum) {
   expect_right(made, "conical");
 }
 
-// ---- Pendulums -------------------------------------------------------------------------------------------------------
+// ---- Pendulums ---------------------------------------------------------------------------------
 
-// A chain that hangs still: rod i carries all that is below it.
+// A hanging chain at rest: rod i carries all the weight below it.
 TEST(LinkVariations, ChainAtRestCarriesWhatHangsOnIt) {
   const std::vector<double> masses{2.0, 0.001, 30.0}, lengths{0.5, 1.0, 0.2}, zeros(3, 0.0), tensions{32.001 * kGravity, 30.001 * kGravity, 30.0 * kGravity};
   MadeCase made("chain");
@@ -79,13 +81,14 @@ TEST(LinkVariations, ChainAtRestCarriesWhatHangsOnIt) {
   expect_right(made, "hanging chain");
 }
 
-// A straight row let go from rest at an angle: rod i carries what is below it along itself, and where a light bob stands between, the matrix of the rods
-// has a condition of four times the ratio of masses.
+// A straight chain released from rest at an angle: rod i carries the component along itself of the
+// weight below it, and with a light bob in the chain the matrix of the rods has a condition of four
+// times the ratio of masses.
 TEST(LinkVariations, TensionsOfARowThatIsLetGo) {
   for (const double ratio : {1.0, 1e2, 1e4, 1e6}) {
     const double angle = 0.5, pull = kGravity * std::cos(angle);
     const std::vector<double> masses{1.0 / ratio, 1.0}, lengths{1.0, 0.7}, angles{angle, angle}, tensions{(1.0 + 1.0 / ratio) * pull, pull};
-    for (const double part : {0.0, 1e-6}) {   // of the tension: a wrong one must be seen
+    for (const double part : {0.0, 1e-6}) {   // of the tension: a wrong one must fail
       MadeCase made("double_pendulum");
       made.input("masses", list_of(masses)).input("lengths", list_of(lengths)).input("g", kGravity).input("theta0", list_of(angles)).input("omega0", list_of({0.0, 0.0})).input("times", truths::Value::List{});
       made.output("energy", -kGravity * std::cos(angle) * (masses[0] * 1.0 + 1.7), 1e-14).output("rod_tensions_t0", list_of({tensions[0], tensions[1] * (1.0 + part)}), 2 * kUlp * tensions[0]);
@@ -95,7 +98,7 @@ TEST(LinkVariations, TensionsOfARowThatIsLetGo) {
   }
 }
 
-// All mass in one point: a rod instead of a hinge. T = 4 K(sin(theta0 / 2)) / w0.
+// All mass in one point: a rod in place of a hinge. T = 4 K(sin(theta0 / 2)) / w0.
 TEST(LinkVariations, PointPendulumOfAnyAngle) {
   for (const double angle : {-2.0, 0.3, 1.2}) {
     const double d = 0.4, m = 3.0, w0 = std::sqrt(kGravity / d), T = 4.0 * std::comp_ellint_1(std::abs(std::sin(0.5 * angle))) / w0;
@@ -110,7 +113,7 @@ TEST(LinkVariations, PointPendulumOfAnyAngle) {
   }
 }
 
-// ---- Blocks and rollers ----------------------------------------------------------------------------------------------
+// ---- Blocks and rollers ------------------------------------------------------------------------
 
 void expect_block(double v0, double degrees, double mu, double m) {
   const double angle = degrees * M_PI / 180, a = kGravity * (mu * std::cos(angle) - std::sin(angle)), normal = m * kGravity * std::cos(angle);
@@ -128,13 +131,14 @@ void expect_block(double v0, double degrees, double mu, double m) {
   expect_right(made, std::to_string(degrees) + " deg, mu = " + std::to_string(mu));
 }
 
-// The end of sliding uphill, where friction turns round, is located to 1e-5 m only: to be enabled when it is exact.
+// The end of sliding uphill, where friction reverses, is located to 1e-5 m only: to be enabled when
+// it is exact.
 TEST(LinkVariations, BlocksUphill) { expect_block(4.0, -15.0, 0.4, 2.0); }
 
 TEST(LinkVariations, BlocksSteepSmoothAndHeavy) {
   expect_block(0.5, 60.0, 2.5, 0.1);
-  expect_block(1.0, 10.0, 0.1, 1.0);      // faster and faster
-  expect_block(1.0, 0.0, 0.0, 1.0);       // on and on
+  expect_block(1.0, 10.0, 0.1, 1.0);      // accelerates
+  expect_block(1.0, 0.0, 0.0, 1.0);       // slides at constant speed
   expect_block(2.0, 5.0, 0.3, 1e4);
 }
 

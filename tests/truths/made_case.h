@@ -1,4 +1,5 @@
-/// Truth cases made in memory, as files have them: other cases of a family, with values from closed forms.
+/// Cases made in memory in the format of files: other cases of a family, with values from closed
+/// forms.
 #pragma once
 
 #include <cstdio>
@@ -10,7 +11,7 @@
 
 namespace tumble::testing {
 
-/// {value, unit, floor} as a file has it.
+/// {value, unit, floor} as in a file.
 inline truths::Value entry(const std::string& name, const truths::Value::Content& value, const std::string& floor = "") {
   truths::Value::Members members{{"value", {name + "/value", value}}};
   if (!floor.empty()) members.emplace_back("tolerance_floor", truths::Value(name + "/tolerance_floor", floor));

@@ -1,4 +1,4 @@
-/// Truths computed with the reference's functions, whole or with one of them spoilt.
+/// Cases computed with the reference's functions, right or with one of them made wrong.
 #pragma once
 
 #include <functional>
@@ -36,7 +36,7 @@ struct Reference {
     return laws;
   }
 
-  /// The lines of a case; empty for a family that nobody knows.
+  /// The lines of a case; empty for an unknown family.
   std::vector<truths::Line> compare(const truths::Case& truth) const {
     const Laws laws = this->laws();
     truths::Comparison comparison;

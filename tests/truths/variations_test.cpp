@@ -1,4 +1,5 @@
-// Other cases than those of the files, against closed forms: the families are the contract, not the files.
+// Cases other than those of the files, against closed forms: the families are the contract, not the
+// files.
 #include <cmath>
 #include <cstdio>
 
@@ -14,7 +15,8 @@ namespace {
 
 Laws reference_laws() { return Reference().laws(); }
 
-// t_1 = sqrt(2 h / g), then 2 e^k t_1 between impacts. 1e-12: a thousand roundings of seconds; forgetting e is off by tenths.
+// t_1 = sqrt(2 h / g), then 2 e^k t_1 between impacts. 1e-12: a thousand roundings of seconds; a
+// missing e is wrong by tenths.
 TEST(TruthVariations, BouncingBallOfOtherHeightsAndRestitutions) {
   const Laws laws = reference_laws();
   for (const double e : {0.3, 0.65, 0.95}) {
@@ -31,7 +33,7 @@ TEST(TruthVariations, BouncingBallOfOtherHeightsAndRestitutions) {
   }
 }
 
-// Equal balls hand their velocities on: with e = 1 the last k leave, whatever n.
+// Equal balls pass their velocities on: with e = 1 the last k leave, for any n.
 TEST(TruthVariations, CradlesOfOtherNumbers) {
   const Laws laws = reference_laws();
   for (const int n : {2, 3, 7}) {
@@ -56,13 +58,15 @@ TEST(TruthVariations, CradleOfTwoAtOtherRestitutions) {
   }
 }
 
-// h = v t + g t^2 / 2 for a ball thrown down: t = 2 h / (v + sqrt(v^2 + 2 g h)), which cancels nothing.
+// h = v t + g t^2 / 2 for a ball thrown down: t = 2 h / (v + sqrt(v^2 + 2 g h)), without
+// cancellation.
 TEST(TruthVariations, SphereOntoAPlaneFromOtherHeights) {
   const Reference reference;
   for (const double height : {1e-3, 0.4, 30.0, 2000.0}) {
     for (const double v : {0.0, 0.7, 250.0}) {
       const double g = 3.7, R = 0.125, speed = std::sqrt(v * v + 2.0 * g * height), toi = 2.0 * height / (v + speed);
-      // Heights are rounded at their own size; the time moves by that over the speed, the rest with it.
+      // Heights are rounded at their own size; the time changes by that over the speed, and the
+      // rest with it.
       const double length_floor = 0x1p-53 * (height + 1.0), time_floor = 0x1p-53 * toi + length_floor / speed;
       const Vector3d x0(1, -2, R + height), sideways(0.5, 0, 0), at(1 + 0.5 * toi, -2, R);
       truths::Case truth{"variation", "toi_sphere_plane", "", {}, {}};
@@ -99,7 +103,8 @@ TEST(TruthVariations, OrdersOnTheLogisticEquation) {
   EXPECT_NEAR(order(reference.a2.rk4_step, 100), 4.0, 0.1);
 }
 
-// The same on a free asymmetric top, against 16 times finer steps of RK4 (their own error is 1e-5 of RK4's coarse one).
+// The same on a free asymmetric top, against RK4 with 16 times smaller steps (their own error is
+// 1e-5 of the coarse one's).
 TEST(TruthVariations, OrdersOnAFreeTop) {
   const Reference reference;
   const Inertia inertia = finite_inertia(1.0, Vector3d(1, 2, 3).asDiagonal());

@@ -90,17 +90,21 @@ void Search::refine(const CostMethod& method) {
   std::optional<CostChoice> before;
   double least = std::numeric_limits<double>::infinity();
   int worse = 0;
+  // Halves the step, or divides the tolerance by ten, until one of the conditions below ends it.
   for (int k = 0; k < most; ++k) {
     const CostChoice now = tried(method, steps_shrink ? 1L << k : 1L, method.controlled ? std::pow(10.0, -1.0 - k) : kUnset);
     found.was_cut_short = found.was_cut_short || cpu_seconds() > until_;
     if (now.result.not_attempted || cpu_seconds() > until_) return;
+    // The goal is reached: look between the last two resolutions for a cheaper run.
     if (goal_.error_m && fulfils(now.result)) {
       if (before) trim(*before, now);
       return;
     }
+    // No improvement is possible: the error floor, the cost of the best method, or a better run.
     if (is_right(now.result) && now.result.error_m <= reference_.floor_m) return;   // the error floor is reached
     if (is_right(now.result) && now.result.cpu_s > (goal_.error_m ? kHopelessPrice * best_price() : *goal_.price_s)) return;
     if (goal_.price_s && found.best && found.best->result.error_m <= reference_.floor_m && now.result.cpu_s > found.best->result.cpu_s) return;
+    // Errors that no longer decrease.
     const bool is_new = !before || now.result.evaluations > before->result.evaluations;   // a tolerance without effect
     const bool falls = now.result.error_m * kAlikeErrors < least;
     worse = falls ? 0 : worse + (is_right(now.result) && is_new ? 1 : 0);

@@ -187,6 +187,7 @@ CostResult run_at_resolution(const scene::Scene& scene, const CostMethod& method
   double building = std::numeric_limits<double>::infinity(), whole = building;
   const double begun = cpu_seconds();
   try {
+    // The fastest of several short runs; the first one gives error and counters.
     for (int k = 0; k < options.runs && (k == 0 || cpu_seconds() - begun < kShort); ++k) {
       Measurement run(options.most_of_run_s);
       run_scene(stepped, laws, how, run);
@@ -210,6 +211,7 @@ CostResult run_at_resolution(const scene::Scene& scene, const CostMethod& method
   }
   result.spent_s = cpu_seconds() - begun;
   result.took_too_long = result.stopped_by.find(too_long(options.most_of_run_s)) != std::string::npos;
+  // CPU time without the set-up before the first step.
   if (!std::isfinite(whole)) return result;   // it did not finish
   result.cpu_s = std::max(1e-6, whole - building);
   if (result.cpu_s < kNoise * building) {   // the difference of two long times is noise: the clocks of the stages are more exact

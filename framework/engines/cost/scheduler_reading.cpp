@@ -52,34 +52,34 @@ std::string why_undone(const Sum& own, const Sum& right) {
   const double sent = own.rollbacks / own.impacts, sent_right = right.rollbacks / right.impacts;
   const double depth = ratio(own.undone, own.rollbacks), depth_right = ratio(right.undone, right.rollbacks);
   const double tries = own.impacts / own.events, tries_right = right.impacts / right.events;
-  if (sent > kAlike * sent_right) why += fmt::format(" For each impact that it works at it sends back {:.1f} bodies where {:.1f} have to go: bodies that the collision did not touch.", sent, sent_right);
-  if (depth > kAlike * depth_right) why += fmt::format(" A body that goes back loses {:.1f} integrations where {:.1f} suffice: it is sent back further than to the impact.", depth, depth_right);
-  if (tries > kAlike * tries_right) why += fmt::format(" It works at {:.1f} impacts for each that it commits, where {:.1f} suffice: what was right is undone and done again.", tries, tries_right);
+  if (sent > kAlike * sent_right) why += fmt::format(" For each impact that it executes it rolls back {:.1f} bodies where {:.1f} suffice: bodies that the collision did not touch.", sent, sent_right);
+  if (depth > kAlike * depth_right) why += fmt::format(" A rollback costs {:.1f} integrations where {:.1f} suffice: it goes further back than to the impact.", depth, depth_right);
+  if (tries > kAlike * tries_right) why += fmt::format(" It executes {:.1f} impacts for each that it commits, where {:.1f} suffice: right ones are rolled back and repeated.", tries, tries_right);
   return why;
 }
 
 std::vector<SchedulerReading> beside(const Sum& own, const Sum& right) {
   std::vector<SchedulerReading> readings;
   if (own.undone > kAlike * right.undone + kWorthAWord * own.events) {
-    const std::string much = right.undone > 0.0 ? times(own.undone / right.undone) + " what the reference undoes" : "what the reference need not undo";
-    readings.push_back({fmt::format("It undoes {}: {:.2f} integrations an event, where {:.2f} suffice.{}", much, own.undone / own.events, right.undone / right.events, why_undone(own, right)), Kind::kWasteful});
+    const std::string much = right.undone > 0.0 ? times(own.undone / right.undone) + " what the reference rolls back" : "what the reference does not roll back";
+    readings.push_back({fmt::format("It rolls back {}: {:.2f} integrations per event, where {:.2f} suffice.{}", much, own.undone / own.events, right.undone / right.events, why_undone(own, right)), Kind::kWasteful});
   }
   if (own.checks > kAlike * right.checks)
-    readings.push_back({fmt::format("It looks at its pairs {} as often as the reference: {:.1f} checks an event, where {:.1f} suffice. A check comes back sooner than its bodies could meet (next_check_time), or looks again at what was seen.", times(ratio(own.checks, right.checks)),
+    readings.push_back({fmt::format("It checks its pairs {} as often as the reference: {:.1f} checks per event, where {:.1f} suffice. A check returns sooner than its bodies could meet (next_check_time), or repeats an interval.", times(ratio(own.checks, right.checks)),
                                     own.checks / own.events, right.checks / right.events), Kind::kWasteful});
   if (own.states > kAlike * right.states)
-    readings.push_back({fmt::format("It keeps {} as many states as the reference: {:.1f} of a body at most, where {:.1f} do. What global virtual time has passed is not given away (states_to_purge), or global virtual time lags.", times(ratio(own.states, right.states)),
+    readings.push_back({fmt::format("It keeps {} as many states as the reference: at most {:.1f} per body, where {:.1f} suffice. States before global virtual time are not discarded (states_to_purge), or global virtual time lags.", times(ratio(own.states, right.states)),
                                     own.states / own.processes, right.states / right.processes), Kind::kWasteful});
   if (readings.empty())
-    readings.push_back({fmt::format("It pays what the reference pays: {:.2f} integrations an event, of which {:.2f} are taken back (reference: {:.2f} and {:.2f}).", own.integrations / own.events, own.undone / own.events, right.integrations / right.events, right.undone / right.events), Kind::kRight});
+    readings.push_back({fmt::format("It pays what the reference pays: {:.2f} integrations per event, of which {:.2f} are rolled back (reference: {:.2f} and {:.2f}).", own.integrations / own.events, own.undone / own.events, right.integrations / right.events, right.undone / right.events), Kind::kRight});
   return readings;
 }
 
 std::vector<SchedulerReading> alone(const Sum& own) {
   const double sent = own.rollbacks / own.impacts;
-  const std::string pays = fmt::format("It pays {:.2f} integrations an event, takes back {:.2f} of them, checks pairs {:.1f} times and keeps {:.1f} states of a body at most.", own.integrations / own.events, own.undone / own.events, own.checks / own.events, own.states / own.processes);
-  if (sent > kOfOne) return {{fmt::format("{} For each impact that it works at it sends back {:.1f} bodies: two take part in one, so most of these are bodies that the collision did not touch.", pays, sent), Kind::kWasteful}};
-  return {{fmt::format("{} For each impact that it works at it sends back {:.1f} bodies; two take part in one.", pays, sent), Kind::kRight}};
+  const std::string pays = fmt::format("It pays {:.2f} integrations per event, rolls back {:.2f} of them, checks pairs {:.1f} times and keeps at most {:.1f} states per body.", own.integrations / own.events, own.undone / own.events, own.checks / own.events, own.states / own.processes);
+  if (sent > kOfOne) return {{fmt::format("{} For each impact that it executes it rolls back {:.1f} bodies: two take part in one, so most of these are bodies that the collision did not touch.", pays, sent), Kind::kWasteful}};
+  return {{fmt::format("{} For each impact that it executes it rolls back {:.1f} bodies; two take part in one.", pays, sent), Kind::kRight}};
 }
 
 /// The result over all runs.
@@ -95,12 +95,12 @@ SchedulerReading of_trace(const SchedulerCurve& curve) {
     }
   if (runs == 0) return {fmt::format("{} was not run.", curve.name), Kind::kWrong};
   if (wrong == nullptr) {
-    const char* however = curve.by_size.empty() ? "however far its processes go ahead" : "however far its processes go ahead and however many they are";
+    const char* however = curve.by_size.empty() ? "for any step" : "for any step and any number of processes";
     return {fmt::format("{} commits what the ordered reference commits, {}: {} events in {} runs, to the last bit.", curve.name, however, events, runs), Kind::kRight};
   }
   if (wrong->not_attempted) return {fmt::format("{}: {}.", curve.name, wrong->stopped_by), Kind::kNotWritten};
   const std::string rest = right == 0 ? "in no run" : fmt::format("in {} of {} runs", right, runs);
-  return {fmt::format("{} commits what the ordered reference commits {}. With {} it gets through {} of {} events: {}", curve.name, rest, in_words(*wrong), wrong->committed, wrong->due, wrong->stopped_by), Kind::kWrong};
+  return {fmt::format("{} commits what the ordered reference commits {}. With {} it commits {} of {} events: {}", curve.name, rest, in_words(*wrong), wrong->committed, wrong->due, wrong->stopped_by), Kind::kWrong};
 }
 
 }  // namespace

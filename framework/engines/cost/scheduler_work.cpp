@@ -95,6 +95,7 @@ SchedulerRun run_scheduler(const scene::Scene& scene, const Laws& laws, const Sc
   double reference_s = std::numeric_limits<double>::infinity();
   Laws watched = laws;
   stop_when_too_long(trial.most_s, watched);
+  // The fastest of several short runs, each with its own reference run.
   for (int k = 0; k < trial.runs && (k == 0 || cpu_seconds() - begun < kShort); ++k) {
     Clocked clocked;
     try {

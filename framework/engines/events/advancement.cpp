@@ -129,6 +129,7 @@ class AdvancementRun {
     const int a = key.body_a, b = key.body_b;
     Discontinuity discontinuity = outcome_of(key);
     run_.commit(discontinuity);
+    // The flights that begin replace those of the pair or of the processes.
     std::vector<int> changed;
     if (discontinuity.begun.empty()) {
       for (const auto& [body, flight] : {std::pair{a, &discontinuity.a}, std::pair{b, &discontinuity.b}})
@@ -142,12 +143,13 @@ class AdvancementRun {
       boxes_[begun.body] = box_of(begun.body);
       changed.push_back(begun.body);
     }
+    // New bounds: for the pair, then for every changed body with all bodies within reach.
     if (key.kind == StampKind::kCollision) look_ahead(a, b);
-    const auto pair_at_hand = [&](int body, int other) { return key.kind == StampKind::kCollision && std::minmax(body, other) == std::minmax(a, b); };
+    const auto this_pair = [&](int body, int other) { return key.kind == StampKind::kCollision && std::minmax(body, other) == std::minmax(a, b); };
     for (const int body : changed) {
       look_for_own_end(body);
       for (int other = 0; other < run_.world().size(); ++other)
-        if (other != body && !pair_at_hand(body, other) && touches(body, other) && !(other < body && std::find(changed.begin(), changed.end(), other) != changed.end())) look_ahead(body, other);
+        if (other != body && !this_pair(body, other) && touches(body, other) && !(other < body && std::find(changed.begin(), changed.end(), other) != changed.end())) look_ahead(body, other);
     }
   }
 

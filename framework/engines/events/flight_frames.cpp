@@ -57,6 +57,7 @@ Frame frame_of(const FlightWorld& world, double t, const FlightOf& flight_of, st
   states.clear();
   std::map<int, std::vector<RigidBodyState>> shown;   // by segment: the states of its members
   for (int i = 0; i < world.size(); ++i) {
+    // A member of an island: its state on the segment.
     const Flight& flight = flight_of(i);
     if (flight.segment >= 0) {   // position correction moves its path without a velocity (SmoothPath::Momenta): the momentum of the state counts
       const Inertia& inertia = world.world().bodies[i].inertia;
@@ -68,6 +69,7 @@ Frame frame_of(const FlightWorld& world, double t, const FlightOf& flight_of, st
       frame.poses.push_back({state.com_world, state.world_from_body, inertia.inverse_mass * state.momentum_world, omega_of(state, inertia)});
       continue;
     }
+    // A body in free flight, or immovable.
     const collision::MotionState now = world.motion_at(i, flight, t);
     frame.poses.push_back({now.pose.com_world, now.pose.world_from_body, now.velocity_world, now.omega_world});
     states.push_back({now.pose.com_world, now.pose.world_from_body, Vector3d::Zero(), Vector3d::Zero()});
@@ -76,6 +78,7 @@ Frame frame_of(const FlightWorld& world, double t, const FlightOf& flight_of, st
     states.back().momentum_world = inertia.mass * now.velocity_world;
     states.back().angular_momentum_world = now.pose.world_from_body * (inertia.inertia_body * (now.pose.world_from_body.conjugate() * now.omega_world));
   }
+  // Sums over all bodies.
   const Invariants sums = invariants_of(world.world(), states);
   frame.kinetic_energy = sums.kinetic_energy;
   frame.potential_energy = sums.potential_energy;

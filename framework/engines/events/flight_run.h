@@ -60,7 +60,8 @@ class FlightRun {
   /// @throws StoppedRun where energy has run away by then; the frame is recorded
   void commit_frame(const FlightOf& flight_of);
 
-  /// Ends the run: frames that are left are pushed by the caller before. `stopped_by` is empty where all is well.
+  /// Ends the run: frames that are left are pushed by the caller before. `stopped_by` is empty
+  /// where all is well.
   void end(const std::string& stopped_by);
 
   CheckCost cost;

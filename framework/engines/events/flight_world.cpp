@@ -46,6 +46,7 @@ FlightWorld::FlightWorld(const scene::Scene& scene, const std::string& engine, c
   world_ = build_world(scene);
   if (world_.gravity_world) gravity_world_ = *world_.gravity_world;
   std::map<std::string, int> known;
+  // Shapes, first flights and facts of all bodies; equal shapes once.
   for (int i = 0; i < size(); ++i) {
     const WorldBody& body = world_.bodies[i];
     const auto [found, is_new] = known.try_emplace(recipe_of(scene.bodies[i], i), static_cast<int>(shapes_.size()));
@@ -66,6 +67,7 @@ FlightWorld::FlightWorld(const scene::Scene& scene, const std::string& engine, c
     if (moves) movers_.push_back(i);
     else if (body.collides) obstacles_.push_back(i);
   }
+  // Overlaps at the start, then the processes that exist from the start.
   turning_.resize(first_.size());
   refuse_overlap(scene);
   processes_ = std::make_unique<LogicalProcesses>(world_, [this](int body) { return &shape(body); }, laws, rules);
@@ -99,6 +101,7 @@ bool FlightWorld::may_collide(int a, int b) const {
 
 // Refuses bodies that overlap by more than rounding; separates those that overlap by rounding.
 void FlightWorld::refuse_overlap(const scene::Scene& scene) {
+  // Candidate pairs: boxes of the start positions, with a margin for rounding.
   std::vector<collision::SweptBox> boxes;
   for (int i = 0; i < size(); ++i) {
     const Vector3d margin = Vector3d::Constant(radius(i) * (1 + kCoordinateRounding)) + kCoordinateRounding * first_[i].com_world.cwiseAbs();
@@ -107,10 +110,12 @@ void FlightWorld::refuse_overlap(const scene::Scene& scene) {
   auto pairs = collision::overlapping_pairs(boxes);
   std::erase_if(pairs, [&](const auto& pair) { return !may_collide(pair.first, pair.second); });
   near_at_start_ = pairs;
+  // Overlaps beyond rounding are refused.
   const auto pose = [&](int k) { return collision::Pose{first_[k].com_world, first_[k].world_from_body}; };
   std::vector<StartPair> near;
   for (const auto& [a, b] : pairs) look_at_start(a, b, shape(a), pose(a), shape(b), pose(b), kRoundOff * collision::gap_scale(shape(a), pose(a), shape(b), pose(b)), near);
   refuse_overlaps(scene.file.empty() ? scene.name : scene.file.string(), scene, near);
+  // Overlaps of rounding size are removed, by moving one body along the normal.
   for (int round = 0; round < kMostNudges && !scene.contact; ++round) {   // with persistent contacts, processes separate their members themselves
     bool clean = true;
     for (const auto& [a, b] : pairs) {

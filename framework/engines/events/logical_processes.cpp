@@ -51,6 +51,7 @@ LogicalProcesses::Start LogicalProcesses::start(const std::vector<RigidBodyState
   std::vector<int> movers;
   for (int i = 0; i < static_cast<int>(whole_.bodies.size()); ++i)
     if (!whole_.bodies[static_cast<std::size_t>(i)].immovable()) movers.push_back(i);
+  // Components of links, and bodies that do not fly freely.
   Components components(movers);
   std::vector<bool> held(whole_.bodies.size(), false);
   for (const int body : movers) {
@@ -58,10 +59,12 @@ LogicalProcesses::Start LogicalProcesses::start(const std::vector<RigidBodyState
     held[static_cast<std::size_t>(body)] = first >= 0 || is_pushed(body, 0.0);
     if (first >= 0) components.join(first, body);
   }
+  // Contacts at the start join components.
   for (const auto& [a, b] : touching) {
     for (const int body : {a, b}) held[static_cast<std::size_t>(body)] = true;
     if (components.has(a) && components.has(b)) components.join(a, b);
   }
+  // Each component that does not fly freely begins as a segment, with its contacts.
   Start start;
   for (const std::vector<int>& members : components.all()) {
     if (std::none_of(members.begin(), members.end(), [&](int body) { return held[static_cast<std::size_t>(body)]; })) continue;

@@ -1,41 +1,53 @@
-/// Judges a recorded run by numbers: what the scene's `checks` ask. Reads scene and trajectory, never an engine.
+/// Judges a recorded run by numbers: what the scene's `checks` ask. Reads scene and trajectory,
+/// never an engine.
 ///
-/// | kind             | value                                                                 | right when                 |
-/// | energy           | largest |E - E0| over what there was to begin with (below) [-]        | <= tolerance               |
-/// | energy_not_rising| largest rise of E above an earlier value, over the same [-]           | <= tolerance               |
-/// | momentum         | largest |P - P0| [kg m/s]; with `expected`: |P - expected| at the end  | <= tolerance               |
-/// | angular_momentum | the same for L about the world's origin [kg m^2/s]                    | <= tolerance               |
-/// | gap              | smallest gap of any frame [m]                                         | >= -tolerance              |
-/// | final_position   | distance of body's centre from `expected` at `at_s` [m]               | <= tolerance               |
-/// | final_velocity   | the same for its velocity [m/s]                                       | <= tolerance               |
-/// | centre_of_mass   | distance of the common centre of mass of `bodies`, or of all that move, from `expected` at `at_s` [m] | <= tolerance |
-/// | impact_times     | largest error of the first impacts of `body` and `other` [s]          | <= tolerance               |
-/// | event_count      | |collisions - expected|, of `body` and `other` where named [-]        | <= tolerance               |
-/// | restitution_law  | largest |v_after + e v_before| over |v_before|, of all collisions [-] | <= tolerance               |
-/// | side_of_wall     | smallest distance of body from other's centre along `axis` (world), on the side where it began [m] | >= -tolerance |
-/// | flips            | |flips - expected|: how often the body's own `axis` turned over against where it pointed first [-]  | <= tolerance |
-/// | rod_length       | largest |length - L0| of `link`, or of any rod, from places alone [m]  | <= tolerance               |
-/// | joint_gap        | largest distance of the two points that `link`, or any joint, holds together [m] | <= tolerance     |
-/// | joint_angle      | largest angle of the two axes of a hinge, or of the two bodies of a weld [rad]   | <= tolerance     |
-/// | link_force       | |force in `link` - expected| over |expected| at `at_s` [-], N where it is 0; what pulls together is > 0 | <= tolerance |
-/// | reaction         | the same for the force of lasting contacts on `body`, from `other` where named, along `axis` (world)   | <= tolerance |
-/// | drift            | largest distance from where it was at `at_s`, of `body`, `bodies`, or any [m]    | <= tolerance     |
-/// | tilt             | largest turn against its orientation at `at_s`, of the same [rad]                | <= tolerance     |
-/// | at_rest          | largest kinetic energy a kilogram, of the same, from `at_s` on; 0: at the end [J/kg] | <= tolerance |
-/// | distance_travelled | |way of body from its start - expected| at `at_s`, along `axis` (world) where given [m] | <= tolerance |
-/// | angle_at         | |angle - expected| at `at_s`: how far body turned about `axis` (world), whole turns included [rad]; it must
-///                      turn less than half way round between two frames                               | <= tolerance |
-/// | stands           | how far the own `axis` of `body` or `bodies` leans from where it pointed first, at `at_s`; the largest [rad] | <= tolerance |
-/// | falls            | the same; the smallest [rad]                                          | >= tolerance               |
-/// | order_of_falls   | how many of `bodies` lean by expected [rad] before the one before them, or never [-] | <= tolerance |
+/// A check is right when value <= tolerance, unless the line says otherwise.
+///   energy              largest |E - E0| relative to the available energy (below) [-]
+///   energy_not_rising   largest rise of E above an earlier value, relative to the same [-]
+///   momentum            largest |P - P0| [kg m/s]; with `expected`: |P - expected| at the end
+///   angular_momentum    the same for L about the world's origin [kg m^2/s]
+///   gap                 smallest gap of any frame [m]; right when >= -tolerance
+///   final_position      distance of the body's centre from `expected` at `at_s` [m]
+///   final_velocity      the same for its velocity [m/s]
+///   centre_of_mass      distance of the common centre of mass of `bodies`, or of all movable
+///                       bodies, from `expected` at `at_s` [m]
+///   impact_times        largest error of the first impacts of `body` and `other` [s]
+///   event_count         |collisions - expected|, of `body` and `other` where named [-]
+///   restitution_law     largest |v_after + e v_before| / |v_before| of all collisions [-]
+///   side_of_wall        smallest distance of body from other's centre along `axis` (world), on its
+///                       first side [m]; right when >= -tolerance
+///   flips               |flips - expected|: reversals of the body's own `axis` [-]
+///   rod_length          largest |length - L0| of `link`, or of any rod, from positions alone [m]
+///   joint_gap           largest distance of the two points that `link`, or any joint, joins [m]
+///   joint_angle         largest angle of the axes of a hinge, or of the bodies of a weld [rad]
+///   link_force          |force in `link` - expected| / |expected| at `at_s` [-], in N where
+///                       expected is 0; tension is > 0
+///   reaction            the same for the force of persistent contacts on `body`, from `other`
+///                       where named, along `axis` (world)
+///   drift               largest distance from the position at `at_s`, of `body`, `bodies`, or any
+///                       body [m]
+///   tilt                largest rotation from the orientation at `at_s`, of the same [rad]
+///   at_rest             largest kinetic energy per kilogram, of the same, from `at_s` on; 0: at the
+///                       end [J/kg]
+///   distance_travelled  |displacement of the body from its start - expected| at `at_s`, along
+///                       `axis` (world) where given [m]
+///   angle_at            |angle - expected| at `at_s`: rotation of the body about `axis` (world) with
+///                       whole turns, at most half a turn between two frames [rad]
+///   stands              largest angle between the own `axis` of `body` or `bodies` and its first
+///                       direction, at `at_s` [rad]
+///   falls               the same; the smallest [rad]; right when >= tolerance
+///   order_of_falls      number of `bodies` that lean by expected [rad] before the one before them,
+///                       or never [-]
 ///
 /// The faults that the run's watch found (engines/base/run_watch.h) follow, as failed checks
 /// whatever the scene asks:
-/// | link_open        | how far a rod or joint came apart, over its size [-], or at an angle [rad] | never                 |
-/// | projection_open  | what a correction onto rods and joints left of their errors, over the group's size [-] | never     |
-/// | contact_unsolved | what impulses of contacts left of approach and slip, over the group's speed [-]        | never     |
-/// | turn_unresolved  | how far a body turned in a step of a method that samples [rad]            | never                 |
-/// | energy_rises     | rise of E above its least value so far, without what point forces and motors bring in, over what there was to begin with [-] | never |
+///   link_open           largest opening of a rod or joint over its size [-], or angle [rad]
+///   projection_open     errors that a projection of rods and joints left, over the island's size [-]
+///   contact_unsolved    approach and slip that the impulses of contacts left, over the island's
+///                       speed [-]
+///   turn_unresolved     rotation of a body in a step of a method that samples [rad]
+///   energy_rises        rise of E above its least value so far, without the work of point forces
+///                       and motors, relative to the available energy [-]
 ///
 /// In addition, for every scene: `impact_energy`, the change of kinetic energy in an impact
 /// relative to what restitution and friction give (`Event::energy_excess`), over the kinetic energy

@@ -48,6 +48,7 @@ ActivePairs::SmallBox ActivePairs::small_of(const Box& box) {
 // gets its new box.
 void ActivePairs::enter(int body, const SmallBox& box, std::size_t bucket) {
   std::size_t at = bucket;
+  // A body that is already in the bucket gets its new box.
   for (;; at = static_cast<std::size_t>(buckets_[at].next)) {
     Bucket& b = buckets_[at];
     for (std::int32_t place = 0; place < b.count; ++place)
@@ -57,6 +58,7 @@ void ActivePairs::enter(int body, const SmallBox& box, std::size_t bucket) {
       }
     if (b.next < 0) break;
   }
+  // A full chain is continued by an unused or a new bucket.
   if (buckets_[at].count == kInABucket) {
     if (free_.empty()) {
       free_.push_back(static_cast<std::int32_t>(buckets_.size()));

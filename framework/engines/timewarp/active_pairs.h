@@ -132,7 +132,8 @@ class ActivePairs {
   Entry& entry(int body) { return (*entries_)[static_cast<std::size_t>(body)]; }
   std::size_t bucket_of(std::int32_t i, std::int32_t j, std::int32_t k) const {
     const auto u = [](std::int32_t v) { return static_cast<std::uint32_t>(v); };
-    // Primes of M. Teschner et al., "Optimized spatial hashing for collision detection of deformable objects", VMV 2003.
+    // Primes of M. Teschner et al., "Optimized spatial hashing for collision detection of
+    // deformable objects", VMV 2003.
     return (u(i) * 73856093u ^ u(j) * 19349663u ^ u(k) * 83492791u) & mask_;
   }
   template <class Found>

@@ -5,7 +5,7 @@
 
 namespace tumble::engines {
 
-// ---- An impact ---------------------------------------------------------------------------------------------------------
+// ---- An impact ---------------------------------------------------------------------------------
 
 void TaughtTimewarp::collide(int id, const FoundImpact& found, const CheckDecision& decision) {
   const EventStamp& key = found.key;
@@ -46,7 +46,7 @@ void TaughtTimewarp::begin_flights(const Discontinuity& discontinuity, double sa
   keep_group_checks(safe_time, time);
 }
 
-// ---- Groups --------------------------------------------------------------------------------------------------------------
+// ---- Groups ------------------------------------------------------------------------------------
 
 // The groups after an event follow from the contacts and links of its bodies; the scheduler must
 // find the same.
@@ -85,17 +85,20 @@ void TaughtTimewarp::check_group(int id) {
   const int body = event.stamp.body_a;
   const Flight flight = process(body).flight();
   ++run_.counters.pair_checks;
+  // The search gives the contacts and the end of the group; the scheduler decides.
   const GroupFinding finding = look_at_group(run_, body, flight, event.safe_time, event.stamp.time);
   if (finding.end) event.stamp.microstep = finding.end->microstep;
   const GroupDecision decision = decide_.on_group_check(event, finding.contacts, run_.step());
   const std::string why = fmt::format("the group of {} changes at t = {:.9g} s", name(body), finding.end ? finding.end->time : event.stamp.time);
   if (decision.changes && !finding.end) throw StoppedRun(fmt::format("on_group_check says that {}, but no contact opens in [{:.9g}, {:.9g}] s", why, event.safe_time, event.stamp.time));
+  // Unchanged: the check returns to the queue with new times.
   if (!decision.changes) {
     event.stamp.microstep = 0;
     event.stamp.time = decision.next.stamp.time;
     event.safe_time = decision.next.safe_time;
     return put_check(id, event);
   }
+  // Changed: the rollbacks, then the new groups, which must be those of the contacts.
   queue_.park(id);
   roll_back(decision.rollbacks, why);
   for (const int member : event.receivers) go_to(member, finding.end->time, member == body ? std::optional(flight.version) : std::nullopt, why);
@@ -105,7 +108,7 @@ void TaughtTimewarp::check_group(int id) {
   begin_flights(discontinuity, decision.next.safe_time, decision.next.stamp.time);
 }
 
-// ---- A callback ------------------------------------------------------------------------------------------------------------
+// ---- A callback --------------------------------------------------------------------------------
 
 void TaughtTimewarp::expect_callback(const EventStamp& key) {
   const std::vector<int>& bodies = run_.receivers(key);

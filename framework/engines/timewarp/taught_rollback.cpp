@@ -12,7 +12,7 @@ constexpr std::size_t kWorthPurging = 6;          // states of a body: with fewe
 
 }  // namespace
 
-// ---- Rollback ----------------------------------------------------------------------------------------------------------
+// ---- Rollback ----------------------------------------------------------------------------------
 
 void TaughtTimewarp::roll_back(const std::vector<Rollback>& first, const std::string& why) {
   std::vector<Effect> effects;
@@ -52,6 +52,7 @@ void TaughtTimewarp::roll_back_one(const Rollback& rollback, const std::string& 
   if (to > from) return;   // it has not advanced to that time
   if (to < committed_.time)
     throw StoppedRun(fmt::format("{}: {} must be rolled back to t = {:.9g} s, but everything up to {:.9g} s is committed. Likely: global virtual time is too late, or may_commit accepts what is not certain", why, name(rollback.body), to, committed_.time));
+  // Drops the states after the rollback's stamp.
   const auto is_undone = [&](const KeptState& state) {
     if (state.time > to) return true;
     const bool is_from_the_start = state.began.body_a < 0;
@@ -66,6 +67,7 @@ void TaughtTimewarp::roll_back_one(const Rollback& rollback, const std::string& 
     back.drop_latest();
     ++dropped;
   }
+  // Restores the state at that time, and marks the executed events that it cancels.
   if (back.local_time() < to) back.integrate_to(to);
   for (Executed& executed : executed_) {
     const auto& processes = executed.effect.processes;
@@ -77,7 +79,7 @@ void TaughtTimewarp::roll_back_one(const Rollback& rollback, const std::string& 
   move(rollback.body, from, to);
 }
 
-// ---- Global virtual time -----------------------------------------------------------------------------------------------
+// ---- Global virtual time -----------------------------------------------------------------------
 
 void TaughtTimewarp::look_at_gvt(bool is_over) {
   since_asked_ = 0;

@@ -40,7 +40,7 @@ void TaughtTimewarp::run() {
   run_.end(stopped_by);
 }
 
-// ---- The loop ----------------------------------------------------------------------------------------------------------
+// ---- The loop ----------------------------------------------------------------------------------
 
 void TaughtTimewarp::loop() {
   keep_group_checks();
@@ -102,7 +102,7 @@ void TaughtTimewarp::check_nothing_leaked() {
   require(world().processes()->segments().alive() == 0, "no segment outlives its states");
 }
 
-// ---- A collision check -------------------------------------------------------------------------------------------------
+// ---- A collision check -------------------------------------------------------------------------
 
 void TaughtTimewarp::check(int id) {
   ScheduledEvent event = queue_.event(id);
@@ -128,7 +128,7 @@ void TaughtTimewarp::check(int id) {
   put_check(id, event);
 }
 
-// ---- Integration and pairs ---------------------------------------------------------------------------------------------
+// ---- Integration and pairs ---------------------------------------------------------------------
 
 void TaughtTimewarp::step_to(int body, double to) {
   const double from = process(body).local_time();

@@ -31,7 +31,7 @@ enum class Verdict {
 struct Line {
   std::string output;         // "j", "rows[3].toi"
   double error = kUnset;      // |found - expected|, largest component, in the output's unit
-  double floor = kUnset;      // forced by double precision; NaN where the file has none
+  double error_floor = kUnset;      // forced by double precision; NaN where the file has none
   double tolerance = kUnset;
   Verdict verdict = Verdict::kNotCompared;
   std::string note;           // the origin of a tolerance that is not the closed form's; the reason for no comparison; the error that stopped it
@@ -64,13 +64,15 @@ class Comparison {
 
 /// Largest |found_i - expected_i|; NaN for different sizes or anything that is not finite.
 double largest_difference(const VectorXd& found, const VectorXd& expected);
-/// The same for unit quaternions, of which q and -q are one orientation. @param expected  (4), w first
+/// The same for unit quaternions, of which q and -q are one orientation. @param expected  (4), w
+/// first
 double quaternion_difference(const Quaterniond& found, const VectorXd& expected);
 
 /// The worst line of a case: a failure, else one not attempted, else the one with the largest error
 /// relative to its tolerance. Null when empty.
 const Line* worst_line(const std::vector<Line>& lines);
-/// Wrong if any line is wrong, else not attempted if any is, else right if any is, else not compared.
+/// Wrong if any line is wrong, else not attempted if any is, else right if any is, else not
+/// compared.
 Verdict verdict_of(const std::vector<Line>& lines);
 std::string word_of(Verdict verdict);
 

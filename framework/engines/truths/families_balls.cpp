@@ -19,7 +19,8 @@ struct BallOnFloor {
   scene::Scene scene;
 };
 
-/// @param duration  [s];  @param slowest_impact  relative speed of the slowest impact that must not end in rest [m/s]
+/// @param duration  [s];  @param slowest_impact  relative speed of the slowest impact that must not
+///   end in rest [m/s]
 BallOnFloor ball_on_floor(const Case& truth, double duration, double slowest_impact) {
   BallOnFloor world{truth.input("g").number(), truth.input("e").number(), empty_scene(truth.id, duration, std::min(kRestSpeed, kRestBelow * slowest_impact))};
   scene::EntryWriter{world.scene}("gravity_m_s2", Vector3d(0, 0, -world.g));
@@ -44,7 +45,7 @@ double time_of(const Event& impact) { return impact.time; }
 /// Relative speed just after, along the normal: only the impulse changes it.
 double speed_after(const Event& impact) { return impact.normal_velocity_before + impact.impulse / kMass; }
 
-// ---- bouncing_ball ---------------------------------------------------------------------------------------------------
+// ---- bouncing_ball -----------------------------------------------------------------------------
 
 void compare_rest(const Case& truth, const BallOnFloor& world, const Trajectory& run, Comparison& comparison) {
   const auto rest = std::find_if(run.events.begin(), run.events.end(), [](const Event& event) { return event.kind == EventKind::kRest; });
@@ -103,7 +104,7 @@ void compare_bouncing_ball(const Case& truth, const Laws& laws, Comparison& comp
   compare_listed_times(truth, world, laws, comparison);
 }
 
-// ---- ball_moving_floor -----------------------------------------------------------------------------------------------
+// ---- ball_moving_floor -------------------------------------------------------------------------
 
 namespace {
 
@@ -141,7 +142,7 @@ void compare_moving_floor(const Case& truth, const Laws& laws, Comparison& compa
   else comparison.check("zeno_time", std::abs(rest->time - zeno), floor_of_zeno, kClosedFormFactor * floor_of_zeno + left, "tolerance: includes the time that rest cuts off");
 }
 
-// ---- ball_shaken_floor -----------------------------------------------------------------------------------------------
+// ---- ball_shaken_floor -------------------------------------------------------------------------
 
 void compare_shaken_floor(const Case& truth, const Laws& laws, Comparison& comparison) {
   const double A = truth.input("A").number(), w = truth.input("omega").number();

@@ -24,7 +24,7 @@ struct Top {
   Vector3d angular_momentum_world() const { return start.world_from_body * moments.cwiseProduct(start.omega_body); }
 };
 
-// ---- Exact -----------------------------------------------------------------------------------------------------------
+// ---- Exact -------------------------------------------------------------------------------------
 
 void compare_constants(const Case& truth, const Top& top, const FreeRotation& rotation, Comparison& comparison) {
   const Vector3d L = top.angular_momentum_world();
@@ -56,7 +56,7 @@ void compare_exact(const Case& truth, const Top& top, Comparison& comparison) {
   }
 }
 
-// ---- The laws' integrator --------------------------------------------------------------------------------------------
+// ---- The laws' integrator ----------------------------------------------------------------------
 
 constexpr double kMostSteps = 4e6;         // of all runs to one time together: about a second
 constexpr double kLargestAngle = 0.05;     // rad: for larger w h RK4 is not in its asymptotic range

@@ -77,7 +77,7 @@ double energy_lost(const Incline& incline, const Frame& from, const Frame& to) {
   return from.kinetic_energy - to.kinetic_energy + incline.m * incline.g * std::sin(incline.angle) * way;
 }
 
-// ---- friction_incline ------------------------------------------------------------------------------------------------
+// ---- friction_incline --------------------------------------------------------------------------
 
 // A flat block: friction at its base, mu m g high at most, does not lift its edge.
 scene::Scene block_on(const Incline& incline, const std::string& name, double duration, double v0) {
@@ -153,7 +153,7 @@ void compare_friction_incline(const Case& truth, const Laws& laws, Comparison& c
   });
 }
 
-// ---- Round bodies ----------------------------------------------------------------------------------------------------
+// ---- Round bodies ------------------------------------------------------------------------------
 
 namespace {
 

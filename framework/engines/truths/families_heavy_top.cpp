@@ -1,7 +1,8 @@
 // heavy_top: Lagrange's symmetric top on a fixed point, a body on a ball joint run by the engine
 // with the chosen laws.
 //
-// Gravity along -z, fixed point at the world's origin, body z the axis, centre of mass at l on it; tilted by theta0 about world x.
+// Gravity along -z, fixed point at the world's origin, body z the axis, centre of mass at l on it;
+// tilted by theta0 about world x.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -44,7 +45,7 @@ scene::Scene HeavyTop::scene(const std::string& name) const {
   return scene;
 }
 
-// ---- Closed forms ----------------------------------------------------------------------------------------------------
+// ---- Closed forms ------------------------------------------------------------------------------
 
 /// Roots of c[0] + c[1] d + c[2] d^2 + c[3] d^3, all real, ascending. Each is refined in d itself,
 /// so that small roots have full relative precision.
@@ -99,7 +100,7 @@ void compare_closed_forms(const Case& truth, const HeavyTop& top, Comparison& co
   }
 }
 
-// ---- Runs ------------------------------------------------------------------------------------------------------------
+// ---- Runs --------------------------------------------------------------------------------------
 
 Matrix3d rotation_of(const Frame& frame) { return frame.poses[0].world_from_body.toRotationMatrix(); }
 double tilt_of(const Frame& frame) {

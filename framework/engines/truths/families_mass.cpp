@@ -20,7 +20,8 @@ TriangleMesh mesh_of(const Case& truth) {
   return mesh;
 }
 
-/// Moments about the origin from those about the centre of mass (Steiner):  I_o = I_c + m (c.c 1 - c c').
+/// Moments about the origin from those about the centre of mass (Steiner):  I_o = I_c + m (c.c 1 -
+/// c c').
 Matrix3d about_origin(const MassProperties& found) {
   const Vector3d& c = found.com_mesh;
   return found.inertia_com_mesh + found.mass * (c.squaredNorm() * Matrix3d::Identity() - c * c.transpose());

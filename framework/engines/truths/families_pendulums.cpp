@@ -1,7 +1,8 @@
 // chain, double_pendulum, compound_pendulum: rods and hinges, run by the engine with the chosen
 // laws.
 //
-// Planar cases: gravity along -y, angles from the downward vertical, positive towards +x. Their plane is the world's x-y plane.
+// Planar cases: gravity along -y, angles from the downward vertical, positive towards +x. Their
+// plane is the world's x-y plane.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -19,7 +20,7 @@ namespace {
 Vector3d along(double angle) { return {std::sin(angle), -std::cos(angle), 0.0}; }
 Vector3d across(double angle) { return {std::cos(angle), std::sin(angle), 0.0}; }
 
-// ---- chain and double_pendulum: point masses on rods -----------------------------------------------------------------
+// ---- chain and double_pendulum: point masses on rods -------------------------------------------
 
 struct Chain {
   VectorXd masses, lengths, angles, rates;
@@ -139,7 +140,7 @@ void compare_chain(const Case& truth, const Laws& laws, Comparison& comparison) 
   }
 }
 
-// ---- compound_pendulum: a body on a hinge ----------------------------------------------------------------------------
+// ---- compound_pendulum: a body on a hinge ------------------------------------------------------
 
 namespace {
 

@@ -12,7 +12,7 @@ namespace tumble::truths {
 namespace {
 
 
-// ---- newtons_cradle --------------------------------------------------------------------------------------------------
+// ---- newtons_cradle ----------------------------------------------------------------------------
 
 /// Equal balls in a row along x that just touch, the first k of them moving.
 scene::Scene cradle(const Case& truth) {
@@ -26,7 +26,7 @@ scene::Scene cradle(const Case& truth) {
   return scene;
 }
 
-// ---- hard_spheres ----------------------------------------------------------------------------------------------------
+// ---- hard_spheres ------------------------------------------------------------------------------
 
 struct Spheres {
   scene::Scene scene;

@@ -20,7 +20,7 @@ void add_spring(scene::Scene& scene, const scene::AnchorSpec& a, const scene::An
 const Vector3d kAxis = Vector3d::UnitX();   // axis of the spring-mass motion
 
 
-// ---- spring_mass -----------------------------------------------------------------------------------------------------
+// ---- spring_mass ------------------------------------------------------------------------------
 
 struct SpringMass {
   double m, k, c, x0, v0;
@@ -96,7 +96,7 @@ void compare_spring_mass(const Case& truth, const Laws& laws, Comparison& compar
   }
 }
 
-// ---- elastic_pendulum ------------------------------------------------------------------------------------------------
+// ---- elastic_pendulum --------------------------------------------------------------------------
 
 void compare_elastic_pendulum(const Case& truth, const Laws& laws, Comparison& comparison) {
   const double m = truth.input("m").number(), k = truth.input("k").number();
@@ -121,7 +121,7 @@ void compare_elastic_pendulum(const Case& truth, const Laws& laws, Comparison& c
   }
 }
 
-// ---- two_body_spring -------------------------------------------------------------------------------------------------
+// ---- two_body_spring ---------------------------------------------------------------------------
 
 namespace {
 

@@ -71,7 +71,7 @@ bool compare_toi(const Case& truth, const std::optional<Impact>& impact, Compari
   return impact.has_value();
 }
 
-// ---- toi_sphere_plane ------------------------------------------------------------------------------------------------
+// ---- toi_sphere_plane --------------------------------------------------------------------------
 
 Solid ball_of(const Case& truth) {
   Solid ball{CollisionShape(Sphere{truth.input("R").number()}), {}};
@@ -92,7 +92,7 @@ void compare_sphere_plane(const Case& truth, const Laws& laws, Comparison& compa
   comparison.closed_form(truth, "normal_velocity_at_toi", impact->rate);
 }
 
-// ---- toi_rod_plane ---------------------------------------------------------------------------------------------------
+// ---- toi_rod_plane -----------------------------------------------------------------------------
 
 Solid rod_of(const Case& truth) {
   constexpr double kThickness = 1e-25;  // of the length: negligible, and yet a box
@@ -122,7 +122,7 @@ void compare_rod_plane(const Case& truth, const Laws& laws, Comparison& comparis
   comparison.closed_form(truth, "tip_x_from_centre", arm_world.x());
 }
 
-// ---- toi_boxes -------------------------------------------------------------------------------------------------------
+// ---- toi_boxes ---------------------------------------------------------------------------------
 
 /// The colliding features, in the files' words, from the separating axis: a face's normal, or the
 /// cross product of two edges.
@@ -164,7 +164,7 @@ void compare_boxes(const Case& truth, const Laws& laws, Comparison& comparison) 
   comparison.agree("feature_pair", found == truth.output("feature_pair").text(), found);
 }
 
-// ---- toi_grazing -----------------------------------------------------------------------------------------------------
+// ---- toi_grazing -------------------------------------------------------------------------------
 
 /// The two bodies of one row, and the rate at which the normal speed grows as they approach
 /// [m/s^2].
@@ -220,7 +220,7 @@ void compare_grazing(const Case& truth, const Laws& laws, Comparison& comparison
   }
 }
 
-// ---- toi_tunnel ------------------------------------------------------------------------------------------------------
+// ---- toi_tunnel --------------------------------------------------------------------------------
 
 void compare_tunnel(const Case& truth, const Laws& laws, Comparison& comparison) {
   const double v = truth.input("v").number(), thickness = truth.input("wall_thickness").number(), dt = truth.input("dt").number();
@@ -256,7 +256,8 @@ ImpactProblem problem_between(const Case& truth, const Solid& a, const Solid& b,
   return problem;
 }
 
-/// Ball and plane under gravity: n.x0 - d - R + n.v t - (n.g / 2) t^2 = 0, the first root in the form without cancellation.
+/// Ball and plane under gravity: n.x0 - d - R + n.v t - (n.g / 2) t^2 = 0, the first root in the
+/// form without cancellation.
 double ball_meets_plane(const Case& truth) {
   const Vector3d normal = truth.input("n").vector3().normalized();
   const double c = normal.dot(truth.input("x0").vector3()) - truth.input("d").number() - truth.input("R").number();

@@ -20,7 +20,7 @@ struct Quantity {
   std::string output;                  // its name in the file of reference values
   Reading found;                       // of a run whose last frame is at the end time
   VectorXd expected;
-  double floor = kUnset;
+  double error_floor = kUnset;
   bool is_state = true;                // its error shows the method's order; energies, which many methods conserve better, do not
   Difference difference = largest_difference;
   /// Where the family knows it: the change of the quantity at the end by rounding of the state

@@ -116,10 +116,10 @@ fs::path scene_file(const Course& course, const ModuleKind& kind) { return cours
 CostSection measure_cost(const Course& course, const std::string& id, const fs::path& submission, const CostSectionOptions& options) {
   const ModuleKind& kind = course.registry->find(id);
   if (kind.is_scheduler) return measure_scheduler(course, kind, submission, options);
-  const AnyModule reference = reference_of(course, kind);
-  if (!kind.note<engines::CostShowcase>().is_graded || (!reference && kind.methods.empty())) return {};
+  const AnyModule reference_module = reference_of(course, kind);
+  if (!kind.note<engines::CostShowcase>().is_graded || (!reference_module && kind.methods.empty())) return {};
   const scene::Scene scene = scene::load_scene(scene_file(course, kind));
-  const Laws right = laws_around(course, kind, kind.methods.empty() ? reference : nullptr, "reference", scene);
+  const Laws right = laws_around(course, kind, kind.methods.empty() ? reference_module : nullptr, "reference", scene);
   engines::CostOptions looking;
   looking.duration_s = kind.note<engines::CostShowcase>().duration_s;
   const CostReference reference = engines::find_reference(scene, right, looking);
@@ -143,9 +143,9 @@ CostSection measure_cost(const Course& course, const std::string& id, const fs::
   section.scene = scene.title;
   section.reference = fmt::format("Errors are against {}: {:.1e} m; the error is the distance of a body's centre of mass from its reference position, plus the angle between its orientations times its radius of gyration.", reference.what, reference.floor_m);
   for (const Measured& measured : all) section.lines.push_back(line_of(measured, reference));
-  if (reference) {
-    const Laws whole = laws_around(course, kind, reference, "reference", scene);
-    for (Measured& measured : measure(scene, methods_of(kind, reference, right, whole, "reference"), reference, [] {})) {
+  if (reference_module) {
+    const Laws whole = laws_around(course, kind, reference_module, "reference", scene);
+    for (Measured& measured : measure(scene, methods_of(kind, reference_module, right, whole, "reference"), reference, [] {})) {
       measured.is_reference = true;
       all.push_back(std::move(measured));
     }

@@ -23,6 +23,7 @@ void Coordinator::require_certain(const EventStamp& key) const {
 // Commits everything before `key` in order, with the frames between.
 void Coordinator::commit_before(const EventStamp& key) {
   require_certain(key);
+  // Collects the executed events of all workers, in their total order.
   std::vector<Executed>& executed = alone().executed;
   for (std::size_t k = 1; k < workers_.size(); ++k) {
     executed.insert(executed.end(), std::make_move_iterator(workers_[k]->executed.begin()), std::make_move_iterator(workers_[k]->executed.end()));
@@ -36,6 +37,7 @@ void Coordinator::commit_before(const EventStamp& key) {
       all_.run.commit_frame([&](int body) -> const Flight& { return all_.world().can_move(body) ? all_.histories[body][all_.histories[body].at(time)] : all_.immovable(body); });
     }
   };
+  // Commits events that are not rolled back, and the frames between them.
   std::size_t done = 0;
   for (; done < executed.size() && executed[done].key < key; ++done) {
     const Executed& event = executed[done];
@@ -44,6 +46,7 @@ void Coordinator::commit_before(const EventStamp& key) {
     if (event.is_silent) all_.run.pass(event.key);
     else all_.run.commit(event.key, event.first, event.more);
   }
+  // Commits the remaining frames, and releases what lies before the committed time.
   executed.erase(executed.begin(), executed.begin() + static_cast<std::ptrdiff_t>(done));
   draw_before(key.time);
   note_kept();

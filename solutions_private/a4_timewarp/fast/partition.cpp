@@ -20,22 +20,24 @@ void cut(std::span<WorkLoad> work_loads, const Box& room, int count, std::vector
     around.take_in({work_load.middle_world, work_load.middle_world});
     all += work_load.work;
   }
+  // Cuts where half of the work is on each side, across the longest axis of the bodies.
   int axis = 0;
   double place = 0.0;
   std::size_t below = 0;
-  const int deferred = count / 2;
+  const int lower_count = count / 2;
   if (!work_loads.empty()) {
     (around.high - around.low).maxCoeff(&axis);
     std::sort(work_loads.begin(), work_loads.end(), [axis](const WorkLoad& a, const WorkLoad& b) { return a.middle_world[axis] < b.middle_world[axis]; });
     double sum = 0.0;
-    while (below + 1 < work_loads.size() && sum + 0.5 * work_loads[below].work < all * deferred / count) sum += work_loads[below++].work;
+    while (below + 1 < work_loads.size() && sum + 0.5 * work_loads[below].work < all * lower_count / count) sum += work_loads[below++].work;
     place = below > 0 ? 0.5 * (work_loads[below - 1].middle_world[axis] + work_loads[below].middle_world[axis]) : work_loads[0].middle_world[axis];
   }
+  // Both halves are cut further.
   place = std::clamp(place, room.low[axis], room.high[axis]);
   Box lower = room, upper = room;
   lower.high[axis] = upper.low[axis] = place;
-  cut(work_loads.subspan(0, below), lower, deferred, regions);
-  cut(work_loads.subspan(below), upper, count - deferred, regions);
+  cut(work_loads.subspan(0, below), lower, lower_count, regions);
+  cut(work_loads.subspan(below), upper, count - lower_count, regions);
 }
 
 }  // namespace

@@ -51,15 +51,18 @@ void Worker::count_by_region(const Due& due) {
 void Worker::collide(const Due& due) {
   const int bodies[] = {due.key.body_a, due.key.body_b};
   const std::uint32_t versions[] = {due.version_a, due.version_b};
+  // The event is stale unless both flights exist and it is their next one.
   std::size_t places[] = {0, 0};
   for (int side = 0; side < 2; ++side)
     if (!look_up(due, side, places[side])) return;
+  // Later flights of both bodies are rolled back.
   for (int side = 0; side < 2; ++side) {
     const int body = bodies[side];
     if (body < 0 || !world().can_move(body)) continue;
     if (places[side] + 1 < history(body).size()) roll_back(body, places[side] + 1);
     if (process(body).horizon > due.key.time) ++counters.undone_integrations;
   }
+  // The response, and the flights that begin with it.
   const auto flight_of = [&](int side) -> const Flight& { return world().can_move(bodies[side]) ? history(bodies[side])[history(bodies[side]).find(versions[side])] : all_.immovable(bodies[side]); };
   if (due.key.kind == StampKind::kProcess) return begin_flights(due, all_.run.end_of_segment(due.key, flight_of(0)));
   if (all_.threads > 1) count_by_region(due);
@@ -189,6 +192,7 @@ void Worker::roll_back(int body, std::size_t keep) {
   to_drop_.assign(1, {body, keep});
   while (!to_drop_.empty()) {
     const auto [now_at, place] = to_drop_.back();
+    // The work list: bodies of this worker whose flights must be dropped.
     to_drop_.pop_back();
     const FlightHistory& flights = history(now_at);
     if (flights.size() <= place) continue;
@@ -200,6 +204,7 @@ void Worker::roll_back(int body, std::size_t keep) {
       --kept;
       ++counters.undone_integrations;
       move(now_at, std::min(process(now_at).horizon, dropped.begin));
+      // Anti-messages to all other flights of the same event.
       if (dropped.change >= 0) {
         if (all_.changes.key(dropped.change).kind == StampKind::kCallback) cancel_callback(all_.changes.key(dropped.change));
         for (const auto& [other, version] : all_.changes.began(dropped.change)) cancel(other, version);
@@ -236,6 +241,7 @@ void Worker::work_at(const Due& due) {
 double Worker::work_before(double end) {
   const double began = thread_seconds();
   const double last = all_.run.duration();
+  // Events in order, to `end` or to the end of the run.
   engines::EventQueue<Due>& queue = all_.domains[owner_].queue;
   const auto is_to_do = [&] { return !queue.empty() && queue.front().key.time < end && queue.front().key.time <= last; };
   longest = 0;

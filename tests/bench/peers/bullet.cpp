@@ -32,8 +32,8 @@ class BulletWorld final : public PeerWorld {
     gCalculateCombinedRestitutionCallback = smaller_restitution;
     dynamics_.setGravity(bt(world.gravity_world.value_or(Vector3d::Zero())));
     dynamics_.getSolverInfo().m_restitutionVelocityThreshold = 0;
-    // What bounces is to have no speed from overlaps that are taken back, at any depth; by default only beyond 4 cm, most of a ball
-    // here. Stacks and rocks are better off with the default.
+    // What bounces is to have no speed from overlaps that are taken back, at any depth; by default
+    // only beyond 4 cm, most of a ball here. Stacks and rocks are better off with the default.
     const bool bounces = std::any_of(world.bodies.begin(), world.bodies.end(), [](const WorldBody& body) { return body.restitution > 0; });
     if (bounces) dynamics_.getSolverInfo().m_splitImpulsePenetrationThreshold = 0;
     if (setting.method == kManySweeps) dynamics_.getSolverInfo().m_numIterations = 100;
@@ -89,7 +89,8 @@ class BulletWorld final : public PeerWorld {
     bodies_.push_back(std::make_unique<btRigidBody>(info));
     btRigidBody& made = *bodies_.back();
     made.setActivationState(DISABLE_DEACTIVATION);
-    // A contact that is looked ahead to takes the way that is left from the speed of a bounce: what bounces waits until it touches.
+    // A contact that is looked ahead to takes the way that is left from the speed of a bounce: what
+    // bounces waits until it touches.
     if (body.restitution > 0) made.setContactProcessingThreshold(0);
     if (!body.immovable()) {
       made.setLinearVelocity(bt(body.state.momentum_world * body.inertia.inverse_mass));

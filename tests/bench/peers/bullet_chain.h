@@ -1,4 +1,5 @@
-/// Bullet's other way to joints: bodies in reduced coordinates (btMultiBody, Featherstone's method). For chains of hinges.
+/// Bullet's other way to joints: bodies in reduced coordinates (btMultiBody, Featherstone's
+/// method). For chains of hinges.
 #pragma once
 
 #include "tests/bench/peers/harness.h"

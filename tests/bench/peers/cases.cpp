@@ -164,7 +164,8 @@ BenchCase heavy_bob(bool quick) {
   return bench;
 }
 
-/// The same where the bob weighs a million links, for a tenth of the time: ten times as fast across, so that steps are a tenth as long.
+/// The same where the bob weighs a million links, for a tenth of the time: ten times as fast
+/// across, so that steps are a tenth as long.
 BenchCase heaviest_bob() {
   BenchCase bench = heavy_bob(true);
   bench.id = "S6-1e6";
@@ -222,7 +223,8 @@ BenchCase rocks(int n, double duration, bool quick) {
   return bench;
 }
 
-/// Two hundred of the same rocks, smaller, into a bowl of eight slanting walls (the course's bowl, with one kind of convex solid, and nobody asleep).
+/// Two hundred of the same rocks, smaller, into a bowl of eight slanting walls (the course's bowl,
+/// with one kind of convex solid, and nobody asleep).
 BenchCase bowl() {
   constexpr double kPerUnit = 0.3, kRadius = 1.328053374, kHeight = 0.535966076, kApart = 0.41, kLayer = 0.42, kFirst = 1.35, kJitter = 0.02;   // m
   constexpr double kSlant = 40 * std::numbers::pi / 180;

@@ -1,7 +1,9 @@
-/// The scenes that every engine runs, S1 to S8, as the course's own plain data: an adapter turns them into its engine's world.
+/// The scenes that every engine runs, S1 to S8, as the course's own plain data: an adapter turns
+/// them into its engine's world.
 ///
-/// Each has a truth that comes from none of the engines (judge.cpp): a file of tests/truths, a closed form, or a law of conservation
-/// together with the constraint that must hold. SI units, world frame, z up.
+/// Each has a truth that comes from none of the engines (judge.cpp): a file of tests/truths, a
+/// closed form, or a law of conservation together with the constraint that must hold. SI units,
+/// world frame, z up.
 #pragma once
 
 #include <limits>
@@ -12,11 +14,13 @@
 
 namespace tumble::peers {
 
-/// One thing that the project wants to reach, as numbers that the rows decide. A goal names some of: an error, a step, a price, a peer.
+/// One thing that the project wants to reach, as numbers that the rows decide. A goal names some
+/// of: an error, a step, a price, a peer.
 ///   error, step          the row of that step is at most so wrong
 ///   error, price_s       the cheapest row of that error costs at most so much
 ///   error, ratio, peer   ... at most so many times the peer's cheapest of that error
-///   step, ratio, peer    the row of that step costs at most so many times the peer's row of the same step, whatever their errors
+///   step, ratio, peer    the row of that step costs at most so many times the peer's row of the
+/// same step, whatever their errors
 ///   error                some row is at most so wrong
 ///   step, ratio, bench   a step costs at most so many times one of that step in the other case
 struct Goal {

@@ -1,5 +1,6 @@
-// DART: reduced coordinates for joints, contacts as a linear complementarity problem (Dantzig's method). Its own collision detector
-// knows balls and boxes only: walls are thick boxes, and rocks are not run.
+// DART: reduced coordinates for joints, contacts as a linear complementarity problem (Dantzig's
+// method). Its own collision detector knows balls and boxes only: walls are thick boxes, and rocks
+// are not run.
 #include <algorithm>
 
 #include <dart/collision/dart/DARTCollisionDetector.hpp>

@@ -116,8 +116,8 @@ struct Ending {
   bool capped;
 };
 
-/// Until a child ends, or has used as much CPU as it may. A limit of the system's own (RLIMIT_CPU) would do, but with one the process's
-/// clock moves in ticks of 4 ms.
+/// Until a child ends, or has used as much CPU as it may. A limit of the system's own (RLIMIT_CPU)
+/// would do, but with one the process's clock moves in ticks of 4 ms.
 Ending wait_for(pid_t child, const volatile double& stop_at_s) {
   clockid_t clock{};
   const bool has_clock = clock_getcpuclockid(child, &clock) == 0;

@@ -1,8 +1,9 @@
-/// Runs one engine over the cases and its settings, each in a process of its own, and writes a row for each.
+/// Runs one engine over the cases and its settings, each in a process of its own, and writes a row
+/// for each.
 ///
-/// Price: CPU time of that process between the samples, so around the steps only: building the world, loading models and looking at
-/// the bodies are not in it. Each setting is run several times and the median counts. A run beyond the cap, and one that crashes, is
-/// told as such.
+/// Price: CPU time of that process between the samples, so around the steps only: building the
+/// world, loading models and looking at the bodies are not in it. Each setting is run several times
+/// and the median counts. A run beyond the cap, and one that crashes, is told as such.
 #pragma once
 
 #include <functional>
@@ -24,7 +25,8 @@ struct Setting {
   double tolerance = std::numeric_limits<double>::quiet_NaN();
 };
 
-/// What a run shows: the bodies at the samples, and the instants of the first body's bounces where the case asks for them.
+/// What a run shows: the bodies at the samples, and the instants of the first body's bounces where
+/// the case asks for them.
 struct Observed {
   std::vector<std::vector<BodyPose>> samples;   // the first at the start
   std::vector<double> bounces;                  // [s]
@@ -52,7 +54,8 @@ struct Engine {
   std::function<std::vector<std::vector<Setting>>(const BenchCase&)> ladders;
   /// Either this, for engines stepped from outside ...
   std::function<std::unique_ptr<PeerWorld>(const BenchCase&, const World&, const Setting&)> build;
-  /// ... or a whole run that measures itself. @param reached  to be set to the time reached, for what does not finish [s]
+  /// ... or a whole run that measures itself. @param reached  to be set to the time reached, for
+  /// what does not finish [s]
   std::function<Observed(const BenchCase&, const Setting&, double& reached)> run;
 };
 

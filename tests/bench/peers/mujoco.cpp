@@ -1,4 +1,5 @@
-// MuJoCo: reduced coordinates for joints, soft contacts. It has no coefficient of restitution: bounces come of springs in the contacts.
+// MuJoCo: reduced coordinates for joints, soft contacts. It has no coefficient of restitution:
+// bounces come of springs in the contacts.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,13 +24,15 @@ constexpr double kStepsOfABounce = 10;   // a spring's half swing: fewer are not
 std::string words(const Vector3d& v) { return fmt::format("{:.17g} {:.17g} {:.17g}", v.x(), v.y(), v.z()); }
 std::string words(const Quaterniond& q) { return fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}", q.w(), q.x(), q.y(), q.z()); }
 
-/// Writes a world as MuJoCo's own XML: free bodies beside each other, jointed ones inside the body that carries them.
+/// Writes a world as MuJoCo's own XML: free bodies beside each other, jointed ones inside the body
+/// that carries them.
 class Writer {
  public:
   Writer(const BenchCase& bench, const World& world, const Setting& setting) : scene_(bench.scene), world_(world), setting_(setting) {}
 
   std::string write() {
-    // Memory is claimed beforehand, and what does not fit is dropped: room for what balls and rocks can have.
+    // Memory is claimed beforehand, and what does not fit is dropped: room for what balls and rocks
+    // can have.
     const bool is_rough = std::any_of(world_.bodies.begin(), world_.bodies.end(), [](const WorldBody& body) { return body.friction > 0; });
     const std::size_t contacts = 200 + 8 * world_.bodies.size(), rows = (is_rough ? 3 : 1) * contacts;
     std::string xml = fmt::format("<mujoco><compiler angle=\"radian\"/><size nconmax=\"{}\" njmax=\"{}\"/><option timestep=\"{:.17g}\" gravity=\"{}\" integrator=\"{}\" cone=\"elliptic\"/>\n",
@@ -41,7 +44,8 @@ class Writer {
   }
 
  private:
-  /// What contacts are like: by default; as stiff as the step allows; harder, so that they give less; or springs that give back a share e of the speed.
+  /// What contacts are like: by default; as stiff as the step allows; harder, so that they give
+  /// less; or springs that give back a share e of the speed.
   std::string contact() const {
     double bounciest = 0.0;
     for (const WorldBody& body : world_.bodies) bounciest = std::max(bounciest, body.collides && !body.immovable() ? body.restitution : 0.0);

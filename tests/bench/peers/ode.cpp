@@ -1,4 +1,5 @@
-// The Open Dynamics Engine (Debian: double precision). Joints are constraints; contacts are joints made anew every step.
+// The Open Dynamics Engine (Debian: double precision). Joints are constraints; contacts are joints
+// made anew every step.
 #include <algorithm>
 
 #include <ode/ode.h>

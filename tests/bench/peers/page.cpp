@@ -1,4 +1,5 @@
-// The page of the peers: one table, one picture a scene, every row below it.  usage: peers_page ROWS_DIR PAGE.html [--quick]
+// The page of the peers: one table, one picture a scene, every row below it.  usage: peers_page
+// ROWS_DIR PAGE.html [--quick]
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,5 +1,6 @@
-// Simbody: reduced coordinates and integrators with error control. Its contacts are compliant (and its rigid ones a prototype), and
-// boxes, hulls and restitution are not in them: it runs the scenes without contact.
+// Simbody: reduced coordinates and integrators with error control. Its contacts are compliant (and
+// its rigid ones a prototype), and boxes, hulls and restitution are not in them: it runs the scenes
+// without contact.
 #include <Simbody.h>
 
 #include "framework/effects/joint/joint.h"

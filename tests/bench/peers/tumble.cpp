@@ -1,5 +1,6 @@
-// Tumble itself, through the entry that `tumble run` uses: run_scene with the laws of the reference modules. The clock starts when the
-// engine hands over its first frame, and stops when it ends: frames that it records are part of its price.
+// Tumble itself, through the entry that `tumble run` uses: run_scene with the laws of the reference
+// modules. The clock starts when the engine hands over its first frame, and stops when it ends:
+// frames that it records are part of its price.
 #include <cmath>
 #include <cstdlib>
 #include <stdexcept>
@@ -21,7 +22,8 @@
 namespace tumble::peers {
 namespace {
 
-// Retroactive detection by a method, or engines that go from event to event, where a flight is a closed form and there is no step.
+// Retroactive detection by a method, or engines that go from event to event, where a flight is a
+// closed form and there is no step.
 const std::vector<std::pair<std::string, std::string>> kEventEngines = {{"ca", "conservative advancement"}, {"tw", "timewarp"}};
 const std::string kRungeKutta = "RK4", kDormandPrince = "Dormand-Prince", kFehlberg = "Fehlberg 7(8)", kLocated = "RK4, plastic impacts located";
 // s: within it the method chooses its own, and at its end joints are projected.
