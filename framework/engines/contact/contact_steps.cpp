@@ -346,7 +346,7 @@ bool PersistentContacts::set_paths(const ContactIsland& island, const std::vecto
   std::vector<ActiveContact> active;   // where nothing turns, points stay as near as they are
   if (&contacts_at != &moving_.states() && !activation && contacts.size() <= kContact.many_contacts)
     for (std::size_t i = 0; i < contacts.size(); ++i)
-      if (contacts[i].start_gap < kContact.activated * geometry_.margin(contacts[i].pair) && solution.impulses_world[i].squaredNorm() > 0.0) active.push_back({contacts[i].pair, contacts[i].point, &contacts_at});
+      if (contacts[i].start_gap < kContact.far_at_start * geometry_.margin(contacts[i].pair) && solution.impulses_world[i].squaredNorm() > 0.0) active.push_back({contacts[i].pair, contacts[i].point, &contacts_at});
   // Pairs that are not in contact may meet within the step: that is for the finding of impacts.
   const bool apart = correction_.correct_positions(island, island.pairs, ends, moving_.target(), active);
   // The path goes where position correction has moved its end, however short the step: velocities along it are no momenta. What rods and joints hold is put

@@ -60,7 +60,7 @@ double PositionCorrection::add_corrections(const ContactIsland& island, const st
   for (const Pair& pair : pairs) {
     const double margin = geometry_.margin(pair), size = geometry_.size_of(pair);
     const bool has_active = std::any_of(active.begin(), active.end(), [&](const ActiveContact& h) { return h.pair == pair; });
-    const ContactManifold points = geometry_.points_at(pair, states, std::max({kContact.activated * margin, reach, has_active ? (geometry_.are_balls(pair) ? 1.0 : kContact.active_reach) * size : 0.0}));
+    const ContactManifold points = geometry_.points_at(pair, states, std::max({kContact.far_at_start * margin, reach, has_active ? (geometry_.are_balls(pair) ? 1.0 : kContact.active_reach) * size : 0.0}));
     std::vector<const collision::ManifoldPoint*> at_margin;
     for (const ActiveContact& h : active)
       if (h.pair == pair) at_margin.push_back(geometry_.same_point(pair, h.point, *h.at, points, states, geometry_.same_within(pair)));
