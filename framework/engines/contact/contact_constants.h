@@ -2,8 +2,8 @@
 /// larger or smaller. Those that other parts share stand in base/tolerances.h.
 ///
 /// `ninja -C build bench_contact_constants && build/bin/bench_contact_constants` multiplies and
-/// divides each by ten, and says which scenes notice. "Of the restitution threshold": of the scene's
-/// rest_speed_m_s. "Of the smaller body": of the radius about the smaller of two.
+/// divides each by ten, and says which scenes notice. "Of the restitution threshold": of the
+/// scene's rest_speed_m_s. "Of the smaller body": of the radius about the smaller of two.
 #pragma once
 
 #include <cstddef>
@@ -34,8 +34,8 @@ struct ContactConstants {
   /// second look. Larger: points of the far side pass. Smaller: many second looks.
   double deep = 0.01;
   /// of the penetration: how far the deepest point of a manifold may be from it. A point that is
-  /// deeper is not part of the overlap; where none is as deep, the deepest was missed, and is added.
-  /// Larger: points of the far side pass. Smaller: rounding adds points.
+  /// deeper is not part of the overlap; where none is as deep, the deepest was missed, and is
+  /// added. Larger: points of the far side pass. Smaller: rounding adds points.
   double depth_error = 0.1;
   /// of the smaller body: how far points of one contact lie from each other at two instants of a
   /// step, at most. Larger: one corner is taken for another. Smaller: contacts lose their middle.
@@ -88,9 +88,9 @@ struct ContactConstants {
   int most_located_impacts = 8;
   /// of the island's speed: approach and slip left. Larger: more corrections. Smaller: slower.
   double solved_in_large_island = 1e-5;
-  /// of the island's speed: what sweeps leave at the worst of hundreds of contacts (0.28 in the bowl
-  /// of 200 models, whose energy and gaps are right) its margin and the next step take up; where as
-  /// much is left as there was, no answer was found. Smaller: right runs are reported.
+  /// of the island's speed: what sweeps leave at the worst of hundreds of contacts (0.28 in the
+  /// bowl of 200 models, whose energy and gaps are right) its margin and the next step take up;
+  /// where as much is left as there was, no answer was found. Smaller: right runs are reported.
   double unsolved_in_large_island = 1.0;
   /// sweeps in_step, of islands of many contacts. Larger: slower. Smaller: contacts approach.
   int sweeps_in_step = 120;
