@@ -152,7 +152,7 @@ Laws counting(std::uint64_t& derivatives, std::uint64_t& contact_rows) {
   return laws;
 }
 
-// The pile's common times are its steps too. What begins a step again within the pile (blows, ends of sliding) does not solve its contacts again;
+// The pile's common times are its steps too. What begins a step again within the pile (impacts, ends of sliding) does not solve its contacts again;
 // a box that lies has turning left of rounding, so that its path is looked at four times a step, as that of any body that may meet another.
 TEST(Neighbours, InRetroactiveDetectionABodyAtRestPaysForCommonTimesOnly) {
   constexpr std::uint64_t kCorners = 4, kStages = 4, kLooks = 4;

@@ -60,9 +60,6 @@ struct ContactConstants {
   /// sweeps of the solver in one step: some 200 problems that all stayed unsolved. Larger: a run
   /// without an answer takes hours. Smaller: hard steps are given up.
   std::uint64_t most_sweeps_a_step = 300000;
-  /// rounds of position correction for a frame within a step. Larger: slower pictures. Smaller:
-  /// overlaps are seen.
-  int frame_rounds = 6;
 
   // ---- Contact problems
   /// of the island's speed: approach and slip left where it moves. Larger: energy errors. Smaller:
@@ -118,7 +115,8 @@ struct ContactConstants {
   int most_searches = 16;
 
   // ---- Position correction: what rotation and errors leave of overlaps is removed
-  /// rounds; in the first half of them active contacts are drawn to their margins too. Larger:
+  /// rounds, within a step and for a frame; in the first half of them active contacts are drawn to
+  /// their margins too. Larger:
   /// nothing, once converged. Smaller: overlaps are left.
   int most_corrections = 10;
   /// of the smaller body: what rotation leaves between active contacts, at most. Larger: points

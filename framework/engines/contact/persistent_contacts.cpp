@@ -336,7 +336,7 @@ void PersistentContacts::remove_overlaps_within_step(std::vector<RigidBodyState>
   }
   const auto closed = [&](const Pair& pair) { return geometry_.overlap(pair, states); };
   bool any = true;
-  for (int round = 0; round < kContact.frame_rounds && any; ++round) {   // one island's corrections may close another's gaps
+  for (int round = 0; round < kContact.most_corrections && any; ++round) {   // one island's corrections may close another's gaps
     any = false;
     for (const ContactIsland& island : islands_) {
       if (std::none_of(island.near.begin(), island.near.end(), closed)) continue;
@@ -351,7 +351,7 @@ void PersistentContacts::remove_overlaps_within_step(std::vector<RigidBodyState>
 void PersistentContacts::remove_overlaps(const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t) {
   const RunCounters before = counters_;   // as above
   const auto closed = [&](const Pair& pair) { return geometry_.overlap(pair, states); };
-  for (int round = 0; round < kContact.frame_rounds && std::any_of(pairs.begin(), pairs.end(), closed); ++round)
+  for (int round = 0; round < kContact.most_corrections && std::any_of(pairs.begin(), pairs.end(), closed); ++round)
     for (const ContactIsland& island : islands(pairs)) {
       if (std::none_of(island.pairs.begin(), island.pairs.end(), closed)) continue;
       std::vector<double> gaps(island.pairs.size(), 0.0);
