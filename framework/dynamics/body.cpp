@@ -18,7 +18,8 @@ Inertia finite_inertia(double mass, const Matrix3d& inertia_body) {
   inertia.mass = mass;
   inertia.inverse_mass = 1.0 / mass;
   inertia.inertia_body = inertia_body;
-  // A diagonal tensor is inverted entry by entry, so that a needle (moments 1e-6 : 1) loses no digits to elimination.
+  // A diagonal tensor is inverted entry by entry, so that a needle (moments 1e-6 : 1) loses no
+  // digits to elimination.
   const Vector3d moments = inertia_body.diagonal();
   inertia.inverse_inertia_body = inertia_body.isDiagonal(0.0) ? Matrix3d(moments.cwiseInverse().asDiagonal())
                                                               : Matrix3d(cholesky.solve(Matrix3d::Identity()));

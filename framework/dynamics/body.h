@@ -1,7 +1,7 @@
 /// A rigid body as the equations see it. Plain data, light enough for a student's file.
 ///
-/// Frames: `world` is inertial, right-handed, z up; `body` has its origin at the centre of mass and turns with the body.
-/// Units: SI. Orientation: unit Hamilton quaternion, body to world.
+/// Frames: `world` is inertial, right-handed, z up; `body` has its origin at the centre of mass and
+/// turns with the body. Units: SI. Orientation: unit Hamilton quaternion, body to world.
 #pragma once
 
 #include "framework/core/math.h"
@@ -11,8 +11,8 @@ namespace tumble {
 inline Vector3d unset_vector() { return Vector3d::Constant(kUnset); }
 
 /// How a body resists being moved.
-/// A body of infinite mass (a wall, the floor) has inverse_mass 0 and zero inverse_inertia_body; its mass is +infinity and
-/// its inertia_body is not to be used.
+/// A body of infinite mass (a wall, the floor) has inverse_mass 0 and zero inverse_inertia_body;
+/// its mass is +infinity and its inertia_body is not to be used.
 struct Inertia {
   double mass = kUnset;                                            // [kg], > 0 or +infinity
   double inverse_mass = kUnset;                                    // [1/kg], >= 0
@@ -20,7 +20,8 @@ struct Inertia {
   Matrix3d inverse_inertia_body = Matrix3d::Constant(kUnset);      // (3,3), body frame [1/(kg m^2)]
 };
 
-/// @param inertia_body  (3,3), symmetric positive definite, body frame, about the centre of mass [kg m^2]
+/// @param inertia_body  (3,3), symmetric positive definite, body frame, about the centre of mass
+/// [kg m^2]
 /// @pre mass > 0 and finite
 Inertia finite_inertia(double mass, const Matrix3d& inertia_body);
 /// A body that nothing can push: inverse mass and inverse inertia are zero.
@@ -61,7 +62,8 @@ struct Contact {
   Vector3d normal_b_to_a_world = unset_vector();                   // (3), unit, from B to A [-]
 };
 
-/// Half-line origin + t direction, t >= 0. The direction need not be unit; t counts in lengths of it.
+/// Half-line origin + t direction, t >= 0. The direction need not be unit; t counts in lengths of
+/// it.
 struct Ray {
   Vector3d origin_world = unset_vector();                          // (3) [m]
   Vector3d direction_world = unset_vector();                       // (3), not zero

@@ -1,9 +1,11 @@
-/// Springs, rods and the rows of constraints as equations see them. Plain data, light enough for a student's file.
+/// Springs, rods and the rows of constraints as equations see them. Plain data, light enough for a
+/// student's file.
 ///
-/// Frames and units as in body.h. A velocity or a force on a body as six numbers is (linear, angular): (v, omega) [m/s, rad/s],
-/// (F, tau about the centre of mass) [N, N m], all in the world frame.
-/// Sources: D. Baraff, "Linear-time dynamics using Lagrange multipliers", SIGGRAPH 1996; A. Witkin, "Constrained dynamics",
-/// SIGGRAPH course notes 1997.
+/// Frames and units as in body.h. A velocity or a force on a body as six numbers is (linear,
+/// angular): (v, omega) [m/s, rad/s], (F, tau about the centre of mass) [N, N m], all in the world
+/// frame.
+/// Sources: D. Baraff, "Linear-time dynamics using Lagrange multipliers", SIGGRAPH 1996; A. Witkin,
+/// "Constrained dynamics", SIGGRAPH course notes 1997.
 #pragma once
 
 #include <vector>
@@ -27,7 +29,8 @@ struct AnchorState {
   Vector3d velocity_world = unset_vector();                        // (3) [m/s]
 };
 
-/// One scalar equation C(x_a, x_b) = 0 on the places of two bodies A and B, linearised where they are.
+/// One scalar equation C(x_a, x_b) = 0 on the places of two bodies A and B, linearised where they
+/// are.
 ///   C' = J_a . u_a + J_b . u_b,      C'' = J_a . u_a' + J_b . u_b' + (J' u)
 struct ConstraintRow {
   Vector6d jacobian_a = Vector6d::Constant(kUnset);                // J_a, (6): (linear, angular), world
@@ -37,15 +40,16 @@ struct ConstraintRow {
   double velocity_product = kUnset;                                // J' u: what C'' is where nothing accelerates [m/s^2]
 };
 
-/// A row between two bodies of a list. A multiplier lambda pushes A with lambda J_a and B with lambda J_b.
+/// A row between two bodies of a list. A multiplier lambda pushes A with lambda J_a and B with
+/// lambda J_b.
 struct Constraint {
   int body_a = 0;                                                  // indices into the list of bodies; different
   int body_b = 0;
   ConstraintRow row;
 };
 
-/// A body as constraints see it. One of infinite mass has inverse mass 0 and zero inverse inertia: no constraint accelerates it, but it may be
-/// driven, and then free_acceleration is its drive's.
+/// A body as constraints see it. One of infinite mass has inverse mass 0 and zero inverse inertia:
+/// no constraint accelerates it, but it may be driven, and then free_acceleration is its drive's.
 struct ConstrainedBody {
   double inverse_mass = kUnset;                                    // [1/kg]
   Matrix3d inverse_inertia_world = Matrix3d::Constant(kUnset);     // (3,3), world [1/(kg m^2)]

@@ -1,7 +1,9 @@
-/// Coulomb's law at one contact: projections, and the impulse of one contact alone. Internal to dynamics.
+/// Coulomb's law at one contact: projections, and the impulse of one contact alone. Internal to
+/// dynamics.
 ///
-/// (C.1) and (C.2) together say, for any r > 0,   p = P(p - v / r),   P(z) = (max(0, z_n), z_t brought into the disk of radius mu P_n)
-/// (P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng. 92, 1991).
+/// (C.1) and (C.2) together say, for any r > 0,   p = P(p - v / r),   P(z) = (max(0, z_n), z_t
+/// brought into the disk of radius mu P_n) (P. Alart, A. Curnier, Comput. Methods Appl. Mech. Eng.
+/// 92, 1991).
 #pragma once
 
 #include <algorithm>
@@ -33,10 +35,12 @@ LocalContact prepare_local(const Matrix3d& w);
 
 /// The impulse p of a contact whose velocity is  W p + free  : (C.1) and (C.2) to round-off.
 ///   sliding:  (W_tt + s I) p_t + w_tn p_n + free_t = 0,   v_n = 0,   |p_t| = mu p_n,   s >= 0                               (C.5)
-/// One equation in s after p_n is eliminated; |p_t(s)| - mu p_n(s) changes its sign between 0 and a closed bound, so there is always
-/// an answer (with strong coupling up to three: the one that Newton's iteration, kept in the bracket, reaches from the last answer's s,
-/// which it leaves in `local`).
-/// Source: O. Bonnefon, G. Daviet, "Quartic formulation of Coulomb 3D frictional contact", INRIA RT-400, 2011.
+/// One equation in s after p_n is eliminated; |p_t(s)| - mu p_n(s) changes its sign between 0 and a
+/// closed bound, so there is always an answer (with strong coupling up to three: the one that
+/// Newton's iteration, kept in the bracket, reaches from the last answer's s, which it leaves in
+/// `local`).
+/// Source: O. Bonnefon, G. Daviet, "Quartic formulation of Coulomb 3D frictional contact", INRIA
+/// RT-400, 2011.
 Vector3d solve_local(LocalContact& local, const Vector3d& free, double friction);
 
 }  // namespace tumble::contacts

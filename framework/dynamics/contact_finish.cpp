@@ -14,9 +14,10 @@ namespace {
 
 constexpr double kTie = 1e-9;   // of the problem's speed: a contact this near to opening or sliding is taken as closed, or sticking
 
-/// delta, the compliance of a step over the contact's own give. A full step takes the error in the stiffest direction down by delta over the
-/// smallest eigenvalue of W (N^-4 in a stack of N); the rounding of the linear equations grows with 1 / delta. So it is lessened where steps
-/// are slow and the equations were solved well, and raised where they were not.
+/// delta, the compliance of a step over the inverse effective mass of the contact. A full step takes the error in the
+/// stiffest direction down by delta over the smallest eigenvalue of W (N^-4 in a stack of N); the
+/// rounding of the linear equations grows with 1 / delta. So it is lessened where steps are slow
+/// and the equations were solved well, and raised where they were not.
 constexpr double kFirstFade = 1e-8, kLeastFade = 1e-11, kMostFade = 1e-4;
 
 /// dp = f - D dv: how one contact's impulse answers.
@@ -57,12 +58,15 @@ Response law_response(const ContactBlock& c, const Vector3d& p, const Vector3d& 
   return response;
 }
 
-/// The linear equations of one Newton step:   dp + D G (G^T dp) = f   for all contacts and rows at once.
+/// The linear equations of one Newton step:   dp + D G (G^T dp) = f   for all contacts and rows at
+/// once.
 class StepEquations {
  public:
-  /// @param held  contacts that stick, where the others are open, whatever Coulomb's law has them do; null: the law. False where the matrix fails.
+  /// @param held  contacts that stick, where the others are open, whatever Coulomb's law has them
+  /// do; null: the law. False where the matrix fails.
   bool prepare(const System& system, double fade, BodyMatrix& matrix, const Impulses& now, const std::vector<bool>* held = nullptr);
-  /// The change of all impulses, refined until what is left of the equations is small beside `violation`. True if it got so far.
+  /// The change of all impulses, refined until what is left of the equations is small beside
+  /// `violation`. True if it got so far.
   bool solve(const BodyMatrix& matrix, double violation, Impulses& change);
 
  private:
@@ -167,7 +171,8 @@ Impulses moved(const System& system, const Impulses& impulses, const Impulses& c
 
 namespace {
 
-/// The impulses that hold these contacts, and all rows, in all directions, whatever they have to be. False where the equations cannot be solved.
+/// The impulses that hold these contacts, and all rows, in all directions, whatever they have to
+/// be. False where the equations cannot be solved.
 bool hold(const Goal& goal, const std::vector<bool>& held, BodyMatrix& matrix, Progress& trial) {
   constexpr double kFade = 1e-6;   // not as small as later: nothing is known yet of how well these equations can be solved
   constexpr int kMostSteps = 6;

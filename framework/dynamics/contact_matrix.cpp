@@ -25,8 +25,9 @@ int least_degree(const std::vector<std::vector<int>>& neighbours, const std::vec
   return best;
 }
 
-/// By factors L U, rows pivoted, and a solution for each column of I: of blocks with entries from 1 to 1e11 what is left over stays small,
-/// which it does not by Gauss and Jordan. What is singular comes out as no numbers.
+/// By factors L U, rows pivoted, and a solution for each column of I: of blocks with entries from 1
+/// to 1e11 what is left over stays small, which it does not by Gauss and Jordan. What is singular
+/// comes out as no numbers.
 /// Source: G. Golub, C. Van Loan, "Matrix Computations", 3.4.
 void invert(Block6& m) {
   Block6 x = Block6::Identity();

@@ -1,7 +1,9 @@
-/// The matrix of Newton's method on a contact problem, by bodies: H = I + sum G_i^T D_i G_i, in 6 x 6 blocks. Internal to dynamics.
+/// The matrix of Newton's method on a contact problem, by bodies: H = I + sum G_i^T D_i G_i, in 6 x
+/// 6 blocks. Internal to dynamics.
 ///
-/// Eliminated block by block without pivoting between blocks, in an order of least degree found once: a stack or a chain costs O(bodies).
-/// H need not be symmetric (sliding contacts), but its pattern is. The part of I makes it regular where contacts are redundant.
+/// Eliminated block by block without pivoting between blocks, in an order of least degree found
+/// once: a stack or a chain costs O(bodies). H need not be symmetric (sliding contacts), but its
+/// pattern is. The part of I makes it regular where contacts are redundant.
 /// Source: A. George, J. Liu, "Computer Solution of Large Sparse Positive Definite Systems", 1981.
 #pragma once
 
@@ -15,7 +17,8 @@ using Block6 = Eigen::Matrix<double, 6, 6>;
 
 class BodyMatrix {
  public:
-  /// Finds the order of elimination and where it fills in. Cost: O(bodies^2) at most, of small constant.
+  /// Finds the order of elimination and where it fills in. Cost: O(bodies^2) at most, of small
+  /// constant.
   explicit BodyMatrix(const System& system);
 
   void set_identity();

@@ -1,15 +1,19 @@
-/// Contacts with Coulomb friction: which impulses keep bodies from entering each other during a step.
+/// Contacts with Coulomb friction: which impulses keep bodies from entering each other during a
+/// step.
 ///
-/// The bodies have velocities u (6 a body: linear, angular, world) that they would reach without contact forces. Contact i acts at
-/// one point, with a unit normal n_i from B to A and two tangents; its impulse p_i = (p_n, p_t1, p_t2) changes the velocities by
-/// M^-1 J^T p. With v_i the relative velocity of A against B at the point after all impulses:
+/// The bodies have velocities u (6 a body: linear, angular, world) that they would reach without
+/// contact forces. Contact i acts at one point, with a unit normal n_i from B to A and two
+/// tangents; its impulse p_i = (p_n, p_t1, p_t2) changes the velocities by M^-1 J^T p. With v_i the
+/// relative velocity of A against B at the point after all impulses:
 ///   p_n >= 0,   v_n >= target,   p_n (v_n - target) = 0                             (signorini)                        (C.1)
 ///   |p_t| <= mu p_n;   where |p_t| < mu p_n: v_t = 0;   else v_t = -s p_t, s >= 0   (Coulomb, a cone, no pyramid)      (C.2)
-/// Equality rows (rods, joints inside the group) hold J u = target with an impulse of any sign.                           (C.3)
-/// Such an impulse always exists for target <= 0 and no equality rows; it need not be unique (a table on four legs), nor are the
-/// velocities always unique where friction is large. The same problem gives the same bits.
-/// Sources: D. Stewart, J. Trinkle, Int. J. Numer. Meth. Eng. 39, 1996; V. Acary, B. Brogliato, "Numerical methods for nonsmooth
-/// dynamical systems", 2008, ch. 13; G. De Saxce, Z.-Q. Feng, Math. Comput. Modelling 28, 1998.
+/// Equality rows (rods, joints inside the group) hold J u = target with an impulse of any sign.
+/// (C.3) Such an impulse always exists for target <= 0 and no equality rows; it need not be unique
+/// (a table on four legs), nor are the velocities always unique where friction is large. The same
+/// problem gives the same bits.
+/// Sources: D. Stewart, J. Trinkle, Int. J. Numer. Meth. Eng. 39, 1996; V. Acary, B. Brogliato,
+/// "Numerical methods for nonsmooth dynamical systems", 2008, ch. 13; G. De Saxce, Z.-Q. Feng,
+/// Math. Comput. Modelling 28, 1998.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,5 @@
-// Contacts made compliant: the convex problem of given De Saxce shifts, and Coulomb's law on a path of falling compliance (contact_newton.h).
+// Contacts made compliant: the convex problem of given De Saxce shifts, and Coulomb's law on a path
+// of falling compliance (contact_newton.h).
 #include "framework/dynamics/contact_newton.h"
 
 #include <cmath>
@@ -34,7 +35,8 @@ ConeProjection project_on_cone(const Vector3d& z, double mu) {
   return result;
 }
 
-/// P of Coulomb's law (contact_cone.h) and its derivative, which is not symmetric where the contact slides.
+/// P of Coulomb's law (contact_cone.h) and its derivative, which is not symmetric where the contact
+/// slides.
 ConeProjection project_on_law(const Vector3d& z, double mu) {
   ConeProjection result{coulomb_projection(z, mu), Matrix3d::Zero()};
   if (!(z[0] > 0)) return result;
@@ -106,7 +108,8 @@ std::vector<Vector6d> along(const std::vector<Vector6d>& y, double share, const 
   return result;
 }
 
-/// The step along `direction` at which the slope of (C.6), rising from `slope_0` < 0, has nearly gone. Bracketed secants (Illinois).
+/// The step along `direction` at which the slope of (C.6), rising from `slope_0` < 0, has nearly
+/// gone. Bracketed secants (Illinois).
 double line_search(const SoftProblem& problem, const std::vector<Vector6d>& y, const std::vector<Vector6d>& direction, double slope_0) {
   constexpr double kSmall = 0.1;
   constexpr int kMost = 30;

@@ -8,7 +8,8 @@
 namespace tumble::contacts {
 namespace {
 
-/// Lower triangular root of a symmetric positive semidefinite matrix. A direction in which nothing moves gets a zero column.
+/// Lower triangular root of a symmetric positive semidefinite matrix. A direction in which nothing
+/// moves gets a zero column.
 Matrix3d lower_root(const Matrix3d& a) {
   constexpr double kRelative = 1e-15;  // a pivot below this share of the trace is rounding of a zero
   const double least = kRelative * a.trace();

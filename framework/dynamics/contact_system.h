@@ -1,10 +1,13 @@
-/// A contact problem made ready for solvers: mass-weighted coordinates, one small block of numbers a contact. Internal to dynamics.
+/// A contact problem made ready for solvers: mass-weighted coordinates, one small block of numbers
+/// a contact. Internal to dynamics.
 ///
 /// With M^-1 = L L^T body by body, the velocities are u = u_free + L y. Then
 ///   v_i = base_i + G_i y,     y = sum G_i^T p_i,     G_i = J_i L,     W_ij = G_i G_j^T                                    (C.4)
-/// where v_i is (normal, tangent 1, tangent 2), the target already taken off the normal. Bodies that cannot be pushed have no part of
-/// y; directions in which a body cannot move (zero inverse inertia) have a zero row of L. No mass is ever divided by.
-/// Source: V. Acary, B. Brogliato, "Numerical methods for nonsmooth dynamical systems", 2008, ch. 13 (Delassus operator W).
+/// where v_i is (normal, tangent 1, tangent 2), the target already taken off the normal. Bodies
+/// that cannot be pushed have no part of y; directions in which a body cannot move (zero inverse
+/// inertia) have a zero row of L. No mass is ever divided by.
+/// Source: V. Acary, B. Brogliato, "Numerical methods for nonsmooth dynamical systems", 2008, ch.
+/// 13 (Delassus operator W).
 #pragma once
 
 #include <vector>
@@ -101,7 +104,8 @@ inline void push(const RowBlock& r, double impulse, std::vector<Vector6d>& y) {
   if (r.body_b != kFixed) y[r.body_b] += impulse * r.g_b;
 }
 
-/// How far the impulses are from (C.1) to (C.3), as velocities:  give |p - P(p - v / give)|,  P as in contact_cone.h.
+/// How far the impulses are from (C.1) to (C.3), as velocities:  give |p - P(p - v / give)|,  P as
+/// in contact_cone.h.
 struct Violation {
   double largest = 0;                                         // [m/s]
   double squares = 0;                                         // sum of their squares [m^2/s^2]

@@ -1,5 +1,6 @@
-// Inside, numbers are `long double` (64 bits of mantissa or more where Debian runs): the closed forms lose nothing to large
-// angles (1e7 rad), and the rounding of thousands of Taylor steps stays below that of the double answer.
+// Inside, numbers are `long double` (64 bits of mantissa or more where Debian runs): the closed
+// forms lose nothing to large angles (1e7 rad), and the rounding of thousands of Taylor steps stays
+// below that of the double answer.
 #include "framework/dynamics/free_rotation.h"
 
 #include <algorithm>
@@ -32,7 +33,7 @@ RealQuaternion turn(const Real3& rate, Real t) {
   return {std::cos(half), v.x(), v.y(), v.z()};
 }
 
-// ---- Symmetric top ---------------------------------------------------------------------------------------------------
+// ---- Symmetric top ------------------------------------------------------------------------------
 
 // With It twice, Is about the axis of symmetry s, and lam = w_s (It - Is) / It:
 //   R(t) = exp(t [L / It]) R(0) exp(t lam [s])       L = R(0) I w, world                                       (F.2)
@@ -48,13 +49,14 @@ RealSpin turn_symmetric(const Real3& moments, int axis, const RealSpin& start, R
   return {turn(start.q * (I_w / transverse), t) * start.q * about_axis, about_axis.conjugate() * start.w};
 }
 
-// ---- Asymmetric top: Taylor series -----------------------------------------------------------------------------------
+// ---- Asymmetric top: Taylor series --------------------------------------------------------------
 
-// (F.1) in the principal frame: the right-hand side is quadratic, so the coefficients follow from sums of products.
+// (F.1) in the principal frame: the right-hand side is quadratic, so the coefficients follow from
+// sums of products.
 //   (k+1) w1[k+1] = (I2 - I3) / I1  sum_j w2[j] w3[k-j]      and cyclic                                          (F.4)
 //   (k+1) q[k+1]  = 1/2  sum_j q[j] (0, w[k-j])                                                                  (F.5)
-// Source: A. Jorba, M. Zou, "A software package for the numerical integration of ODEs by means of high-order Taylor methods",
-// Experimental Mathematics 14, 2005 (also for the step and the order).
+// Source: A. Jorba, M. Zou, "A software package for the numerical integration of ODEs by means of
+// high-order Taylor methods", Experimental Mathematics 14, 2005 (also for the step and the order).
 constexpr int kOrder = 24;           // -ln(kTaylorError) / 2, where the cost a unit of time is smallest
 constexpr Real kTaylorError = 1e-20L;  // of a step, relative: below the rounding of `long double`
 
@@ -119,9 +121,10 @@ RealSpin turn_by_series(const Real3& I, RealSpin spin, Real t) {
   return spin;
 }
 
-// ---- Asymmetric top: whole periods -----------------------------------------------------------------------------------
+// ---- Asymmetric top: whole periods --------------------------------------------------------------
 
-/// pi / (2 AGM(1, k')) = K, the complete elliptic integral, from the complementary modulus k' = sqrt(1 - m).
+/// pi / (2 AGM(1, k')) = K, the complete elliptic integral, from the complementary modulus k' =
+/// sqrt(1 - m).
 Real complete_elliptic(Real complementary) {
   Real a = 1.0L, b = complementary;
   while (std::abs(a - b) > 1e-18L * a) {
@@ -136,9 +139,9 @@ struct RealTumbling {
   Real modulus_m, period;
 };
 
-/// Modulus, and the time after which w is the same again in the principal frame; infinite on the separatrix.
-/// With I1 < I2 < I3 and the constants of (F.1) A = I3 (I3-I1) w3^2 + I2 (I2-I1) w2^2 = L^2 - 2 E I1 and
-/// B = I1 (I3-I1) w1^2 + I2 (I3-I2) w2^2 = 2 E I3 - L^2, in which nothing cancels:
+/// Modulus, and the time after which w is the same again in the principal frame; infinite on the
+/// separatrix. With I1 < I2 < I3 and the constants of (F.1) A = I3 (I3-I1) w3^2 + I2 (I2-I1) w2^2 =
+/// L^2 - 2 E I1 and B = I1 (I3-I1) w1^2 + I2 (I3-I2) w2^2 = 2 E I3 - L^2, in which nothing cancels:
 ///   larger = max(A (I3-I2), B (I2-I1)),  smaller = min(...),  m = smaller / larger,  T = 4 K(m) sqrt(I1 I2 I3 / larger)   (F.6)
 /// Source: Landau and Lifshitz, section 37.
 RealTumbling tumbling_of(const Real3& moments, const Real3& omega) {
@@ -158,8 +161,8 @@ RealTumbling tumbling_of(const Real3& moments, const Real3& omega) {
   return {modulus, 4.0L * complete_elliptic(complementary) * std::sqrt(I1 * I2 * I3 / larger)};
 }
 
-/// After one period the body has turned about L by some angle; n periods turn it n times as far. So a long time costs one
-/// period and a rest, where the rest of the work is in the series.
+/// After one period the body has turned about L by some angle; n periods turn it n times as far. So
+/// a long time costs one period and a rest, where the rest of the work is in the series.
 RealSpin turn_asymmetric(const Real3& I, const RealSpin& start, Real t) {
   constexpr Real kFewPeriods = 3.0L;  // below, going straight is no dearer
   const Real period = tumbling_of(I, start.w).period;

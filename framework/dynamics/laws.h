@@ -1,8 +1,9 @@
-/// The laws by which a world moves, as replaceable functions: an engine asks these and never knows their author.
+/// The laws by which a world moves, as replaceable functions: an engine asks these and never knows
+/// their author.
 ///
-/// Each assignment fills the laws it is about (its `bind`); what no module fills stays empty, and an engine that needs an
-/// empty law says which assignment provides it. `library_laws()` fills integration from a library, so that scenes run
-/// before a student has written an integrator.
+/// Each assignment fills the laws it is about (its `bind`); what no module fills stays empty, and
+/// an engine that needs an empty law says which assignment provides it. `library_laws()` fills
+/// integration from a library, so that scenes run before a student has written an integrator.
 #pragma once
 
 #include <functional>
@@ -46,7 +47,8 @@ struct Laws {
   /// lambda (m) at which every C'' is what is wanted, (m).
   std::function<VectorXd(const std::vector<Constraint>&, const std::vector<ConstrainedBody>&, const VectorXd& wanted_acceleration)>
       constraint_multipliers;
-  /// The change (6n) of places or velocities, smallest in the measure of the masses, with J change = -error.
+  /// The change (6n) of places or velocities, smallest in the measure of the masses, with J change
+  /// = -error.
   std::function<VectorXd(const std::vector<Constraint>&, const std::vector<ConstrainedBody>&, const VectorXd& error)> constraint_correction;
   /// f (m) >= 0 with a = A f + b >= 0 and f . a = 0.
   std::function<VectorXd(const MatrixXd& A, const VectorXd& b)> contact_forces;
@@ -64,7 +66,8 @@ struct Laws {
   std::string scheduling_source = "none";   // which module provides the scheduler
 };
 
-/// Laws of motion from Boost.Odeint (classical Runge-Kutta) and Boost.Math (TOMS 748 bracketing); no impulse laws.
+/// Laws of motion from Boost.Odeint (classical Runge-Kutta) and Boost.Math (TOMS 748 bracketing);
+/// no impulse laws.
 Laws library_laws();
 
 }  // namespace tumble

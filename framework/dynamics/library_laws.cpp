@@ -1,4 +1,5 @@
-// Integration by Boost.Odeint and root finding by Boost.Math, behind the same laws that a student fills.
+// Integration by Boost.Odeint and root finding by Boost.Math, behind the same laws that a student
+// fills.
 #include <array>
 #include <cmath>
 
@@ -27,8 +28,8 @@ VectorXd odeint_step(const OdeFunction& f, double t, const VectorXd& y, double h
   return Eigen::Map<const VectorXd>(state.data(), static_cast<Eigen::Index>(state.size()));
 }
 
-/// y' for y = (x, q, P, L), with the turning written in the body frame, where the inertia is constant:
-/// w_b = I_b^-1 (q* L q), q' = q (0, w_b) / 2.
+/// y' for y = (x, q, P, L), with the turning written in the body frame, where the inertia is
+/// constant: w_b = I_b^-1 (q* L q), q' = q (0, w_b) / 2.
 VectorXd newton_euler(const RigidBodyState& state, const Inertia& inertia, const Wrench& wrench) {
   const Quaterniond& q = state.world_from_body;
   const Vector3d omega_body = inertia.inverse_inertia_body * q.normalized().inverse()._transformVector(state.angular_momentum_world);

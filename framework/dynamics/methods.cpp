@@ -74,8 +74,9 @@ VectorXd symplectic_euler(const OdeFunction& f, double t, const VectorXd& y, dou
   return next;
 }
 
-// Half a step of momenta, a step of places, half a step of momenta (Stoermer, Verlet). Of second order where forces and the turning
-// of places depend on places alone; a body that tumbles turns with the orientation it had, which is of first order.
+// Half a step of momenta, a step of places, half a step of momenta (Stoermer, Verlet). Of second
+// order where forces and the turning of places depend on places alone; a body that tumbles turns
+// with the orientation it had, which is of first order.
 VectorXd verlet(const OdeFunction& f, double t, const VectorXd& y, double h) {
   VectorXd next = y;
   add(f(t, y), 0.5 * h, true, next);
@@ -95,7 +96,8 @@ OdeFunction with_finite_slopes(const OdeFunction& f) {
   };
 }
 
-// Where a trial leads to is wrong: a stage left what the equations can bear. Slips of a person are none of the step's, nor is what stays so.
+// Where a trial leads to is wrong: a stage left what the equations can bear. Slips of a person are
+// none of the step's, nor is what stays so.
 template <class Trial>
 std::optional<std::string> what_went_wrong(const Trial& trial) {
   try {
@@ -114,8 +116,10 @@ std::optional<std::string> what_went_wrong(const Trial& trial) {
 template <class Container>
 bool is_finite(const Container& state) { return std::all_of(state.begin(), state.end(), [](double value) { return std::isfinite(value); }); }
 
-/// Steps as long as the control allows, from t to t + h. A trial step that fails was too long: it is rejected, and a quarter of it tried.
-/// @throws std::runtime_error where no step will do: a solution that grows without bound asks for ever shorter steps
+/// Steps as long as the control allows, from t to t + h. A trial step that fails was too long: it
+/// is rejected, and a quarter of it tried.
+/// @throws std::runtime_error where no step will do: a solution that grows without bound asks for
+/// ever shorter steps
 template <class Controlled, class System, class Container>
 void advance(const Controlled& fresh, const System& system, Container& state, double t, double h, double first) {
   std::optional<Controlled> stepper(fresh);
@@ -148,9 +152,11 @@ void advance(const Controlled& fresh, const System& system, Container& state, do
   }
 }
 
-// What a controlled method tries first: small enough that y and its slope hardly change in it. A trial over all of h may leave what the
-// equations can bear (a stiff spring flung out to 1e30 m) before the control can say no.
-// Source: Hairer, Norsett, Wanner, "Solving ODEs I", II.4 (starting step size), with the sizes of y in place of tolerances.
+// What a controlled method tries first: small enough that y and its slope hardly change in it. A
+// trial over all of h may leave what the equations can bear (a stiff spring flung out to 1e30 m)
+// before the control can say no.
+// Source: Hairer, Norsett, Wanner, "Solving ODEs I", II.4 (starting step size), with the sizes of y
+// in place of tolerances.
 double first_part(const OdeFunction& f, double t, const VectorXd& y, double h) {
   const auto size = [&](const VectorXd& v) { return (v.array() / (1.0 + y.array().abs())).matrix().norm(); };
   const VectorXd slope = f(t, y);
@@ -172,7 +178,8 @@ VectorXd adaptive(const Controlled& stepper, const OdeFunction& any, double t, c
   return vector_of(state);
 }
 
-// df/dy by central differences, df/dt by one more pair: as a Rosenbrock method asks for it. Error of each entry: eps^(2/3) of its size.
+// df/dy by central differences, df/dt by one more pair: as a Rosenbrock method asks for it. Error
+// of each entry: eps^(2/3) of its size.
 class DifferencedJacobian {
  public:
   explicit DifferencedJacobian(const OdeFunction& f) : f_(f) {}

@@ -1,7 +1,9 @@
-/// Methods of integration to compare with, by name: each is a step that can stand in the laws' place (Laws::integrate_step).
+/// Methods of integration to compare with, by name: each is a step that can stand in the laws'
+/// place (Laws::integrate_step).
 ///
-/// All take any y; symplectic ones take packed states (13 numbers a body) or the (place, velocity) of a swing, since they must know
-/// places from momenta. Controlled methods cut the step that they are given into as many as their tolerance asks for.
+/// All take any y; symplectic ones take packed states (13 numbers a body) or the (place, velocity)
+/// of a swing, since they must know places from momenta. Controlled methods cut the step that they
+/// are given into as many as their tolerance asks for.
 #pragma once
 
 #include <functional>
@@ -23,17 +25,21 @@ struct Method {
   bool implicit;            // for stiff systems: its price a step is higher, and its steps are not bounded by stability
 };
 
-/// In the order in which they are drawn: euler, symplectic, midpoint, verlet, rk4, dopri5, fehlberg78, bulirsch-stoer, rosenbrock4.
+/// In the order in which they are drawn: euler, symplectic, midpoint, verlet, rk4, dopri5,
+/// fehlberg78, bulirsch-stoer, rosenbrock4.
 const std::vector<Method>& methods();
 
 /// @throws UserError naming the known words
 const Method& method_named(const std::string& word);
 
 /// The method as a step.
-/// @param tolerance  of a controlled method: error a step it allows itself, absolute and relative, > 0; not looked at by others
-/// A controlled method takes back a trial in which f throws (but UserError and NotImplemented), or which ends in a value that is not a number, and tries
-/// a quarter of it. It throws std::runtime_error where no step will do (none of 1e-12 of h), or it would need more than 1e6 steps inside one.
-/// Source: E. Hairer, S. P. Norsett, G. Wanner, "Solving ODEs I", II.4-II.9; "II", IV.7; implementations: Boost.Odeint.
+/// @param tolerance  of a controlled method: error a step it allows itself, absolute and relative,
+/// > 0; not looked at by others A controlled method takes back a trial in which f throws (but
+/// UserError and NotImplemented), or which ends in a value that is not a number, and tries a
+/// quarter of it. It throws std::runtime_error where no step will do (none of 1e-12 of h), or it
+/// would need more than 1e6 steps inside one.
+/// Source: E. Hairer, S. P. Norsett, G. Wanner, "Solving ODEs I", II.4-II.9; "II", IV.7;
+/// implementations: Boost.Odeint.
 StepFunction step_of(const Method& method, double tolerance);
 
 }  // namespace tumble

@@ -13,7 +13,8 @@ namespace tumble {
 /// Right-hand side: the derivative of y at time t. @return (n), as y, per second
 using OdeFunction = std::function<VectorXd(double t, const VectorXd& y)>;
 
-/// Layout of a rigid body's state as a vector (13): com_world (3), quaternion w x y z (4), momentum (3), angular momentum (3).
+/// Layout of a rigid body's state as a vector (13): com_world (3), quaternion w x y z (4), momentum
+/// (3), angular momentum (3).
 inline constexpr int kStateSize = 13;
 inline VectorXd pack(const RigidBodyState& state) {
   VectorXd y(kStateSize);

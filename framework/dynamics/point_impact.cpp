@@ -12,13 +12,14 @@ namespace {
 
 using Eigen::Matrix2d;
 
-// Of the largest inverse mass: what rounding leaves of a direction in which nothing can be moved. Links of some hundred bodies leave 1e-14.
+// Of the largest inverse mass: what rounding leaves of a direction in which nothing can be moved.
+// Links of some hundred bodies leave 1e-14.
 constexpr double kRigid = 1e-12;
 constexpr double kNoSlip = 1e-12;      // of the speed: what rounding leaves of no slip
 constexpr int kMostSteps = 200;        // of bisection in the logarithm; Newton's method takes about 6
 
-/// (I.1) with the normal impulse eliminated, in the contact's frame: S p_t = wanted is sticking, S = K_tt - k k^T / K_nn, k = K_tn.
-/// Components along the eigenvectors of S, in which S is diagonal.
+/// (I.1) with the normal impulse eliminated, in the contact's frame: S p_t = wanted is sticking, S
+/// = K_tt - k k^T / K_nn, k = K_tn. Components along the eigenvectors of S, in which S is diagonal.
 struct Tangents {
   Vector2d stiffness;        // eigenvalues of S, 0 where nothing can be moved [1/kg]
   Vector2d coupling;         // k [1/kg]

@@ -1,4 +1,5 @@
-/// Root finders to compare with, by name: each can stand in the place of Laws::find_impact_time with a tolerance of its own.
+/// Root finders to compare with, by name: each can stand in the place of Laws::find_impact_time
+/// with a tolerance of its own.
 #pragma once
 
 #include <string>
@@ -16,7 +17,8 @@ struct RootMethod {
   ImpactFinder find;
 };
 
-/// bisection, newton (with the derivative, kept in the bracket by bisection), toms748 (inverse cubic interpolation in a bracket).
+/// bisection, newton (with the derivative, kept in the bracket by bisection), toms748 (inverse
+/// cubic interpolation in a bracket).
 /// Source: Boost.Math (tools/roots.hpp, tools/toms748_solve.hpp).
 const std::vector<RootMethod>& root_methods();
 

@@ -14,8 +14,9 @@ struct Band {
   bool holds(double value, double slack) const { return value >= low * (1.0 - slack) && value <= high * (1.0 + slack); }
 };
 
-// Two moments closer than kSameMoment (relative) are one: a corner between them would lose all digits. Corners count when they
-// miss the bands by no more than that, and solving for one leaves at most 2^-52 / kSameMoment, about 2e-7, of a component.
+// Two moments closer than kSameMoment (relative) are one: a corner between them would lose all
+// digits. Corners count when they miss the bands by no more than that, and solving for one leaves
+// at most 2^-52 / kSameMoment, about 2e-7, of a component.
 constexpr double kSameMoment = 1e-9;
 constexpr double kCornerSlack = 10 * kSameMoment;
 constexpr double kSolveSlack = 1.0 + 1e-6;
@@ -25,7 +26,8 @@ struct Largest {
   double sum;            // of x_1 + x_2 + x_3
 };
 
-// Over { x >= 0 : sum I_i x_i in `energy`, sum I_i^2 x_i in `momentum` }, a polytope: what is linear is largest at a corner.
+// Over { x >= 0 : sum I_i x_i in `energy`, sum I_i^2 x_i in `momentum` }, a polytope: what is
+// linear is largest at a corner.
 Largest largest_squares(const Vector3d& I, const Band& energy, const Band& momentum, const Vector3d& now) {
   Largest largest{now, now.sum()};
   const auto consider = [&](const Vector3d& corner) {
@@ -78,7 +80,8 @@ RotationBounds bound_rotation(const RigidBodyState& state, const Inertia& inerti
   Largest largest = largest_squares(moments, free_energy, momentum, now);
   double speed = std::min(std::sqrt(largest.sum), top_speed);
 
-  // (D.1), the error's part: it holds as long as |omega| stays below `assumed`, and |omega| does so when the bound comes out below.
+  // (D.1), the error's part: it holds as long as |omega| stays below `assumed`, and |omega| does so
+  // when the bound comes out below.
   for (double assumed = 2.0 * speed; error > 0.0; assumed *= 2.0) {
     assumed = std::min(assumed, top_speed);
     const double drift = 2.0 * error * assumed * top_momentum * h;

@@ -1,8 +1,10 @@
-/// What a timewarp scheduler decides on, and the decisions as replaceable functions (assignment a4): plain data, no engine.
+/// What a timewarp scheduler decides on, and the decisions as replaceable functions (assignment
+/// a4): plain data, no engine.
 ///
-/// Bodies that move are processes; each has its own local virtual time. Walls and other immovable bodies have no process and are
-/// never rolled back. Times are virtual times [s].
-/// Sources: D. Jefferson, "Virtual time", ACM TOPLAS 7, 1985; B. Mirtich, "Timewarp rigid body simulation", SIGGRAPH 2000.
+/// Bodies that move are processes; each has its own local virtual time. Walls and other immovable
+/// bodies have no process and are never rolled back. Times are virtual times [s].
+/// Sources: D. Jefferson, "Virtual time", ACM TOPLAS 7, 1985; B. Mirtich, "Timewarp rigid body
+/// simulation", SIGGRAPH 2000.
 #pragma once
 
 #include <cstdint>
@@ -33,7 +35,8 @@ struct Stamp {
 struct ScheduledEvent {
   Stamp stamp;                            // of a check: when the next look is due; its microstep is 0 (of a group's: that of what was found)
   double safe_time = kUnset;              // nothing that this event may still change lies before it [s]: of a check the time up to which its
-                                          // bodies were verified disjoint, of a callback its own time, of a redraw infinity
+                                          // bodies were verified disjoint, of a callback its own
+                                          // time, of a redraw infinity
   std::vector<std::int32_t> receivers;    // processes that must have come to stamp.time, ascending; walls are none. Of a redraw empty: all
 };
 
@@ -43,7 +46,8 @@ struct Rollback {
   Stamp stamp;
 };
 
-/// Something that was worked at and is not committed: an impact, a callback, a group's change. It changed one process, two, or whole groups.
+/// Something that was worked at and is not committed: an impact, a callback, a group's change. It
+/// changed one process, two, or whole groups.
 struct Effect {
   Stamp stamp;
   std::vector<std::int32_t> processes;    // those it changed, ascending; walls are none
@@ -63,7 +67,8 @@ struct CheckDecision {
   ScheduledEvent next;                    // the same check as it goes back into the queue
 };
 
-/// Two bodies of a group that touch, or one of them and a wall (no body of the group: its number, or -1).
+/// Two bodies of a group that touch, or one of them and a wall (no body of the group: its number,
+/// or -1).
 struct GroupContact {
   std::int32_t body_a = -1, body_b = -1;
   double opens = kUnset;                  // when they part; infinite: not within what was looked at [s]
@@ -81,7 +86,8 @@ struct LocalTime {
   double time = kUnset;                   // its local virtual time [s]
 };
 
-/// The decisions of a scheduler. What each must answer stands in the header of the module that fills it.
+/// The decisions of a scheduler. What each must answer stands in the header of the module that
+/// fills it.
 struct Scheduling {
   std::function<bool(const Stamp& x, const Stamp& y)> comes_before;
   std::function<double(double now, double gap, double closing_speed, double closing_acceleration, double step)> next_check_time;

@@ -45,7 +45,8 @@ void sweep_until(const Goal& goal, std::vector<contacts::LocalContact>& locals, 
   for (int i = 0; i < most_sweeps && !progress.accepted; ++i) {
     const double change = contacts::sweep(goal.system, locals, i % 2 == 0, progress.impulses);
     ++progress.sweeps;
-    // The change of a sweep is about as large as the violation before it: only when it is small the true one is worth its price.
+    // The change of a sweep is about as large as the violation before it: only when it is small the
+    // true one is worth its price.
     if (i + 1 < most_sweeps && !goal.accepts(progress.impulses, change)) continue;
     contacts::sum_impulses(goal.system, progress.impulses);
     goal.measure(progress);
@@ -81,7 +82,8 @@ class Turns {
     }
   }
 
-  /// Newton's method on the law, from where we are. It leaves us there: where it fails it has gone astray.
+  /// Newton's method on the law, from where we are. It leaves us there: where it fails it has gone
+  /// astray.
   void try_to_finish() {
     Progress trial = now_;
     contacts::finish(goal_, kNewtonSteps, matrix_, trial);
@@ -101,7 +103,8 @@ class Turns {
     now_.factorisations = counts.factorisations;
   }
 
-  /// Where steps fall by a steady ratio, their sum is known (Aitken): goes there, and back again if that is no better.
+  /// Where steps fall by a steady ratio, their sum is known (Aitken): goes there, and back again if
+  /// that is no better.
   void extrapolate(const Impulses& second_last, const Impulses& last) {
     double before = 0, after = 0, product = 0;
     for (std::size_t i = 0; i < last.y.size(); ++i) {

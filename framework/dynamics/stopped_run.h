@@ -1,4 +1,5 @@
-/// Why a run cannot go on, as an exception: it ends up in Trajectory::stopped_by, with the time before it.
+/// Why a run cannot go on, as an exception: it ends up in Trajectory::stopped_by, with the time
+/// before it.
 #pragma once
 
 #include <stdexcept>
@@ -14,7 +15,8 @@ class StoppedRun : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// No rollback and no shorter step changes it, where another StoppedRun may be a consequence of what will be undone.
+/// No rollback and no shorter step changes it, where another StoppedRun may be a consequence of
+/// what will be undone.
 class StoppedForGood : public StoppedRun, public Final {
  public:
   using StoppedRun::StoppedRun;

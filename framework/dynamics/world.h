@@ -1,6 +1,8 @@
-/// The bodies of a scene and the effects on them, ready to be advanced. Plain data: engines move it, nothing here does.
+/// The bodies of a scene and the effects on them, ready to be advanced. Plain data: engines move
+/// it, nothing here does.
 ///
-/// An effect that the scene does not ask for is absent (an empty optional or list): no code of it runs.
+/// An effect that the scene does not ask for is absent (an empty optional or list): no code of it
+/// runs.
 #pragma once
 
 #include <optional>

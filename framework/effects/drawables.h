@@ -1,4 +1,5 @@
-/// What effects show of themselves, as plain data: pictures (render) and the page that plays a run (report) draw it alike.
+/// What effects show of themselves, as plain data: pictures (render) and the page that plays a run
+/// (report) draw it alike.
 #pragma once
 
 #include <string>
@@ -35,7 +36,8 @@ struct DrawnBar {
   DrawnPoint a, b;
 };
 
-/// Where two bodies turn about each other: a small ball, or a pin along an axis. A weld is not drawn, but is reported.
+/// Where two bodies turn about each other: a small ball, or a pin along an axis. A weld is not
+/// drawn, but is reported.
 struct DrawnPivot {
   std::string name;
   enum class Kind { kBall, kPin, kWeld } kind;

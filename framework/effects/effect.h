@@ -1,8 +1,10 @@
-/// An effect: a force, a potential or a constraint, as one folder. This is all that the rest of the program knows of it.
+/// An effect: a force, a potential or a constraint, as one folder. This is all that the rest of the
+/// program knows of it.
 ///
-/// A folder says what its effect is in a scene (scene/words.h), what becomes of that in a world, how it acts there, what it does to the world's
-/// energy, what it asks of a step, and what of it is drawn. Each part that an effect does not have is left out: what stands here does nothing.
-/// A world whose scene does not ask for an effect holds no object of it, so that no step pays for it.
+/// A folder says what its effect is in a scene (scene/words.h), what becomes of that in a world,
+/// how it acts there, what it does to the world's energy, what it asks of a step, and what of it is
+/// drawn. Each part that an effect does not have is left out: what stands here does nothing. A
+/// world whose scene does not ask for an effect holds no object of it, so that no step pays for it.
 ///
 /// An effect acts in one of two ways:
 ///   steady forces   on each body by itself, constant within a step: the body stays one that flies alone (gravity, a point force)
@@ -28,15 +30,17 @@
 
 namespace tumble::effects {
 
-/// What an effect acts with: the world that holds its entries, the laws that it asks, and its own count of calls.
+/// What an effect acts with: the world that holds its entries, the laws that it asks, and its own
+/// count of calls.
 struct Acting {
   const World& world;
   const Laws& laws;
   std::uint64_t& calls;
 };
 
-/// Numbers that entries remember from an instant at which they change to the next, by entry. Beside the states of bodies they are all that a process
-/// goes on from, so that an engine can go back in time.
+/// Numbers that entries remember from an instant at which they change to the next, by entry. Beside
+/// the states of bodies they are all that a process goes on from, so that an engine can go back in
+/// time.
 using Memory = std::map<int, std::array<double, 3>>;
 
 /// An instant at which an entry begins or ends to act, known before the run.
@@ -66,40 +70,47 @@ class SteadyForces {
   virtual std::vector<Switch> due(double) const { return {}; }
   /// Switches one of these. @param states  by body of the world
   virtual void turn(const Switch&, const std::vector<RigidBodyState>&) {}
-  /// Stands at another time, in other states: what acts then does so as `memory` says, or as it would where it begins now.
+  /// Stands at another time, in other states: what acts then does so as `memory` says, or as it
+  /// would where it begins now.
   /// @return when the next entry is switched; infinite without [s]
   virtual double stand_at(double, const Memory&, const std::vector<RigidBodyState>&) { return std::numeric_limits<double>::infinity(); }
   /// What acts now goes on from.
   virtual Memory memory() const { return {}; }
 };
 
-/// The bodies of a group, and where an effect finds them in the lists that it is asked with. Asked only while the group is put together.
+/// The bodies of a group, and where an effect finds them in the lists that it is asked with. Asked
+/// only while the group is put together.
 class GroupPlaces {
  public:
   virtual ~GroupPlaces() = default;
   /// Whether the group moves this body.
   virtual bool has(int body) const = 0;
-  /// Its place among the group's bodies; of an immovable one, or of the world (-1), its place behind them.
+  /// Its place among the group's bodies; of an immovable one, or of the world (-1), its place
+  /// behind them.
   virtual int place_of(int body) = 0;
 };
 
-/// A law that looks at its bodies at instants of its own, and holds what it has decided until it looks again.
+/// A law that looks at its bodies at instants of its own, and holds what it has decided until it
+/// looks again.
 class Control {
  public:
   virtual ~Control() = default;
   /// Looks, where its time has come. @param bodies  by place @return when it looks next [s]
   virtual double look(double time, const std::vector<Body>& bodies) = 0;
-  /// What it holds, by entry; and the same brought back: entries that it does not name look at once.
+  /// What it holds, by entry; and the same brought back: entries that it does not name look at
+  /// once.
   virtual Memory memory() const = 0;
   virtual void remember(const Memory& memory) = 0;
-  /// Whether it drives bodies otherwise than by what it held before, beyond what those of bodies at rest change.
+  /// Whether it drives bodies otherwise than by what it held before, beyond what those of bodies at
+  /// rest change.
   virtual bool differs_from(const Memory& before) const = 0;
 };
 
 /// Called with a link that is open, and by which part of its size or which angle.
 using NoteOpen = std::function<void(const std::string& name, double open)>;
 
-/// What an effect adds to the equations of motion of one group: forces, or equations that hold (rows), or a control law.
+/// What an effect adds to the equations of motion of one group: forces, or equations that hold
+/// (rows), or a control law.
 class GroupTerms {
  public:
   virtual ~GroupTerms() = default;
@@ -107,7 +118,8 @@ class GroupTerms {
   /// Adds forces and torques. @param bodies, wrenches  by place
   virtual void add_forces(const std::vector<Body>&, std::vector<Wrench>&) {}
 
-  /// How many equations hold its bodies; append_rows appends them where the bodies are now. @param bodies  by place, which rows name them by
+  /// How many equations hold its bodies; append_rows appends them where the bodies are now.
+  /// @param bodies  by place, which rows name them by
   virtual std::size_t row_count() const { return 0; }
   virtual void append_rows(const std::vector<Body>&, std::vector<Constraint>&) {}
   /// The largest length that they keep: what errors of places are compared with. [m]
@@ -117,7 +129,8 @@ class GroupTerms {
   /// nullptr where it looks at nothing.
   virtual Control* control() { return nullptr; }
 
-  /// What its entries pull with; Effect::measured_as says where it is recorded. @param multipliers  of its rows, in their order
+  /// What its entries pull with; Effect::measured_as says where it is recorded.
+  /// @param multipliers  of its rows, in their order
   /// @param forces  by entry of the world: those of the group are filled in
   virtual void measure(const std::vector<Body>&, const VectorXd&, std::vector<double>&) {}
 };
@@ -143,7 +156,8 @@ struct Drain {
   std::string of, remedy;      // in words: "the resistance of body 'a'", "less resistance"
 };
 
-/// Draws bodies back along one direction: K = J^T stiffness J, C = J^T damping J. What swings fastest by all of these limits the step.
+/// Draws bodies back along one direction: K = J^T stiffness J, C = J^T damping J. What swings
+/// fastest by all of these limits the step.
 struct StiffRow {
   int body_a, body_b;          // -1: the world
   Vector6d jacobian_a, jacobian_b;   // (6): (linear, angular), world
@@ -186,18 +200,20 @@ class Effect : public scene::Words {
   virtual bool is_kept_in(const TypedLists& lists) const = 0;
   bool is_asked(const scene::Scene& scene) const final { return is_kept_in(scene.effects); }
 
-  // In a world -------------------------------------------------------------------------------------------------------------------------
+  // In a world ------------------------------------------------------------------------------------
 
-  /// Turns what the scene says into entries of the world: names into indices, points into frames. Bodies are there.
+  /// Turns what the scene says into entries of the world: names into indices, points into frames.
+  /// Bodies are there.
   virtual void build(const scene::Scene& scene, const BodyIndex& index, World& world) const = 0;
   /// How many entries of it a world holds; 0 where it does not act.
   virtual int count_in(const World& world) const = 0;
   /// The bodies that an entry names; -1 is the world.
   virtual std::vector<int> bodies_of(const World& world, int entry) const = 0;
-  /// Copies entries into a part of the world, in this order. @param in_part  by body of the whole: its index in the part; -1 stays
+  /// Copies entries into a part of the world, in this order.
+  /// @param in_part  by body of the whole: its index in the part; -1 stays
   virtual void copy_entries(const World& whole, const std::vector<int>& entries, const std::function<int(int body)>& in_part, World& part) const = 0;
 
-  // How it acts: none of both where it does not act in this world ------------------------------------------------------------------------
+  // How it acts: none of both where it does not act in this world ---------------------------------
 
   virtual std::unique_ptr<SteadyForces> steady_forces(const Acting&) const { return nullptr; }
   /// @param entries  those that name bodies of the group, ascending; one at least
@@ -206,38 +222,43 @@ class Effect : public scene::Words {
 
   /// All switches of a run, in the order of entries.
   virtual std::vector<Switch> switches(const World&) const { return {}; }
-  /// Whether something steady, but for what World::gravity_world says, acts on the body at this time or later.
+  /// Whether something steady, but for what World::gravity_world says, acts on the body at this
+  /// time or later.
   virtual bool pushes(const World&, int, double) const { return false; }
 
-  // Energy -----------------------------------------------------------------------------------------------------------------------------
+  // Energy ----------------------------------------------------------------------------------------
 
-  /// Adds the potential energy of its entries in these states. [J] @param states  by body; of immovable bodies the place alone is looked at
+  /// Adds the potential energy of its entries in these states. [J]
+  /// @param states  by body; of immovable bodies the place alone is looked at
   virtual void add_potential_energy(const World&, const std::vector<RigidBodyState>&, double&) const {}
-  /// Adds the size of the terms that this energy is a sum of, each as large as its parts make it: what rounding is relative to. [J]
+  /// Adds the size of the terms that this energy is a sum of, each as large as its parts make it:
+  /// what rounding is relative to. [J]
   virtual void add_energy_terms(const World&, const std::vector<RigidBodyState>&, double&) const {}
   /// For an effect that brings energy in; nothing for one that keeps it or takes it out.
   virtual std::unique_ptr<WorkMeter> work_meter(const World&) const { return nullptr; }
 
-  // What it asks of a step -------------------------------------------------------------------------------------------------------------
+  // What it asks of a step ------------------------------------------------------------------------
 
   virtual void append_drains(const World&, std::vector<Drain>&) const {}
   /// Where the run starts. @param start  by body
   virtual void append_stiff_rows(const World&, const std::vector<RigidBodyState>&, std::vector<StiffRow>&) const {}
-  /// The directions in which its entries let nothing move: rows between bodies of the world (-1: the world itself).
+  /// The directions in which its entries let nothing move: rows between bodies of the world (-1:
+  /// the world itself).
   virtual void append_held_rows(const World&, const std::vector<RigidBodyState>&, std::vector<Constraint>&) const {}
   virtual void append_carriers(const World&, std::vector<Carrier>&) const {}
 
-  // What is recorded and reported of it ---------------------------------------------------------------------------------------------------
+  // What is recorded and reported of it -----------------------------------------------------------
 
   /// Where a frame keeps what its entries pull with; nullptr where nothing of it is recorded.
   virtual std::vector<double> Frame::*measured_as() const { return nullptr; }
   /// @param measured  what group_terms have measured, by entry; empty where they measure nothing
   virtual void append_pulls(const World&, const std::vector<RigidBodyState>&, const std::vector<double>&, const Laws&, std::vector<Pull>&) const {}
 
-  /// How far an entry is off in a frame, by the places of bodies alone, and what is found: of one of its link_checks.
+  /// How far an entry is off in a frame, by the places of bodies alone, and what is found: of one
+  /// of its link_checks.
   virtual std::pair<double, std::string> error_of(const std::string&, const scene::Scene&, std::size_t, const PoseOf&) const { return {0.0, ""}; }
 
-  // What is drawn of it ----------------------------------------------------------------------------------------------------------------
+  // What is drawn of it ---------------------------------------------------------------------------
 
   virtual void draw(const scene::Scene&, Drawables&) const {}
 };

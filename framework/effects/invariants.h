@@ -14,7 +14,8 @@ struct Invariants {
   Vector3d momentum_world = Vector3d::Zero();             // [kg m/s]
   Vector3d angular_momentum_world = Vector3d::Zero();     // about the world's origin [kg m^2/s]
 };
-/// @param states  by body index; of immovable bodies the place alone is looked at, for what ends there
+/// @param states  by body index; of immovable bodies the place alone is looked at, for what ends
+/// there
 Invariants invariants_of(const World& world, const std::vector<RigidBodyState>& states);
 
 }  // namespace tumble

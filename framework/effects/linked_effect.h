@@ -1,4 +1,5 @@
-/// Effects whose entries are links between two anchors: springs and rods, and in parts joints and motors.
+/// Effects whose entries are links between two anchors: springs and rods, and in parts joints and
+/// motors.
 #pragma once
 
 #include <string>
@@ -55,7 +56,8 @@ inline void append_laws_of_rows(const scene::Scene& scene, const Laws& laws, std
     needed.push_back({static_cast<bool>(laws.baumgarte_acceleration), "Baumgarte's acceleration", "a3"});
 }
 
-/// Does `work`; a StoppedRun out of it is thrown again with the link in front. Words are made where they are needed only: this is asked at every stage.
+/// Does `work`; a StoppedRun out of it is thrown again with the link in front. Words are made where
+/// they are needed only: this is asked at every stage.
 template <class Work>
 auto naming_link(const char* kind, const std::string& name, Work&& work) {
   try {
@@ -67,7 +69,8 @@ auto naming_link(const char* kind, const std::string& name, Work&& work) {
   }
 }
 
-/// @tparam Spec  has name, anchors a and b of the scene, pointer  @tparam Held  has anchors a and b of the world
+/// @tparam Spec  has name, anchors a and b of the scene, pointer  @tparam Held  has anchors a and b
+/// of the world
 template <class Spec, class Held>
 class LinkedEffect : public ListedEffect<Spec, Held> {
  public:

@@ -1,5 +1,6 @@
-/// An effect whose entries stand in lists: Spec is what a scene says of one, Held what a world holds of one. Most of what an effect has to answer
-/// follows from the two lists; what is left is its own.
+/// An effect whose entries stand in lists: Spec is what a scene says of one, Held what a world
+/// holds of one. Most of what an effect has to answer follows from the two lists; what is left is
+/// its own.
 #pragma once
 
 #include "framework/effects/effect.h"

@@ -1,4 +1,5 @@
-/// The effects that the program is built with. Each registers itself by its line in framework/effects/CMakeLists.txt.
+/// The effects that the program is built with. Each registers itself by its line in
+/// framework/effects/CMakeLists.txt.
 #pragma once
 
 #include <cstddef>

@@ -128,7 +128,7 @@ TEST(ImpactsOnLinks, ADoorReboundsFromItsStopWithTheRestitution) {
       scene.effects.of<effects::JointSpec>().push_back({"hinge", effects::JointKind::kHinge, "door", "", Vector3d::Zero(), Vector3d::UnitZ()});
       in_all_engines(scene, [&](const Trajectory& run) {
         const Frame& end = run.frames.back();
-        const double hop = e == 0.0 ? 1e-9 + scene.rest_speed_m_s : 0.0;   // what does not bounce may be sent off at the rest speed
+        const double hop = e == 0.0 ? 1e-9 + scene.rest_speed_m_s : 0.0;   // what does not bounce may be sent off at the restitution threshold
         EXPECT_NEAR(end.poses[0].omega_world.z(), -e * omega, 2 * kRounding * omega + 2 * hop) << e;
         EXPECT_NEAR(first_collision(run).normal_velocity_after, -e * first_collision(run).normal_velocity_before, kRounding * omega) << e;
       });

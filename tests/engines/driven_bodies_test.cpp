@@ -1,4 +1,4 @@
-// Bodies that move by a law of their own (rising, sinking, shaken floors, belts, walls that push, anchors) with lasting contact and friction,
+// Bodies that move by a law of their own (rising, sinking, shaken floors, belts, walls that push, anchors) with persistent contact and friction,
 // in all four engines. Outcomes in closed form.
 #include <cmath>
 #include <functional>
@@ -178,7 +178,7 @@ TEST(DrivenBodies, ATrainMovesAsTheStation) {
 }
 
 // Two small balls, one on the other, on a floor that shakes with less than g: what does not bounce stays on it. The floor's speed changes by twice
-// the rest speed in a step, so that who takes it for that of the step's end sees the ball come down on it for ever.
+// the restitution threshold in a step, so that who takes it for that of the step's end sees the ball come down on it for ever.
 TEST(DrivenFloors, SmallBallsStayOnAFloorThatShakesGently) {
   const double radius = 0.006, amplitude = 6e-4, frequency = 85.0, duration = 0.2;   // m, rad/s: a w^2 = 4.3 m/s^2
   scene::Scene scene = with_contact({driven_plane("floor", Vector3d::Zero(), {0, 0, amplitude}, frequency), ball("low", radius, 1e-3, {0, 0, radius + 1e-3}, Vector3d::Zero()),

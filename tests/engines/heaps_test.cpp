@@ -44,7 +44,7 @@ TEST(Heaps, AWaveOfDominoesFallsInAboutTheStepsThatTheSceneAsksFor) {
   const Trajectory result = run(scene, reference_laws());
   EXPECT_EQ(result.stopped_by, "");
   EXPECT_GT(result.counters.counts.at("heap_steps"), 0u);
-  EXPECT_LT(result.counters.counts.at("steps"), 2.0 * scene.duration_s / scene.step_s);   // blow by blow it is 5 and more
+  EXPECT_LT(result.counters.counts.at("steps"), 2.0 * scene.duration_s / scene.step_s);   // impact by impact it is 5 and more
   ASSERT_EQ(result.counters.notices.size(), 1u);   // and says so
   EXPECT_NE(result.counters.notices[0].find("\"plastic_impacts\": \"located\""), std::string::npos) << result.counters.notices[0];
   double least = result.frames.front().kinetic_energy + result.frames.front().potential_energy;

@@ -127,7 +127,7 @@ TEST(PersistentContacts, ABoardTippingOverItsEdgeKeepsItsEnergy) {
     const Trajectory result = run_it(scene);
     return std::abs(energy(result.frames.back()) - energy(result.frames.front()));
   };
-  // 0.97 J turn while it falls by 0.6 rad. A thousandth is what hops of less than the rest speed take; contacts that push the whole step
+  // 0.97 J turn while it falls by 0.6 rad. A thousandth is what hops of less than the restitution threshold take; contacts that push the whole step
   // where they were at its beginning take or give some hundredths.
   EXPECT_LT(lost(1.0 / 60), 5e-3);
   EXPECT_LT(lost(1.0 / 240), 3e-3);
@@ -279,7 +279,7 @@ TEST(PersistentContacts, WhatIsBuiltInSinglePrecisionStandsFromTheStart) {
 // An edge of a block parts from the floor at 1 mm/s: it hops for 0.2 ms and is down again. A step of 1/60 s that ends at rest where half of that
 // speed has taken it would lift the edge by 8e-6 m, and have a hundred times the energy that the block moves with.
 TEST(PersistentContacts, AnEdgeThatPartsSlowlyComesDownAgain) {
-  const double half = 0.01, mass = 1.0, rate = 0.045;   // m, kg, rad/s: the far edge goes up at 0.9 mm/s, below the rest speed
+  const double half = 0.01, mass = 1.0, rate = 0.045;   // m, kg, rad/s: the far edge goes up at 0.9 mm/s, below the restitution threshold
   auto block = rough(box("block", Vector3d::Constant(half), mass, {0, 0, half}, Vector3d::Zero()), 1.0);
   block.omega_world_rad_s = {0, rate, 0};               // about the edge at x = half, which lies still
   block.velocity_m_s = {rate * half, 0, rate * half};

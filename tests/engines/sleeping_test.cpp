@@ -267,7 +267,7 @@ TEST(Sleeping, WhatLandsWithinAStepWakesToo) {
   EXPECT_NEAR(carried, 1.5 * kG, 1e-6 * 1.5 * kG);   // the floor carries both, and what they carried asleep is told
 }
 
-// A ball that rests without lasting contact is hit, too, by what moves by its own law.
+// A ball that rests without persistent contact is hit, too, by what moves by its own law.
 TEST(Resting, AMovingWallMeetsABallAtRest) {
   auto wall = box("wall", {0.1, 1, 1}, 1.0, {-1.2, 0, 1.001}, Vector3d::Zero()), resting = ball("ball", 0.1, 1.0, {0, 0, 0.1}, Vector3d::Zero()), floor = plane("floor", Vector3d::Zero(), Vector3d::UnitZ());
   wall.immovable = true;

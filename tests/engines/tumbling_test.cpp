@@ -96,7 +96,7 @@ TEST(TumblingRoom, UnderGravityNothingOverlapsAndEnergyOnlyFalls) {
   }
 }
 
-// A body of weight g that hops at the rest speed v is in the air for 2 v / g: with 1e-2 m/s some 500 hops a second.
+// A body of weight g that hops at the restitution threshold v is in the air for 2 v / g: with 1e-2 m/s some 500 hops a second.
 scene::Scene resting(std::vector<scene::BodySpec> bodies, double duration) {
   for (scene::BodySpec& body : bodies) body.restitution = 0.0;
   auto scene = scene_of(std::move(bodies), duration, Vector3d(0, 0, -9.81));
@@ -107,7 +107,7 @@ scene::Scene resting(std::vector<scene::BodySpec> bodies, double duration) {
 TEST(Resting, ABoxThatDoesNotBounceStaysOnTheFloor) {
   const Trajectory result = run(resting({box("box", {0.2, 0.2, 0.1}, 1.0, {0, 0, 0.3}, Vector3d::Zero()), plane("floor", Vector3d::Zero(), Vector3d::UnitZ())}, 1.0));
   expect_no_overlap(result, "box");
-  // Hops of the rest speed reach v^2 / 2g = 5e-6 m.
+  // Hops of the restitution threshold reach v^2 / 2g = 5e-6 m.
   EXPECT_NEAR(result.frames.back().poses[0].com_world.z(), 0.1, 1e-4);
 }
 
@@ -115,7 +115,7 @@ TEST(Resting, ABallInACornerOfTwoWallsAndTheFloorStaysThere) {
   const Trajectory result = run(resting({ball("ball", 0.1, 1.0, {0.3, 0.3, 0.5}, {-1, -1, 0}), plane("floor", Vector3d::Zero(), Vector3d::UnitZ()),
                                          plane("wall x", Vector3d::Zero(), Vector3d::UnitX()), plane("wall y", Vector3d::Zero(), Vector3d::UnitY())}, 1.5));
   expect_no_overlap(result, "corner");
-  // Without friction it drifts from each wall at the rest speed, 1e-2 m/s, at most.
+  // Without friction it drifts from each wall at the restitution threshold, 1e-2 m/s, at most.
   const Vector3d drift = result.frames.back().poses[0].com_world - Vector3d(0.1, 0.1, 0.1);
   EXPECT_LT(drift.maxCoeff(), 1.5 * 1e-2);
   EXPECT_NEAR(drift.z(), 0.0, 1e-4);
@@ -137,7 +137,7 @@ TEST(Resting, ABallOnASlopeSlidesDown) {
   expect_no_overlap(result, "slope");
   const Vector3d way = result.frames.back().poses[0].com_world - start;
   const Vector3d down(std::cos(slope), 0, -std::sin(slope));
-  // Hops of the rest speed, 1e-2 m/s, lengthen no way along the slope: their time is the same. 1e-3 is a hop's height with room.
+  // Hops of the restitution threshold, 1e-2 m/s, lengthen no way along the slope: their time is the same. 1e-3 is a hop's height with room.
   EXPECT_NEAR(way.dot(down), 0.5 * 9.81 * std::sin(slope), 1e-3);
 }
 
@@ -160,7 +160,7 @@ TEST(Resting, ABreakShotKeepsTheMomentumAlongTheFloor) {
   EXPECT_NEAR(result.frames.back().momentum_world.y(), 0.0, 0.05);   // the sequential law goes through pairs in order: no mirror symmetry
 }
 
-// Lasting contact of two bodies that both move is not this engine's yet: what it must not do is overlap them or go on silently.
+// Persistent contact of two bodies that both move is not this engine's yet: what it must not do is overlap them or go on silently.
 TEST(Resting, TwoBoxesInAStackNeverOverlapAndAStallIsNamed) {
   const Trajectory result = run(resting({box("lower", {0.2, 0.2, 0.1}, 1.0, {0, 0, 0.1}, Vector3d::Zero()), box("upper", {0.15, 0.15, 0.1}, 1.0, {0, 0, 0.35}, Vector3d::Zero()),
                                          plane("floor", Vector3d::Zero(), Vector3d::UnitZ())}, 0.5));

@@ -125,7 +125,7 @@ void card_house(const Given& given, Findings& findings, int levels) {
   findings.at_most(name + fmt::format("mu = 1.1 foot / height, {:g} s: creep", duration), way(stands), 1e-3, "m", given.is_long ? "static under any load: 1e-3 of a card's length in 10 s" : "static under any load: 1e-3 of a card's length");
   findings.at_least(name + "smallest gap", smallest_gap(stands), 0.0, "m", "nothing interpenetrates");
   const double fall_s = levels < 4 ? 0.3 : 0.1;   // 20 cards and 3 planks that slide on and under each other take minutes later on
-  for (const int rate : {240, 333}) {   // blows of many cards at once come in another order at every step
+  for (const int rate : {240, 333}) {   // impacts of many cards at once come in another order at every step
     const Trajectory falls = run_by_steps(card_house(0.4, 0.9 * card.limit(), levels, folder.path()), given.laws, fall_s, 1.0 / rate, 100);
     const std::string fall = name + fmt::format("mu = 0.9 of the limit of a free tent, {:g} s at 1/{} s: ", fall_s, rate);
     findings.must_fail(fall + "stands", way(falls), 1e-3, "m", "friction too small for the lightest load");

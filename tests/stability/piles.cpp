@@ -30,7 +30,7 @@ scene::Scene pile(int n, bool elastic) {
   }
   scene::Scene scene = with_contact("pile", std::move(bodies));
   if (elastic) scene.contact.reset();
-  else if (n > 3) scene.contact->plastic_impacts = scene::PlasticImpacts::kInStep;   // what one blow changes changes dozens of others in the same instant
+  else if (n > 3) scene.contact->plastic_impacts = scene::PlasticImpacts::kInStep;   // what one impact changes changes dozens of others in the same instant
   return scene;
 }
 

@@ -46,7 +46,7 @@ double drift_of(const Trajectory& run, std::size_t body);
 double tilt_of(const Trajectory& run, std::size_t body);
 /// Smallest gap of any frame. [m]
 double smallest_gap(const Trajectory& run);
-/// Vertical force of lasting contacts on a body by another, of a frame. [N]
+/// Vertical force of persistent contacts on a body by another, of a frame. [N]
 double push_up(const Frame& frame, int on, int by);
 /// Angle of the turn between two orientations. [rad]
 double angle_between(const Quaterniond& a, const Quaterniond& b);

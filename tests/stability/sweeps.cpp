@@ -41,7 +41,7 @@ Shot random_shot(Random& random) {
   return {Vector3d(-away, y, z), velocity};
 }
 
-/// The same through the engine: each shot a run of one step, with broad phase, search, blow and way back.
+/// The same through the engine: each shot a run of one step, with broad phase, search, impact and way back.
 void shots_in_runs(const Given& given, Findings& findings) {
   scene::Scene scene = truths::empty_scene("shot", kStep, 1e-9);
   scene::BodySpec wall = box("wall", Vector3d(0.5 * kWall, 50.0, 50.0), 1.0, Vector3d::Zero());

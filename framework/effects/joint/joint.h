@@ -1,4 +1,5 @@
-/// Joint: two bodies, or a body and the world, that share a point (ball), an axis besides (hinge), or are one (weld). Its rows: joint_rows.h.
+/// Joint: two bodies, or a body and the world, that share a point (ball), an axis besides (hinge),
+/// or are one (weld). Its rows: joint_rows.h.
 #pragma once
 
 #include <cstdint>

@@ -52,7 +52,8 @@ class JointTerms final : public GroupTerms {
  private:
   const JointLink& of(const PlacedLink& link) const { return all_[static_cast<std::size_t>(link.entry)]; }
 
-  // The longer arm of the two bodies; of bodies that are held at their centres, how far their mass lies from there. [m]
+  // The longer arm of the two bodies; of bodies that are held at their centres, how far their mass
+  // lies from there. [m]
   static double size_of(const JointLink& joint, const World& world, const GroupPlaces& places) {
     double size = 0.0;
     for (const Anchor* end : {&joint.a, &joint.b}) {
@@ -70,7 +71,8 @@ class JointTerms final : public GroupTerms {
   std::size_t rows_ = 0;
 };
 
-/// How a body has turned since the start, and where a point of it is that was given in the world then; of the world both stay.
+/// How a body has turned since the start, and where a point of it is that was given in the world
+/// then; of the world both stay.
 struct Carried {
   const BodyPose* pose = nullptr;
   Vector3d com_at_start = Vector3d::Zero();
@@ -200,7 +202,8 @@ class JointEffect final : public ListedEffect<JointSpec, JointLink> {
   }
 
  private:
-  /// The joint's own frame stands at the shared point; its z is the axis; x and y are any two across it, the same in both bodies.
+  /// The joint's own frame stands at the shared point; its z is the axis; x and y are any two
+  /// across it, the same in both bodies.
   static JointLink link_of(const JointSpec& spec, const BodyIndex& index, const World& world) {
     const std::string subject = "joint '" + spec.name + "'";
     const Quaterniond world_from_joint = spec.kind == JointKind::kHinge ? shortest_turn(Vector3d::UnitZ(), spec.axis) : Quaterniond::Identity();

@@ -5,7 +5,8 @@
 namespace tumble::effects {
 namespace {
 
-// What the three rows of a point share: how B's point moves against A's, and what it accelerates by turning.
+// What the three rows of a point share: how B's point moves against A's, and what it accelerates by
+// turning.
 struct PointMotion {
   Vector3d apart, velocity, centripetal;
 };

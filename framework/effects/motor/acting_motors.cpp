@@ -14,8 +14,9 @@ namespace {
 constexpr double kSameTorque = 1e-6;     // of the largest torque: what the rates of bodies at rest change in it
 constexpr double kSameAngle = 1e-9;      // rad: likewise, by a motor's stiffness
 
-// A motor measures its hinge's angle within a turn: from half a turn between two looks on it is lost. Nothing comes so far that does not
-// overshoot more each time, because the torque that brakes it is held for too long.
+// A motor measures its hinge's angle within a turn: from half a turn between two looks on it is
+// lost. Nothing comes so far that does not overshoot more each time, because the torque that brakes
+// it is held for too long.
 void refuse_lost(const std::string& hinge, const MotorSpec& law, const HingeMotion& motion) {
   const double turn = std::abs(motion.rate) * law.period_s;
   if (law.stiffness_n_m_rad == 0.0 || !(turn > std::numbers::pi)) return;

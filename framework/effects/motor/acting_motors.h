@@ -1,4 +1,5 @@
-/// Motors at work: what those of a group hold, and when they look again. Internal to framework/effects/motor.
+/// Motors at work: what those of a group hold, and when they look again. Internal to
+/// framework/effects/motor.
 #pragma once
 
 #include "framework/effects/linked_effect.h"
@@ -32,7 +33,8 @@ class MotorTerms final : public GroupTerms, public Control {
   std::vector<Acts> motors_;
 };
 
-/// The most that motors can do: their largest torque over how far the hinge turned at the faster of its rates at two looks, twice for what lies between.
+/// The most that motors can do: their largest torque over how far the hinge turned at the faster of
+/// its rates at two looks, twice for what lies between.
 class MotorMeter final : public WorkMeter {
  public:
   explicit MotorMeter(const World& world) : world_(world), turning_(world.effects.of<Motor>().size(), 0.0) {}

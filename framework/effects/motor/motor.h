@@ -1,4 +1,5 @@
-/// Motor: a control law in a hinge. Every period it looks at the hinge's angle and sets its torque, which it holds until the next look.
+/// Motor: a control law in a hinge. Every period it looks at the hinge's angle and sets its torque,
+/// which it holds until the next look.
 ///   torque = stiffness (target(t) - angle) - damping rate,   target(t) = offset + amplitude sin(2 pi frequency t + phase)
 #pragma once
 

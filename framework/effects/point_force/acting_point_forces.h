@@ -1,4 +1,5 @@
-/// Point forces at work: which of a world's act now, and on which points of their bodies. Internal to framework/effects/point_force.
+/// Point forces at work: which of a world's act now, and on which points of their bodies. Internal
+/// to framework/effects/point_force.
 #pragma once
 
 #include "framework/effects/effect.h"
@@ -36,7 +37,8 @@ class ActingPointForces final : public SteadyForces {
   std::vector<Vector3d> points_body_;    // by entry, from when it begins to act: body frame [m]
 };
 
-/// The work that they do: force times the way of its point, exact where looks come often enough for the point's way to be straight.
+/// The work that they do: force times the way of its point, exact where looks come often enough for
+/// the point's way to be straight.
 class PointForceMeter final : public WorkMeter {
  public:
   explicit PointForceMeter(const World& world) : forces_(world.effects.of<PointForce>()), points_body_(forces_.size(), unset_vector()), points_world_(points_body_) {}

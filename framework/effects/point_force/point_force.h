@@ -1,4 +1,5 @@
-/// Point force: a constant force on a point fixed in a body, for a while (what a hand or a user's click does).
+/// Point force: a constant force on a point fixed in a body, for a while (what a hand or a user's
+/// click does).
 ///   F constant,    tau = (p - c) x F          (p: the point, c: the centre of mass, world frame; the law wrench_of_point_force)
 #pragma once
 

@@ -15,8 +15,9 @@ extern const char* const kRodSchema;   // schema.json
 
 namespace {
 
-// A rod's length is either measured at the start (equal to rounding) or typed: 1e-9 of it forgives the rounding of typed decimals
-// and of the frames between, and is far below what any check of a rod asks for.
+// A rod's length is either measured at the start (equal to rounding) or typed: 1e-9 of it forgives
+// the rounding of typed decimals and of the frames between, and is far below what any check of a
+// rod asks for.
 constexpr double kRodFit = 1e-9;
 
 std::string digits(double value) {

@@ -16,7 +16,8 @@ Submerged shifted(const Submerged& moments, const Vector3d& shift) {
   return {moments.volume, moments.first + moments.volume * shift, moments.second + mixed + mixed.transpose() + moments.volume * shift * shift.transpose()};
 }
 
-// Of the tetrahedron from the origin to a face:  d = a . (b x c),  V = d / 6,  int x = d s / 24,  int x x' = d (a a' + b b' + c c' + s s') / 120
+// Of the tetrahedron from the origin to a face:  d = a . (b x c),  V = d / 6,  int x = d s / 24,
+// int x x' = d (a a' + b b' + c c' + s s') / 120
 void add_tetrahedron(const Vector3d& a, const Vector3d& b, const Vector3d& c, Submerged& sum) {
   const double d = a.dot(b.cross(c));
   const Vector3d s = a + b + c;
@@ -25,7 +26,8 @@ void add_tetrahedron(const Vector3d& a, const Vector3d& b, const Vector3d& c, Su
   sum.second += d / 120.0 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + s * s.transpose());
 }
 
-// The part of a face under the plane through the origin: a triangle or a quadrilateral, in the face's own order.
+// The part of a face under the plane through the origin: a triangle or a quadrilateral, in the
+// face's own order.
 void add_cut_face(const std::array<Vector3d, 3>& corners, const Vector3d& normal, Submerged& sum) {
   std::array<Vector3d, 4> kept;
   std::size_t count = 0;

@@ -1,4 +1,5 @@
-/// How much of a solid lies under a plane, and where: exactly, for balls, ellipsoids and closed surfaces.
+/// How much of a solid lies under a plane, and where: exactly, for balls, ellipsoids and closed
+/// surfaces.
 #pragma once
 
 #include <variant>
@@ -23,8 +24,9 @@ Submerged submerged_ball(double radius, const Vector3d& normal, double offset);
 /// Of an ellipsoid: the image of a unit ball.
 Submerged submerged_ellipsoid(const Ellipsoid& ellipsoid, const Vector3d& normal, double offset);
 
-/// Of the solid inside a closed, outward-oriented surface: the sum over tetrahedra from a point of the plane to the faces, each cut off at the
-/// plane. What closes the cut lies in the plane and adds nothing.   Source: as compute_mass_properties (geometry/mass_properties.h)
+/// Of the solid inside a closed, outward-oriented surface: the sum over tetrahedra from a point of
+/// the plane to the faces, each cut off at the plane. What closes the cut lies in the plane and
+/// adds nothing.   Source: as compute_mass_properties (geometry/mass_properties.h)
 /// Cost: O(faces)
 Submerged submerged_mesh(const TriangleMesh& mesh, const Vector3d& normal, double offset);
 

@@ -1,10 +1,12 @@
-/// Water below a level: buoyancy of what lies under it (Archimedes), and a drag spread evenly over that.
+/// Water below a level: buoyancy of what lies under it (Archimedes), and a drag spread evenly over
+/// that.
 ///   dF = rho (g up - k (v - u)) dV,    v = v_c + w x r,   u: the stream
 ///   F   = rho (V g up - k (V (v_c - u) + w x f))
 ///   tau = rho (f x g up - k (f x (v_c - u) + tr(S) w - S w))        about the centre of mass
 ///   E   = rho g int (level - z) dV                                  of the buoyancy
-/// with the volume V, first moment f and second moment S of what is under the level, about the centre of mass (submerged.h).
-/// It gives no added mass and no waves, and what lies over the water's edge does not spill it.
+/// with the volume V, first moment f and second moment S of what is under the level, about the
+/// centre of mass (submerged.h). It gives no added mass and no waves, and what lies over the
+/// water's edge does not spill it.
 #pragma once
 
 #include <string>

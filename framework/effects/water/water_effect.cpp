@@ -79,7 +79,8 @@ class WaterTerms final : public GroupTerms {
   std::vector<std::pair<int, const Floating*>> floating_;   // by place in the group
 };
 
-/// A stream does at most  rho k V |u|^2 / 4  of work a second: the force -k (v - u) gives most where v = u / 2.
+/// A stream does at most  rho k V |u|^2 / 4  of work a second: the force -k (v - u) gives most
+/// where v = u / 2.
 class StreamMeter final : public WorkMeter {
  public:
   explicit StreamMeter(const World& world) {
@@ -168,7 +169,8 @@ class WaterEffect final : public ListedEffect<WaterSpec, Floating> {
       drains.push_back({floating.body, k * whole.volume, k * least, fmt::format("the water's drag on body '{}'", world.bodies[static_cast<std::size_t>(floating.body)].name), "less drag_1_s"});
     }
   }
-  // Up and down: k = rho g A, A the area that the level cuts where the run starts; of a body that starts clear of it, its mean over the body's shortest way through.
+  // Up and down: k = rho g A, A the area that the level cuts where the run starts; of a body that
+  // starts clear of it, its mean over the body's shortest way through.
   void append_stiff_rows(const World& world, const std::vector<RigidBodyState>& start, std::vector<StiffRow>& rows) const override {
     for (const Floating& floating : held(world)) {
       const RigidBodyState& state = start[static_cast<std::size_t>(floating.body)];

@@ -1,5 +1,7 @@
-/// Which of the effects that are no folder under framework/effects the engines are built with: all of them, except where tests/bench/absent_effects.sh leaves one out (-DTUMBLE_WITHOUT="spring")
-/// to show that an effect that a scene does not ask for costs what an effect that is not there costs: nothing.
+/// Which of the effects that are no folder under framework/effects the engines are built with: all
+/// of them, except where tests/bench/absent_effects.sh leaves one out (-DTUMBLE_WITHOUT="spring")
+/// to show that an effect that a scene does not ask for costs what an effect that is not there
+/// costs: nothing.
 #pragma once
 
 #include <string_view>

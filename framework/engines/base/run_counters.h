@@ -39,18 +39,22 @@ struct RunCounters {
   /// Adds what another has counted: a thread, or a part of the world.
   void add(const RunCounters& other);
 
-  /// Effects that no entry called for are reported as 0 calls, so that a reader sees that they did not run. Of threads: impacts that one
-  /// worked at in its own territory; impacts of two bodies that were last at home in two threads' territories; and how many events the
-  /// least busy one worked at at home.
+  /// Effects that no entry called for are reported as 0 calls, so that a reader sees that they did
+  /// not run. Of threads: impacts that one worked at in its own territory; impacts of two bodies
+  /// that were last at home in two threads' territories; and how many events the least busy one
+  /// worked at at home.
   Counters named() const;
 };
 
-/// Counts discontinuities where every engine's events pass, so that all engines count the same: "discontinuities" among the counts that end()
-/// is given. One is an instant at which something happens to a body or a pair: an impact, however many impulses it takes, a contact that begins
-/// or opens, a force that is switched, a callback, rest. What lies in contact when a run begins is none, nor is sleep.
-/// A change between sliding and sticking or rolling is a discontinuity, too, by the lecture's definition (it changes the equations of motion).
-/// It is counted apart, as "sliding_changes": no engine here ends a step of all bodies for it (the contact problem of one island finds it), and
-/// only retroactive detection reports it, so one sum of both would differ from engine to engine in the same motion.
+/// Counts discontinuities where every engine's events pass, so that all engines count the same:
+/// "discontinuities" among the counts that end() is given. One is an instant at which something
+/// happens to a body or a pair: an impact, however many impulses it takes, a contact that begins or
+/// opens, a force that is switched, a callback, rest. What lies in contact when a run begins is
+/// none, nor is sleep. A change between sliding and sticking or rolling is a discontinuity, too, by
+/// the lecture's definition (it changes the equations of motion). It is counted apart, as
+/// "sliding_changes": no engine here ends a step of all bodies for it (the contact problem of one
+/// island finds it), and only retroactive detection reports it, so one sum of both would differ
+/// from engine to engine in the same motion.
 class DiscontinuityCount final : public TrajectorySink {
  public:
   explicit DiscontinuityCount(TrajectorySink& sink) : sink_(sink) {}
@@ -71,11 +75,13 @@ class DiscontinuityCount final : public TrajectorySink {
   std::set<std::pair<int, int>> others_;                   // and those after it
 };
 
-/// w h: discontinuities a body and largest step, each counted for its two bodies,  w h = 2 D h / (n T).
-/// Where n w h is above 2, engines whose bodies all stop at each discontinuity begin to pay for it.
+/// w h: discontinuities a body and largest step, each counted for its two bodies,  w h = 2 D h / (n
+/// T). Where n w h is above 2, engines whose bodies all stop at each discontinuity begin to pay for
+/// it.
 /// @param movable_bodies  n;  @param simulated_s  T [s];  @param step_s  h, the largest step [s]
 /// @return 0 where nothing moves or no time passes [-]
-/// Source: our model of cost (report/engines_model.h); what a discontinuity is: B. Mirtich, "Timewarp Rigid Body Simulation", SIGGRAPH 2000.
+/// Source: our model of cost (report/engines_model.h); what a discontinuity is: B. Mirtich,
+/// "Timewarp Rigid Body Simulation", SIGGRAPH 2000.
 double discontinuities_a_body_and_step(std::uint64_t discontinuities, int movable_bodies, double simulated_s, double step_s);
 
 /// The same of a run that has ended: as far as its last frame.

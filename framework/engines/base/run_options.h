@@ -25,15 +25,17 @@ struct FaultInjection {
   int regions = 0;           // room is cut into so many, at most 255, however few bodies there are; 0: as it pays
 };
 
-/// What a program does to bodies while they move: at `time` it is handed the state of each of `bodies`, and may change velocities (not
-/// places). It must depend on nothing else: an engine that goes back in time calls it again, and only what it did last is committed.
+/// What a program does to bodies while they move: at `time` it is handed the state of each of
+/// `bodies`, and may change velocities (not places). It must depend on nothing else: an engine that
+/// goes back in time calls it again, and only what it did last is committed.
 struct Callback {
   double time;                   // [s]
   std::vector<int> bodies;       // movable, ascending
   std::function<void(int body, RigidBodyState& state)> act;
 };
 
-/// Which bodies move together at a committed frame, by the flights of that instant: tests of islands look at it.
+/// Which bodies move together at a committed frame, by the flights of that instant: tests of
+/// islands look at it.
 struct Membership {
   double time;                     // [s]
   std::vector<int> segments;       // by body: of the process that it is part of; -1: it flies freely, or is immovable
@@ -41,7 +43,8 @@ struct Membership {
 };
 
 struct RunOptions;
-/// An engine that stands outside the framework: timewarp, whose scheduler is an assignment's (see framework/README.md).
+/// An engine that stands outside the framework: timewarp, whose scheduler is an assignment's (see
+/// framework/README.md).
 using Engine = std::function<void(const scene::Scene& scene, const Laws& laws, const RunOptions& options, TrajectorySink& sink)>;
 
 struct RunOptions {
@@ -51,7 +54,8 @@ struct RunOptions {
   int most_states = 0;                     // of a body that the fast timewarp keeps, at least 8; 0: as many as it takes
   Engine timewarp;                         // what "tw" is where the laws hold no scheduling; empty: there is no scheduler
   std::string propagator;                  // "laws": bodies go by the laws' integration; "auto": in closed form where nothing but gravity acts.
-                                           // Empty: laws for rd, which shows a student's work; the others know closed forms only
+                                           // Empty: laws for rd, which shows a student's work; the
+                                           // others know closed forms only
   std::optional<double> step_s;            // overrides the scene's
   std::optional<double> duration_s;        // overrides the scene's
   double frame_rate_hz = 60.0;             // of recorded frames

@@ -25,8 +25,8 @@ const Words& words_of(RunWatch::Kind kind) {
   return kWords[static_cast<std::size_t>(kind)];
 }
 
-// Of the step that went wrong, what the size of the error asks for: energy of a method of order 4 is off by the fourth power of the step, of other errors
-// half a step is the first to try.
+// Of the step that went wrong, what the size of the error asks for: energy of a method of order 4
+// is off by the fourth power of the step, of other errors half a step is the first to try.
 double likely_part(RunWatch::Kind kind, double times_what_is_allowed) {
   constexpr double kOrder = 4.0, kSafety = 0.8, kLeast = 0.01, kMost = 0.5;
   if (kind == RunWatch::Kind::kTurnUnresolved) return 1.0 / (kTurnResolved * times_what_is_allowed);   // a radian a step
@@ -72,7 +72,8 @@ std::vector<RunFault> RunWatch::faults() const {
   double step = std::numeric_limits<double>::infinity();
   for (const auto& [kind, incident] : incidents_)
     if (incident.worst.step > 0) step = std::min(step, likely_part(kind, incident.worst.found / incident.worst.allowed) * incident.worst.step);
-  // A criterion of stability that the step breaks explains all that follows, and its step is computed, not a guess from a size.
+  // A criterion of stability that the step breaks explains all that follows, and its step is
+  // computed, not a guess from a size.
   if (std::isfinite(named_step_)) step = named_step_;
   const std::string said = std::isfinite(named_step_) ? fmt::format("{:.4g}", step) : fmt::format("{:.2g}", step);
   for (const auto& [kind, incident] : incidents_) {

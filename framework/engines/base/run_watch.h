@@ -1,9 +1,11 @@
-/// What a run must not keep to itself: links that come apart, projections and contact problems that end unsolved, energy that nothing brings in,
-/// bodies that turn farther in a step than it can see.
+/// What a run must not keep to itself: links that come apart, projections and contact problems that
+/// end unsolved, energy that nothing brings in, bodies that turn farther in a step than it can see.
 ///
-/// Every stage of every engine notes here what it could not do (the watch is part of RunCounters, which each stage has and which threads and
-/// processes add up); at the end the run's faults are judged as checks that failed (judge.h), so that they stand in the table, in --json and in
-/// the exit code. What stays below the limits is not kept: the limits are what a solver's tolerance and rounding leave, and a reader would see.
+/// Every stage of every engine notes here what it could not do (the watch is part of RunCounters,
+/// which each stage has and which threads and processes add up); at the end the run's faults are
+/// judged as checks that failed (judge.h), so that they stand in the table, in --json and in the
+/// exit code. What stays below the limits is not kept: the limits are what a solver's tolerance and
+/// rounding leave, and a reader would see.
 #pragma once
 
 #include <cstdint>
@@ -18,18 +20,22 @@
 
 namespace tumble::engines {
 
-/// A link counts as closed up to this part of its size (a rod's length, the arms of a joint), or this angle [rad]. Projection leaves 1e-13; a check of
-/// a joint's gap asks for 1e-6 to 1e-9 m; a picture shows 1e-3.
+/// A link counts as closed up to this part of its size (a rod's length, the arms of a joint), or
+/// this angle [rad]. Projection leaves 1e-13; a check of a joint's gap asks for 1e-6 to 1e-9 m; a
+/// picture shows 1e-3.
 inline constexpr double kLinkClosed = 1e-6;
-/// With Baumgarte's term or no stabilisation links drift by design: up to here they are the mechanism that the scene asks for.
+/// With Baumgarte's term or no stabilisation links drift by design: up to here they are the
+/// mechanism that the scene asks for.
 inline constexpr double kLinkDrifts = 1e-2;
-/// An answer to a contact problem stands up to this violation of Signorini's and Coulomb's conditions, as a part of the speed that the problem has
-/// to take away: what is wrong with the energy goes with its square, and with its first power over the contact's other impulses.
+/// An answer to a contact problem stands up to this violation of Signorini's and Coulomb's
+/// conditions, as a part of the speed that the problem has to take away: what is wrong with the
+/// energy goes with its square, and with its first power over the contact's other impulses.
 inline constexpr double kContactSolved = 1e-3;
-/// Energy may rise above the least it has been by this part of what the scene has to give (EnergyWatch): methods of order 4 whose step is within
-/// reach of the motion lose a thousandth.
+/// Energy may rise above the least it has been by this part of what the scene has to give
+/// (EnergyWatch): methods of order 4 whose step is within reach of the motion lose a thousandth.
 inline constexpr double kEnergyRises = 1e-2;
-/// A step may turn a body by half a turn [rad]: farther, what a method samples cannot be told from a turn the other way round.
+/// A step may turn a body by half a turn [rad]: farther, what a method samples cannot be told from
+/// a turn the other way round.
 inline constexpr double kTurnResolved = std::numbers::pi;
 
 class RunWatch {

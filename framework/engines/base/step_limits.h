@@ -1,4 +1,5 @@
-/// How much may happen while time stands still, or nearly so, before a run is stopped with words: what goes on for ever looks like a hang.
+/// How much may happen while time stands still, or nearly so, before a run is stopped with words:
+/// what goes on for ever looks like a hang.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +12,17 @@ namespace tumble::engines {
 /// In a row without progress of time.
 inline constexpr int kMostIdleSteps = 1000;
 
-/// Of the step: a pair that meets again sooner than this, and more slowly than the restitution threshold, is separated (micro-collisions, Mirtich 1996).
+/// Of the step: a pair that meets again sooner than this, and more slowly than the restitution
+/// threshold, is separated (micro-collisions, Mirtich 1996).
 inline constexpr double kMicroInterval = 0.01;
 
-/// Impacts in a step of a world of so many bodies: more are a Zeno sequence. A ball between walls a nanometre apart meets them 1,000 times in 2 us.
+/// Impacts in a step of a world of so many bodies: more are a Zeno sequence. A ball between walls a
+/// nanometre apart meets them 1,000 times in 2 us.
 inline constexpr long most_impacts(int bodies) { return 500L * bodies; }
 
-/// Events at one instant, each caused by the last: an impact passes through a chain of touching bodies in as many as it has. A timewarp looks at all that
-/// a body flew at its instant, so the price of finding out goes with the square.
+/// Events at one instant, each caused by the last: an impact passes through a chain of touching
+/// bodies in as many as it has. A timewarp looks at all that a body flew at its instant, so the
+/// price of finding out goes with the square.
 inline constexpr std::uint32_t most_microsteps(int bodies) { return 1000 + 10 * static_cast<std::uint32_t>(bodies); }
 
 /// @param bodies  names, as "bodies 'a' and 'b'"

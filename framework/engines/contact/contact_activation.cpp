@@ -54,10 +54,13 @@ std::vector<Velocity> PersistentContacts::velocities_now(const ContactIsland& is
   return now;
 }
 
-// Points that touch and separate at the step's start, more slowly than they could leave in it: their gap closes again by its end,
+// Points that touch and separate at the step's start, more slowly than they could leave in it:
+// their gap closes again by its end,
 //   gap(h) = h (v0 + v1) / 2 = 0,  so that  v1 = -v0.
-// Without that they would end at rest where half of their first velocity has taken them: an edge that rocks would be lifted by
-// v0 h / 2 each time, which is more energy than it has wherever v0 < g h. @return whether there are any
+// Without that they would end at rest where half of their first velocity has taken them: an edge
+// that rocks would be lifted by v0 h / 2 each time, which is more energy than it has wherever v0 <
+// g h.
+// @return whether there are any
 bool PersistentContacts::allow_separation(const ContactIsland& island, std::vector<StepContact>& contacts, ContactProblem& problem) const {
   if (!island.linked.empty()) return false;   // what hangs on links is not lifted by itself: their reactions are part of what parts it
   const std::vector<Velocity> now = velocities_now(island, contacts, problem);
@@ -112,8 +115,9 @@ std::vector<PersistentContacts::Activation> PersistentContacts::predict_activati
   return activations;
 }
 
-// Points that are apart at the step's start: where one closes its gap faster than the restitution threshold the step ends; slower
-// ones stay, with the velocity at the end that closes the gap by then; others must not come nearer than that.
+// Points that are apart at the step's start: where one closes its gap faster than the restitution
+// threshold the step ends; slower ones stay, with the velocity at the end that closes the gap by
+// then; others must not come nearer than that.
 // @return an earlier target (or the same after an impact) to begin the step again with
 std::optional<double> PersistentContacts::handle_activations(const ContactIsland& island, std::vector<StepContact>& contacts, double h) {
   const std::vector<Activation> activations = predict_activations(island, contacts, h);
@@ -145,7 +149,8 @@ std::optional<double> PersistentContacts::handle_activations(const ContactIsland
 // Points that touch and come together: their velocities jump. @return whether any did
 bool PersistentContacts::apply_impacts_of_active(const ContactIsland& island, const std::vector<StepContact>& contacts) {
   if (std::none_of(contacts.begin(), contacts.end(), [&](const StepContact& step_contact) { return is_active(step_contact); })) return false;
-  // The corners of an edge that lands flat take part together, though by rounding one of them closes its gap first.
+  // The corners of an edge that lands flat take part together, though by rounding one of them
+  // closes its gap first.
   std::vector<StepContact> down;
   for (const StepContact& step_contact : contacts) {
     const double size = geometry_.size_of(step_contact.pair);
@@ -188,7 +193,8 @@ bool PersistentContacts::apply_impact(const ContactIsland& island, std::vector<S
     moving_.set_state(body, state);
   }
   ++counters_.contact_landings;
-  // The first event has the energy of all; none is given where links end in, or bodies touch, what is driven in different ways.
+  // The first event has the energy of all; none is given where links end in, or bodies touch, what
+  // is driven in different ways.
   const Vector3d driven = ImpactBodies(moving_, laws_).driven_velocity(touched_bodies(island, down)).value_or(Vector3d::Constant(kUnset));
   EnergyOfImpact energy;
   for (std::size_t k = 0; k < island.bodies.size(); ++k) {

@@ -1,8 +1,10 @@
 // Whether contacts have brought energy in. Part of PersistentContacts.
 //
-// What touches and does not rebound only ever takes energy away: friction does, and impacts without rebound. An island that carries more than the
-// forces of the step can hold in balance (a heavy slab on a small ball, a box on the crest of another) topples faster than its step
-// follows: the impulses of the step's middle, found where the bodies would be without toppling, push along what has turned away since, and do work.
+// What touches and does not rebound only ever takes energy away: friction does, and impacts without
+// rebound. An island that carries more than the forces of the step can hold in balance (a heavy
+// slab on a small ball, a box on the crest of another) topples faster than its step follows: the
+// impulses of the step's middle, found where the bodies would be without toppling, push along what
+// has turned away since, and do work.
 #include <algorithm>
 
 #include "framework/core/numbers.h"
@@ -12,7 +14,8 @@
 
 namespace tumble::engines {
 
-// Between the ends of the paths that its bodies have been given. Not asked of what springs, motors or driven supports may give energy to.
+// Between the ends of the paths that its bodies have been given. Not asked of what springs, motors
+// or driven supports may give energy to.
 bool PersistentContacts::gains_energy(const ContactIsland& island) {
   if (!island.linked.empty()) return false;
   for (const Pair& pair : island.pairs)

@@ -13,7 +13,8 @@ Quaterniond turned(const Quaterniond& q, const Vector3d& turn) {
   return angle > 0 ? (Quaterniond(Eigen::AngleAxisd(angle, turn / angle)) * q).normalized() : q;
 }
 
-// Where forces act: on the surface of the body that moves, so that a rolling ball's arm is its radius; between two that move, in the middle.
+// Where forces act: on the surface of the body that moves, so that a rolling ball's arm is its
+// radius; between two that move, in the middle.
 Vector3d ContactGeometry::point_of(Pair pair, const collision::ManifoldPoint& p) const {
   if (moving_.world().bodies[pair.second].immovable()) return p.point_a_world;
   if (moving_.world().bodies[pair.first].immovable()) return p.point_b_world;
@@ -42,8 +43,8 @@ collision::Pose ContactGeometry::pose(int body, const std::vector<RigidBodyState
 ContactManifold ContactGeometry::points_at(Pair pair, const std::vector<RigidBodyState>& states, double reach) const {
   ContactManifold points = collision::manifold_points(moving_.shape(pair.first), pose(pair.first, states), moving_.shape(pair.second), pose(pair.second, states), reach,
                                          moving_.pair_cache(pair.first, pair.second));
-  // Two that touch at corners may face each other along any direction, and a column along it may go in at a narrow side and out at the far end:
-  // no point is deeper than the two are in each other.
+  // Two that touch at corners may face each other along any direction, and a column along it may go
+  // in at a narrow side and out at the far end: no point is deeper than the two are in each other.
   if (std::any_of(points.begin(), points.end(), [&](const collision::ManifoldPoint& p) { return p.gap < -kContact.deep * size_of(pair); })) {
     const collision::Gap deepest = gap_of(pair, states);
     std::erase_if(points, [&](const collision::ManifoldPoint& p) { return p.gap < std::min(0.0, (1 + kContact.depth_error) * deepest.distance); });
@@ -72,7 +73,8 @@ bool ContactGeometry::are_balls(Pair pair) const { return moving_.shape(pair.fir
 // A ball has one point on another, however far it has gone from where it was.
 double ContactGeometry::same_within(Pair pair) const { return are_balls(pair) ? std::numeric_limits<double>::infinity() : kContact.midway * size_of(pair); }
 
-// The point of `points` that is `p` at another time: fixed in one of the two bodies. Null where none lies as near as that.
+// The point of `points` that is `p` at another time: fixed in one of the two bodies. Null where
+// none lies as near as that.
 const collision::ManifoldPoint* ContactGeometry::same_point(Pair pair, const collision::ManifoldPoint& p, const std::vector<RigidBodyState>& p_at, const ContactManifold& points,
                                                         const std::vector<RigidBodyState>& at, double near) {
   const auto in = [](const RigidBodyState& s, const Vector3d& x) -> Vector3d { return s.world_from_body.conjugate() * (x - s.com_world); };
@@ -92,7 +94,8 @@ double ContactGeometry::large_island_margin(Pair pair) const {
   return kContact.large_island_margin * size_of(pair);
 }
 
-// Of two that overlap by `gap`: columns through their surfaces may go in and out elsewhere, deeper than the two are or not as deep.
+// Of two that overlap by `gap`: columns through their surfaces may go in and out elsewhere, deeper
+// than the two are or not as deep.
 ContactManifold ContactGeometry::points_of_overlap(Pair pair, const std::vector<RigidBodyState>& states, double reach, double gap) const {
   ContactManifold points = points_at(pair, states, reach);
   if (gap >= 0.0) return points;

@@ -1,6 +1,8 @@
-/// Where bodies touch: manifolds, gaps and margins of pairs, from places alone. It keeps nothing but caches of the narrow phase.
+/// Where bodies touch: manifolds, gaps and margins of pairs, from places alone. It keeps nothing
+/// but caches of the narrow phase.
 ///
-/// Contacts are kept a margin apart, ContactConstants::margin of the smaller body: gaps are never negative.
+/// Contacts are kept a margin apart, ContactConstants::margin of the smaller body: gaps are never
+/// negative.
 #pragma once
 
 #include <limits>
@@ -41,7 +43,8 @@ class ContactGeometry {
   collision::Pose pose(int body, const std::vector<RigidBodyState>& states) const;
   /// @param reach  points farther apart are not looked at [m]
   ContactManifold points_at(Pair pair, const std::vector<RigidBodyState>& states, double reach) const;
-  /// Of two that overlap by `gap` (< 0) or may come together: no point is deeper than the two are, and one is as deep.
+  /// Of two that overlap by `gap` (< 0) or may come together: no point is deeper than the two are,
+  /// and one is as deep.
   ContactManifold points_of_overlap(Pair pair, const std::vector<RigidBodyState>& states, double reach, double gap) const;
   collision::Gap gap_of(Pair pair, const std::vector<RigidBodyState>& states) const;
   /// @param limit  of larger gaps any bound from below will do [m]
@@ -54,7 +57,8 @@ class ContactGeometry {
   Vector3d point_of(Pair pair, const collision::ManifoldPoint& point) const;
   /// How far the points of one contact may lie from each other at two instants of a step. [m]
   double same_within(Pair pair) const;
-  /// The point of `points` that is `p` at another time: fixed in one of the two bodies. Null where none lies as near as `near` [m].
+  /// The point of `points` that is `p` at another time: fixed in one of the two bodies. Null where
+  /// none lies as near as `near` [m].
   static const collision::ManifoldPoint* same_point(Pair pair, const collision::ManifoldPoint& p, const std::vector<RigidBodyState>& p_at, const ContactManifold& points,
                                                 const std::vector<RigidBodyState>& at, double near);
 

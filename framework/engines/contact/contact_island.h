@@ -1,4 +1,5 @@
-/// Islands: bodies that touch each other or are linked, directly or through others. Impulses are solved island by island.
+/// Islands: bodies that touch each other or are linked, directly or through others. Impulses are
+/// solved island by island.
 #pragma once
 
 #include <map>
@@ -20,13 +21,15 @@ struct ContactIsland {
 };
 
 /// Puts a body into a contact problem, once.
-/// @param velocities  the state that its velocities and inertia are taken from; null: none, as for position correction
+/// @param velocities  the state that its velocities and inertia are taken from; null: none, as for
+/// position correction
 /// @param places      of bodies in the problem; the new one is entered
 /// @return its place
 int place_body(const MovingWorld& moving, int body, double t, std::map<int, int>& places, const std::vector<RigidBodyState>& states, const RigidBodyState* velocities, ContactProblem& problem);
 
 /// Rods and joints of an island as rows of a problem. @pre its bodies are placed
-/// @param of_places  true: the errors of places go; false: what the free step has made of velocities stays
+/// @param of_places  true: the errors of places go; false: what the free step has made of
+/// velocities stays
 void add_island_rows(MovingWorld& moving, const ContactIsland& island, const std::vector<RigidBodyState>& states, double t, const std::map<int, int>& places, bool of_places, ContactProblem& problem);
 
 }  // namespace tumble::engines

@@ -34,7 +34,8 @@ struct ContactMemory {
   // Warm start: of the last step, and of attempts at the one that has begun.
   std::map<Pair, std::vector<KnownImpulse>> last_impulses, tried_impulses;
   std::set<Pair> stuck;                   // pairs with friction that did not slide in the last step
-  // Large islands: bodies whose island has, or has had since it last came to rest, too many impacts a step to locate each.
+  // Large islands: bodies whose island has, or has had since it last came to rest, too many impacts
+  // a step to locate each.
   std::set<int> in_large_island;
   double impacts_counted_from = -kInfinity;   // impacts that cut a step were counted since [s], and how many of each island, by its first body
   std::map<int, int> impacts_counted;
@@ -44,7 +45,8 @@ struct ContactMemory {
   double searched_from = -kInfinity;          // were looked for since [s], and how often
   int searches = 0;
   std::optional<SlidingSearch> sliding_search;
-  // Progress: how often the step was cut since, and sweeps of the solver, for impulses and for corrections.
+  // Progress: how often the step was cut since, and sweeps of the solver, for impulses and for
+  // corrections.
   double cut_since = -kInfinity;              // [s]
   long cuts = 0;
   std::uint64_t sweeps = 0;

@@ -40,7 +40,8 @@ void ContactModes::look() {
     if (!pair.first) pair.first = &point;
     const double push = point.force_on_a_world.dot(point.normal_b_to_a_world);
     const double share = (point.force_on_a_world - push * point.normal_b_to_a_world).norm() / (friction * push);
-    // Impulses of sliding contacts lie on the edge of the cone to round-off, those of sticking ones below what the solver leaves open.
+    // Impulses of sliding contacts lie on the edge of the cone to round-off, those of sticking ones
+    // below what the solver leaves open.
     pair.all_on = pair.all_on && share >= 1 - kNegligible;
     pair.all_in = pair.all_in && share < 1 - kSixDigits;
     pair.slips = pair.slips || (pair.all_on && slip_of(point) > kCreep * restitution_threshold_);

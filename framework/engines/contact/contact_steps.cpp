@@ -1,4 +1,5 @@
-// One step of an island in contact: its impulses, and the paths that they lead to. Part of PersistentContacts.
+// One step of an island in contact: its impulses, and the paths that they lead to. Part of
+// PersistentContacts.
 #include <algorithm>
 #include <cmath>
 
@@ -17,9 +18,10 @@ Vector3d velocity_at(const PushedBody& body, const Vector3d& velocity, const Vec
 
 }  // namespace
 
-// Over a step of length h, which changes the velocities that the bodies would end with; with h = 0 those that they have now.
-// With `ends`, the places that contact will leave them in: there a free body's momenta would be other velocities, and impulses change
-// momenta. Without that, a body that spins about its slender axis gains or loses energy in proportion to the step.
+// Over a step of length h, which changes the velocities that the bodies would end with; with h = 0
+// those that they have now. With `ends`, the places that contact will leave them in: there a free
+// body's momenta would be other velocities, and impulses change momenta. Without that, a body that
+// spins about its slender axis gains or loses energy in proportion to the step.
 ContactProblem PersistentContacts::problem_of(const ContactIsland& island, const std::vector<StepContact>& contacts, const std::vector<RigidBodyState>& states, double h, const std::vector<RigidBodyState>* ends) {
   ContactProblem problem;
   std::map<int, int> places;
@@ -179,8 +181,9 @@ void PersistentContacts::keep_warm_start(const ContactIsland& island, const std:
   }
 }
 
-// Where a pair that slid and would stick at the end of the step stops sliding: when the friction that stops it is all there can be. What
-// stops the slip is A + F s, with F the steady forces along it, the available friction M s; two steps of different lengths tell A and F.
+// Where a pair that slid and would stick at the end of the step stops sliding: when the friction
+// that stops it is all there can be. What stops the slip is A + F s, with F the steady forces along
+// it, the available friction M s; two steps of different lengths tell A and F.
 std::optional<double> PersistentContacts::stop_of_sliding(const ContactProblem& problem, const std::vector<StepContact>& contacts, const ContactSolution& solution, double h) {
   if (contacts.size() > kContact.few) return std::nullopt;
   const Pair* stopping = nullptr;
@@ -271,7 +274,8 @@ std::vector<RigidBodyState> PersistentContacts::ends_of(const ContactIsland& isl
   return ends;
 }
 
-// The angle that the fastest of the island's bodies turns in the step; a ball looks the same however it turns.
+// The angle that the fastest of the island's bodies turns in the step; a ball looks the same
+// however it turns.
 double PersistentContacts::largest_turn(const ContactIsland& island, const std::vector<RigidBodyState>& ends, double h) const {
   double turn = 0.0;
   for (const int body : island.bodies)
@@ -279,7 +283,8 @@ double PersistentContacts::largest_turn(const ContactIsland& island, const std::
   return turn;
 }
 
-// The angle that the normal between two balls turns most in the step: the one that slides or rolls on the other follows its curve.
+// The angle that the normal between two balls turns most in the step: the one that slides or rolls
+// on the other follows its curve.
 double PersistentContacts::turn_of_normals(const ContactIsland& island, const std::vector<RigidBodyState>& ends) const {
   double turn = 0.0;
   for (const Pair& pair : island.pairs) {
@@ -291,9 +296,10 @@ double PersistentContacts::turn_of_normals(const ContactIsland& island, const st
   return turn;
 }
 
-// Contacts of an island that turns: at the middle of the step, where their forces act evenly, with targets that make the velocities at the
-// step's end fit the surfaces there: J_middle v' = target - (J_end - J_middle) v'. Without that a body that tips over its edge gains or
-// loses energy in proportion to the step.
+// Contacts of an island that turns: at the middle of the step, where their forces act evenly, with
+// targets that make the velocities at the step's end fit the surfaces there: J_middle v' = target -
+// (J_end - J_middle) v'. Without that a body that tips over its edge gains or loses energy in
+// proportion to the step.
 std::vector<PersistentContacts::StepContact> PersistentContacts::contacts_midway(const ContactIsland& island, const std::vector<StepContact>& contacts, const std::vector<RigidBodyState>& ends,
                                                                     std::vector<RigidBodyState>& middle) const {
   const std::vector<RigidBodyState>& starts = moving_.states();
@@ -346,11 +352,12 @@ bool PersistentContacts::set_paths(const ContactIsland& island, const std::vecto
   std::vector<ActiveContact> active;   // where nothing turns, points stay as near as they are
   if (&contacts_at != &moving_.states() && !activation && contacts.size() <= kContact.many_contacts)
     for (std::size_t i = 0; i < contacts.size(); ++i)
-      if (contacts[i].start_gap < kContact.activated * geometry_.margin(contacts[i].pair) && solution.impulses_world[i].squaredNorm() > 0.0) active.push_back({contacts[i].pair, contacts[i].point, &contacts_at});
+      if (contacts[i].start_gap < kContact.far_at_start * geometry_.margin(contacts[i].pair) && solution.impulses_world[i].squaredNorm() > 0.0) active.push_back({contacts[i].pair, contacts[i].point, &contacts_at});
   // Pairs that are not in contact may meet within the step: that is for the finding of impacts.
   const bool apart = correction_.correct_positions(island, island.pairs, ends, moving_.target(), active);
-  // The path goes where position correction has moved its end, however short the step: velocities along it are no momenta. What rods and joints hold is put
-  // right where a step ends within it (MovingWorld::commit).
+  // The path goes where position correction has moved its end, however short the step: velocities
+  // along it are no momenta. What rods and joints hold is put right where a step ends within it
+  // (MovingWorld::commit).
   for (const int body : island.bodies) {
     if (activation) set_straight_path(body, ends[body]);
     else moving_.set_path(body, moving_.state(body), ends[body], SmoothPath::Momenta::kEven);

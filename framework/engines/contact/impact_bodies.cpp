@@ -39,7 +39,7 @@ Matrix3d inverse_effective_mass(const Body& body, const Vector3d& point_world) {
   return 0.5 * (K + K.transpose());
 }
 
-// ---- Energy ----------------------------------------------------------------------------------------------------------------
+// ---- Energy -------------------------------------------------------------------------------------
 
 // As (v' - v) . (v' + v) / 2: the energies themselves would take the digits away.
 void EnergyOfImpact::add(const Inertia& inertia, const Quaterniond& q, const Velocity& from, const Velocity& to, const Vector3d& seen_from) {
@@ -78,7 +78,7 @@ double work_of(const ContactProblem& problem, const std::vector<Vector3d>& impul
   return sum;
 }
 
-// ---- Bodies ----------------------------------------------------------------------------------------------------------------
+// ---- Bodies -------------------------------------------------------------------------------------
 
 Body& ImpactBodies::body(int index) {
   const auto found = bodies_.find(index);
@@ -146,7 +146,7 @@ std::optional<Vector3d> ImpactBodies::driven_velocity(const std::vector<int>& bo
   return common.value_or(Vector3d::Zero());
 }
 
-// ---- Impulses --------------------------------------------------------------------------------------------------------------
+// ---- Impulses -----------------------------------------------------------------------------------
 
 ImpactBodies::Answer ImpactBodies::answer(const TouchedPoint& touched, bool with_tangents) {
   Answer answer;

@@ -1,10 +1,13 @@
-/// Bodies at the instant of an impact: what an impulse between two of them does to all that are linked to them.
+/// Bodies at the instant of an impact: what an impulse between two of them does to all that are
+/// linked to them.
 ///
-/// An impulse acts on the constrained system. The bodies take it as if they were free (the laws' apply_impulse), and within the same
-/// instant rods and joints add impulses of their own (the laws' constraint_correction), after which their rates are what they were.
-/// Both are linear in the impulse, so a contact of linked bodies has an inverse effective mass as a contact of free ones has, with what
-/// holds them in it:   K_held = D^T P M^-1 J_c^T D,   with P the projection of velocities along the rows, D the directions asked for.
-/// Bodies without rods and joints pay for none of this.
+/// An impulse acts on the constrained system. The bodies take it as if they were free (the laws'
+/// apply_impulse), and within the same instant rods and joints add impulses of their own (the laws'
+/// constraint_correction), after which their rates are what they were. Both are linear in the
+/// impulse, so a contact of linked bodies has an inverse effective mass as a contact of free ones
+/// has, with what holds them in it:   K_held = D^T P M^-1 J_c^T D,   with P the projection of
+/// velocities along the rows, D the directions asked for. Bodies without rods and joints pay for
+/// none of this.
 #pragma once
 
 #include <map>
@@ -24,21 +27,25 @@ Vector3d relative_velocity(const Body& a, const Body& b, const Vector3d& point_w
 /// K of one free body at a point: its velocity there per impulse, (3,3), world. [1/kg]
 Matrix3d inverse_effective_mass(const Body& body, const Vector3d& point_world);
 
-/// Kinetic energy of bodies whose velocities jump, seen from a frame that moves with what is driven: there walls do no work.
+/// Kinetic energy of bodies whose velocities jump, seen from a frame that moves with what is
+/// driven: there walls do no work.
 struct EnergyOfImpact {
   double before = 0.0, change = 0.0;   // [J]; NaN where bodies driven in different ways take part
   double mass = 0.0;                   // of all that is moved [kg]
 
   void add(const Inertia& inertia, const Quaterniond& world_from_body, const Velocity& from, const Velocity& to, const Vector3d& seen_from_world);
-  /// How far the change is from what the law says, or above 0, over the energy before; over that of kNegligibleSpeed where there is less.
+  /// How far the change is from what the law says, or above 0, over the energy before; over that of
+  /// kNegligibleSpeed where there is less.
   double excess(double by_law) const;
 };
 
 /// The velocities that the bodies of a problem have before its impulses.
 std::vector<Velocity> velocities_of(const ContactProblem& problem);
 
-/// What the impulses of contacts do to the kinetic energy: sum of p . (u + u') / 2, u of A against B at each contact. [J]
-/// @param impulses_world  by contact, on A [N s];   from, to  velocities before and after, by body of the problem
+/// What the impulses of contacts do to the kinetic energy: sum of p . (u + u') / 2, u of A against
+/// B at each contact. [J]
+/// @param impulses_world  by contact, on A [N s];   from, to  velocities before and after, by body
+/// of the problem
 double work_of(const ContactProblem& problem, const std::vector<Vector3d>& impulses_world, const std::vector<Velocity>& from, const std::vector<Velocity>& to);
 
 /// Two bodies that touch at a point, as impulses there find them.
@@ -63,7 +70,9 @@ class ImpactBodies {
   bool is_held(int a, int b) const { return held_group(a) >= 0 || held_group(b) >= 0; }
   /// Place of the group of linked bodies that holds a body by rods or joints; -1: none does.
   int held_group(int body) const;
-  /// Velocities of the groups of both onto their rods and joints: an impact begins there. Once for each group. @return whether any was put there now
+  /// Velocities of the groups of both onto their rods and joints: an impact begins there. Once for
+  /// each group.
+  /// @return whether any was put there now
   bool put_on_constraints(int a, int b);
 
   /// How the two answer to impulses at a point.
@@ -85,10 +94,12 @@ class ImpactBodies {
   /// @param with_tangents  whether impulses along the surface are asked about, too
   Answer answer(const TouchedPoint& touched, bool with_tangents);
 
-  /// Impulse on A at the point, its opposite on B, and what links make of it. @return what that did to the kinetic energy
+  /// Impulse on A at the point, its opposite on B, and what links make of it.
+  /// @return what that did to the kinetic energy
   EnergyOfImpact push(const TouchedPoint& touched, const Answer& answer, const Vector3d& impulse_world);
 
-  /// The velocity of what is driven among these bodies and the ends of their links; 0 without; nothing where they differ. [m/s]
+  /// The velocity of what is driven among these bodies and the ends of their links; 0 without;
+  /// nothing where they differ. [m/s]
   std::optional<Vector3d> driven_velocity(const std::vector<int>& bodies);
 
  private:

@@ -37,7 +37,8 @@ void ImpactDetection::refuse_overlap(const std::string& where, const scene::Scen
   refuse_overlaps(where, scene, near);
 }
 
-// Planes without end are in every box: whether the ball around a body reaches one is asked directly.
+// Planes without end are in every box: whether the ball around a body reaches one is asked
+// directly.
 bool ImpactDetection::may_meet(int a, int b) {
   if (moving_.shape(a).is_half_space()) std::swap(a, b);
   if (!moving_.shape(b).is_half_space()) return true;
@@ -73,8 +74,9 @@ std::vector<ImpactDetection::Pair> ImpactDetection::pairs_of_boxes() {
   return pairs;
 }
 
-// In a step that has begun again a body without contacts still has the box of the longer one: where that met no box, neither does
-// the shorter one's. @return whether one of these met another, so that the end of its path matters now
+// In a step that has begun again a body without contacts still has the box of the longer one: where
+// that met no box, neither does the shorter one's.
+// @return whether one of these met another, so that the end of its path matters now
 bool ImpactDetection::ask_for_ends(const std::vector<Pair>& pairs) {
   bool any = false;
   for (const auto& [a, b] : pairs)
@@ -125,7 +127,8 @@ double ImpactDetection::touching_distance(Pair pair) const {
          kFewRoundings * kEpsilon * moving_.time() * speed;
 }
 
-// Sizes say what lies flat; how far from the world's origin the two are only adds what their places are rounded by.
+// Sizes say what lies flat; how far from the world's origin the two are only adds what their places
+// are rounded by.
 std::vector<Vector3d> touching_points(const collision::CollisionShape& a, const collision::Pose& pose_a, const collision::CollisionShape& b, const collision::Pose& pose_b, const collision::Gap& gap,
                                       double rounding) {
   const Vector3d point_world = 0.5 * (gap.point_a_world + gap.point_b_world);
@@ -145,8 +148,9 @@ std::vector<Vector3d> ImpactDetection::touching_points(Pair pair, const collisio
   return engines::touching_points(moving_.shape(pair.first), pose_of(pair.first), moving_.shape(pair.second), pose_of(pair.second), gap, touching_distance(pair));
 }
 
-// The last guard: bounds hold for every method of integration that moves bodies smoothly, but what a student wrote may not. An
-// overlap at the end that is deeper than round-off is traced back to where it began.
+// The last guard: bounds hold for every method of integration that moves bodies smoothly, but what
+// a student wrote may not. An overlap at the end that is deeper than round-off is traced back to
+// where it began.
 std::optional<Earliest> ImpactDetection::find_missed(const std::vector<Pair>& pairs, double target) {
   std::optional<Earliest> earliest;
   apart_at_target_ = true;
@@ -162,7 +166,8 @@ std::optional<Earliest> ImpactDetection::find_missed(const std::vector<Pair>& pa
   return earliest;
 }
 
-// An overlap that rounding leaves is removed by moving the lighter body along the normal; a few roundings at most.
+// An overlap that rounding leaves is removed by moving the lighter body along the normal; a few
+// roundings at most.
 void ImpactDetection::separate(const std::vector<Pair>& pairs) {
   for (int round = 0; round < 20; ++round) {
     bool clean = true;

@@ -17,7 +17,8 @@ struct Earliest {
   std::size_t pair;    // place in the list of pairs that was asked about
 };
 
-/// The middle of where two solids touch, then the corners of that region if it is more than a point. World frame. [m]
+/// The middle of where two solids touch, then the corners of that region if it is more than a
+/// point. World frame. [m]
 /// @param rounding  what rounding leaves of the places there [m]
 std::vector<Vector3d> touching_points(const collision::CollisionShape& a, const collision::Pose& pose_a, const collision::CollisionShape& b, const collision::Pose& pose_b, const collision::Gap& gap,
                                       double rounding);
@@ -30,21 +31,25 @@ class ImpactDetection {
 
   /// Whether there are bodies that may meet at all.
   bool any() const { return colliding_.size() > 1; }
-  /// @throws OverlapAtStart (start_overlaps.h) naming two bodies that overlap at the start by more than roundings, and `where` they were asked for
+  /// @throws OverlapAtStart (start_overlaps.h) naming two bodies that overlap at the start by more
+  /// than roundings, and `where` they were asked for
   void refuse_overlap(const std::string& where, const scene::Scene& scene) const;
 
-  /// Pairs whose swept boxes meet in the step under way, sorted; none of bodies that both stand still.
+  /// Pairs whose swept boxes meet in the step under way, sorted; none of bodies that both stand
+  /// still.
   std::vector<Pair> candidates();
   /// The first impact of these pairs in the step under way; nothing where none meets.
   std::optional<Earliest> earliest(const std::vector<Pair>& pairs);
-  /// Whether that search has found all its pairs farther apart at the step's target than rounding could bring together.
+  /// Whether that search has found all its pairs farther apart at the step's target than rounding
+  /// could bring together.
   bool apart_at_target() const { return apart_at_target_; }
 
   /// At the committed time.
   collision::Gap gap(Pair pair) const;
   /// Gaps up to this count as touching: what rounding of places and times leaves. [m]
   double touching_distance(Pair pair) const;
-  /// The middle of where the two touch, then the corners of that region if it is more than a point. World frame. [m]
+  /// The middle of where the two touch, then the corners of that region if it is more than a point.
+  /// World frame. [m]
   std::vector<Vector3d> touching_points(Pair pair, const collision::Gap& gap) const;
   /// Takes back what rounding left of overlaps.
   void separate(const std::vector<Pair>& pairs);

@@ -35,8 +35,9 @@ void ApproachThreshold::look(const Laws& laws, const TouchedRegion& region, cons
   }
 }
 
-// Approach slower than a part of the fastest one is what rounding leaves of "not approaching"; so is what rounding leaves of the
-// speeds along the surface that cancel in it (a ball sliding in a groove).
+// Approach slower than a part of the fastest one is what rounding leaves of "not approaching"; so
+// is what rounding leaves of the speeds along the surface that cancel in it (a ball sliding in a
+// groove).
 double ApproachThreshold::value() const { return std::max(kSolverRounding * fastest_, kRoundOff * sliding_); }
 
 std::string left_approaching_message(const Laws& laws) {

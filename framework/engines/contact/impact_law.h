@@ -1,9 +1,11 @@
-/// The law of impacts at one pair, on plain bodies: where the two approach, what counts as approaching, when a body comes to rest.
+/// The law of impacts at one pair, on plain bodies: where the two approach, what counts as
+/// approaching, when a body comes to rest.
 ///
-/// A pair that approaches gets the impulse of the laws at the middle of the region where the two touch, or, where the middle does not approach,
-/// at the corner of that region that approaches fastest; this is repeated until no point approaches faster than round-off.
-/// Callers fetch the bodies, and store what comes of it: a world of bodies with links and friction (sequential_impacts.h), and two free flights
-/// (events/flight_impact_response.h).
+/// A pair that approaches gets the impulse of the laws at the middle of the region where the two
+/// touch, or, where the middle does not approach, at the corner of that region that approaches
+/// fastest; this is repeated until no point approaches faster than round-off. Callers fetch the
+/// bodies, and store what comes of it: a world of bodies with links and friction
+/// (sequential_impacts.h), and two free flights (events/flight_impact_response.h).
 #pragma once
 
 #include <string>
@@ -41,20 +43,25 @@ class ApproachThreshold {
   double fastest_ = 0.0, sliding_ = 0.0;   // [m/s]
 };
 
-/// More rounds of impulses than any right law needs: restitution 0.99 in a row of 50 balls takes some hundred.
+/// More rounds of impulses than any right law needs: restitution 0.99 in a row of 50 balls takes
+/// some hundred.
 inline constexpr int kMostImpactRounds = 10000;
-/// "collision (collision_impulse, ...) left them approaching ...": why a run stops whose law is still approached after all these rounds.
+/// "collision (collision_impulse, ...) left them approaching ...": why a run stops whose law is
+/// still approached after all these rounds.
 std::string left_approaching_message(const Laws& laws);
 
-/// A pair without a persistent contact that gravity or turning presses together would meet infinitely often in no time: it is sent apart at the rest
-/// speed (a micro-collision, Mirtich 1996). Pushes at several points approach that speed together, each round by a part of what is missing.
+/// A pair without a persistent contact that gravity or turning presses together would meet
+/// infinitely often in no time: it is sent apart at the rest speed (a micro-collision, Mirtich
+/// 1996). Pushes at several points approach that speed together, each round by a part of what is
+/// missing.
 inline constexpr double kFastEnough = 0.5;   // of the restitution threshold: what separates so fast gets no further push
 inline constexpr int kMostPushes = 200;      // rounds
 
 /// Not by the law that is being judged: a record of what the impulse did. [m/s]
 double normal_velocity(const Contact& contact, const Body& a, const Body& b);
 
-/// Kinetic energy that the laws' impulse changes: half the impulse times the sum of the normal velocities before and after. [J]
+/// Kinetic energy that the laws' impulse changes: half the impulse times the sum of the normal
+/// velocities before and after. [J]
 inline double work_of_impulse(double impulse, double approach, double restitution) { return 0.5 * impulse * (1 - restitution) * approach; }
 
 /// A ball that has met a support.
@@ -69,8 +76,9 @@ struct BallOnSupport {
   double restitution_threshold = 0.0, fastest = 0.0;  // [m/s]: fastest: of the impacts at this instant
 };
 
-/// Whether it stays there: gravity presses it straight against the support (without friction a slope holds nothing), it turns evenly if it turns, and
-/// it moves more slowly than the restitution threshold (or does not bounce at all). That nothing else pushes it is the caller's to know.
+/// Whether it stays there: gravity presses it straight against the support (without friction a
+/// slope holds nothing), it turns evenly if it turns, and it moves more slowly than the restitution
+/// threshold (or does not bounce at all). That nothing else pushes it is the caller's to know.
 bool comes_to_rest(const BallOnSupport& ball);
 
 }  // namespace tumble::engines

@@ -34,7 +34,8 @@ void PersistentContacts::report_large_islands() {
   if (std::find(counters_.notices.begin(), counters_.notices.end(), words) == counters_.notices.end()) counters_.notices.push_back(words);
 }
 
-// An impact is about to cut the step for this island. Too many of them, and it is solved in steps from now on, until it rests or separates.
+// An impact is about to cut the step for this island. Too many of them, and it is solved in steps
+// from now on, until it rests or separates.
 bool PersistentContacts::becomes_large(const ContactIsland& island) {
   if (rules_.plastic_impacts != scene::PlasticImpacts::kAutomatic || !island.linked.empty() || island.bodies.size() <= kContact.few) return false;
   if (!(moving_.time() < memory_.impacts_counted_from + memory_.longest_step)) {

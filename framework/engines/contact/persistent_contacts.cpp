@@ -47,7 +47,8 @@ void PersistentContacts::begin_where_touching(const std::vector<Pair>& pairs) {
   remove_overlaps();
 }
 
-// Positions of a scene are rounded: for bodies wedged between others no single displacement removes the overlap.
+// Positions of a scene are rounded: for bodies wedged between others no single displacement removes
+// the overlap.
 void PersistentContacts::remove_overlaps() {
   std::vector<RigidBodyState> states = moving_.states();
   const auto closed = [&](const Pair& pair) { return geometry_.distance_of(pair, states, 0.0) < 0; };
@@ -71,7 +72,8 @@ double PersistentContacts::reach(Pair pair) {
   return std::min(kContact.reach * size, way) + kContact.open_band * geometry_.margin(pair);
 }
 
-// Where impacts are solved in the step, a body may be as fast by its end as any that can meet it. [m/s], by body
+// Where impacts are solved in the step, a body may be as fast by its end as any that can meet it.
+// [m/s], by body
 std::vector<double> PersistentContacts::speeds_about(const std::vector<Pair>& candidates) {
   std::vector<double> speeds(moving_.size(), 0.0);
   std::vector<char> meets(moving_.size(), 0);
@@ -129,7 +131,8 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
   forces_.clear();
   islands_.clear();
   unsolved_ = {};
-  // Which pairs touch in this step: those in persistent contact, and those without restitution where impacts are solved in steps.
+  // Which pairs touch in this step: those in persistent contact, and those without restitution
+  // where impacts are solved in steps.
   std::vector<Pair> touching;
   const bool in_step = !locates() || !memory_.in_large_island.empty();
   reaches_ = in_step ? speeds_about(candidates) : std::vector<double>{};
@@ -146,7 +149,8 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
     points_.emplace(pair, std::move(points));
   }
   if (touching.empty()) return std::nullopt;
-  // What touches or is linked is solved together, island by island; large islands without restitution are solved in steps.
+  // What touches or is linked is solved together, island by island; large islands without
+  // restitution are solved in steps.
   islands_ = islands(touching);
   for (ContactIsland& island : islands_) island.large = is_large(island);
   memory_.in_large_island.clear();
@@ -171,9 +175,12 @@ std::optional<double> PersistentContacts::advance(const std::vector<Pair>& candi
   return std::nullopt;
 }
 
-// Every island's step. @return the earliest target that one of them asks for: the step begins again for all, and once for many groups is
-// cheaper than once for each. Of ends of sliding, the one that is looked for is that of the earliest. The island that asked last is asked first,
-// and as long as it asks the others' steps would be in vain: one at rest is not solved again for each impact of a large island elsewhere.
+// Every island's step.
+// @return the earliest target that one of them asks for: the step begins again for all, and once
+// for many groups is cheaper than once for each. Of ends of sliding, the one that is looked for is
+// that of the earliest. The island that asked last is asked first, and as long as it asks the
+// others' steps would be in vain: one at rest is not solved again for each impact of a large island
+// elsewhere.
 std::optional<double> PersistentContacts::take_steps(double h) {
   const auto step = [&](const ContactIsland& island) { return island.large ? take_large_island_step(island, h) : take_step(island, h); };
   const auto first = std::find_if(islands_.begin(), islands_.end(), [&](const ContactIsland& island) { return std::binary_search(island.bodies.begin(), island.bodies.end(), memory_.asked_last); });
@@ -202,7 +209,8 @@ std::optional<double> PersistentContacts::take_steps(double h) {
   return earliest;
 }
 
-// A step has been cut once more. Contacts that ask for ever shorter ones, or problems that all stay unsolved, would take hours.
+// A step has been cut once more. Contacts that ask for ever shorter ones, or problems that all stay
+// unsolved, would take hours.
 void PersistentContacts::require_progress() {
   const double t = moving_.time();
   if (!(memory_.cut_since <= t && t < memory_.cut_since + memory_.longest_step)) {
@@ -248,19 +256,23 @@ double PersistentContacts::speed(const ContactIsland& island) const {
   return fastest;
 }
 
-// One island's step. @return an earlier target (or the same after an impact) to begin the step again with
+// One island's step.
+// @return an earlier target (or the same after an impact) to begin the step again with
 std::optional<double> PersistentContacts::take_step(const ContactIsland& island, double h) {
   std::vector<StepContact> contacts = contacts_of(island);
   const bool located = locates(), moves = located && speed(island) > kContact.moving * restitution_threshold_;
-  // Points that touch and approach: their velocities jump, without rebound, and the step begins again.
+  // Points that touch and approach: their velocities jump, without rebound, and the step begins
+  // again.
   if (moves && apply_impacts_of_active(island, contacts)) return moving_.target();
-  // The impulses that keep what touches from approaching; points that separate slowly close their gap again by the step's end.
+  // The impulses that keep what touches from approaching; points that separate slowly close their
+  // gap again by the step's end.
   ContactProblem problem = problem_of(island, contacts, moving_.states(), h);
   const bool separates = allow_separation(island, contacts, problem);
   ContactSolution solution = solve(island, problem, h);
   remember(contacts, problem, solution, h, memory_.tried_impulses);
   bool activation = activates(contacts, solution);
-  // Contacts that become active within the step: it ends where the first does, or their gaps close by its end. Too many, and the island is solved in steps.
+  // Contacts that become active within the step: it ends where the first does, or their gaps close
+  // by its end. Too many, and the island is solved in steps.
   if (moves && is_activated(island, contacts, problem, solution, h)) {
     if (becomes_large(island)) return moving_.target();
     if (const auto again = handle_activations(island, contacts, h)) return again;
@@ -272,7 +284,8 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
     solution = solve(island, problem, h);
     activation = activates(contacts, solution);
   }
-  // An island that turns too far gets a shorter step; one that turns at all meets its contacts at the step's middle.
+  // An island that turns too far gets a shorter step; one that turns at all meets its contacts at
+  // the step's middle.
   std::vector<RigidBodyState> ends = ends_of(island, problem, solution, h, activation);
   const double turn = std::max(largest_turn(island, ends, h), turn_of_normals(island, ends));
   if (located && turn > 2 * kContact.most_turn && h > kContact.shortest_step * memory_.longest_step) return moving_.time() + h * kContact.most_turn / turn;
@@ -297,7 +310,8 @@ std::optional<double> PersistentContacts::take_step(const ContactIsland& island,
   require_numbers(island, solution);
   // A pair that stops sliding ends the step there.
   if (const auto stop = located ? stop_of_sliding(problem, contacts, solution, h) : std::nullopt) return stop;
-  // The bodies' paths, with overlaps removed; where some stay, a shorter step may do. Contacts bring no energy in.
+  // The bodies' paths, with overlaps removed; where some stay, a shorter step may do. Contacts
+  // bring no energy in.
   if (!set_paths(island, used, middle.empty() ? moving_.states() : middle, problem, solution, h, activation, middle.empty() ? nullptr : &ends)) {
     if (!located && island.linked.empty()) return take_large_island_step(island, h);
     if (h > kContact.shortest_step * memory_.longest_step) return moving_.time() + 0.5 * h;
@@ -311,8 +325,8 @@ void PersistentContacts::remove_overlaps_within_step(std::vector<RigidBodyState>
   const RunCounters before = counters_;   // what is looked at must not show in what a run counts
   const double left = (moving_.target() - t) / (moving_.target() - moving_.time());
   for (const ContactIsland& island : islands_) {
-    // A path that leads straight to the step's end has the velocity of that end all along. Momenta that change evenly show no energy that
-    // neither end has.
+    // A path that leads straight to the step's end has the velocity of that end all along. Momenta
+    // that change evenly show no energy that neither end has.
     if (!island.linked.empty()) continue;   // momenta of these are on their rods and joints
     for (const int body : island.bodies) {
       const RigidBodyState &start = moving_.state(body), &end = moving_.path_end(body);
@@ -322,7 +336,7 @@ void PersistentContacts::remove_overlaps_within_step(std::vector<RigidBodyState>
   }
   const auto closed = [&](const Pair& pair) { return geometry_.overlap(pair, states); };
   bool any = true;
-  for (int round = 0; round < kContact.frame_rounds && any; ++round) {   // one island's corrections may close another's gaps
+  for (int round = 0; round < kContact.most_corrections && any; ++round) {   // one island's corrections may close another's gaps
     any = false;
     for (const ContactIsland& island : islands_) {
       if (std::none_of(island.near.begin(), island.near.end(), closed)) continue;
@@ -337,7 +351,7 @@ void PersistentContacts::remove_overlaps_within_step(std::vector<RigidBodyState>
 void PersistentContacts::remove_overlaps(const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t) {
   const RunCounters before = counters_;   // as above
   const auto closed = [&](const Pair& pair) { return geometry_.overlap(pair, states); };
-  for (int round = 0; round < kContact.frame_rounds && std::any_of(pairs.begin(), pairs.end(), closed); ++round)
+  for (int round = 0; round < kContact.most_corrections && std::any_of(pairs.begin(), pairs.end(), closed); ++round)
     for (const ContactIsland& island : islands(pairs)) {
       if (std::none_of(island.pairs.begin(), island.pairs.end(), closed)) continue;
       std::vector<double> gaps(island.pairs.size(), 0.0);
@@ -346,7 +360,8 @@ void PersistentContacts::remove_overlaps(const std::vector<Pair>& pairs, std::ve
   counters_ = before;
 }
 
-// A ball has been carried by another to where nothing presses them together: no force in the step, and along the normal
+// A ball has been carried by another to where nothing presses them together: no force in the step,
+// and along the normal
 //   a_n = n . (g_a - g_b) + v_t^2 / R > 0,   R the distance of their centres, v_t their velocity along the surface.
 bool PersistentContacts::flies_off(Pair pair, const std::vector<RigidBodyState>& states) const {
   if (!geometry_.are_balls(pair)) return false;

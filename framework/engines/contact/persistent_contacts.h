@@ -48,12 +48,14 @@ class PersistentContacts {
 
   /// A collision has become a persistent contact.
   void begin(Pair pair, const collision::Gap& gap);
-  /// Pairs that touch at the start and do not approach faster than the restitution threshold; overlaps of a rounding are removed.
+  /// Pairs that touch at the start and do not approach faster than the restitution threshold;
+  /// overlaps of a rounding are removed.
   void begin_where_touching(const std::vector<Pair>& pairs);
   bool lasts(Pair pair) const { return memory_.persistent.contains(pair); }
   const std::set<Pair>& lasting() const { return memory_.persistent; }
 
-  /// Gives the bodies in contact their paths for the step that has begun. @param candidates  pairs whose boxes meet, sorted
+  /// Gives the bodies in contact their paths for the step that has begun.
+  /// @param candidates  pairs whose boxes meet, sorted
   /// @return an earlier target to begin the step again with: where a contact stops sliding
   std::optional<double> advance(const std::vector<Pair>& candidates);
   /// Whether nothing is in contact in this step.
@@ -67,10 +69,12 @@ class PersistentContacts {
   /// After the step was committed: takes back overlaps, ends contacts that have come apart.
   /// @return whether all pairs with a body in contact are known to be apart
   bool commit();
-  /// Takes back overlaps among bodies in contact at a time within the step under way: contacts keep bodies apart at its ends, and on the
-  /// path between them a body that turns dips in by what is of second order in the step. Changes nothing but these states.
+  /// Takes back overlaps among bodies in contact at a time within the step under way: contacts keep
+  /// bodies apart at its ends, and on the path between them a body that turns dips in by what is of
+  /// second order in the step. Changes nothing but these states.
   void remove_overlaps_within_step(std::vector<RigidBodyState>& states, double t);
-  /// The same of any of these pairs that overlap in these states, whatever is in contact in the step under way; velocities stay.
+  /// The same of any of these pairs that overlap in these states, whatever is in contact in the
+  /// step under way; velocities stay.
   void remove_overlaps(const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t);
   const std::vector<ContactPoint>& forces() const { return forces_; }
   /// Farther apart than this the two are in contact no more. [m]

@@ -10,7 +10,8 @@
 namespace tumble::engines {
 namespace {
 
-// A correction is no motion: where masses differ by more than a solver's digits bear, the lightest count as heavier ones.
+// A correction is no motion: where masses differ by more than a solver's digits bear, the lightest
+// count as heavier ones.
 void limit_ratios(ContactProblem& problem) {
   double least = std::numeric_limits<double>::infinity();   // inverse mass of what moves
   for (const PushedBody& body : problem.bodies)
@@ -52,7 +53,8 @@ bool PositionCorrection::apply_correction(int body, const Velocity& correction, 
   return true;
 }
 
-// The island's contacts as they are in these places: what each has to move by. Points farther apart than `reach` are no concern.
+// The island's contacts as they are in these places: what each has to move by. Points farther apart
+// than `reach` are no concern.
 // @return the farthest that any too near, or held too far, has to move; 0 where none is
 double PositionCorrection::add_corrections(const ContactIsland& island, const std::vector<Pair>& pairs, const std::vector<RigidBodyState>& states, double t, const std::vector<ActiveContact>& active, double reach,
                                    std::map<int, int>& places, ContactProblem& problem) {
@@ -60,7 +62,7 @@ double PositionCorrection::add_corrections(const ContactIsland& island, const st
   for (const Pair& pair : pairs) {
     const double margin = geometry_.margin(pair), size = geometry_.size_of(pair);
     const bool has_active = std::any_of(active.begin(), active.end(), [&](const ActiveContact& h) { return h.pair == pair; });
-    const ContactManifold points = geometry_.points_at(pair, states, std::max({kContact.activated * margin, reach, has_active ? (geometry_.are_balls(pair) ? 1.0 : kContact.active_reach) * size : 0.0}));
+    const ContactManifold points = geometry_.points_at(pair, states, std::max({kContact.far_at_start * margin, reach, has_active ? (geometry_.are_balls(pair) ? 1.0 : kContact.active_reach) * size : 0.0}));
     std::vector<const collision::ManifoldPoint*> at_margin;
     for (const ActiveContact& h : active)
       if (h.pair == pair) at_margin.push_back(geometry_.same_point(pair, h.point, *h.at, points, states, geometry_.same_within(pair)));
@@ -86,8 +88,8 @@ double PositionCorrection::add_corrections(const ContactIsland& island, const st
   return wrong;
 }
 
-// The correction, minimal in the kinetic metric, that leaves no gap of these pairs below its margin, and no rod or joint open; active
-// contacts come to lie at their margin.
+// The correction, minimal in the kinetic metric, that leaves no gap of these pairs below its
+// margin, and no rod or joint open; active contacts come to lie at their margin.
 // @return whether it was found
 bool PositionCorrection::correct_positions(const ContactIsland& island, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, const std::vector<ActiveContact>& active) {
   for (int i = 0; i < moving_.size(); ++i)
@@ -109,8 +111,8 @@ bool PositionCorrection::correct_positions(const ContactIsland& island, const st
     const bool open = problem.row_targets.size() > 0 && problem.row_targets.cwiseAbs().maxCoeff() > kSolverRounding * size;
     if (wrong == 0.0 && !open) return true;
     ++counters_.nudges;
-    // The solver measures its answers by the farthest point, which need not move at all. Active points, rods and joints are drawn together by what
-    // is of another size.
+    // The solver measures its answers by the farthest point, which need not move at all. Active
+    // points, rods and joints are drawn together by what is of another size.
     double part = 1.0;
     if (problem.rows.empty()) {
       double largest = wrong;
@@ -132,7 +134,8 @@ double PositionCorrection::way_of(int body, const Velocity& correction) const {
   return correction.linear_world.norm() + correction.angular_world.norm() * moving_.shape(body).bounding_radius();
 }
 
-// Shifts the island's bodies until no gap of these pairs is closed. @param gaps  bounds from below, by pair; as good as needed afterwards
+// Shifts the island's bodies until no gap of these pairs is closed.
+// @param gaps  bounds from below, by pair; as good as needed afterwards
 // @return whether that was reached
 bool PositionCorrection::correct_large_island(const ContactIsland& island, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, std::vector<double>& gaps) {
   for (int i = 0; i < moving_.size(); ++i)

@@ -30,9 +30,11 @@ class PositionCorrection {
   PositionCorrection(MovingWorld& moving, const ContactGeometry& geometry, ContactMemory& memory, double restitution_threshold, RunCounters& counters)
       : moving_(moving), geometry_(geometry), memory_(memory), restitution_threshold_(restitution_threshold), counters_(counters) {}
 
-  /// Takes back the overlaps of these pairs, in places of the time `t`. @return whether none is left
+  /// Takes back the overlaps of these pairs, in places of the time `t`.
+  /// @return whether none is left
   bool correct_positions(const ContactIsland& island, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, const std::vector<ActiveContact>& active = {});
-  /// The same for a large island, by a few sweeps a round. @param gaps  bounds from below, by pair; as good as needed afterwards [m]
+  /// The same for a large island, by a few sweeps a round.
+  /// @param gaps  bounds from below, by pair; as good as needed afterwards [m]
   bool correct_large_island(const ContactIsland& island, const std::vector<Pair>& pairs, std::vector<RigidBodyState>& states, double t, std::vector<double>& gaps);
 
  private:

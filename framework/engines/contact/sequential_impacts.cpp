@@ -23,8 +23,8 @@ Contact contact_of(const TouchingPair& pair, const Vector3d& point_world) { retu
 
 TouchedRegion region_of(const TouchingPair& pair) { return {pair.gap.normal_b_to_a_world, pair.points_world}; }
 
-// The impulses of each pair at one instant as one event: their sum, from the fastest approach on. A large island passes an impact to and fro ten
-// thousand times.
+// The impulses of each pair at one instant as one event: their sum, from the fastest approach on. A
+// large island passes an impact to and fro ten thousand times.
 std::vector<Event> one_a_pair(const std::vector<Event>& events) {
   std::vector<Event> sums;
   std::map<std::pair<int, int>, std::size_t> place;
@@ -91,7 +91,8 @@ bool SequentialImpacts::collide(Work& work, const TouchingPair& pair, double thr
   const double restitution = stays(work.world(), pair, -approach) ? 0.0 : restitution_of(work.world(), pair);
   const double friction = friction_at_impact(work.world(), pair);
 
-  // The law's impulse is that of the free bodies without friction: what holds them makes it smaller, friction at the point both.
+  // The law's impulse is that of the free bodies without friction: what holds them makes it
+  // smaller, friction at the point both.
   double impulse = laws_.collision_impulse(contact, a, b, restitution), by_law = work_of_impulse(impulse, approach, restitution);
   Vector3d impulse_world = impulse * contact.normal_b_to_a_world;
   static const ImpactBodies::Answer free_bodies;
@@ -151,7 +152,8 @@ ContactSolution SequentialImpacts::solve_without_gain(const ContactProblem& prob
     for (PushingContact& contact : less.contacts) contact.target = 0.0;
     base = solve(less);
   }
-  // On the line between the two all laws but Coulomb's on the slip hold as they do at both ends, and energy is a parabola.
+  // On the line between the two all laws but Coulomb's on the slip hold as they do at both ends,
+  // and energy is a parabola.
   const auto mixed = [](double share, const auto& from, const auto& to) { return (from + share * (to - from)).eval(); };
   ContactSolution difference = whole;
   std::vector<Velocity> change = whole.velocities;
@@ -167,8 +169,8 @@ ContactSolution SequentialImpacts::solve_without_gain(const ContactProblem& prob
   return whole;
 }
 
-// Newton's law of restitution for all pairs at once: v_n' >= -e v_n where they approach, v_n' >= 0 elsewhere, with friction, and with the
-// rows of what is linked to them.
+// Newton's law of restitution for all pairs at once: v_n' >= -e v_n where they approach, v_n' >= 0
+// elsewhere, with friction, and with the rows of what is linked to them.
 void SequentialImpacts::collide_together(Work& work, const std::vector<TouchingPair>& pairs, double threshold, bool rebounds) {
   const auto first_corner = [](const TouchingPair& pair) { return pair.points_world.size() > 1 ? 1u : 0u; };   // corners carry; the middle lies between them
   const auto approach_at = [&](const TouchingPair& pair, std::size_t k) { return laws_.relative_normal_velocity(contact_of(pair, pair.points_world[k]), work.body(pair.a), work.body(pair.b)); };

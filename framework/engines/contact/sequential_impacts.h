@@ -49,12 +49,14 @@ class SequentialImpacts {
  public:
   SequentialImpacts(const Laws& laws, ImpactRules rules, RunCounters& counters) : laws_(laws), rules_(rules), counters_(counters) {}
 
-  /// Impacts that would rebound more slowly than the restitution threshold (laws' ends_in_contact) do not rebound: they begin a persistent contact.
-  /// Pairs with friction slide less after an impact: Coulomb's law for the impulse, against the slip that is left. With the simultaneous law all touching pairs are
-  /// solved together (Newton's law of restitution as complementarity): a row of equal balls hit by one then leaves with
-  /// (-3/5, 2/5, 2/5, 2/5, 2/5) of its speed, not as Newton's cradle does. Where restitution at several points would create energy (unequal
-  /// restitutions, friction), as much of it is taken as creates none: on the line from there to the answer without friction, or, where that
-  /// creates energy too, to the one without rebound.
+  /// Impacts that would rebound more slowly than the restitution threshold (laws' ends_in_contact)
+  /// do not rebound: they begin a persistent contact. Pairs with friction slide less after an
+  /// impact: Coulomb's law for the impulse, against the slip that is left. With the simultaneous
+  /// law all touching pairs are solved together (Newton's law of restitution as complementarity): a
+  /// row of equal balls hit by one then leaves with (-3/5, 2/5, 2/5, 2/5, 2/5) of its speed, not as
+  /// Newton's cradle does. Where restitution at several points would create energy (unequal
+  /// restitutions, friction), as much of it is taken as creates none: on the line from there to the
+  /// answer without friction, or, where that creates energy too, to the one without rebound.
   void use_contact_rules(double restitution_threshold, scene::ImpactLaw law) {
     contact_threshold_ = restitution_threshold;
     law_ = law;
@@ -69,12 +71,12 @@ class SequentialImpacts {
   /// @param trigger  which of them stopped the step
   Resolution resolve(MovingWorld& moving, const std::vector<TouchingPair>& pairs, std::size_t trigger);
 
-  /// Separates the pairs that had a micro-impact at the restitution threshold u, where they separate
-  /// more slowly, and with them the touching pairs of bodies that this moves: else a stack would be
-  /// pushed back and forth within one instant. Without a persistent contact, a pair that gravity or
-  /// rotation presses together would meet infinitely often in no time. A body that rests on another
-  /// therefore rises by up to u^2 / 2g; this separation impulse adds an energy of the order of
-  /// m u^2, which the next impact removes where restitution is below 1.
+  /// Separates the pairs that had a micro-impact at the restitution threshold u, where they
+  /// separate more slowly, and with them the touching pairs of bodies that this moves: else a stack
+  /// would be pushed back and forth within one instant. Without a persistent contact, a pair that
+  /// gravity or rotation presses together would meet infinitely often in no time. A body that rests
+  /// on another therefore rises by up to u^2 / 2g; this separation impulse adds an energy of the
+  /// order of m u^2, which the next impact removes where restitution is below 1.
   void push_apart(MovingWorld& moving, const std::vector<TouchingPair>& touching, const std::vector<TouchingPair>& micro_impacts);
 
  private:

@@ -9,12 +9,13 @@
 /// 1e-7 m/s, the creep that a sticking contact is allowed. Something immovable must hold the
 /// island, too: a body at the top of its path is slow for a while, and not at rest.
 ///
-/// Asleep, a body keeps its position to the last bit and its velocity is zero. It is not integrated,
-/// its contacts are not solved, and it is no candidate with others that do not move. The forces of
-/// its contacts in the last step stay on record. An island wakes at the beginning of the step in
-/// which something moving meets it (that step is then taken with the island awake: the impact acts
-/// as on bodies that never slept), when a force on one of its bodies is switched, or when a motor's
-/// law asks for another torque. Bodies that rest on a driven body, or are linked to one, do not sleep.
+/// Asleep, a body keeps its position to the last bit and its velocity is zero. It is not
+/// integrated, its contacts are not solved, and it is no candidate with others that do not move.
+/// The forces of its contacts in the last step stay on record. An island wakes at the beginning of
+/// the step in which something moving meets it (that step is then taken with the island awake: the
+/// impact acts as on bodies that never slept), when a force on one of its bodies is switched, or
+/// when a motor's law asks for another torque. Bodies that rest on a driven body, or are linked to
+/// one, do not sleep.
 ///
 /// Sleep removes the kinetic energy of the last half second: less than m v^2 / 2 at a tenth of the
 /// restitution threshold.
@@ -35,10 +36,12 @@ class Sleepers {
   /// @param modes  null where no contact has friction
   Sleepers(MovingWorld& moving, const PersistentContacts& contacts, const ContactModes* modes, double restitution_threshold, RunCounters& counters, TrajectorySink& sink);
 
-  /// After a step: puts the groups to sleep that have been still long enough. @param touching  pairs in contact in this step
+  /// After a step: puts the groups to sleep that have been still long enough.
+  /// @param touching  pairs in contact in this step
   void look(const std::vector<Pair>& touching);
 
-  /// Before a step's contacts: wakes groups that something moving will be in contact with. @return whether there were any: the step is to be begun again
+  /// Before a step's contacts: wakes groups that something moving will be in contact with.
+  /// @return whether there were any: the step is to be begun again
   bool wake_approached(const std::vector<Pair>& candidates);
   /// Wakes the groups of both bodies, if they sleep. @return whether one did
   bool wake(Pair pair);

@@ -21,17 +21,19 @@ WorldStep::WorldStep(World world, const Laws& laws, StepRules rules, RunCounters
   searches_ = built::kCollision && impact_detection_.any() && (has_contacts() || rules.searches_without_contacts);
 }
 
-// ---- A step ----------------------------------------------------------------------------------------------------------------
+// ---- A step -------------------------------------------------------------------------------------
 
 WorldStep::Taken WorldStep::take(double target, StepStages& stages) {
   Taken taken;
   const double start = moving_.time();
-  // Bodies go where they would without each other. A sleeper that would be met takes the step awake.
+  // Bodies go where they would without each other. A sleeper that would be met takes the step
+  // awake.
   stages.begin(target);
   ++counters_.steps;
   if (searches_) taken.searched = pairs_in_step();
   if (stages.wake_approached(taken.searched)) return give_up();
-  // Bodies in persistent contact go where their contacts let them; the step becomes shorter where a contact changes within it.
+  // Bodies in persistent contact go where their contacts let them; the step becomes shorter where a
+  // contact changes within it.
   if (has_contacts() && !keep_contacts(taken, stages)) {
     taken.how = Taken::How::kEndedAtStart;
     return taken;
@@ -57,7 +59,8 @@ std::vector<WorldStep::Pair> WorldStep::pairs_in_step() {
   return pairs;
 }
 
-// Gives bodies in contact their paths. Where a contact asks for a shorter step, the step begins again with it.
+// Gives bodies in contact their paths. Where a contact asks for a shorter step, the step begins
+// again with it.
 // @return false where the engine ends the step at its start
 bool WorldStep::keep_contacts(Taken& taken, StepStages& stages) {
   while (const auto earlier = contacts_->advance(taken.searched)) {
@@ -90,7 +93,7 @@ void WorldStep::require_numbers() const {
       throw StoppedRun(fmt::format("body {}: its state is not a number (integrator: {}; impulses: {})", name(body), laws_.integrator_source, laws_.impulse_source));
 }
 
-// ---- The response to an impact ---------------------------------------------------------------------------------------------
+// ---- The response to an impact ------------------------------------------------------------------
 
 void WorldStep::respond(const std::vector<Pair>& pairs, Pair trigger, bool is_in_step, StepStages& stages) {
   const StageTimer timer(counters_.impact_seconds);
@@ -103,13 +106,15 @@ void WorldStep::respond(const std::vector<Pair>& pairs, Pair trigger, bool is_in
   const Resolution resolution = naming(names(trigger), [&] { return impacts_.resolve(moving_, touching.all, touching.trigger); });
   for (const Event& event : resolution.events) stages.impact(event);
   if (!resolution.settled) throw StoppedRun(names(trigger) + ": " + left_approaching_message(laws_));
-  // What was slow stays together: as a contact, or where the scene asks for none, at rest or a hop apart.
+  // What was slow stays together: as a contact, or where the scene asks for none, at rest or a hop
+  // apart.
   if (has_contacts()) return begin_slow_contacts(touching, resolution.events);
   bring_to_rest(touching, resolution.events);
   naming(names(trigger), [&] { send_apart(touching, resolution); });
 }
 
-// The trigger, the pairs that touch, and those in persistent contact: what rests on something touches it.
+// The trigger, the pairs that touch, and those in persistent contact: what rests on something
+// touches it.
 WorldStep::TouchingPairs WorldStep::touching_pairs(const std::vector<Pair>& pairs, Pair trigger, bool is_in_step) const {
   const auto is_in_contact = [&](Pair pair) { return has_contacts() && contacts_->lasts(pair) && (!is_in_step || contacts_->keeps(pair)); };
   TouchingPairs touching;
@@ -122,7 +127,8 @@ WorldStep::TouchingPairs WorldStep::touching_pairs(const std::vector<Pair>& pair
   return touching;
 }
 
-// A pair that touches and whose impacts, if any, were slow enough not to bounce begins a persistent contact.
+// A pair that touches and whose impacts, if any, were slow enough not to bounce begins a persistent
+// contact.
 void WorldStep::begin_slow_contacts(const TouchingPairs& touching, const std::vector<Event>& events) {
   for (const TouchingPair& pair : touching.all) {
     bool slow = true;

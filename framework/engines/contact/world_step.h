@@ -33,7 +33,8 @@ class StepStages {
   /// Begins it again with an earlier target, because a contact changes there.
   /// @return false: the step ends where it began
   virtual bool begin_again(double target) = 0;
-  /// Wakes bodies that something moving comes near to. @return whether any: the step is then begun again
+  /// Wakes bodies that something moving comes near to.
+  /// @return whether any: the step is then begun again
   virtual bool wake_approached(const std::vector<ImpactDetection::Pair>&) { return false; }
   /// Wakes the bodies of a pair. @return whether one slept
   virtual bool wake(ImpactDetection::Pair) { return false; }
@@ -71,10 +72,13 @@ class WorldStep {
   /// @throws StoppedRun where a state is not a number afterwards
   Taken take(double target, StepStages& stages);
 
-  /// Velocities jump, by the laws' impulses, at everything that touches at the committed time; slow contacts begin to persist.
+  /// Velocities jump, by the laws' impulses, at everything that touches at the committed time; slow
+  /// contacts begin to persist.
   /// @param pairs      sorted; the trigger is among them
-  /// @param is_in_step whether a step has just ended here, so that the contacts it kept apart are those that touch
-  /// @throws StoppedRun where bodies still approach however often impulses act, or where a state is not a number afterwards
+  /// @param is_in_step whether a step has just ended here, so that the contacts it kept apart are
+  /// those that touch
+  /// @throws StoppedRun where bodies still approach however often impulses act, or where a state is
+  /// not a number afterwards
   void respond(const std::vector<Pair>& pairs, Pair trigger, bool is_in_step, StepStages& stages);
 
   void require_numbers() const;

@@ -8,8 +8,8 @@ namespace tumble::engines {
 class PersistentContacts;
 class Sleepers;
 
-/// Smallest gap over all pairs that may collide; infinite where there is none. [m] Pairs of bodies that stand still from frame to frame
-/// (asleep, or immovable) are measured once.
+/// Smallest gap over all pairs that may collide; infinite where there is none. [m] Pairs of bodies
+/// that stand still from frame to frame (asleep, or immovable) are measured once.
 class SmallestGap {
  public:
   double measure(const MovingWorld& moving, const std::vector<RigidBodyState>& states);
@@ -26,7 +26,8 @@ class FrameRecorder {
  public:
   FrameRecorder(double rate_hz, double duration, TrajectorySink& sink) : rate_(rate_hz), duration_(duration), sink_(sink) {}
 
-  /// Frames hold the forces of these contacts, and what they hold apart is apart in frames within a step, too.
+  /// Frames hold the forces of these contacts, and what they hold apart is apart in frames within a
+  /// step, too.
   void record_contacts_of(PersistentContacts& contacts) { contacts_ = &contacts; }
   void record_contacts_of(const Sleepers& sleepers) { sleepers_ = &sleepers; }
 

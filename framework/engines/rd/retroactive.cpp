@@ -57,7 +57,8 @@ class RetroactiveRun : private StepStages {
   void advance_to(double target);
   void note_touching(const std::vector<std::pair<int, int>>& near);
 
-  // What a step of all bodies has besides the world's own (world_step.h): sleep, modes of friction, pictures.
+  // What a step of all bodies has besides the world's own (world_step.h): sleep, modes of friction,
+  // pictures.
   void begin(double target) override { moving_.begin_step(target); }
   bool begin_again(double target) override {
     moving_.begin_step_again(target);
@@ -110,7 +111,8 @@ void RetroactiveRun::switch_forces() {
   }
 }
 
-// Callbacks that are due. The step ends there, and the next begins with the velocities that they have set.
+// Callbacks that are due. The step ends there, and the next begins with the velocities that they
+// have set.
 void RetroactiveRun::run_callbacks() {
   if (!built::kCallback) return;
   for (; called_ < callbacks_.size() && callbacks_[called_].time <= moving_.time(); ++called_) {

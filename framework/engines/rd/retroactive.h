@@ -1,6 +1,8 @@
-/// Retroactive detection with a fixed step: step all bodies, find the earliest discontinuity, roll all back to it, go on.
+/// Retroactive detection with a fixed step: step all bodies, find the earliest discontinuity, roll
+/// all back to it, go on.
 ///
-/// Source: B. Mirtich, Timewarp Rigid Body Simulation, SIGGRAPH 2000, sec. 2. No committed state has a negative gap.
+/// Source: B. Mirtich, Timewarp Rigid Body Simulation, SIGGRAPH 2000, sec. 2. No committed state
+/// has a negative gap.
 #pragma once
 
 #include "framework/engines/base/run_options.h"

@@ -1,4 +1,5 @@
-/// Which bodies belong together: those that touch each other or are linked, directly or through others.
+/// Which bodies belong together: those that touch each other or are linked, directly or through
+/// others.
 #pragma once
 
 #include <utility>
@@ -8,7 +9,8 @@
 
 namespace tumble::engines {
 
-/// By body: the least index among the bodies it belongs together with; its own where it stands alone. An immovable body joins none.
+/// By body: the least index among the bodies it belongs together with; its own where it stands
+/// alone. An immovable body joins none.
 /// @param touching  pairs of bodies
 std::vector<int> group_leaders(const MovingWorld& moving, const std::vector<std::pair<int, int>>& touching);
 

@@ -331,7 +331,8 @@ void LinkedBodies::project_local(std::vector<RigidBodyState>& local, double t, b
     const VectorXd change = correct(bodies, all, true);
     for (std::size_t i = 0; i < local.size(); ++i) {
       const Eigen::Index at = 6 * static_cast<Eigen::Index>(i);
-      // Momenta follow: the velocities stay, and with them, for a turned body, the angular velocity rather than its momentum.
+      // Momenta follow: the velocities stay, and with them, for a turned body, the angular velocity
+      // rather than its momentum.
       const Vector3d omega = bodies[i].omega_world, turn = change.segment<3>(at + 3);
       local[i].com_world += change.segment<3>(at);
       const double angle = turn.norm();

@@ -1,9 +1,11 @@
-/// Bodies that move together because effects tie them to each other or to the world, or act on them otherwise than evenly through a step:
-/// one system of differential equations, integrated by the laws' method as a whole.
+/// Bodies that move together because effects tie them to each other or to the world, or act on them
+/// otherwise than evenly through a step: one system of differential equations, integrated by the
+/// laws' method as a whole.
 ///
-/// Forces are evaluated at every stage of the method; what constrains (rods, joints) adds what holds it (Lagrange
-/// multipliers at every stage), and is brought back by the stabilisation the scene chose: Baumgarte's term in the multipliers, or
-/// a projection of places and velocities at the end of each step.
+/// Forces are evaluated at every stage of the method; what constrains (rods, joints) adds what
+/// holds it (Lagrange multipliers at every stage), and is brought back by the stabilisation the
+/// scene chose: Baumgarte's term in the multipliers, or a projection of places and velocities at
+/// the end of each step.
 #pragma once
 
 #include <functional>
@@ -22,7 +24,8 @@
 
 namespace tumble::engines {
 
-/// What the links of a world pull with, by their places in its lists; zero for links of other groups. [N]
+/// What the links of a world pull with, by their places in its lists; zero for links of other
+/// groups. [N]
 struct LinkForces {
   explicit LinkForces(const World& world);
 
@@ -51,43 +54,51 @@ class LinkedBodies final : effects::GroupPlaces {
   const std::vector<int>& bodies() const { return bodies_; }
   /// Immovable bodies that a link of the group ends at; -1: the world.
   const std::vector<int>& fixed_ends() const { return fixed_; }
-  /// What its control laws hold until they look again, by place in effects::all(), and the same brought back.
+  /// What its control laws hold until they look again, by place in effects::all(), and the same
+  /// brought back.
   std::map<int, effects::Memory> held() const;
   void remember(const std::map<int, effects::Memory>& held);
   /// Whether its control laws drive it otherwise than by what they held before.
   bool is_driven_otherwise(const std::map<int, effects::Memory>& before) const;
   bool has_constraints() const { return row_count_ > 0; }
 
-  /// Control laws whose time has come look and set their torques. @return the next time at which one looks; infinite without
+  /// Control laws whose time has come look and set their torques.
+  /// @return the next time at which one looks; infinite without
   double look(double time, const std::vector<RigidBodyState>& states);
 
   /// States of bodies() after a step of the laws' method. @param states  by body of the world, at t
   std::vector<RigidBodyState> advance(const std::vector<RigidBodyState>& states, double t, double h);
 
-  /// The rows of rods and joints at one instant, and the bodies between which they stand: bodies(), then fixed_ends().
+  /// The rows of rods and joints at one instant, and the bodies between which they stand: bodies(),
+  /// then fixed_ends().
   struct Instant {
     std::vector<Constraint> rows;
     std::vector<ConstrainedBody> bodies;
   };
   Instant at_instant(const std::vector<RigidBodyState>& states, double t);
-  /// What rods and joints add to a sudden change of velocities: impulses of their own, after which their rates are what they were.
+  /// What rods and joints add to a sudden change of velocities: impulses of their own, after which
+  /// their rates are what they were.
   /// @param change  (6 a body of the instant): linear, angular, world [m/s, rad/s]
   /// @return the same: smallest in the measure of the masses; 0 for fixed ends
   VectorXd reaction(const Instant& instant, const VectorXd& change);
 
-  /// Velocities onto the constraints (where a callback or rounding left them off): the change that is smallest in the measure of the masses.
+  /// Velocities onto the constraints (where a callback or rounding left them off): the change that
+  /// is smallest in the measure of the masses.
   void project_velocities(std::vector<RigidBodyState>& states, double t);
   /// Places, then velocities, onto the constraints.
   void project(std::vector<RigidBodyState>& states, double t);
 
-  /// The rows of rods and joints, between places in bodies(); fixed ends have the index fixed_end().
+  /// The rows of rods and joints, between places in bodies(); fixed ends have the index
+  /// fixed_end().
   std::vector<Constraint> constraint_rows(const std::vector<RigidBodyState>& states, double t);
   int fixed_end() const { return static_cast<int>(bodies_.size()); }
 
-  /// Notes rods and joints of this group that are open in these states at the end of a step of length h. From places alone: no law is asked.
+  /// Notes rods and joints of this group that are open in these states at the end of a step of
+  /// length h. From places alone: no law is asked.
   void watch(const std::vector<RigidBodyState>& states, double t, double h);
 
-  /// Adds the forces of this group's links in these states. What lies on its bodies, leans or rubs against them weighs on the links too.
+  /// Adds the forces of this group's links in these states. What lies on its bodies, leans or rubs
+  /// against them weighs on the links too.
   /// @param contacts  lasting ones of the world, at that time
   void measure(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts, LinkForces& forces);
 
@@ -126,7 +137,8 @@ class LinkedBodies final : effects::GroupPlaces {
 };
 
 /// Adds the rows of a group's rods and joints, where its bodies stand, to a problem of impulses.
-/// @param places  of its movable bodies in the problem, by body of the world; all fixed ends become one body that cannot be pushed
+/// @param places  of its movable bodies in the problem, by body of the world; all fixed ends become
+/// one body that cannot be pushed
 void add_rows(LinkedBodies& group, const std::vector<RigidBodyState>& states, double t, const std::map<int, int>& places, ContactProblem& problem);
 
 /// Rows are to have the rates afterwards that the problem's bodies give them before.

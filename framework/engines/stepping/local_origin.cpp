@@ -12,12 +12,14 @@
 namespace tumble::engines {
 namespace {
 
-// Farther off than this many times its extent, a scene loses three digits and more: that is where local coordinates begin.
+// Farther off than this many times its extent, a scene loses three digits and more: that is where
+// local coordinates begin.
 constexpr double kFar = 1000.0;
 
-// A scene that says 1000000.1 means a tenth more than 10^6, not the nearest number that a double can hold, which is 2e-11 less: a box would
-// start in its floor. So what is before the point and what is behind it are taken apart, where a decimal says the place that every double
-// can tell from its neighbours (15 digits); a place of more digits was worked out, and is what it is.
+// A scene that says 1000000.1 means a tenth more than 10^6, not the nearest number that a double
+// can hold, which is 2e-11 less: a box would start in its floor. So what is before the point and
+// what is behind it are taken apart, where a decimal says the place that every double can tell from
+// its neighbours (15 digits); a place of more digits was worked out, and is what it is.
 double difference_as_written(double place, double origin) {
   std::array<char, 400> digits{};   // longer than any double without an exponent
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), std::abs(place), std::chars_format::fixed).ptr;
@@ -58,13 +60,15 @@ Vector3d local_origin(const scene::Scene& scene) {
   if (extent == 0.0) extent = scene.duration_s * scene.bodies.front().velocity_m_s.norm();   // one body: its way
   const Vector3d middle = low + 0.5 * (high - low);
   if (!(extent > 0.0) || !(middle.cwiseAbs().maxCoeff() > kFar * extent)) return Vector3d::Zero();
-  // A whole multiple of a power of two not below the extent: places near it differ from it exactly, and those near 0 stay as they are.
+  // A whole multiple of a power of two not below the extent: places near it differ from it exactly,
+  // and those near 0 stay as they are.
   const double grid = std::exp2(std::ceil(std::log2(extent)));
   return (middle / grid).array().round() * grid;
 }
 
 scene::Scene seen_from(const Vector3d& origin_world, scene::Scene scene) {
-  // Lengths and points of bodies that a file leaves to be measured were measured between the doubles.
+  // Lengths and points of bodies that a file leaves to be measured were measured between the
+  // doubles.
   const bool as_written = !spans_places(scene);
   const auto see = [&](Vector3d& place) {
     for (int axis = 0; axis < 3; ++axis) place[axis] = as_written ? difference_as_written(place[axis], origin_world[axis]) : place[axis] - origin_world[axis];

@@ -1,7 +1,8 @@
-/// Scenes that play far from the world's origin are run in coordinates near them, so that nothing is lost but the rounding of what is
-/// given and of what is recorded. A place of 1e6 m is rounded by up to 6e-11 m; added up step by step, and always to the same side as
-/// long as the velocity stays, that comes to 1e-9 m before the first collision, and each that turns an edge against an edge makes it some
-/// thirty times larger.
+/// Scenes that play far from the world's origin are run in coordinates near them, so that nothing
+/// is lost but the rounding of what is given and of what is recorded. A place of 1e6 m is rounded
+/// by up to 6e-11 m; added up step by step, and always to the same side as long as the velocity
+/// stays, that comes to 1e-9 m before the first collision, and each that turns an edge against an
+/// edge makes it some thirty times larger.
 #pragma once
 
 #include "framework/scene/scene.h"
@@ -9,11 +10,12 @@
 
 namespace tumble::engines {
 
-/// A place among the bodies, and what they hang from, from which their places are exact differences; zero where the scene stands near the
-/// world's origin. [m]
+/// A place among the bodies, and what they hang from, from which their places are exact
+/// differences; zero where the scene stands near the world's origin. [m]
 Vector3d local_origin(const scene::Scene& scene);
 
-/// The same scene, seen from there; a place of up to 15 decimal digits means that decimal, and not the nearest double, where no spring and no rod spans from one to another.
+/// The same scene, seen from there; a place of up to 15 decimal digits means that decimal, and not
+/// the nearest double, where no spring and no rod spans from one to another.
 scene::Scene seen_from(const Vector3d& origin_world, scene::Scene scene);
 
 /// Passes a run that was made in local coordinates on in those of the world.

@@ -16,8 +16,8 @@
 namespace tumble::engines {
 namespace {
 
-// What the laws' integration makes of a constant acceleration a: x(h) = x0 + v h + bend a h^2 / 2. Asked once, so that bounds hold
-// for whichever method a student wrote.
+// What the laws' integration makes of a constant acceleration a: x(h) = x0 + v h + bend a h^2 / 2.
+// Asked once, so that bounds hold for whichever method a student wrote.
 double measure_path_bend(const Laws& laws) {
   constexpr int kHeight = 0, kSpeed = 1;
   const OdeFunction fall = [](double, const VectorXd& y) {
@@ -58,7 +58,8 @@ MovingWorld::MovingWorld(World world, const Laws& laws, RunCounters& counters, s
 void MovingWorld::stand_at(double time, const std::vector<RigidBodyState>& states) {
   time_ = target_ = time;
   states_ = states;
-  // Immovable bodies stand where their motion has taken them by then, whatever `states` says of them.
+  // Immovable bodies stand where their motion has taken them by then, whatever `states` says of
+  // them.
   for (int i = 0; i < size(); ++i)
     if (world_.bodies[i].immovable()) states_[i].com_world = prescribed_position(world_.bodies[i], time);
 }
@@ -122,8 +123,8 @@ void MovingWorld::watch_links(double h) {
     if (!asleep(group.bodies().front())) group.watch(states_, time_, h);
 }
 
-// A method that sees forces a few times a step follows no body that turns about itself several times in it, and a search for impacts along such a path
-// would hardly end.
+// A method that sees forces a few times a step follows no body that turns about itself several
+// times in it, and a search for impacts along such a path would hardly end.
 void MovingWorld::refuse_fast_turning(int body) const {
   constexpr double kMostTurnOnPath = 20 * std::numbers::pi;   // rad in a step: ten turns
   const Path& path = paths_[body];
@@ -193,7 +194,8 @@ RigidBodyState MovingWorld::still_state(int body, double t) const {
   const WorldBody& support = world_.bodies[rests_[body]->support];
   state.com_world = prescribed_position(support, t) + rests_[body]->offset_from_support_world;
   state.momentum_world = b.inertia.mass * prescribed_velocity(support, t);
-  // Nothing brakes its spin: there is no friction. (put_to_rest: its moments are equal, so it turns evenly.)
+  // Nothing brakes its spin: there is no friction. (put_to_rest: its moments are equal, so it turns
+  // evenly.)
   const Vector3d omega_world = omega_of(state, b.inertia);
   const double speed = omega_world.norm();
   if (speed > 0) state.world_from_body = (Quaterniond(Eigen::AngleAxisd(speed * (t - time_), omega_world / speed)) * state.world_from_body).normalized();
@@ -219,7 +221,8 @@ void MovingWorld::go_in_closed_form() {
   path_bend_ = 1.0;
 }
 
-// x + v t + g t^2 / 2, and the free turning: by a series of the step where it reaches, which is asked many times in a search for an impact.
+// x + v t + g t^2 / 2, and the free turning: by a series of the step where it reaches, which is
+// asked many times in a search for an impact.
 RigidBodyState MovingWorld::fly(int body, double duration, const VectorXd& start) {
   ++counters_.integrations;
   ++integrations_in_step_;
@@ -247,9 +250,10 @@ RigidBodyState MovingWorld::integrate(int body, double duration, double start_ti
     if (y.size() != start.size())
       throw StoppedRun("integration (integrate_step of " + laws_.integrator_source + ") asked for the derivative of a state of " +
                        std::to_string(y.size()) + " numbers instead of " + std::to_string(start.size()));
-    // Stages of a method stand off unit length by (w h)^2 / 32, and R of such a quaternion is no rotation: to a needle, whose least moment turns
-    // any tilt of L into spin, that does a thousand times more than what the method itself leaves. On unit quaternions nothing changes, and
-    // f(q / |q|) is as smooth as f: the order stays.
+    // Stages of a method stand off unit length by (w h)^2 / 32, and R of such a quaternion is no
+    // rotation: to a needle, whose least moment turns any tilt of L into spin, that does a thousand
+    // times more than what the method itself leaves. On unit quaternions nothing changes, and f(q /
+    // |q|) is as smooth as f: the order stays.
     RigidBodyState state = unpack(y);
     state.world_from_body.normalize();
     return laws_.state_derivative(state, inertia, wrench_on(body, state));
@@ -363,7 +367,8 @@ collision::MotionState MovingWorld::motion_at(int body, double t) {
     motion.velocity_world = velocity_of(body, t);
     return motion;
   }
-  // The rate of the path, which for a method of first order is not the state's momentum over the mass.
+  // The rate of the path, which for a method of first order is not the state's momentum over the
+  // mass.
   const Inertia& inertia = world_.bodies[body].inertia;
   motion.velocity_world = inertia.inverse_mass * states_[body].momentum_world + (t - time_) * paths_[body].acceleration_world;
   if (!shapes_[body]->is_ball()) motion.omega_world = omega_of(state, inertia);
@@ -402,7 +407,8 @@ collision::SweptBox MovingWorld::swept_box(int body) {
   const double radius = shapes_[body]->bounding_radius();
   const double h = target_ - time_;
   const Vector3d start = path(body, time_).com_world, end = path(body, target_).com_world;
-  // Between its ends a parabola leaves their box by at most a h^2 / 8; a shaken body by at most its amplitude.
+  // Between its ends a parabola leaves their box by at most a h^2 / 8; a shaken body by at most its
+  // amplitude.
   Vector3d bulge = Vector3d::Zero();
   if (can_move(body) && paths_[body].smooth) {
     const collision::MotionBounds& bounds = paths_[body].smooth->bounds();

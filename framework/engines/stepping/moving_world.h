@@ -1,8 +1,10 @@
-/// A world on the move: where every body is at the last committed time, and where the laws take it from there.
+/// A world on the move: where every body is at the last committed time, and where the laws take it
+/// from there.
 ///
-/// Within a step each body follows a path: the laws' integration from the committed state by any part of the step, always from
-/// the step's start. Bodies that depend on others (links, persistent contacts) follow the smooth path between the step's ends instead.
-/// Collision finding, rollback and pictures all look at this one path.
+/// Within a step each body follows a path: the laws' integration from the committed state by any
+/// part of the step, always from the step's start. Bodies that depend on others (links, persistent
+/// contacts) follow the smooth path between the step's ends instead. Collision finding, rollback
+/// and pictures all look at this one path.
 #pragma once
 
 #include <functional>
@@ -36,22 +38,26 @@ struct Rest {
 class MovingWorld {
  public:
   MovingWorld(World world, const Laws& laws, RunCounters& counters);
-  /// The same with solids that were prepared before: what a body's `shape` in the world says is not looked at.
+  /// The same with solids that were prepared before: what a body's `shape` in the world says is not
+  /// looked at.
   /// @param shapes  by body; stay where they are as long as this lives
   MovingWorld(World world, const Laws& laws, RunCounters& counters, std::vector<const collision::CollisionShape*> shapes);
   MovingWorld(const MovingWorld&) = delete;
   MovingWorld& operator=(const MovingWorld&) = delete;
 
   /// Stands at another time in other states; no step is under way.
-  /// @param states  by body; those of immovable bodies are not looked at: driven ones stand where they are at that time
+  /// @param states  by body; those of immovable bodies are not looked at: driven ones stand where
+  /// they are at that time
   void stand_at(double time, const std::vector<RigidBodyState>& states);
-  /// Steady forces act from here on as they do at the time where this stands. @param memory  by effect: what its entries remember
+  /// Steady forces act from here on as they do at the time where this stands.
+  /// @param memory  by effect: what its entries remember
   /// @return when the next is switched; infinite without [s]
   double load_forces(const std::map<int, effects::Memory>& memory);
   /// What they remember, by effect.
   std::map<int, effects::Memory> force_memory() const;
 
-  /// From here on bodies that nothing but gravity acts on go in closed form instead of along the laws' integration.
+  /// From here on bodies that nothing but gravity acts on go in closed form instead of along the
+  /// laws' integration.
   void go_in_closed_form();
 
   const World& world() const { return world_; }
@@ -66,19 +72,22 @@ class MovingWorld {
     states_[body] = state;
     paths_[body].is_stale = true;
   }
-  /// Whether the two may collide at all: one can move, both collide, and the scene does not keep them apart.
+  /// Whether the two may collide at all: one can move, both collide, and the scene does not keep
+  /// them apart.
   bool may_collide(int a, int b) const;
   bool can_move(int body) const { return !world_.bodies[body].immovable() && !rests_[body] && !asleep(body); }
   /// Whether an immovable body moves by a law of its own.
   bool is_driven(int body) const;
   bool resting(int body) const { return rests_[body].has_value(); }
   void put_to_rest(int body, int support);
-  /// Stops a body where it is: from here on it keeps its place to the last bit, and no law is asked about it (sleeping.h).
+  /// Stops a body where it is: from here on it keeps its place to the last bit, and no law is asked
+  /// about it (sleeping.h).
   void put_to_sleep(int body);
   bool asleep(int body) const { return built::kSleep && asleep_[body]; }
   /// Ends rest or sleep of a body.
   void wake(int body);
-  /// Steady forces that are to be switched at the committed time, with the place of each's effect among those that act: hand each to turn().
+  /// Steady forces that are to be switched at the committed time, with the place of each's effect
+  /// among those that act: hand each to turn().
   std::vector<std::pair<std::size_t, effects::Switch>> due_switches() const;
   void turn(const std::pair<std::size_t, effects::Switch>& what);
   /// The work of what acts steadily on a body, along the way from one state of it to another. [J]
@@ -101,48 +110,60 @@ class MovingWorld {
   int linked_group(int body) const { return group_of_[body]; }
   /// Control laws whose time has come look. @return when the next one does; infinite without
   double look();
-  /// What springs, rods and joints pull with in these states. @param contacts  lasting ones, which weigh on them
+  /// What springs, rods and joints pull with in these states.
+  /// @param contacts  lasting ones, which weigh on them
   LinkForces measure_links(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts);
-  /// For a picture within a step: rods and joints of projected groups hold there too, where the path between the step's ends is off by its fourth power.
-  /// Changes nothing but these states.
+  /// For a picture within a step: rods and joints of projected groups hold there too, where the
+  /// path between the step's ends is off by its fourth power. Changes nothing but these states.
   void close_links(std::vector<RigidBodyState>& states, double t);
   /// At the end of a step of length h: notes rods and joints that have come apart.
   void watch_links(double h);
-  /// After callbacks: velocities of the bodies joined to those that were called back onto the constraints. @return whether there are any
+  /// After callbacks: velocities of the bodies joined to those that were called back onto the
+  /// constraints.
+  /// @return whether there are any
   bool keep_constraints(const std::vector<Event>& events);
-  /// From here on to the step's target the body goes from `start` (at time(); its velocities may jump there) to `end`.
+  /// From here on to the step's target the body goes from `start` (at time(); its velocities may
+  /// jump there) to `end`.
   void set_path(int body, const RigidBodyState& start, const RigidBodyState& end, SmoothPath::Momenta momenta = SmoothPath::Momenta::kOfPath);
-  /// @throws StoppedRun where the body turns about itself ten times on its smooth path in the step under way, or where that path is not made of numbers
+  /// @throws StoppedRun where the body turns about itself ten times on its smooth path in the step
+  /// under way, or where that path is not made of numbers
   void refuse_fast_turning(int body) const;
   /// Where the step leads without what set_path has added.
   const RigidBodyState& path_end(int body);
-  /// The path that set_path has given, or that links have; nothing where the laws are asked at every instant.
+  /// The path that set_path has given, or that links have; nothing where the laws are asked at
+  /// every instant.
   const std::optional<SmoothPath>& smooth_path(int body) const { return paths_[body].smooth; }
 
   /// Begins a step from the committed time: works out the motion's bounds and where all come out.
   void begin_step(double target);
-  /// Begins the step under way again, because some bodies ask for an earlier target or have got other velocities. Nothing is integrated for
-  /// a body that flies alone and has kept its state: its path stays, or its new end is worked out when it is asked for.
+  /// Begins the step under way again, because some bodies ask for an earlier target or have got
+  /// other velocities. Nothing is integrated for a body that flies alone and has kept its state:
+  /// its path stays, or its new end is worked out when it is asked for.
   void begin_step_again(double target);
   /// What the step under way has computed was in vain: it will be begun again.
   void give_up_step() { counters_.undone_integrations += integrations_in_step_; }
   double target() const { return target_; }
-  /// Begins the step again with an earlier target, if one of the bodies of these pairs turns too far in it for a bound on its turning to
-  /// hold: collisions of these pairs would be missed. Balls for collision never ask for that.
-  /// @param in_step  pairs that contacts keep apart however their paths run: of these only the turning is asked, not what is wrong with it
+  /// Begins the step again with an earlier target, if one of the bodies of these pairs turns too
+  /// far in it for a bound on its turning to hold: collisions of these pairs would be missed. Balls
+  /// for collision never ask for that.
+  /// @param in_step  pairs that contacts keep apart however their paths run: of these only the
+  /// turning is asked, not what is wrong with it
   /// @return whether the target was moved
   /// @throws StoppedRun where a step would have to be cut into more than 1e5 parts
   bool shorten_step(const std::vector<std::pair<int, int>>& pairs, const std::function<bool(std::pair<int, int>)>& in_step = {});
-  /// Where a body's path is at time t in [time(), target()]; any t for immovable, resting and sleeping ones.
+  /// Where a body's path is at time t in [time(), target()]; any t for immovable, resting and
+  /// sleeping ones.
   RigidBodyState path(int body, double t);
   collision::MotionState motion_at(int body, double t);
   collision::Motion motion(int body);
   /// How fast any point of a body is in the step under way, from the speeds at its ends. [m/s]
   double fastest_in_step(int body);
   collision::SweptBox swept_box(int body);
-  /// Whether swept_box is that of a longer step: of a body whose path's end was not asked for. path_end(body) ends that.
+  /// Whether swept_box is that of a longer step: of a body whose path's end was not asked for.
+  /// path_end(body) ends that.
   bool has_roomy_box(int body) const { return !paths_[body].end_known; }
-  /// All bodies to where their paths are at t; what the step had computed beyond counts as undone when t is before its target.
+  /// All bodies to where their paths are at t; what the step had computed beyond counts as undone
+  /// when t is before its target.
   void commit(double t);
 
   /// Of the bodies a < b: hand it to every question about their gap.

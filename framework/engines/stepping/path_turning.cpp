@@ -1,7 +1,9 @@
-// How paths turn: bounds for the collision finding, and steps in which these hold. Part of MovingWorld.
+// How paths turn: bounds for the collision finding, and steps in which these hold. Part of
+// MovingWorld.
 //
-// The path of a body within a step is one step of the laws' method, of any length. A method turns the body at a rate that is not
-// quite the angular velocity of the states it gives; by how much is measured on the path itself.
+// The path of a body within a step is one step of the laws' method, of any length. A method turns
+// the body at a rate that is not quite the angular velocity of the states it gives; by how much is
+// measured on the path itself.
 #include <algorithm>
 #include <cmath>
 
@@ -15,20 +17,23 @@
 namespace tumble::engines {
 namespace {
 
-// A step in which a body turns by less, at most, is looked at as it is [rad]. Up to here the error of a method of order 1 to 5 grows
-// steadily within the step: its next term is at most (1/2)^2 of its first, half the angle being what quaternion and Taylor series go
-// by. From 1.5 rad on the error comes and goes within the step, and three looks at it miss up to 30 times its size.
+// A step in which a body turns by less, at most, is looked at as it is [rad]. Up to here the error
+// of a method of order 1 to 5 grows steadily within the step: its next term is at most (1/2)^2 of
+// its first, half the angle being what quaternion and Taylor series go by. From 1.5 rad on the
+// error comes and goes within the step, and three looks at it miss up to 30 times its size.
 constexpr double kMostTurnInStep = 1.0;
 constexpr double kUnder = 0.01;        // a cut step stays so much below, for what the path's error adds to the bound
 
-// The turning error of a step, too, has to be small for that [rad]: where moments differ a thousand times, a method can break down long
-// before the body has turned by one radian.
+// The turning error of a step, too, has to be small for that [rad]: where moments differ a thousand
+// times, a method can break down long before the body has turned by one radian.
 constexpr double kMostDrift = 0.1;
 
-// Measured at the middle and at the end, over this part of the step; the rate is off by its square, and by 1e-13 from rounding.
+// Measured at the middle and at the end, over this part of the step; the rate is off by its square,
+// and by 1e-13 from rounding.
 constexpr double kLook = 1e-3;
-// What is seen there, against the largest in the step: at most 1.8 times in 2e4 tops with moments as far apart as 1 : 1e8, by Euler,
-// midpoint, Heun, Kutta and Runge-Kutta of orders 4 and 5, within the two limits above.
+// What is seen there, against the largest in the step: at most 1.8 times in 2e4 tops with moments
+// as far apart as 1 : 1e8, by Euler, midpoint, Heun, Kutta and Runge-Kutta of orders 4 and 5,
+// within the two limits above.
 constexpr double kUnseenTurn = 2.0;
 
 constexpr int kMostHalvings = 12;      // a method whose error does not shrink with the step is not helped by shorter ones
@@ -68,7 +73,8 @@ double MovingWorld::turning_error(int body, double duration) {
     return (rate_world - 0.5 * (omega_of(earlier, inertia) + omega_of(state, inertia))).norm();
   };
   const RigidBodyState half = after(0.5 * duration), end = after(duration);
-  // An error that is zero at both looks shows in the angle, which two half steps give with another error.
+  // An error that is zero at both looks shows in the angle, which two half steps give with another
+  // error.
   const RigidBodyState twice_half = integrate(body, 0.5 * duration, time_ + 0.5 * duration, pack(half));
   const double drift = twice_half.world_from_body.angularDistance(end.world_from_body);
   path.turning_error = kUnseenTurn * std::max({error_before(0.5 * duration, half), error_before(duration, end), 3.0 * drift / duration});
@@ -76,7 +82,8 @@ double MovingWorld::turning_error(int body, double duration) {
   return path.turning_error;
 }
 
-// @return whether they are of use: the step turns the body little, and the path goes wrong by little
+// @return whether they are of use: the step turns the body little, and the path goes wrong by
+// little
 bool MovingWorld::bound_turning(int body, double duration, collision::MotionBounds& bounds) {
   const Inertia& inertia = world_.bodies[body].inertia;
   Disturbance disturbance{.duration = duration, .torque = torque_bound(body)};
@@ -89,7 +96,8 @@ bool MovingWorld::bound_turning(int body, double duration, collision::MotionBoun
   return bounds.angular_speed * duration <= kMostTurnInStep && bounds.angular_velocity_error * duration <= kMostDrift;
 }
 
-// The longest part of `duration`, within a factor of about two, in which bounds on the body's turning hold.
+// The longest part of `duration`, within a factor of about two, in which bounds on the body's
+// turning hold.
 double MovingWorld::resolved_duration(int body, double duration, bool measures_path) {
   collision::MotionBounds bounds;
   if (measures_path && bound_turning(body, duration, bounds)) return duration;
@@ -103,8 +111,9 @@ double MovingWorld::resolved_duration(int body, double duration, bool measures_p
   return resolved;
 }
 
-// Beyond half a turn a step cannot be told from a turn the other way round: a method of integration that samples it only there gives
-// some orientation. A ball that nothing hangs on looks the same however it turns, and moves the same.
+// Beyond half a turn a step cannot be told from a turn the other way round: a method of integration
+// that samples it only there gives some orientation. A ball that nothing hangs on looks the same
+// however it turns, and moves the same.
 void MovingWorld::watch_turning(int body, double duration) {
   if (!can_move(body)) return;
   const double turning = omega_of(states_[body], world_.bodies[body].inertia).norm() * duration;

@@ -21,7 +21,8 @@ Vector3d logarithm(Quaterniond q) {
   return sine < 1e-12 ? Vector3d(2.0 * q.vec()) : Vector3d(q.vec() * (2.0 * std::atan2(sine, q.w()) / sine));
 }
 
-// The angular velocity, in the turned frame, of exp(phi(t)) is turning(phi) phi' (the right Jacobian of SO(3)):
+// The angular velocity, in the turned frame, of exp(phi(t)) is turning(phi) phi' (the right
+// Jacobian of SO(3)):
 //   J = 1 - (1 - cos a) / a^2 [phi] + (a - sin a) / a^3 [phi]^2,   a = |phi|
 Matrix3d skew(const Vector3d& v) {
   Matrix3d m;
@@ -63,7 +64,8 @@ SmoothPath::SmoothPath(const RigidBodyState& start, const RigidBodyState& end, c
   }
   hermite(Vector3d::Zero(), turn_start, whole, turning(whole).inverse() * turn_end, phi_);
 
-  // The second derivative of a cubic is linear, so its ends bound it; the first one lies in the hull of its control points.
+  // The second derivative of a cubic is linear, so its ends bound it; the first one lies in the
+  // hull of its control points.
   const Vector3d a0 = 2.0 * x_[2] / (h_ * h_), a1 = (2.0 * x_[2] + 6.0 * x_[3]) / (h_ * h_);
   bounds_.acceleration_world = 0.5 * (a0 + a1);
   bounds_.acceleration_deviation = 0.5 * (a1 - a0).norm();

@@ -1,9 +1,11 @@
-/// The path of a body within a step as polynomials of time, for bodies whose motion depends on others: springs, rods, joints and
-/// contacts. Asking it costs no integration, and what bounds it is exact.
+/// The path of a body within a step as polynomials of time, for bodies whose motion depends on
+/// others: springs, rods, joints and contacts. Asking it costs no integration, and what bounds it
+/// is exact.
 ///
-/// The centre goes along the cubic through both ends with their velocities (Hermite). The body turns as q(t) = q0 exp(phi(t)), phi a
-/// cubic rotation vector in the frame of the body at the start, with the angular velocities of both ends. Between the ends the path is
-/// off the solution by O(h^4); at the ends it is the states themselves.
+/// The centre goes along the cubic through both ends with their velocities (Hermite). The body
+/// turns as q(t) = q0 exp(phi(t)), phi a cubic rotation vector in the frame of the body at the
+/// start, with the angular velocities of both ends. Between the ends the path is off the solution
+/// by O(h^4); at the ends it is the states themselves.
 #pragma once
 
 #include "framework/collision/motion.h"
@@ -14,15 +16,17 @@ namespace tumble::engines {
 class SmoothPath {
  public:
   SmoothPath() = default;
-  /// What a state between the ends takes for its momenta. Where position correction has removed an overlap the path goes where no velocity
-  /// stands for, and the shorter the step the faster: momenta that change evenly from end to end know nothing of it.
+  /// What a state between the ends takes for its momenta. Where position correction has removed an
+  /// overlap the path goes where no velocity stands for, and the shorter the step the faster:
+  /// momenta that change evenly from end to end know nothing of it.
   enum class Momenta { kOfPath, kEven };
 
   /// @pre t0 < t1. Velocities are those of the states' momenta.
   SmoothPath(const RigidBodyState& start, const RigidBodyState& end, const Inertia& inertia, double t0, double t1, Momenta momenta = Momenta::kOfPath);
 
-  /// Momenta that change evenly begin with those of `state`, where the path begins with a velocity of its own: a straight path has that of its end
-  /// from the start, which the impacts and the weight of the whole step have made.
+  /// Momenta that change evenly begin with those of `state`, where the path begins with a velocity
+  /// of its own: a straight path has that of its end from the start, which the impacts and the
+  /// weight of the whole step have made.
   void begin_momenta(const RigidBodyState& state) {
     momentum_[0] = state.momentum_world;
     angular_momentum_[0] = state.angular_momentum_world;

@@ -26,7 +26,8 @@ constexpr double kRunaway = 10.0;        // times all the energy there was to be
 // Up to `step`, of what goes at this rate [1/s]. @param amplified  by a step of a given length
 double largest_stable_step(const std::function<double(double)>& amplified, double rate, double step) {
   double stable = 0.0, unstable = step;
-  // Down to a thousandth of a radian a step: a method that still lengthens the swing there always does.
+  // Down to a thousandth of a radian a step: a method that still lengthens the swing there always
+  // does.
   for (double h = step; h * rate > 1e-3 && stable == 0.0; h *= 0.5) {
     if (amplified(h) <= 1.0 + kNegligible) stable = h;
     else unstable = h;
@@ -39,7 +40,8 @@ double largest_stable_step(const std::function<double(double)>& amplified, doubl
   return stable;
 }
 
-// Of v' = -rate v, in a step; with the place beside it, for methods that treat places and velocities differently.
+// Of v' = -rate v, in a step; with the place beside it, for methods that treat places and
+// velocities differently.
 double amplification_of_decay(const Laws& laws, double rate, double step) {
   const OdeFunction decay = [&](double, const VectorXd& y) {
     VectorXd dy(2);
@@ -51,7 +53,8 @@ double amplification_of_decay(const Laws& laws, double rate, double step) {
   return std::abs(laws.integrate_step(decay, 0.0, y, step)[1]);
 }
 
-// What a joint holds cannot grow, and what it leaves free goes slower than the body alone: its rates say nothing.
+// What a joint holds cannot grow, and what it leaves free goes slower than the body alone: its
+// rates say nothing.
 bool is_jointed(const std::vector<effects::Carrier>& carriers, int body) {
   return std::any_of(carriers.begin(), carriers.end(), [&](const effects::Carrier& one) { return one.length == 0.0 && (one.a.body == body || one.b.body == body); });
 }
@@ -61,7 +64,8 @@ bool is_held_beside_its_centre(const std::vector<effects::Carrier>& carriers, in
   return std::any_of(carriers.begin(), carriers.end(), [&](const effects::Carrier& one) { return one.length > 0.0 && (beside(one.a) || beside(one.b)); });
 }
 
-/// Largest size of the two eigenvalues; they are real where `discriminant` is not negative, else a conjugate pair.
+/// Largest size of the two eigenvalues; they are real where `discriminant` is not negative, else a
+/// conjugate pair.
 double spectral_radius(const Eigen::Matrix2d& m) {
   const double middle = 0.5 * (m(0, 0) + m(1, 1));
   const double half_difference = 0.5 * (m(0, 0) - m(1, 1));
@@ -129,7 +133,8 @@ std::optional<StepLimit> judge_rods(const World& world, const std::vector<effect
   std::vector<Eigen::Index> place(world.bodies.size(), -1);
   Eigen::Index n = 0;
   for (const WorldBody& body : world.bodies) states.push_back(body.state);
-  // How hard rods hold each body, by blocks of K (Gershgorin): the most bounds the swings without rods, which are faster than those with them. Mostly that will do.
+  // How hard rods hold each body, by blocks of K (Gershgorin): the most bounds the swings without
+  // rods, which are faster than those with them. Mostly that will do.
   std::vector<double> held(world.bodies.size(), 0.0);
   const auto lightness = [&](const Anchor& anchor) { return anchor.body < 0 ? 0.0 : std::sqrt(world.bodies[anchor.body].inertia.inverse_mass); };
   for (std::size_t k = 0; k < carriers.size(); ++k) {
@@ -140,7 +145,8 @@ std::optional<StepLimit> judge_rods(const World& world, const std::vector<effect
   }
   const double bound = *std::max_element(held.begin(), held.end());
   if (!(bound > 0) || amplification(laws, std::sqrt(bound), 0.0, step) <= 1.0 + kNegligible) return std::nullopt;
-  // Of many bodies, those that are held hardest, the others kept still: what they do alone is no faster than what all can do.
+  // Of many bodies, those that are held hardest, the others kept still: what they do alone is no
+  // faster than what all can do.
   std::vector<std::size_t> chosen(world.bodies.size());
   std::iota(chosen.begin(), chosen.end(), std::size_t{0});
   std::stable_sort(chosen.begin(), chosen.end(), [&](std::size_t a, std::size_t b) { return held[a] > held[b]; });
@@ -263,12 +269,14 @@ double terms_of_energy(const World& world, const std::vector<RigidBodyState>& st
   return terms;
 }
 
-// Of the bodies' sizes: how far what lies is lifted where it is kept apart. Contact margins are 1e-10 of the smaller body, those of large islands 1e-4.
+// Of the bodies' sizes: how far what lies is lifted where it is kept apart. Contact margins are
+// 1e-10 of the smaller body, those of large islands 1e-4.
 constexpr double kLifted = 1e-5, kLiftedInLargeIslands = 1e-3;
 
 }  // namespace
 
-// What the world has to give: its kinetic energy, what its springs hold, and (available()) how far it falls.
+// What the world has to give: its kinetic energy, what its springs hold, and (available()) how far
+// it falls.
 void EnergyWatch::begin(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums) {
   first_energy_ = least_energy_ = sums.kinetic_energy + sums.potential_energy;
   constexpr double kCorners = 8.0;   // a perfectly inelastic body is separated at the restitution threshold, a box by each of its corners

@@ -1,4 +1,5 @@
-/// Whether a step is within the range in which the laws' method can follow a world: what draws its bodies back or slows them down, Baumgarte's term, light bodies on rods.
+/// Whether a step is within the range in which the laws' method can follow a world: what draws its
+/// bodies back or slows them down, Baumgarte's term, light bodies on rods.
 #pragma once
 
 #include <memory>
@@ -16,11 +17,13 @@
 
 namespace tumble::engines {
 
-/// By how much a step of the method lengthens the swing of  y'' = -w^2 y - c y'  (spectral radius of the step's matrix, 1: not at all),
-/// found by asking the method itself. Source: E. Hairer, G. Wanner, "Solving ODEs II", IV.2.
+/// By how much a step of the method lengthens the swing of  y'' = -w^2 y - c y'  (spectral radius
+/// of the step's matrix, 1: not at all), found by asking the method itself. Source: E. Hairer, G.
+/// Wanner, "Solving ODEs II", IV.2.
 double amplification(const Laws& laws, double angular_frequency, double damping, double step);
 
-/// Largest step up to `step` that does not lengthen the same swing; 0 where none does not, down to a thousandth of its faster rate. [s]
+/// Largest step up to `step` that does not lengthen the same swing; 0 where none does not, down to
+/// a thousandth of its faster rate. [s]
 double largest_stable_step(const Laws& laws, double angular_frequency, double damping, double step);
 
 struct SpringStability {
@@ -35,9 +38,11 @@ struct SpringStability {
   bool is_overdamped() const { return damping > 2.0 * angular_frequency; }   // no swing: its damper's matter
 };
 
-/// The fastest swing of what draws the bodies of a world back where it starts (springs), along these directions, with what rods and joints hold kept still: the eigenvalues of
-/// J N J^T K, where N is M^-1 without the directions that rods and joints do not allow.
-/// @return nothing for a world in which nothing does. Where more than 60 bodies are linked, springs on bodies that rods or joints
+/// The fastest swing of what draws the bodies of a world back where it starts (springs), along
+/// these directions, with what rods and joints hold kept still: the eigenvalues of J N J^T K, where
+/// N is M^-1 without the directions that rods and joints do not allow.
+/// @return nothing for a world in which nothing does. Where more than 60 bodies are linked, springs
+/// on bodies that rods or joints
 ///         hold are not judged
 std::optional<SpringStability> judge_springs(const World& world, const Laws& laws, double step);
 
@@ -49,21 +54,26 @@ struct StepLimit {
   std::string remedy;              // beside a shorter step
 };
 
-/// The way of moving from which the dampers of the world's springs take most (the largest eigenvalue of J N J^T C), with what the springs do
-/// to it. Where it swings, `judge_springs` speaks of it.
+/// The way of moving from which the dampers of the world's springs take most (the largest
+/// eigenvalue of J N J^T C), with what the springs do to it. Where it swings, `judge_springs`
+/// speaks of it.
 /// @return nothing where the method follows it; the same are not judged
 std::optional<StepLimit> judge_dampers(const World& world, const Laws& laws, double step);
 
-/// What effects take evenly from a body's velocities (effects::Drain), y' = -c/m y and -c/I y (the least moment), and what Baumgarte's term takes from errors of rods and
-/// joints, e'' = -k e - c e' with the laws' own gains. Those that the method lengthens at this step.
+/// What effects take evenly from a body's velocities (effects::Drain), y' = -c/m y and -c/I y (the
+/// least moment), and what Baumgarte's term takes from errors of rods and joints, e'' = -k e - c e'
+/// with the laws' own gains. Those that the method lengthens at this step.
 std::vector<StepLimit> judge_decays(const World& world, const Laws& laws, double step);
 
-/// The fastest swing of bodies across rods that pull: M x'' = -K x, K = sum of (tension / length) (1 - n n^T), where the rods keep their lengths.
-/// A light body between a ceiling and a heavy one has the highest: about sqrt(M g (1/l1 + 1/l2) / m).
-/// @param carriers  of the world: those that keep a length are its rods  @param loads  by carrier: their tensions [N]
-/// Of more than a hundred bodies the hundred that are held hardest are looked at, the others kept still: a lower bound of the fastest swing. The largest
-/// step comes from an upper bound then.
-/// @return nothing where the method does not lengthen it, and where rods end beside centres of mass or joints are there too: such worlds are not judged
+/// The fastest swing of bodies across rods that pull: M x'' = -K x, K = sum of (tension / length)
+/// (1 - n n^T), where the rods keep their lengths. A light body between a ceiling and a heavy one
+/// has the highest: about sqrt(M g (1/l1 + 1/l2) / m).
+/// @param carriers  of the world: those that keep a length are its rods
+/// @param loads  by carrier: their tensions [N] Of more than a hundred bodies the hundred that are
+/// held hardest are looked at, the others kept still: a lower bound of the fastest swing. The
+/// largest step comes from an upper bound then.
+/// @return nothing where the method does not lengthen it, and where rods end beside centres of mass
+/// or joints are there too: such worlds are not judged
 std::optional<StepLimit> judge_rods(const World& world, const std::vector<effects::Carrier>& carriers, const std::vector<double>& loads, const Laws& laws, double step);
 
 /// What carries in a world, rods and joints: in the order of effects and their entries.
@@ -80,11 +90,13 @@ struct LinkLoads {
   bool by_falling = false;         // some hangs loose first, or carries more by what has fallen than by what hangs on it: it comes taut with a jerk
 };
 
-/// About the most that each will carry in a run by gravity and what moves at the start: the weight below it, and what turns that round where it has
-/// fallen as far as its links let it. 0 for links of which none leads to anything that does not move.
+/// About the most that each will carry in a run by gravity and what moves at the start: the weight
+/// below it, and what turns that round where it has fallen as far as its links let it. 0 for links
+/// of which none leads to anything that does not move.
 LinkLoads largest_link_loads(const World& world, const std::vector<effects::Carrier>& carriers);
 
-/// The fastest swing of bodies between joints that carry these loads, an upper bound: w^2 = max sum of load times arm / moment of inertia.
+/// The fastest swing of bodies between joints that carry these loads, an upper bound: w^2 = max sum
+/// of load times arm / moment of inertia.
 /// @return nothing where the method does not lengthen it
 std::optional<StepLimit> judge_joints(const World& world, const std::vector<effects::Carrier>& carriers, const std::vector<double>& loads, const Laws& laws, double step);
 
@@ -92,12 +104,15 @@ struct StepsOfARun {
   double step, duration;           // [s]
 };
 
-/// Refuses a run in which the method would lengthen a thousand times what effects or Baumgarte's term take part in; reports one where it can be seen.
-/// @throws UserError naming the effect, the body or the term, what happens to it and the largest step that does not do it
+/// Refuses a run in which the method would lengthen a thousand times what effects or Baumgarte's
+/// term take part in; reports one where it can be seen.
+/// @throws UserError naming the effect, the body or the term, what happens to it and the largest
+/// step that does not do it
 void refuse_unstable_steps(const World& world, const Laws& laws, const StepsOfARun& steps, const std::string& where, std::vector<std::string>& notices);
 
-/// Reports rods and joints whose bodies swing too fast for the step of a method that has a range, with the step that follows them all through the run. Not
-/// refused: what hangs straight does not swing.
+/// Reports rods and joints whose bodies swing too fast for the step of a method that has a range,
+/// with the step that follows them all through the run. Not refused: what hangs straight does not
+/// swing.
 /// @param at_start  what rods and joints pull with where the run starts
 /// @return that step, where one is reported [s]
 std::optional<double> report_unstable_links(const World& world, const LinkForces& at_start, const Laws& laws, const StepsOfARun& steps, std::vector<std::string>& notices);
@@ -109,21 +124,28 @@ struct Runaway {
   double by_blows;                 // of the difference, what impacts have brought in [J]
 };
 
-/// Looks on while a world moves: energy that nothing can have brought in is the method's, or a wrong law's.
+/// Looks on while a world moves: energy that nothing can have brought in is the method's, or a
+/// wrong law's.
 class EnergyWatch {
  public:
-  /// @param rest_speed  below which impacts may do as they like: so little energy is not asked for [m/s];  @param step  of the run [s]
-  /// @param sees_switches  whether it looks at each instant at which a force begins or ends: else worlds with effects that bring energy in go unwatched
+  /// @param rest_speed  below which impacts may do as they like: so little energy is not asked for
+  /// [m/s];
+  /// @param step  of the run [s]
+  /// @param sees_switches  whether it looks at each instant at which a force begins or ends: else
+  /// worlds with effects that bring energy in go unwatched
   EnergyWatch(double restitution_threshold, double step, bool sees_switches) : restitution_threshold_(restitution_threshold), step_(step), sees_switches_(sees_switches) {}
 
-  /// An impact has taken place: what it did to the energy, as measured; else the work j (u + u') / 2 of its impulse.
+  /// An impact has taken place: what it did to the energy, as measured; else the work j (u + u') /
+  /// 2 of its impulse.
   void note(const Event& event) {
     if (event.kind != EventKind::kCollision) return;
     by_blows_ += event.energy_change == event.energy_change ? event.energy_change : 0.5 * event.impulse * (event.normal_velocity_before + event.normal_velocity_after);
   }
-  /// @return nothing while all is well, and for worlds that moving walls, or effects that may bring in any amount, drive
+  /// @return nothing while all is well, and for worlds that moving walls, or effects that may bring
+  /// in any amount, drive
   std::optional<Runaway> look(double time, const World& world, const std::vector<RigidBodyState>& states);
-  /// Notes what energy has risen by above the least it has been, where that is more than steps leave of all that the world had to give.
+  /// Notes what energy has risen by above the least it has been, where that is more than steps
+  /// leave of all that the world had to give.
   void tell(const World& world, RunCounters& counters) const;
 
  private:
@@ -134,7 +156,8 @@ class EnergyWatch {
   void begin(const World& world, const std::vector<RigidBodyState>& states, const Invariants& sums);
   double work_since(double time, const std::vector<RigidBodyState>& states);
   void note_rise(double time, double energy, double kinetic, const World& world, const std::vector<RigidBodyState>& states);
-  /// What the model itself is free to make: what moves slower than the restitution threshold, and lies, is lifted by this part of its size. [J]
+  /// What the model itself is free to make: what moves slower than the restitution threshold, and
+  /// lies, is lifted by this part of its size. [J]
   double unseen(double lifted) const { return of_restitution_threshold_ + lifted * of_sizes_; }
   double available() const { return scale_ + given_ + (first_potential_ - lowest_potential_); }
 
@@ -156,8 +179,9 @@ struct ActingForces {
   const std::vector<ContactPoint>& contacts;
 };
 
-/// What a run says that ends because of it: the body, the time, and the effect that most likely put the energy in: impacts where they have brought in
-/// half of it, else the spring, rod, joint or contact that pulls hardest at the body, else the integration.
+/// What a run says that ends because of it: the body, the time, and the effect that most likely put
+/// the energy in: impacts where they have brought in half of it, else the spring, rod, joint or
+/// contact that pulls hardest at the body, else the integration.
 std::string runaway_message(double time, const World& world, const Runaway& runaway, const ActingForces& acting, const Laws& laws);
 
 }  // namespace tumble::engines

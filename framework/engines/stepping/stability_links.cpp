@@ -1,7 +1,9 @@
-// How hard rods and joints may pull in a run, and the fastest swing of bodies between joints that do.
+// How hard rods and joints may pull in a run, and the fastest swing of bodies between joints that
+// do.
 //
-// Where a run starts its links may carry nothing (a chain held out level); a moment later they carry all that hangs on them, and what its fall
-// adds. So what limits a step is not what stands in the start.
+// Where a run starts its links may carry nothing (a chain held out level); a moment later they
+// carry all that hangs on them, and what its fall adds. So what limits a step is not what stands in
+// the start.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,7 +22,8 @@ namespace {
 
 constexpr double kTaut = 0.999;   // of a line's length: what starts nearer to where it hangs than this falls before its links pull
 
-/// Movable bodies as a tree that hangs from what does not move: each on the carrier by which it is nearest to it.
+/// Movable bodies as a tree that hangs from what does not move: each on the carrier by which it is
+/// nearest to it.
 class Hanging {
  public:
   Hanging(const World& world, const std::vector<effects::Carrier>& carriers) : world_(world), carriers_(carriers), hung_(world.bodies.size()) {
@@ -31,11 +34,13 @@ class Hanging {
         if (is_movable(*anchor)) ends_on_[static_cast<std::size_t>(anchor->body)].push_back(k);
   }
 
-  /// The load of each carrier: the weight below it, and what holds the way round of all that energy can set going there:
+  /// The load of each carrier: the weight below it, and what holds the way round of all that energy
+  /// can set going there:
   ///   T = M g + 2 (E_kinetic + E_fall) / R
-  /// with R how far down the line the mass below lies from where it all hangs. Where the links hang loose first, or the fall pulls harder than the
-  /// weight, they come taut with a jerk: what falls is turned round by a light body that takes all its energy and passes the line at  sqrt(M / m)  times its
-  /// speed, so that the second part is so much larger.
+  /// with R how far down the line the mass below lies from where it all hangs. Where the links hang
+  /// loose first, or the fall pulls harder than the weight, they come taut with a jerk: what falls
+  /// is turned round by a light body that takes all its energy and passes the line at  sqrt(M / m)
+  /// times its speed, so that the second part is so much larger.
   bool by_falling() const { return by_falling_; }
   /// @param loads  by carrier
   void find_loads(std::vector<double>& loads) {
@@ -145,8 +150,10 @@ LinkLoads largest_link_loads(const World& world, const std::vector<effects::Carr
   return found;
 }
 
-// For turns by small angles of bodies that hang on each other the energy is at most  1/2 sum_i (sum_k T_k |r_ik|) angle_i^2  and the kinetic one at
-// least  1/2 sum_i I_i angle_i'^2, so that  w^2 <= max_i  sum_k T_k |r_ik| / I_i.  A row of equal bars reaches it: neighbours turn to and fro.
+// For turns by small angles of bodies that hang on each other the energy is at most  1/2 sum_i
+// (sum_k T_k |r_ik|) angle_i^2  and the kinetic one at least  1/2 sum_i I_i angle_i'^2, so that
+// w^2 <= max_i  sum_k T_k |r_ik| / I_i.  A row of equal bars reaches it: neighbours turn to and
+// fro.
 std::optional<StepLimit> judge_joints(const World& world, const std::vector<effects::Carrier>& carriers, const std::vector<double>& loads, const Laws& laws, double step) {
   std::vector<double> stiffness(world.bodies.size(), 0.0);
   std::vector<char> turns(world.bodies.size(), 0);
@@ -163,7 +170,8 @@ std::optional<StepLimit> judge_joints(const World& world, const std::vector<effe
   std::size_t fastest = 0;
   for (std::size_t i = 0; i < world.bodies.size(); ++i) {
     if (world.bodies[i].immovable() || !turns[i] || stiffness[i] == 0.0) continue;
-    // About an axis across its arm: a slender body does not swing about itself, which is its least moment.
+    // About an axis across its arm: a slender body does not swing about itself, which is its least
+    // moment.
     const Vector3d moments = symmetric_eigen(world.bodies[i].inertia.inertia_body).values;
     if (!(moments[1] > 0) || !(stiffness[i] / moments[1] > squared)) continue;
     squared = stiffness[i] / moments[1];

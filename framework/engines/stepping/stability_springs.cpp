@@ -1,4 +1,5 @@
-// The fastest swing of a world's springs, and what its dampers take soonest: eigenvalues where the run starts.
+// The fastest swing of a world's springs, and what its dampers take soonest: eigenvalues where the
+// run starts.
 #include <algorithm>
 #include <cmath>
 
@@ -12,12 +13,15 @@
 namespace tumble::engines {
 namespace {
 
-// More springs than this are judged by the largest row sum (Gershgorin), an upper bound at most some times too large.
+// More springs than this are judged by the largest row sum (Gershgorin), an upper bound at most
+// some times too large.
 constexpr Eigen::Index kMostSprings = 400;
-// Of linked bodies, six coordinates each: what rods and joints allow is found by a dense factorisation.
+// Of linked bodies, six coordinates each: what rods and joints allow is found by a dense
+// factorisation.
 constexpr Eigen::Index kMostHeldBodies = 60;
 
-/// The movable bodies that links end on, and their coordinates M^1/2 u, in which every direction is as easy to move.
+/// The movable bodies that links end on, and their coordinates M^1/2 u, in which every direction is
+/// as easy to move.
 class LinkedCoordinates {
  public:
   LinkedCoordinates(const World& world, const std::vector<effects::StiffRow>& rows, const std::vector<Constraint>& held) : world_(world), place_(world.bodies.size(), -1) {
@@ -62,7 +66,8 @@ MatrixXd held_directions(const std::vector<Constraint>& held, const LinkedCoordi
 
 using Sparse = Eigen::SparseMatrix<double>;
 
-/// J M^-1/2 of each row, one column a row, without what rods and joints hold; zero for rows that are not judged.
+/// J M^-1/2 of each row, one column a row, without what rods and joints hold; zero for rows that
+/// are not judged.
 Sparse ways_of(const World& world, const std::vector<effects::StiffRow>& rows) {
   std::vector<RigidBodyState> start;
   for (const WorldBody& body : world.bodies) start.push_back(body.state);
@@ -96,7 +101,8 @@ Sparse ways_of(const World& world, const std::vector<effects::StiffRow>& rows) {
   return MatrixXd(free - directions * least_squares(directions, free)).sparseView();   // redundant rows are allowed
 }
 
-/// The way of moving on which a diagonal D over the rows acts most: x^T J^T D J x where x^T M x = 1.
+/// The way of moving on which a diagonal D over the rows acts most: x^T J^T D J x where x^T M x =
+/// 1.
 struct MostActedOn {
   Eigen::Index row = 0;      // that takes most part in it
   double most = 0.0;         // of D
@@ -120,7 +126,8 @@ MostActedOn most_acted_on(const Sparse& shared, const VectorXd& diagonal, const 
   return result;
 }
 
-/// What draws bodies back where the run starts, what its directions share of the ways in which bodies can move, and its constants.
+/// What draws bodies back where the run starts, what its directions share of the ways in which
+/// bodies can move, and its constants.
 struct StiffRows {
   explicit StiffRows(const World& world) {
     std::vector<RigidBodyState> start;

@@ -26,7 +26,8 @@ std::string refusal(const scene::Scene& scene, const StartPair& pair) {
   return fmt::format("{} overlap at the start, by about {:.3g} m; the rounding of decimals and of single-precision models explains {:.2g} m here", both(scene, pair), -pair.gap, pair.explained);
 }
 
-/// The pair that a refusal is about: of what rounding does not explain the first, else the first overlap.
+/// The pair that a refusal is about: of what rounding does not explain the first, else the first
+/// overlap.
 const StartPair& worst_of(const std::vector<StartPair>& near) {
   const auto unexplained = std::find_if(near.begin(), near.end(), [](const StartPair& pair) { return pair.overlaps && !(pair.gap < 0 && -pair.gap <= pair.explained); });
   return unexplained != near.end() ? *unexplained : *std::find_if(near.begin(), near.end(), [](const StartPair& pair) { return pair.overlaps; });
@@ -80,8 +81,8 @@ void refuse_overlaps(const std::string& where, const scene::Scene& scene, const 
   if (std::any_of(near.begin(), near.end(), [](const StartPair& pair) { return pair.overlaps; })) throw OverlapAtStart(where, scene, near);
 }
 
-// Each pair asks for n . (dx_a - dx_b) >= -gap; of its bodies the one farther from the support gives way, of two alike the later one.
-// Sweeps outward from the support settle a stack at once.
+// Each pair asks for n . (dx_a - dx_b) >= -gap; of its bodies the one farther from the support
+// gives way, of two alike the later one. Sweeps outward from the support settle a stack at once.
 std::optional<MovedApart> moved_apart(const scene::Scene& scene, const std::vector<StartPair>& near) {
   const std::vector<int> steps = steps_from_support(scene, near);
   const auto steps_of = [&](int body) { return steps[static_cast<std::size_t>(body)]; };

@@ -1,8 +1,8 @@
-/// Bodies that overlap when a run begins: refused, or where the rounding of typed decimals and of single-precision models explains it
-/// removed, and reported. One law for all engines.
+/// Bodies that overlap when a run begins: refused, or where the rounding of typed decimals and of
+/// single-precision models explains it removed, and reported. One law for all engines.
 ///
-/// An engine collects what is near at the start and calls refuse_overlaps; run_scene catches what is thrown, moves bodies apart and
-/// begins again, or lets the refusal stand.
+/// An engine collects what is near at the start and calls refuse_overlaps; run_scene catches what
+/// is thrown, moves bodies apart and begins again, or lets the refusal stand.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,8 @@
 
 namespace tumble::engines {
 
-/// Two bodies that touch or overlap at the start, or are as near as what could be moved. By index in the scene.
+/// Two bodies that touch or overlap at the start, or are as near as what could be moved. By index
+/// in the scene.
 struct StartPair {
   int body_a, body_b;
   double gap;                    // [m]; < 0 overlapping
@@ -24,14 +25,16 @@ struct StartPair {
   Vector3d normal_b_to_a_world;  // unit
 };
 
-/// How deep two bodies may be in each other because a scene's places are decimals cut short, and a model's corners single precision:
-/// each of the two may be off by half a spacing of float32 numbers of the size of its place and its extent,
+/// How deep two bodies may be in each other because a scene's places are decimals cut short, and a
+/// model's corners single precision: each of the two may be off by half a spacing of float32
+/// numbers of the size of its place and its extent,
 ///   2^-24 (|x_a| + r_a + |x_b| + r_b),
-/// and both for place and shape: 2^-23 of it. Never more than a ten-thousandth of the smaller body, which would be seen.
+/// and both for place and shape: 2^-23 of it. Never more than a ten-thousandth of the smaller body,
+/// which would be seen.
 double explained_overlap(const collision::CollisionShape& a, const collision::Pose& pose_a, const collision::CollisionShape& b, const collision::Pose& pose_b);
 
-/// Some bodies overlap at the start. What the user reads where nothing is done about it names the first pair that rounding does not
-/// explain, with both numbers.
+/// Some bodies overlap at the start. What the user reads where nothing is done about it names the
+/// first pair that rounding does not explain, with both numbers.
 class OverlapAtStart : public UserError {
  public:
   OverlapAtStart(const std::string& where, const scene::Scene& scene, std::vector<StartPair> near);
@@ -51,7 +54,8 @@ void look_at_start(int a, int b, const collision::CollisionShape& shape_a, const
 /// @throws OverlapAtStart where one of the pairs overlaps
 void refuse_overlaps(const std::string& where, const scene::Scene& scene, const std::vector<StartPair>& near);
 
-/// The scene with bodies moved apart, outward from what is immovable, so that none of the pairs overlaps; and a sentence about it.
+/// The scene with bodies moved apart, outward from what is immovable, so that none of the pairs
+/// overlaps; and a sentence about it.
 /// @return nothing where no such places were found (a body wedged between others)
 struct MovedApart {
   scene::Scene scene;

@@ -1,5 +1,6 @@
-/// What a run's first frame shows of its start: velocities and places of bodies on rods and joints that did not fit and were changed.
-/// One place for all engines: it compares the frame that they record with the scene.
+/// What a run's first frame shows of its start: velocities and places of bodies on rods and joints
+/// that did not fit and were changed. One place for all engines: it compares the frame that they
+/// record with the scene.
 #pragma once
 
 #include <set>
