@@ -227,7 +227,7 @@ report::CostPage page_of(const Context& context, const std::vector<Refinement>& 
   report::CostPage page;
   page.title = subject.title;
   page.about = subject.scene.about;
-  page.reference = reference.what;
+  page.truth = reference.what;
   page.what_error_is = what_error_is(reference);
   if (reference.by_numbers) {
     page.error_name = "worst number over its tolerance";
