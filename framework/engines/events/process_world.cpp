@@ -250,8 +250,9 @@ ProcessWorld::Change ProcessWorld::collide(BodyPair pair, const ProcessState& st
   world_step_.impact_detection().separate(pairs);
   // A blow that is dealt with in the step it falls into is dealt with in the one that begins here, by all that the two then touch, friction
   // among it: so a world of all bodies does it, and of a blow struck alone and without friction something else would come.
-  if (has_contacts() && world_step_.contacts().deals_in_step(trigger)) world_step_.contacts().begin(trigger, world_step_.impact_detection().gap(trigger));
-  else {
+  if (has_contacts() && world_step_.contacts().deals_in_step(trigger)) {
+    world_step_.contacts().begin(trigger, world_step_.impact_detection().gap(trigger));
+  } else {
     Stages stages(*this);
     world_step_.respond(pairs, trigger, false, stages);
   }
