@@ -251,8 +251,9 @@ ProcessWorld::Change ProcessWorld::collide(BodyPair pair, const ProcessState& st
   // An impact that is resolved within its step is resolved in the step that begins here, together
   // with all contacts of the two bodies and friction, as in a world of all bodies. Resolved alone
   // and without friction it would have another result.
-  if (has_contacts() && world_step_.contacts().deals_in_step(trigger)) world_step_.contacts().begin(trigger, world_step_.impact_detection().gap(trigger));
-  else {
+  if (has_contacts() && world_step_.contacts().deals_in_step(trigger)) {
+    world_step_.contacts().begin(trigger, world_step_.impact_detection().gap(trigger));
+  } else {
     Stages stages(*this);
     world_step_.respond(pairs, trigger, false, stages);
   }

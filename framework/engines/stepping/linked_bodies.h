@@ -99,7 +99,7 @@ class LinkedBodies final : effects::GroupPlaces {
 
   /// Adds the forces of this group's links in these states. What lies on its bodies, leans or rubs
   /// against them weighs on the links too.
-  /// @param contacts  lasting ones of the world, at that time
+  /// @param contacts  persistent ones of the world, at that time
   void measure(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts, LinkForces& forces);
 
  private:

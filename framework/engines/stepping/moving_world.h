@@ -111,7 +111,7 @@ class MovingWorld {
   /// Control laws whose time has come look. @return when the next one does; infinite without
   double look();
   /// What springs, rods and joints pull with in these states.
-  /// @param contacts  lasting ones, which weigh on them
+  /// @param contacts  persistent ones, which weigh on them
   LinkForces measure_links(const std::vector<RigidBodyState>& states, double t, const std::vector<ContactPoint>& contacts);
   /// For a picture within a step: rods and joints of projected groups hold there too, where the
   /// path between the step's ends is off by its fourth power. Changes nothing but these states.

@@ -338,7 +338,7 @@ std::optional<Runaway> EnergyWatch::look(double time, const World& world, const 
   note_rise(time, energy, sums.kinetic_energy, world, states);
   if (energy - first_energy_ <= kRunaway * available() + unseen(kLiftedInLargeIslands) + kSixDigits * std::abs(first_energy_)) return std::nullopt;
   if (available() == 0.0 && first_energy_ == 0.0 && !(sums.kinetic_energy > 0)) return std::nullopt;
-  return Runaway{body_with_most_energy(world, states), energy, first_energy_, by_blows_};
+  return Runaway{body_with_most_energy(world, states), energy, first_energy_, by_impacts_};
 }
 
 namespace {
@@ -365,7 +365,7 @@ std::string runaway_message(double time, const World& world, const Runaway& runa
       const int other = contact.body_a == runaway.body ? contact.body_b : contact.body_a;
       return fmt::format("persistent contact with '{}' (contact_forces of {})", world.bodies[static_cast<std::size_t>(other)].name, laws.constraint_source);
     });
-  if (runaway.by_blows >= 0.5 * (runaway.energy - runaway.first_energy)) effect = fmt::format("collision (collision_impulse, apply_impulse of {})", laws.impulse_source);
+  if (runaway.by_impacts >= 0.5 * (runaway.energy - runaway.first_energy)) effect = fmt::format("collision (collision_impulse, apply_impulse of {})", laws.impulse_source);
   else if (effect.empty()) effect = fmt::format("integration (integrate_step, state_derivative of {})", laws.integrator_source);
   return fmt::format("at t = {:.6f} s, body '{}': runaway energy: the world has {:.4g} J, it began with {:.4g} J{}. Most likely it comes from {}; a shorter step or another method "
                      "(here {}) is needed, or that is wrong", time, world.bodies[static_cast<std::size_t>(runaway.body)].name, runaway.energy, runaway.first_energy,

@@ -121,7 +121,7 @@ std::optional<double> report_unstable_links(const World& world, const LinkForces
 struct Runaway {
   int body;                        // that has most of it
   double energy, first_energy;     // of the world, now and where the run started [J]
-  double by_blows;                 // of the difference, what impacts have brought in [J]
+  double by_impacts;                 // of the difference, what impacts have brought in [J]
 };
 
 /// Looks on while a world moves: energy that nothing can have brought in is the method's, or a
@@ -139,7 +139,7 @@ class EnergyWatch {
   /// 2 of its impulse.
   void note(const Event& event) {
     if (event.kind != EventKind::kCollision) return;
-    by_blows_ += event.energy_change == event.energy_change ? event.energy_change : 0.5 * event.impulse * (event.normal_velocity_before + event.normal_velocity_after);
+    by_impacts_ += event.energy_change == event.energy_change ? event.energy_change : 0.5 * event.impulse * (event.normal_velocity_before + event.normal_velocity_after);
   }
   /// @return nothing while all is well, and for worlds that moving walls, or effects that may bring
   /// in any amount, drive
@@ -166,7 +166,7 @@ class EnergyWatch {
   std::vector<std::unique_ptr<effects::WorkMeter>> meters_;     // of the effects that bring energy into the world, from the first look on
   bool has_meters_ = false;
   double work_ = 0.0, given_ = 0.0;                    // what effects have brought in, at most, and without its sign [J]
-  double first_energy_ = kUnset, scale_ = 0.0, first_potential_ = 0.0, lowest_potential_ = 0.0, by_blows_ = 0.0;   // [J]
+  double first_energy_ = kUnset, scale_ = 0.0, first_potential_ = 0.0, lowest_potential_ = 0.0, by_impacts_ = 0.0;   // [J]
   double least_energy_ = 0.0, of_restitution_threshold_ = 0.0, of_sizes_ = 0.0;   // the least so far; of all bodies m v^2 of the restitution threshold, and m g size [J]
   double rounding_ = 0.0;          // what it leaves of an energy, where one has risen [J]
   std::vector<Rise> rises_;        // each larger than the one before
