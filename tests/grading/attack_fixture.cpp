@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "framework/core/files.h"
+#include "framework/grading/sandbox/protection.h"
 
 namespace tumble::grading {
 namespace {
@@ -85,7 +86,7 @@ std::string Victim::attack(const std::string& what) {
 
 void Attack::SetUp() {
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
-  if (const auto why = why_no_sandbox(worker_programs("waist").init)) GTEST_SKIP() << "no sandbox on this machine: " << *why;
+  if (const auto why = why_no_sandbox(chosen_sandbox())) GTEST_SKIP() << "no sandbox on this machine: " << *why;
 }
 
 }  // namespace tumble::grading

@@ -14,6 +14,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
+#include "framework/grading/sandbox/protection.h"
 #include "framework/grading/sandbox/sandbox.h"
 
 namespace tumble::grading {
@@ -28,11 +29,12 @@ constexpr const char* kHeadersInside = "/headers";
 constexpr const char* kSourceInside = "/submission";
 constexpr const char* kPrecompiled = "precompiled.h";
 
-// The compiler may fork its passes, and links to /tmp. The object leaves the sandbox through
-// descriptor 3, not through a shared folder.
-constexpr const char* kScript = "cd /submission && /usr/bin/g++ " TUMBLE_SUBMISSION_FLAGS
-                                " -Wall -Wextra -Wno-unused-parameter -fdiagnostics-color=never -fmax-errors=20 -I /headers -isystem " TUMBLE_EIGEN_INCLUDE
-                                " -include /headers/precompiled.h -x c++ \"$1\" -x none -shared -Wl,-z,defs -o /tmp/module.so && exec cat /tmp/module.so >&3";
+// The compiler may fork its passes, and links to a temporary folder. The object leaves the sandbox
+// through descriptor 3, not through a shared folder. Arguments: the file's name, then what
+// kHeadersInside, kSourceInside and kTmpInside are called in the sandbox that runs it.
+constexpr const char* kScript = "cd \"$3\" && /usr/bin/g++ " TUMBLE_SUBMISSION_FLAGS
+                                " -Wall -Wextra -Wno-unused-parameter -fdiagnostics-color=never -fmax-errors=20 -I \"$2\" -ffile-prefix-map=\"$2\"=/headers -isystem " TUMBLE_EIGEN_INCLUDE
+                                " -include \"$2/precompiled.h\" -x c++ \"$1\" -x none -shared -Wl,-z,defs -o \"$4/module.so\" && exec cat \"$4/module.so\" >&3";
 
 // Headers of the tree that a text includes, directly or indirectly, restricted to those that
 // students have.
@@ -100,6 +102,7 @@ Compiled judge(const SandboxOutcome& outcome, const std::string& object, const C
     case Ending::kStopped: return {Outcome::kGraderFault, "the sandbox did not start: " + said};
     case Ending::kWallLimit: return {Outcome::kGraderFault, "the machine was too busy: the compiler had not finished after " + std::to_string(static_cast<int>(limits.wall_s)) + " s, and had computed for less than " + std::to_string(limits.cpu_s) + " s. Run it again when the machine is less busy"};
     case Ending::kStalled: return {Outcome::kOutOfResources, "the compiler made no progress: it waits for something, such as an #include of something that is not a file"};
+    case Ending::kDiskLimit: return {Outcome::kOutOfResources, "the compiler ran out of room for files\n" + said};
     case Ending::kOutputLimit: return {Outcome::kOutOfResources, "the compiler's messages exceeded their limit; the first were:\n" + said.substr(0, 2000)};
     case Ending::kSignal: return {Outcome::kOutOfResources, "a limit ended the compiler\n" + said};
     case Ending::kExited: break;
@@ -112,15 +115,15 @@ Compiled judge(const SandboxOutcome& outcome, const std::string& object, const C
   return {Outcome::kRefused, said};
 }
 
-SandboxJob sandbox_job(const CompileLimits& limits, const fs::path& init) {
+SandboxJob sandbox_job(const CompileLimits& limits) {
   SandboxJob job;
+  job.kind = chosen_sandbox();
   job.limits.wall_s = limits.wall_s;
   job.limits.cpu_s = limits.cpu_s;
   job.limits.stall_s = limits.stall_s;
   job.limits.memory_bytes = limits.memory_bytes;
   job.limits.tmp_bytes = 128ull << 20;
   job.limits.processes = 16;
-  job.init = init;
   return job;
 }
 
@@ -147,11 +150,12 @@ Compiled compile_submission(const CompileJob& job) {
 
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) return {Outcome::kGraderFault, "no descriptor left for a compiler"};
-  SandboxJob inside = sandbox_job(job.limits, tools.add_file(init_program(job.build), "init", true));
+  SandboxJob inside = sandbox_job(job.limits);
+  if (traits_of(inside.kind).needs_init) inside.init = tools.add_file(init_program(job.build), "init", true);
   inside.binds = {{headers.path(), kHeadersInside}, {submission.path(), kSourceInside}};
   // A name such as "-o" or "@file" must not be read as an option.
   const bool plain_name = std::isalnum(static_cast<unsigned char>(name[0])) != 0 || name[0] == '_';
-  inside.command = {"/usr/bin/sh", "-c", kScript, "compile", plain_name ? name : "./" + name};
+  inside.command = {"/usr/bin/sh", "-c", kScript, "compile", plain_name ? name : "./" + name, kHeadersInside, kSourceInside, kTmpInside};
   inside.uid = user.uid();
   inside.channel = ends[1];
   Sandbox sandbox = Sandbox::start(inside);

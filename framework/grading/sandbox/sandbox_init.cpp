@@ -17,8 +17,6 @@
 
 namespace {
 
-constexpr int kCannotStart = 127;
-
 void report(const tumble::grading::InitReport& message) {
   while (write(tumble::grading::kStatusFd, &message, sizeof message) < 0 && errno == EINTR) {}
 }

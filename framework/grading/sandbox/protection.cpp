@@ -1,0 +1,61 @@
+#include "framework/grading/sandbox/protection.h"
+
+#include <cstdlib>
+
+#include "framework/core/error.h"
+#include "framework/grading/sandbox/landlock.h"
+#include "framework/grading/sandbox/sandbox.h"
+
+namespace tumble::grading {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kVariable = "TUMBLE_SANDBOX";
+
+fs::path init_program() { return fs::canonical("/proc/self/exe").parent_path() / "sandbox_init"; }
+
+SandboxKind strongest() {
+  std::string reasons;
+  for (const SandboxTraits& traits : all_sandboxes()) {
+    const auto why = why_no_sandbox(traits.kind);
+    if (!why) return traits.kind;
+    reasons += "\n    " + std::string(traits.name) + ": " + *why;
+  }
+  throw UserError("sandbox", "no kind of it works on this machine:" + reasons, "tumble doctor says what each needs.");
+}
+
+}  // namespace
+
+std::optional<std::string> why_no_sandbox(SandboxKind kind) {
+  const SandboxUser user = SandboxUser::lease();
+  Stage stage(&user);
+  SandboxJob job;
+  job.kind = kind;
+  job.command = {"/usr/bin/true"};
+  if (traits_of(kind).needs_init) {
+    if (!fs::exists(init_program())) return init_program().string() + " is not built";
+    job.init = stage.add_file(init_program(), "init", true);
+  }
+  job.uid = user.uid();
+  const SandboxOutcome outcome = Sandbox::start(job).wait();
+  if (outcome.ending == SandboxOutcome::Ending::kExited && outcome.code == 0) return std::nullopt;
+  return outcome.printed.empty() ? "the sandbox does not start" : outcome.printed;
+}
+
+SandboxKind chosen_sandbox() {
+  const char* named = std::getenv(kVariable);
+  if (named != nullptr && *named != '\0') return sandbox_from_name(named);
+  const SandboxKind kind = strongest();
+  ::setenv(kVariable, traits_of(kind).name, 1);
+  return kind;
+}
+
+std::string protection_in_words(SandboxKind kind) {
+  const std::string name = traits_of(kind).name;
+  if (kind == SandboxKind::kNamespaces) return name;
+  const std::string user = can_change_user() ? "a user id of its own" : "the grader's user id";
+  return name + (kind == SandboxKind::kLandlock ? " (ABI " + std::to_string(landlock_abi()) + ", " + user + ")" : " (" + user + ")");
+}
+
+}  // namespace tumble::grading
