@@ -11,6 +11,8 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
+#include <set>
 #include <stdexcept>
 #include <vector>
 
@@ -19,6 +21,7 @@
 #include "framework/grading/sandbox/sandbox_wire.h"
 #include "framework/grading/sandbox/seccomp_filter.h"
 #include "framework/grading/sandbox/start_once.h"
+#include "framework/grading/verdicts/own_time.h"
 
 namespace tumble::grading {
 namespace {
@@ -34,6 +37,29 @@ void allow_system(LandlockRules& rules) {
   for (const char* folder : {"/lib", "/lib64", "/bin"}) rules.allow_reading_and_running(folder);
   rules.allow_reading("/etc/ld.so.cache");
   for (const char* device : {"/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom"}) rules.allow_device(device);
+}
+
+// Processes and threads of a user, by /proc.
+std::uint64_t tasks_of_user(uid_t user) {
+  std::uint64_t tasks = 0;
+  std::error_code failed;
+  for (fs::directory_iterator it("/proc", failed), end; !failed && it != end; it.increment(failed)) {
+    struct stat about {};
+    if (std::atoi(it->path().filename().c_str()) <= 0 || ::stat(it->path().c_str(), &about) != 0 || about.st_uid != user) continue;
+    std::error_code gone;
+    tasks += static_cast<std::uint64_t>(std::distance(fs::directory_iterator(it->path() / "task", gone), {}));
+  }
+  return tasks;
+}
+
+// Stops all descendants. Returns whether one was found that had not been stopped before.
+bool stop_descendants(pid_t process, std::set<pid_t>& stopped) {
+  bool is_new = false;
+  for (const pid_t child : children_of(process)) {
+    if (stopped.insert(child).second) is_new = ::kill(child, SIGSTOP) == 0 || is_new;
+    is_new = stop_descendants(child, stopped) || is_new;
+  }
+  return is_new;
 }
 
 void replace_all(std::string& text, const std::string& from, const std::string& to) {
@@ -96,6 +122,8 @@ void HostBody::become() {
     for (const Bind& bind : job_.binds) rules->allow_reading_and_running(bind.from);
     if (tmp_) rules->allow_writing(tmp_->path());
   }
+  constexpr std::uint64_t kMeanwhile = 200;   // started by other jobs of the grader while this one runs
+  const std::uint64_t tasks_of_others = user_.uid() ? 0 : tasks_of_user(::getuid()) + kMeanwhile;
   SeccompFilter filter({.is_on_host = true, .is_alone = job_.is_alone, .has_no_files = starts_once(), .self = ::getpid()});
 
   ::fcntl(kStatusFd, F_SETFD, FD_CLOEXEC);
@@ -106,8 +134,9 @@ void HostBody::become() {
   if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || ::getppid() == 1 || ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) throw std::runtime_error("the process cannot be prepared");
   if (::chdir(tmp.c_str()) != 0) throw std::runtime_error("its folder cannot be entered");
   if (rules) rules->restrict_self();
-  // The kernel counts processes by user: with the grader's own, all of the grader's would count.
-  if (user_.uid() && job_.limits.processes > 0) set_limit(RLIMIT_NPROC, job_.is_alone ? 1 : job_.limits.processes);
+  // The kernel counts processes by user: where the user is the grader's, those that it has already
+  // and those that it may start meanwhile are added. An is_alone program is refused by its filter.
+  if (job_.limits.processes > 0) set_limit(RLIMIT_NPROC, user_.uid() ? job_.limits.processes : tasks_of_others + job_.limits.processes);
   if (starts_once()) send_start_permit(kBodyFd);
   set_limits(job_.limits);
   filter.restrict_self();
@@ -125,9 +154,15 @@ void HostBody::attend() {
 }
 
 // One signal to all processes of the user at once: a process that forks while it is sent has the
-// signal pending, so the kernel refuses the fork.
+// signal pending, so the kernel refuses the fork. Where the user is the grader's, the descendants of
+// this process are stopped, until none is left that could fork, and then killed.
 void HostBody::kill_rest() {
-  if (!user_.uid()) return;
+  if (!user_.uid()) {
+    std::set<pid_t> stopped;
+    while (stop_descendants(::getpid(), stopped)) {}
+    for (const pid_t process : stopped) ::kill(process, SIGKILL);
+    return;
+  }
   const pid_t killer = ::fork();
   if (killer == 0) {
     if (::setgroups(0, nullptr) == 0 && ::setuid(*user_.uid()) == 0) ::kill(-1, SIGKILL);

@@ -51,11 +51,29 @@ SandboxKind chosen_sandbox() {
   return kind;
 }
 
+void choose_sandbox(const std::string& name) {
+  if (const auto why = why_no_sandbox(sandbox_from_name(name))) throw UserError("sandbox " + name, "does not work on this machine: " + *why, "tumble doctor says what it needs.");
+  ::setenv(kVariable, name.c_str(), 1);
+}
+
 std::string protection_in_words(SandboxKind kind) {
   const std::string name = traits_of(kind).name;
   if (kind == SandboxKind::kNamespaces) return name;
   const std::string user = can_change_user() ? "a user id of its own" : "the grader's user id";
   return name + (kind == SandboxKind::kLandlock ? " (ABI " + std::to_string(landlock_abi()) + ", " + user + ")" : " (" + user + ")");
+}
+
+GradeProtection protection_of_grades(const std::string& accepted) {
+  if (!accepted.empty()) sandbox_from_name(accepted);
+  const SandboxTraits& traits = traits_of(chosen_sandbox());
+  GradeProtection protection{protection_in_words(traits.kind), traits.is_official, ""};
+  if (traits.is_official) return protection;
+  const std::string name = traits.name;
+  if (accepted != name)
+    throw UserError("sandbox " + name, "is less than the policy for grades asks for (namespaces or landlock): a submission can " + std::string(traits.permits),
+                    "tumble doctor says what is missing here. To grade all the same, with every result marked as not official: --accept-sandbox " + name + ".");
+  protection.note = "not an official grade: the sandbox was " + protection.words + ", and the policy asks for namespaces or landlock";
+  return protection;
 }
 
 }  // namespace tumble::grading

@@ -17,8 +17,23 @@ std::optional<std::string> why_no_sandbox(SandboxKind kind);
 /// @throws UserError when TUMBLE_SANDBOX names no kind or none works
 SandboxKind chosen_sandbox();
 
+/// Chooses a kind for this process and those that it starts, as TUMBLE_SANDBOX does.
+/// @throws UserError when it is none, or does not work here
+void choose_sandbox(const std::string& name);
+
 /// "namespaces", "landlock (ABI 7, a user id of its own)", "bare (user id of the grader)": the
 /// protection of a grade, for pages and records.
 std::string protection_in_words(SandboxKind kind);
+
+/// What protects the grades of one run.
+struct GradeProtection {
+  std::string words;         // protection_in_words
+  bool is_official = true;   // the policy accepts it for grades that count
+  std::string note;          // for every output of an unofficial grade; else empty
+};
+
+/// @param accepted  the name of a kind that the policy refuses and the user accepts; may be empty
+/// @throws UserError when the policy refuses the chosen kind and it is not `accepted`
+GradeProtection protection_of_grades(const std::string& accepted);
 
 }  // namespace tumble::grading
