@@ -31,6 +31,8 @@ SandboxedModule load_sandboxed(const Context& context, const modules::ModuleKind
   grading::WorkerOptions options;
   options.id = kind.id;
   options.module = file;
+  if (file.extension() != ".cpp" && grading::traits_of(grading::chosen_sandbox()).links_worker)
+    throw UserError(file.string(), "is a shared object, which the sandbox of this machine cannot load", "Give the source file: tumble doctor says why.");
   options.session_own_s = 600.0;            // of a whole scene, watched by the person who started it
   options.callback_budget = 1'000'000'000;   // the wall limit comes first
   if (file.extension() == ".cpp") {

@@ -42,6 +42,7 @@ Compiled compile_source(const std::string& text, const fs::path& object, const C
   job.source = scratch() / "waist.cpp";
   job.object = object;
   job.limits = limits;
+  job.id = "waist";
   std::ofstream(job.source) << text;
   return compile_submission(job);
 }

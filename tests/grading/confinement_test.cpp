@@ -71,6 +71,16 @@ TEST_F(Confinement, SignalsReachNobodyByADescriptorsOwner) {
   if (chosen_sandbox() == SandboxKind::kNamespaces) GTEST_SKIP() << "the judge has no process id inside";
   EXPECT_EQ(call(SYS_fcntl, 3, F_SETOWN, ::getpid()), kDenied);
   EXPECT_EQ(call(SYS_fcntl, 3, F_SETSIG, SIGKILL), kDenied);
+  // The kernel reads the lower half of the command.
+  EXPECT_EQ(call(SYS_fcntl, 3, F_SETOWN + (1l << 32), ::getpid()), kDenied);
+  EXPECT_EQ(call(SYS_prctl, 1 + (1l << 32), 0), kDenied);
+}
+
+TEST_F(Confinement, LocksOfFilesAreRefused) {
+  // They would tell a parallel run something.
+  EXPECT_EQ(call(SYS_fcntl, 3, F_SETLK, "@"), kDenied);
+  EXPECT_EQ(call(SYS_fcntl, 3, F_SETLK + (1l << 32), "@"), kDenied) << "the kernel reads the lower half of the command";
+  EXPECT_EQ(call(SYS_flock, 3, 2), kDenied);
 }
 
 TEST_F(Confinement, OtherProcessesCannotBeReadOrTraced) {

@@ -7,7 +7,7 @@ namespace fs = std::filesystem;
 
 BuiltSubmission build_submission(const Course& course, const std::string& id, const fs::path& source, const fs::path& object) {
   const std::string folder = course.registry->find(id).folder;
-  const Compiled compiled = compile_submission({course.root, fs::path("assignments") / folder / (folder + ".h"), source, object, {}, course.build});
+  const Compiled compiled = compile_submission({course.root, fs::path("assignments") / folder / (folder + ".h"), source, object, {}, id, course.build});
   switch (compiled.outcome) {
     case Compiled::Outcome::kBuilt: return {BuiltSubmission::Outcome::kBuilt, compiled.said};
     case Compiled::Outcome::kRefused: return {BuiltSubmission::Outcome::kRefused, compiled.said};

@@ -28,15 +28,16 @@ SandboxKind strongest() {
 }  // namespace
 
 std::optional<std::string> why_no_sandbox(SandboxKind kind) {
+  if (!fs::exists(init_program())) return init_program().string() + " is not built";
   const SandboxUser user = SandboxUser::lease();
   Stage stage(&user);
   SandboxJob job;
   job.kind = kind;
-  job.command = {"/usr/bin/true"};
-  if (traits_of(kind).needs_init) {
-    if (!fs::exists(init_program())) return init_program().string() + " is not built";
-    job.init = stage.add_file(init_program(), "init", true);
-  }
+  job.init = stage.add_file(init_program(), "init", true);
+  job.binds = {{job.init, "/probe"}};
+  job.command = {"/probe", "--probe"};
+  job.is_alone = true;   // as submissions run
+  job.limits.tmp_bytes = 0;
   job.uid = user.uid();
   const SandboxOutcome outcome = Sandbox::start(job).wait();
   if (outcome.ending == SandboxOutcome::Ending::kExited && outcome.code == 0) return std::nullopt;

@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
 #include <memory>
 #include <stdexcept>
 
@@ -55,7 +56,7 @@ constexpr const char* kRefusedAlone[] = {"chmod", "fchmod", "fchmodat", "fchmoda
 // All that a program needs which was linked statically: its memory, its clock, its threads' locks,
 // its signal handlers, its open descriptors.
 constexpr const char* kAllowedWithoutFiles[] = {
-    "read", "readv", "write", "writev", "poll", "ppoll", "close", "lseek", "fstat", "dup", "dup2", "dup3", "fcntl", "shutdown",
+    "read", "readv", "write", "writev", "poll", "ppoll", "recvfrom", "sendto", "close", "lseek", "fstat", "dup", "dup2", "dup3", "shutdown",
     "brk", "mmap", "munmap", "mprotect", "mremap", "madvise", "mincore",
     "arch_prctl", "set_tid_address", "set_robust_list", "rseq", "futex", "sched_yield", "getrandom", "sigaltstack",
     "rt_sigaction", "rt_sigprocmask", "rt_sigreturn", "rt_sigsuspend", "rt_sigpending", "pause", "restart_syscall",
@@ -94,23 +95,28 @@ void refuse_clone(scmp_filter_ctx filter, bool is_alone) {
     check(seccomp_rule_add(filter, kDenied, SCMP_SYS(clone), 1, SCMP_A0(SCMP_CMP_MASKED_EQ, flag, flag)), "clone");
 }
 
+// One value of an argument of type int. Its lower half is compared, which is all that the kernel
+// reads: the upper one may hold anything.
+constexpr scmp_datum_t kLowerHalf = 0xffffffffu;
+void refuse_value(scmp_filter_ctx filter, int call, unsigned argument, std::uint64_t value, const char* what) {
+  const scmp_arg_cmp is_value{argument, SCMP_CMP_MASKED_EQ, kLowerHalf, value & kLowerHalf};
+  check(seccomp_rule_add(filter, kDenied, call, 1, is_value), what);
+}
+
 void refuse_by_argument(scmp_filter_ctx filter) {
   // Limits of other processes, such as process 1.
   check(seccomp_rule_add(filter, kDenied, SCMP_SYS(prlimit64), 1, SCMP_A0(SCMP_CMP_NE, 0)), "prlimit64");
-  for (const int command : {F_SETLK, F_SETLKW, F_OFD_SETLK, F_OFD_SETLKW, F_SETLEASE})
-    check(seccomp_rule_add(filter, kDenied, SCMP_SYS(fcntl), 1, SCMP_A1(SCMP_CMP_EQ, static_cast<scmp_datum_t>(command))), "fcntl");
+  for (const int command : {F_SETLK, F_SETLKW, F_OFD_SETLK, F_OFD_SETLKW, F_SETLEASE}) refuse_value(filter, SCMP_SYS(fcntl), 1, static_cast<std::uint64_t>(command), "fcntl");
 }
 
 // Signals to any process but `self`: by kill, and by descriptors that notify an owner.
 void refuse_signals(scmp_filter_ctx filter, pid_t self) {
   const auto own = static_cast<scmp_datum_t>(self);
-  for (const int call : {SCMP_SYS(kill), SCMP_SYS(tgkill)}) check(seccomp_rule_add(filter, kDenied, call, 1, SCMP_A0_32(SCMP_CMP_NE, own)), "kill");
-  for (const int command : {F_SETOWN, F_SETOWN_EX, F_SETSIG})
-    check(seccomp_rule_add(filter, kDenied, SCMP_SYS(fcntl), 1, SCMP_A1(SCMP_CMP_EQ, static_cast<scmp_datum_t>(command))), "fcntl");
-  for (const unsigned long request : {FIOSETOWN, SIOCSPGRP, TIOCSTI, TIOCSPGRP})
-    check(seccomp_rule_add(filter, kDenied, SCMP_SYS(ioctl), 1, SCMP_A1(SCMP_CMP_EQ, request)), "ioctl");
+  for (const int call : {SCMP_SYS(kill), SCMP_SYS(tgkill)}) check(seccomp_rule_add(filter, kDenied, call, 1, SCMP_A0(SCMP_CMP_NE, own)), "kill");
+  for (const int command : {F_SETOWN, F_SETOWN_EX, F_SETSIG}) refuse_value(filter, SCMP_SYS(fcntl), 1, static_cast<std::uint64_t>(command), "fcntl");
+  for (const unsigned long request : {FIOSETOWN, SIOCSPGRP, TIOCSTI, TIOCSPGRP}) refuse_value(filter, SCMP_SYS(ioctl), 1, request, "ioctl");
   // It would outlive its keeper.
-  check(seccomp_rule_add(filter, kDenied, SCMP_SYS(prctl), 1, SCMP_A0(SCMP_CMP_EQ, PR_SET_PDEATHSIG)), "prctl");
+  refuse_value(filter, SCMP_SYS(prctl), 0, PR_SET_PDEATHSIG, "prctl");
 }
 
 void refuse_listed(scmp_filter_ctx filter, const FilterRules& rules) {
@@ -129,8 +135,10 @@ void allow_listed(scmp_filter_ctx filter, const FilterRules& rules) {
   for (const char* name : kAllowedWithoutFiles) allow(filter, name);
   refuse_clone(filter, true);
   const auto own = static_cast<scmp_datum_t>(rules.self);
-  for (const int call : {SCMP_SYS(kill), SCMP_SYS(tgkill)}) check(seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 1, SCMP_A0_32(SCMP_CMP_EQ, own)), "kill");
+  for (const int call : {SCMP_SYS(kill), SCMP_SYS(tgkill)}) check(seccomp_rule_add(filter, SCMP_ACT_ALLOW, call, 1, SCMP_A0(SCMP_CMP_EQ, own)), "kill");
   check(seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(prlimit64), 1, SCMP_A0(SCMP_CMP_EQ, 0)), "prlimit64");
+  for (const int command : {F_DUPFD, F_DUPFD_CLOEXEC, F_GETFD, F_SETFD, F_GETFL, F_SETFL})
+    check(seccomp_rule_add(filter, SCMP_ACT_ALLOW, SCMP_SYS(fcntl), 1, SCMP_A1(SCMP_CMP_EQ, static_cast<scmp_datum_t>(command))), "fcntl");
 }
 
 // Compiled, in a descriptor at its start.

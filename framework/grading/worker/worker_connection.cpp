@@ -83,8 +83,13 @@ WorkerConnection::WorkerConnection(WorkerOptions options) : options_(std::move(o
   if (!options_.sandboxed) return;
   job_.kind = chosen_sandbox();
   if (traits_of(job_.kind).needs_init) job_.init = stage_.add_file(programs.init, "init", true);
-  job_.binds = {{stage_.add_file(programs.worker, "worker", true), kWorkerInside}, {stage_.add_file(options_.module, "module.so", true), kModuleInside}};
-  job_.command = {kWorkerInside, kModuleInside};
+  if (traits_of(job_.kind).links_worker) {
+    job_.binds = {{stage_.add_file(options_.module, "worker", true), kWorkerInside}};
+    job_.command = {kWorkerInside};
+  } else {
+    job_.binds = {{stage_.add_file(programs.worker, "worker", true), kWorkerInside}, {stage_.add_file(options_.module, "module.so", true), kModuleInside}};
+    job_.command = {kWorkerInside, kModuleInside};
+  }
   job_.uid = user_.uid();
   job_.limits.wall_s = kPatience * options_.session_own_s + 5.0;  // the limits of calls are shorter; this one is for a judge that has died
   job_.limits.cpu_s = static_cast<std::uint64_t>(std::ceil(options_.session_own_s));
