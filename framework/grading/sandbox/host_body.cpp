@@ -123,7 +123,8 @@ void HostBody::become() {
     if (tmp_) rules->allow_writing(tmp_->path());
   }
   constexpr std::uint64_t kMeanwhile = 200;   // started by other jobs of the grader while this one runs
-  const std::uint64_t tasks_of_others = user_.uid() ? 0 : tasks_of_user(::getuid()) + kMeanwhile;
+  const bool counts_others = !user_.uid() && !job_.is_alone;
+  const std::uint64_t tasks_of_others = counts_others ? tasks_of_user(::getuid()) + kMeanwhile : 0;
   SeccompFilter filter({.is_on_host = true, .is_alone = job_.is_alone, .has_no_files = starts_once(), .self = ::getpid()});
 
   ::fcntl(kStatusFd, F_SETFD, FD_CLOEXEC);
@@ -131,12 +132,12 @@ void HostBody::become() {
   ::umask(022);
   change_user();
   // After the change of the user, which clears it: the program dies with its keeper.
-  if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || ::getppid() == 1 || ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) throw std::runtime_error("the process cannot be prepared");
+  if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0 || ::getppid() != keeper_ || ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) throw std::runtime_error("the process cannot be prepared");
   if (::chdir(tmp.c_str()) != 0) throw std::runtime_error("its folder cannot be entered");
   if (rules) rules->restrict_self();
   // The kernel counts processes by user: where the user is the grader's, those that it has already
   // and those that it may start meanwhile are added. An is_alone program is refused by its filter.
-  if (job_.limits.processes > 0) set_limit(RLIMIT_NPROC, user_.uid() ? job_.limits.processes : tasks_of_others + job_.limits.processes);
+  if (job_.limits.processes > 0 && (user_.uid() || counts_others)) set_limit(RLIMIT_NPROC, tasks_of_others + job_.limits.processes);
   if (starts_once()) send_start_permit(kBodyFd);
   set_limits(job_.limits);
   filter.restrict_self();

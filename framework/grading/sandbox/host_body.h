@@ -6,6 +6,8 @@
 /// refuses open, clone and all other calls but a list, and lets it be started exactly once.
 #pragma once
 
+#include <unistd.h>
+
 #include <optional>
 
 #include "framework/grading/sandbox/body.h"
@@ -33,6 +35,7 @@ class HostBody : public SandboxBody {
   void change_user() const;
 
   const SandboxJob& job_;
+  const pid_t keeper_ = ::getpid();
   const SandboxUser user_;          // of this run alone
   std::optional<Stage> tmp_;
   int start_[2] = {-1, -1};         // the child sends the descriptor that lets it start once
