@@ -4,6 +4,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -87,6 +88,8 @@ std::string Victim::attack(const std::string& what) {
 
 void Attack::SetUp() {
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
+  static const int told = std::printf("sandbox: %s\n", protection_in_words(chosen_sandbox()).c_str());
+  (void)told;
   if (const auto why = why_no_sandbox(chosen_sandbox())) GTEST_SKIP() << "no sandbox on this machine: " << *why;
 }
 
