@@ -118,7 +118,7 @@ ExitCode check_foreign(const Command& command, const CheckWords& words, const fs
   if (!fs::exists(program)) throw UserError(program.string(), "is not built", "Run ./tumble check, which builds it.");
   const PrivateFolder folder;
   const fs::path object = folder.path() / (words.id + ".so");
-  const auto built = grading::build_module(command.root, command.build, folder_of(words.id), file, object);
+  const auto built = grading::build_module(command.root, command.build, words.id, folder_of(words.id), file, object);
   if (built.outcome == grading::BuiltSubmission::Outcome::kGraderFault) throw std::runtime_error("the sandboxed compiler could not be asked: " + built.said);
   if (built.outcome == grading::BuiltSubmission::Outcome::kRefused) return does_not_compile(file, header, built.said);
   print_warnings(file, built.said);

@@ -12,6 +12,7 @@
 #include "framework/grading/grades/grade.h"
 #include "framework/grading/grades/grade_many.h"
 #include "framework/grading/grades/grade_pages.h"
+#include "framework/grading/sandbox/protection.h"
 #include "framework/report/html.h"
 
 namespace tumble::cli {
@@ -84,7 +85,7 @@ void write_index(const Context& context, const std::vector<Graded>& all, const f
   links.push_back({"Three engines on the paper's scenes", report::link_to(fs::path(kEngines) / "index.html")});
   page.links(links);
   page.heading("Scores", 2, "scores");
-  page.paragraph("The reference solution, the stub as students get it, and a submission with mistakes that students make. Each was compiled and run in a sandbox, "
+  page.paragraph("The reference solution, the stub as students get it, and a submission with mistakes that students make. Each was compiled and run in a sandbox (" + grading::protection_in_words(grading::chosen_sandbox()) + "), "
                  "and judged from outside it. The names link to the student's page.");
   add_scores(page, all);
   for (const Graded& graded : all) {
@@ -128,6 +129,7 @@ void demo(Context& context, const DemoOptions& options) {
   for (const modules::ModuleKind* kind : context.registry.all()) {
     grading::GradeOptions grade;
     grade.jobs = options.jobs;
+    grade.accepted_sandbox = grading::traits_of(grading::chosen_sandbox()).name;   // it shows the grader, and gives nobody a grade
     grade.progress = [kind](const grading::GradeProgress& progress) { tell_progress(kind->id, progress); };
     all.push_back({kind, grading::grade_submissions(course, kind->id, submissions_of(context, *kind), out / kind->id, grade)});
   }

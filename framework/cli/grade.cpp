@@ -11,6 +11,7 @@
 #include "framework/grading/grades/grade.h"
 #include "framework/grading/grades/grade_many.h"
 #include "framework/grading/grades/grade_pages.h"
+#include "framework/grading/sandbox/protection.h"
 #include "framework/grading/verdicts/plain_text.h"
 
 namespace tumble::cli {
@@ -23,6 +24,7 @@ struct GradeWords {
   int jobs = static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   double budget_s = grading::GradeOptions{}.budget_s;
   bool no_media = false;
+  std::string sandbox, accepted_sandbox;
 };
 
 std::string span_of(double seconds) {
@@ -59,18 +61,22 @@ void grade(Context& context, const GradeWords& words) {
   const modules::ModuleKind& kind = context.registry.find(words.id);
   const grading::Course course{context.root, context.build, &context.registry, context.command_line};
   grading::judge_of(course, words.id);  // refused before any submission is read
+  if (!words.sandbox.empty()) grading::choose_sandbox(words.sandbox);
+  const grading::GradeProtection protection = grading::protection_of_grades(words.accepted_sandbox);
   const auto found = grading::find_submissions(words.folder, kind);
   grading::GradeOptions options;
   options.jobs = words.jobs;
   options.budget_s = words.budget_s;
   options.media = !words.no_media;
+  options.accepted_sandbox = words.accepted_sandbox;
   options.progress = tell;
   const fs::path out = words.out.empty() ? fs::path("out") / ("grade_" + words.id) : fs::path(words.out);
   options.notice = [](const std::string& sentence) { fmt::print(stderr, "{}\n", grading::plain_text(sentence)); };
   for (const std::string& name : found.passed_over) fmt::print(stderr, "passed over: {}\n", grading::plain_name(name));
-  fmt::print(stderr, "{} submission{} of {}, {} at a time, into {}\n", found.all.size(), found.all.size() == 1 ? "" : "s", words.id, words.jobs, out.string());
+  fmt::print(stderr, "{} submission{} of {}, {} at a time, into {}; sandbox: {}\n", found.all.size(), found.all.size() == 1 ? "" : "s", words.id, words.jobs, out.string(), protection.words);
   const auto grades = grading::grade_submissions(course, words.id, found, fs::absolute(out), options);
   print_table(grades);
+  if (!protection.is_official) fmt::print("{}\n", protection.note);
   fmt::print("wrote {} and {}\n", (out / "index.html").string(), (out / "gradebook.csv").string());
   for (const auto& grade : grades) {
     if (!grade.is_final()) context.exit = ExitCode::kOurBug;
@@ -89,6 +95,8 @@ void add_grade(CLI::App& app, Context& context) {
   verb.option("--jobs", words->jobs, "Submissions at a time").between(1, 256).default_text("number of cores");
   verb.option("--budget-s", words->budget_s, "Time for all tests of one submission together; tests after it are out of time, not run").positive().shows_default();
   verb.flag("--no-media", words->no_media, "Without pictures, videos and pages that play: seconds instead of minutes a submission");
+  verb.option("--sandbox", words->sandbox, "namespaces, landlock or bare; default: the strongest that this machine has (tumble doctor)").type_name("KIND");
+  verb.option("--accept-sandbox", words->accepted_sandbox, "Grade in this kind although the policy for grades refuses it; every result says that it is not official").type_name("KIND");
   verb.footer("Exit: 0 all graded, 1 a submission without a file (its score is blank, with the reason), 2 something to repair, "
               "3 the grader failed or the machine was too busy somewhere (those scores are blank; run it again).\n"
               "Earlier results count where they are signed by this machine's key ($TUMBLE_GRADER_KEY, else ~/.local/state/tumble/grader.key, made on first use).");

@@ -21,6 +21,7 @@ void add_audit(CLI::App& app, Context& context);
 void add_battery(CLI::App& app, Context& context);
 void add_cost(CLI::App& app, Context& context);
 void add_demo(CLI::App& app, Context& context);
+void add_doctor(CLI::App& app, Context& context);
 void add_engines(CLI::App& app, Context& context);
 void add_explain(CLI::App& app, Context& context);
 void add_grade(CLI::App& app, Context& context);

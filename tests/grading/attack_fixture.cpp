@@ -4,11 +4,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cstdio>
 #include <fstream>
 #include <map>
 #include <sstream>
 
 #include "framework/core/files.h"
+#include "framework/grading/sandbox/protection.h"
 
 namespace tumble::grading {
 namespace {
@@ -41,6 +43,7 @@ Compiled compile_source(const std::string& text, const fs::path& object, const C
   job.source = scratch() / "waist.cpp";
   job.object = object;
   job.limits = limits;
+  job.id = "waist";
   std::ofstream(job.source) << text;
   return compile_submission(job);
 }
@@ -85,7 +88,9 @@ std::string Victim::attack(const std::string& what) {
 
 void Attack::SetUp() {
   ::prctl(PR_SET_CHILD_SUBREAPER, 1);
-  if (const auto why = why_no_sandbox(worker_programs("waist").init)) GTEST_SKIP() << "no sandbox on this machine: " << *why;
+  static const int told = std::printf("sandbox: %s\n", protection_in_words(chosen_sandbox()).c_str());
+  (void)told;
+  if (const auto why = why_no_sandbox(chosen_sandbox())) GTEST_SKIP() << "no sandbox on this machine: " << *why;
 }
 
 }  // namespace tumble::grading

@@ -33,7 +33,7 @@ class JudgeAttack : public Attack {
     const std::string text{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
     std::ofstream(folder_ / "a1_impulse.cpp") << evil << "\n" << text;
     const fs::path object = folder_ / "a1.so", record = folder_ / "record.json";
-    const Compiled compiled = compile_submission({root, "assignments/a1_impulse/a1_impulse.h", folder_ / "a1_impulse.cpp", object, {}});
+    const Compiled compiled = compile_submission({root, "assignments/a1_impulse/a1_impulse.h", folder_ / "a1_impulse.cpp", object, {}, "a1"});
     EXPECT_EQ(compiled.outcome, Compiled::Outcome::kBuilt) << compiled.said;
     const std::string words = judge_.string() + " --submission " + object.string() + " --json " + record.string() + " 'Ray*' > " + (folder_ / "said").string();
     code_ = WEXITSTATUS(std::system(words.c_str()));

@@ -1,8 +1,10 @@
 // The sandbox itself: limits, endings, and clean-up.
+#include <fcntl.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "framework/grading/sandbox/protection.h"
 #include "framework/grading/sandbox/sandbox.h"
 #include "tests/grading/attack_fixture.h"
 
@@ -25,6 +27,7 @@ class SandboxEnds : public Attack {
   SandboxJob shell(const std::string& script) {
     SandboxJob job;
     job.command = {"/usr/bin/sh", "-c", script};
+    job.kind = chosen_sandbox();
     job.init = init_;
     job.uid = user_->uid();
     job.limits.wall_s = 5.0;
@@ -55,13 +58,14 @@ TEST_F(SandboxEnds, MissingProgramIsNotAFaultOfTheSandbox) {
 
 TEST_F(SandboxEnds, SandboxThatCannotStartSaysSo) {
   SandboxJob job = shell("true");
-  job.init = "/no/such/init";
+  job.binds = {{"/no/such/file", "/file"}};
   const SandboxOutcome outcome = Sandbox::start(job).wait();
   EXPECT_EQ(outcome.ending, Ending::kNotStarted);
   EXPECT_FALSE(outcome.printed.empty());
 }
 
 TEST_F(SandboxEnds, InitThatNeverReportsCountsAsNotStarted) {
+  if (!traits_of(chosen_sandbox()).needs_init) GTEST_SKIP() << "the keeper itself sees the end of the program";
   // Fail-closed: if process 1 exits with code 0 but without a report, that is a fault of the
   // grader, never a result.
   SandboxJob job = shell("true");
@@ -75,6 +79,7 @@ TEST_F(SandboxEnds, WallTimeCpuTimeAndOutputAreLimited) {
   EXPECT_EQ(Sandbox::start(sleeping).wait().ending, Ending::kWallLimit);
   SandboxJob spinning = shell("trap '' XCPU; while :; do :; done");
   spinning.limits.cpu_s = 1;
+  spinning.limits.wall_s = 120.0;   // a loaded machine gives that second late
   const SandboxOutcome spun = Sandbox::start(spinning).wait();
   EXPECT_EQ(spun.ending, Ending::kSignal);
   EXPECT_TRUE(spun.code == SIGXCPU || spun.code == SIGKILL) << spun.code;
@@ -88,6 +93,66 @@ TEST_F(SandboxEnds, ManySpinningProcessesEndAtTheWallLimit) {
 }
 
 TEST_F(SandboxEnds, DaemonsDieWithTheirParent) { EXPECT_EQ(run("setsid sleep 100 & exit 0").code, 0); }
+
+int processes_of_all() {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator("/proc")) count += std::atoi(entry.path().filename().c_str()) > 0 ? 1 : 0;
+  return count;
+}
+
+TEST_F(SandboxEnds, ForkBombsOfToolsLeaveNoProcess) {
+  // A tree of 1,023 processes that all become orphans and wait for the channel. It is finite and ends
+  // with this test, so that without its limit it fails a test and does not fill the machine.
+  int ends[2];
+  ASSERT_EQ(::pipe2(ends, O_CLOEXEC), 0);
+  SandboxJob job = shell("tree() { [ $1 = 0 ] || { tree $(($1 - 1)) & tree $(($1 - 1)) & }; read x <&3; }; tree 9");
+  job.channel = ends[0];
+  job.limits.processes = 40;
+  const int before = processes_of_all();
+  Sandbox sandbox = Sandbox::start(job);
+  ::close(ends[0]);
+  ::usleep(1'000'000);
+  // 40, and 200 more where the user has other processes; some belong to the machine.
+  EXPECT_LT(processes_of_all() - before, can_change_user() || traits_of(chosen_sandbox()).generations > 1 ? 100 : 350);
+  sandbox.stop();
+  EXPECT_EQ(descendants_left(), 0);
+  ::close(ends[1]);
+}
+
+TEST_F(SandboxEnds, TemporaryFolderIsLimitedAndRemoved) {
+  SandboxJob job = shell("cd \"$0\" && pwd && for i in 1 2 3 4 5 6 7 8; do head -c 4000000 /dev/zero > $i || exit 9; sleep 0.1; done");
+  job.command.push_back(kTmpInside);
+  job.limits.tmp_bytes = 8 << 20;
+  const SandboxOutcome full = Sandbox::start(job).wait();
+  EXPECT_TRUE(full.ending == Ending::kDiskLimit || (full.ending == Ending::kExited && full.code == 9)) << full.code << full.printed;
+  EXPECT_EQ(full.printed.substr(0, 5), "/tmp\n") << "its name inside, whatever it is outside";
+  job.limits.tmp_bytes = 64 << 20;
+  EXPECT_EQ(Sandbox::start(job).wait().code, 0);
+  std::size_t stages = 0;
+  const std::string own = "tumble-stage-" + std::to_string(::getpid()) + "-", name = "tumble-stage-";
+  for (const auto& entry : std::filesystem::directory_iterator("/tmp")) {
+    const std::string found = entry.path().filename().string();
+    const bool is_of_a_keeper = found.starts_with(name) && !found.starts_with(own) && std::filesystem::exists(entry.path() / "8");
+    stages += is_of_a_keeper ? 1 : 0;
+  }
+  EXPECT_EQ(stages, 0u);
+}
+
+TEST_F(SandboxEnds, FilesInTheTemporaryFolderCannotBeRun) {
+  if (traits_of(chosen_sandbox()).kind != SandboxKind::kLandlock) GTEST_SKIP() << "only Landlock tells running from reading";
+  SandboxJob job = shell("cp /usr/bin/true \"$0/program\" && \"$0/program\"");
+  job.command.push_back(kTmpInside);
+  EXPECT_EQ(Sandbox::start(job).wait().code, 126) << "as a shell says: found, and may not be run";
+}
+
+TEST_F(SandboxEnds, UsersAreNeitherTheGradersNorSharedByRuns) {
+  if (!can_change_user()) GTEST_SKIP() << "this user cannot take another";
+  const std::string mine = std::to_string(::getuid()) + "\n";
+  EXPECT_NE(run("id -u").printed, mine);
+  if (traits_of(chosen_sandbox()).generations > 1) return;   // inside, namespaces show one number to all
+  Sandbox first = Sandbox::start(shell("id -u; sleep 1")), second = Sandbox::start(shell("id -u; sleep 1"));
+  EXPECT_NE(first.wait().printed, second.wait().printed);
+}
 
 TEST_F(SandboxEnds, NewNamespacesCannotBeCreated) { EXPECT_NE(run("unshare -U true").code, 0); }
 
@@ -114,7 +179,9 @@ TEST_F(SandboxEnds, StagesAreReadableOnlyByTheSandboxAndRemoved) {
   {
     Stage stage(&*user_);
     path = stage.add_text("secret", "deep");
-    EXPECT_EQ(std::filesystem::status(path.parent_path()).permissions(), std::filesystem::perms::owner_all);
+    // The group is that of the job's user, which only its runs have.
+    const auto others = std::filesystem::perms::others_all | std::filesystem::perms::group_write;
+    EXPECT_EQ(std::filesystem::status(path.parent_path()).permissions() & others, std::filesystem::perms::none);
   }
   EXPECT_FALSE(std::filesystem::exists(path));
 }

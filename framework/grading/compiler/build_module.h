@@ -14,9 +14,9 @@ struct BuiltSubmission {
 
 /// Compiles in the sandbox, where nothing of the project but headers can be seen.
 /// @param root, build   of the source tree and of the build tree
-/// @param folder        of the assignment, e.g. "a1_impulse"
+/// @param id, folder    of the assignment, e.g. "a1", "a1_impulse"
 /// @param object        written where the outcome is kBuilt
-BuiltSubmission build_module(const std::filesystem::path& root, const std::filesystem::path& build, const std::string& folder,
+BuiltSubmission build_module(const std::filesystem::path& root, const std::filesystem::path& build, const std::string& id, const std::string& folder,
                              const std::filesystem::path& source, const std::filesystem::path& object);
 
 /// The header that says what the module of an assignment is, from the root.

@@ -14,6 +14,7 @@
 
 #include "framework/core/error.h"
 #include "framework/core/files.h"
+#include "framework/grading/sandbox/protection.h"
 #include "framework/grading/sandbox/sandbox.h"
 
 namespace tumble::grading {
@@ -28,11 +29,24 @@ constexpr const char* kHeadersInside = "/headers";
 constexpr const char* kSourceInside = "/submission";
 constexpr const char* kPrecompiled = "precompiled.h";
 
-// The compiler may fork its passes, and links to /tmp. The object leaves the sandbox through
-// descriptor 3, not through a shared folder.
-constexpr const char* kScript = "cd /submission && /usr/bin/g++ " TUMBLE_SUBMISSION_FLAGS
-                                " -Wall -Wextra -Wno-unused-parameter -fdiagnostics-color=never -fmax-errors=20 -I /headers -isystem " TUMBLE_EIGEN_INCLUDE
-                                " -include /headers/precompiled.h -x c++ \"$1\" -x none -shared -Wl,-z,defs -o /tmp/module.so && exec cat /tmp/module.so >&3";
+constexpr const char* kWorkerInside = "/worker.o";
+
+// The compiler may fork its passes, and links to a temporary folder. The object leaves the sandbox
+// through descriptor 3, not through a shared folder. Arguments: the file's name, then what
+// kHeadersInside, kSourceInside, kTmpInside and kWorkerInside are called in the sandbox that runs it,
+// and the name that the module exports.
+#define TUMBLE_COMPILE                                                                                  \
+  "cd \"$3\" && /usr/bin/g++ " TUMBLE_SUBMISSION_FLAGS                                                  \
+  " -Wall -Wextra -Wno-unused-parameter -fdiagnostics-color=never -fmax-errors=20 -I \"$2\" "          \
+  "-ffile-prefix-map=\"$2\"=/headers -isystem " TUMBLE_EIGEN_INCLUDE                                    \
+  " -include \"$2/precompiled.h\" -x c++ \"$1\" -x none "
+constexpr const char* kToSharedObject = TUMBLE_COMPILE "-shared -Wl,-z,defs -o \"$4/module\" && exec cat \"$4/module\" >&3";
+// Only the module's table stays visible to the worker: a main() or an operator new of the submission
+// replaces nothing in it.
+constexpr const char* kToWorker = TUMBLE_COMPILE
+    "-c -o \"$4/own.o\" && ld -r --force-group-allocation \"$4/own.o\" -o \"$4/module.o\" && objcopy --keep-global-symbol=\"$6\" \"$4/module.o\""
+    " && /usr/bin/g++ -static-pie \"$5\" \"$4/module.o\" -o \"$4/module\" && exec cat \"$4/module\" >&3";
+#undef TUMBLE_COMPILE
 
 // Headers of the tree that a text includes, directly or indirectly, restricted to those that
 // students have.
@@ -59,10 +73,11 @@ void stage_precompiled(Stage& headers, const fs::path& build) {
   if (fs::exists(folder / binary)) headers.add_file(folder / binary, binary);
 }
 
-fs::path init_program(const fs::path& build) {
-  const fs::path init = (build.empty() ? fs::canonical("/proc/self/exe").parent_path() : build / "bin") / "sandbox_init";
-  if (!fs::exists(init)) throw UserError(init.string(), "is not built", "Build the target sandbox_init.");
-  return init;
+// One of bin/ of the build tree.
+fs::path program(const fs::path& build, const std::string& name) {
+  const fs::path file = (build.empty() ? fs::canonical("/proc/self/exe").parent_path() : build / "bin") / name;
+  if (!fs::exists(file)) throw UserError(file.string(), "is not built", "Build the target " + file.stem().string() + ".");
+  return file;
 }
 
 // Everything from the pipe, up to one byte above the limit, which shows that the limit was
@@ -100,6 +115,7 @@ Compiled judge(const SandboxOutcome& outcome, const std::string& object, const C
     case Ending::kStopped: return {Outcome::kGraderFault, "the sandbox did not start: " + said};
     case Ending::kWallLimit: return {Outcome::kGraderFault, "the machine was too busy: the compiler had not finished after " + std::to_string(static_cast<int>(limits.wall_s)) + " s, and had computed for less than " + std::to_string(limits.cpu_s) + " s. Run it again when the machine is less busy"};
     case Ending::kStalled: return {Outcome::kOutOfResources, "the compiler made no progress: it waits for something, such as an #include of something that is not a file"};
+    case Ending::kDiskLimit: return {Outcome::kOutOfResources, "the compiler ran out of room for files\n" + said};
     case Ending::kOutputLimit: return {Outcome::kOutOfResources, "the compiler's messages exceeded their limit; the first were:\n" + said.substr(0, 2000)};
     case Ending::kSignal: return {Outcome::kOutOfResources, "a limit ended the compiler\n" + said};
     case Ending::kExited: break;
@@ -112,15 +128,15 @@ Compiled judge(const SandboxOutcome& outcome, const std::string& object, const C
   return {Outcome::kRefused, said};
 }
 
-SandboxJob sandbox_job(const CompileLimits& limits, const fs::path& init) {
+SandboxJob sandbox_job(const CompileLimits& limits) {
   SandboxJob job;
+  job.kind = chosen_sandbox();
   job.limits.wall_s = limits.wall_s;
   job.limits.cpu_s = limits.cpu_s;
   job.limits.stall_s = limits.stall_s;
   job.limits.memory_bytes = limits.memory_bytes;
   job.limits.tmp_bytes = 128ull << 20;
   job.limits.processes = 16;
-  job.init = init;
   return job;
 }
 
@@ -147,11 +163,15 @@ Compiled compile_submission(const CompileJob& job) {
 
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) return {Outcome::kGraderFault, "no descriptor left for a compiler"};
-  SandboxJob inside = sandbox_job(job.limits, tools.add_file(init_program(job.build), "init", true));
+  SandboxJob inside = sandbox_job(job.limits);
+  if (traits_of(inside.kind).needs_init) inside.init = tools.add_file(program(job.build, "sandbox_init"), "init", true);
   inside.binds = {{headers.path(), kHeadersInside}, {submission.path(), kSourceInside}};
   // A name such as "-o" or "@file" must not be read as an option.
   const bool plain_name = std::isalnum(static_cast<unsigned char>(name[0])) != 0 || name[0] == '_';
-  inside.command = {"/usr/bin/sh", "-c", kScript, "compile", plain_name ? name : "./" + name};
+  const bool links_worker = traits_of(inside.kind).links_worker;
+  if (links_worker) inside.binds.push_back({tools.add_file(program(job.build, "worker_" + job.id + ".o"), "worker.o"), kWorkerInside});
+  inside.command = {"/usr/bin/sh", "-c", links_worker ? kToWorker : kToSharedObject, "compile", plain_name ? name : "./" + name,
+                    kHeadersInside, kSourceInside, kTmpInside, kWorkerInside, "tumble_module_" + job.id};
   inside.uid = user.uid();
   inside.channel = ends[1];
   Sandbox sandbox = Sandbox::start(inside);

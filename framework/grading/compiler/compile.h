@@ -1,4 +1,5 @@
-/// Compiles a submission's source to a shared object, inside the sandbox. The compiler sees this
+/// Compiles a submission's source inside the sandbox: to a shared object, or, in a kind of sandbox in
+/// which no worker can load one, to the whole program of a worker. The compiler sees this
 /// one file, the headers that a student has, and the system's headers; nothing of a solution, a
 /// test or another submission.
 #pragma once
@@ -23,6 +24,7 @@ struct CompileJob {
   std::filesystem::path source;     // the file handed in
   std::filesystem::path object;     // written where the outcome is kBuilt
   CompileLimits limits;
+  std::string id = {};              // of the module, "a1": where a sandbox links the worker, bin/worker_ID.o of the build tree
   std::filesystem::path build = {};   // build tree with bin/sandbox_init and the precompiled header in submission_sdk/; empty: that of this program
 };
 

@@ -4,7 +4,7 @@ namespace tumble::grading {
 namespace fs = std::filesystem;
 
 BuiltSubmission build_submission(const Course& course, const std::string& id, const fs::path& source, const fs::path& object) {
-  return build_module(course.root, course.build, course.registry->find(id).folder, source, object);
+  return build_module(course.root, course.build, id, course.registry->find(id).folder, source, object);
 }
 
 fs::path module_header(const Course& course, const std::string& id) { return course.root / header_in(course.registry->find(id).folder); }

@@ -6,6 +6,7 @@
 #include "framework/core/error.h"
 #include "framework/core/nearest_word.h"
 #include "framework/grading/course/run_program.h"
+#include "framework/grading/sandbox/protection.h"
 
 namespace tumble::grading {
 
@@ -84,6 +85,7 @@ CourseSnapshot::CourseSnapshot(const Course& course, const std::string& id) : co
   };
   judge_of(course, id);
   for (const std::string& program : {"judge_" + id, "worker_" + id, std::string("sandbox_init")}) copy(fs::path("bin") / program);
+  if (traits_of(chosen_sandbox()).links_worker) copy(fs::path("bin") / ("worker_" + id + ".o"));
   for (const modules::ModuleKind* kind : course.registry->all())
     if (const fs::path file = built_module(course, kind->id, "reference"); fs::exists(file)) copy(file.lexically_relative(course.build));
   std::error_code ignored;

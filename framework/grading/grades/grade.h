@@ -74,6 +74,8 @@ struct Grade {
   std::vector<TestChange> changes;   // test by test
   std::vector<std::string> remarks;  // for the grader only, because they name other submissions
   std::string student_id;            // of the submission
+  std::string sandbox;               // what protected the grader, in words
+  bool is_official = true;           // the policy accepts that protection
 
   /// Whether no test ended in a fault of the grader or because the machine was too busy.
   bool is_final() const;
@@ -92,6 +94,7 @@ struct GradeOptions {
   int jobs = 1;                      // submissions graded at the same time, each in a separate process
   bool media = true;
   MediaOptions media_options;
+  std::string accepted_sandbox;      // a kind of sandbox that is used although the policy refuses it; results are marked
   std::vector<std::filesystem::path> scenes;   // empty: the assignment's demo scenes
   std::function<void(const GradeProgress&)> progress;
   std::function<void(const std::string&)> notice;   // called with a sentence for the user; may be empty

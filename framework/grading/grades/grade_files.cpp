@@ -130,6 +130,8 @@ GradeRecord record_of(const Json& json) {
   for (const Json& c : json.at("changes")) grade.changes.push_back({c.at("test"), c.at("title"), c.at("before"), c.at("after"), c.at("reason")});
   grade.story = json.at("story");
   grade.notes = json.at("notes").get<std::vector<std::string>>();
+  grade.sandbox = json.at("sandbox");
+  grade.is_official = json.at("official");
   for (const Json& test : json.at("tests")) grade.tests.push_back(test_of(test));
   for (const Json& media : json.at("media")) grade.media.push_back(media_of(media));
   grade.cost = cost_of(json.at("cost"));
@@ -137,12 +139,12 @@ GradeRecord record_of(const Json& json) {
 }
 
 // The last line of a page: the first digits of each digest, which identify the entry in the ledger.
-std::string graded_from(const GradeKey& key) {
+std::string graded_from(const Grade& grade, const GradeKey& key) {
   constexpr std::size_t kShown = 16;
   const auto head = [](const std::string& digits) { return digits.substr(0, kShown); };
   std::string text = "Submission " + head(key.submission) + " · judge " + head(key.judging) + " · rubric " + head(key.rubric);
   if (!key.pictures.empty()) text += " · pictures " + head(key.pictures);
-  return text + " · " + version_in_words(kProgramVersion);
+  return text + " · sandbox " + grade.sandbox + " · " + version_in_words(kProgramVersion);
 }
 
 }  // namespace
@@ -160,7 +162,7 @@ std::string gradescope_json(const Grade& grade) {
   page["test_name_format"] = "text";
   page["visibility"] = "visible";
   page["stdout_visibility"] = "hidden";
-  page["extra_data"] = {{"version", kProgramVersion}, {"state", kStates.at(static_cast<std::size_t>(grade.state))}, {"final", grade.is_final()}};
+  page["extra_data"] = {{"version", kProgramVersion}, {"state", kStates.at(static_cast<std::size_t>(grade.state))}, {"final", grade.is_final()}, {"sandbox", grade.sandbox}, {"official", grade.is_official}};
   page["tests"] = Json::array();
   for (const ScoredTest& test : grade.tests) {
     Json entry;
@@ -190,7 +192,9 @@ bool is_points_row(std::string name) {
 }  // namespace
 
 std::string gradebook_csv(const std::string& assignment_title, const std::vector<Grade>& grades) {
-  std::string text = "Student,ID,SIS Login ID,Section," + csv_cell(assignment_title) + "\n";
+  // Another column than that of the official grades: Canvas would enter these there.
+  const bool is_official = std::all_of(grades.begin(), grades.end(), [](const Grade& grade) { return grade.is_official; });
+  std::string text = "Student,ID,SIS Login ID,Section," + csv_cell(assignment_title + (is_official ? "" : " - not official; see the notes")) + "\n";
   double possible = 0.0;
   for (const Grade& grade : grades) possible = std::max(possible, grade.possible);
   text += "    Points Possible,,,," + points_text(possible) + "\n";
@@ -230,6 +234,8 @@ std::string record_json(const GradeRecord& record, const std::string& machine_ke
   json["changes"] = changes_json(grade.changes);
   json["story"] = grade.story;
   json["notes"] = grade.notes;
+  json["sandbox"] = grade.sandbox;
+  json["official"] = grade.is_official;
   json["tests"] = Json::array();
   for (const ScoredTest& test : grade.tests) json["tests"].push_back(test_json(test));
   json["media"] = Json::array();
@@ -265,7 +271,7 @@ EarlierRun read_earlier_run(const fs::path& folder, const std::string& assignmen
 
 void write_grade(const modules::ModuleKind& kind, const Grade& grade, const GradeKey& key, const fs::path& folder, const std::string& machine_key) {
   write_whole(folder / "results.json", gradescope_json(grade));
-  submission_page(kind, grade, graded_from(key)).write(folder / "index.html");
+  submission_page(kind, grade, graded_from(grade, key)).write(folder / "index.html");
   write_whole(folder / kRecord, record_json({grade, key, kind.id, digests_below(folder)}, machine_key));
 }
 
@@ -280,6 +286,7 @@ std::string ledger_json(const std::string& id, const std::vector<GradeRecord>& r
                                      {"judging", record.key.judging}, {"rubric", record.key.rubric},
                                      {"results", results == record.files.end() ? "missing" : results->second},
                                      {"score", record.grade.has_score() ? Json(record.grade.score) : Json(nullptr)}, {"final", record.grade.is_final()},
+                                     {"sandbox", record.grade.sandbox}, {"official", record.grade.is_official},
                                      {"remarks", record.grade.remarks}, {"change", record.grade.change}, {"changes", changes_json(record.grade.changes)}});
   }
   return dumped(ledger);

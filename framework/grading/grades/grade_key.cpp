@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "framework/core/digest.h"
+#include "framework/grading/sandbox/protection.h"
 
 namespace tumble::grading {
 namespace {
@@ -28,6 +29,7 @@ std::string judging_digest(const Course& course, const std::string& id) {
   std::sort(headers.begin(), headers.end());
   const fs::path bin = course.build / "bin";
   std::vector<fs::path> files = {bin / ("judge_" + id), bin / ("worker_" + id), bin / "sandbox_init", "/usr/bin/g++"};
+  if (traits_of(chosen_sandbox()).links_worker) files.push_back(bin / ("worker_" + id + ".o"));
   files.insert(files.end(), headers.begin(), headers.end());
   return digest_of_files(files);
 }

@@ -23,6 +23,7 @@
 #include "framework/grading/course/machine_key.h"
 #include "framework/grading/grades/grade_submission.h"
 #include "framework/grading/grades/output_folder.h"
+#include "framework/grading/sandbox/protection.h"
 #include "framework/grading/verdicts/plain_text.h"
 #include "framework/grading/course/processes.h"
 #include "framework/grading/grades/scoring.h"
@@ -46,7 +47,7 @@ struct Work {
 class Batch {
  public:
   Batch(const Course& course, const std::string& id, const fs::path& submissions, const fs::path& out, const GradeOptions& options)
-      : snapshot_(course, id), course_(snapshot_.course()), id_(id), kind_(course.registry->find(id)), options_(options) {
+      : protection_(protection_of_grades(options.accepted_sandbox)), snapshot_(course, id), course_(snapshot_.course()), id_(id), kind_(course.registry->find(id)), options_(options) {
     require_rubric_of_judge(course_, id);
     rubric_ = rubric_of(course_, id);
     refuse_key_in(out);
@@ -92,7 +93,7 @@ class Batch {
 
   // Reuses earlier results that are complete, signed and unchanged.
   void plan(const std::vector<Submission>& submissions) {
-    const std::string judging = grader_digest(course_, id_, options_.budget_s), pictures = pictures_digest(course_, id_, options_);
+    const std::string judging = digest(grader_digest(course_, id_, options_.budget_s) + protection_.words), pictures = pictures_digest(course_, id_, options_);
     std::set<std::string> folders;
     for (const Submission& submission : submissions) {
       // Names of folders are unique, but a student may have two flat files: each gets its own
@@ -197,7 +198,10 @@ class Batch {
       if (verdicts_stand(work)) grade = graded_by(rubric_, work.earlier.record->grade);   // only points have changed: added up again, not run again
       GradeKey key = work.key;
       const bool is_rerun = !grade;
-      if (is_rerun) grade = grade_submission(course_, id_, *work.submission, made_of(work), own);
+      if (is_rerun) {
+        grade = grade_submission(course_, id_, *work.submission, made_of(work), own);
+        note_protection(*grade);
+      }
       grade->folder = work.folder;
       if (!is_rerun || !options_.media) keep_media(work, *grade, key);
       grade->change.clear();
@@ -208,6 +212,12 @@ class Batch {
       write_whole(draft_of(work) / "fault.txt", error.what());
       throw;
     }
+  }
+
+  void note_protection(Grade& grade) const {
+    grade.sandbox = protection_.words;
+    grade.is_official = protection_.is_official;
+    if (!protection_.note.empty()) grade.notes.push_back(protection_.note);
   }
 
   // Keeps the pictures of an earlier run if none are made now: their files always, and on the page
@@ -297,6 +307,7 @@ class Batch {
     grade.folder = work.folder;
     grade.notes = work.submission->notes;
     grade.story = why;
+    note_protection(grade);
     grade.tests = score_nothing(rubric_, Verdict::kGraderFault, why);
     add_up(grade);
     fs::remove_all(made_of(work));
@@ -337,6 +348,7 @@ class Batch {
     return grades;
   }
 
+  const GradeProtection protection_;   // before anything else: where it is too weak, nothing is copied or written
   const CourseSnapshot snapshot_;
   const PrivateFolder sources_;
   const Course& course_;

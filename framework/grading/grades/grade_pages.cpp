@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <map>
+#include <set>
 #include <sstream>
 
 #include <fmt/format.h>
@@ -204,6 +205,8 @@ report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade
   }
   if (faults > 0) page.paragraph(fmt::format("{} without a final score: the grader failed, or the machine was too busy. Run the same command again; their scores in the gradebook are blank.", faults), Look::kWarning);
   if (not_found > 0) page.paragraph(fmt::format("{} without a file to grade: the table gives the reasons; their scores in the gradebook are blank.", not_found), Look::kWarning);
+  if (std::any_of(grades.begin(), grades.end(), [](const Grade& grade) { return !grade.is_official; }))
+    page.paragraph("These are not official grades: the sandbox gave less protection than the policy asks for. Each row's remarks name it.", Look::kWarning);
   report::Table table;
   table.columns = {{"Submission"}, {"Score", true}, {"of", true}, {"Right", true}, {"Wrong", true}, {"Not attempted", true}, {"Crashed", true}, {"Out of time or memory", true}, {"Remarks"}};
   for (const Grade& grade : grades) {
@@ -218,7 +221,9 @@ report::Page index_page(const modules::ModuleKind& kind, const std::vector<Grade
                           number(Verdict::kOutOfResources), {remarks, "", Look::kMuted}});
   }
   page.table(table);
-  page.record(version_in_words(kProgramVersion));   // without the command, which may name the number of jobs: pages are the same for any number
+  std::set<std::string> sandboxes;   // one, unless results of an earlier run in another one still count
+  for (const Grade& grade : grades) sandboxes.insert(grade.sandbox);
+  page.record(fmt::format("sandbox {} · {}", fmt::join(sandboxes, ", "), version_in_words(kProgramVersion)));   // without the command, which may name the number of jobs: pages are the same for any number
   return page;
 }
 

@@ -1,38 +1,19 @@
 /// Runs an untrusted program: no network, only the given files, limits on everything, no process
 /// left behind.
 ///
-/// bubblewrap creates the namespaces. A keeper process between the owner and bubblewrap enforces
-/// the limits on wall time and output, kills and reaps all processes, and ends with its owner or
-/// its sandbox. As root the program runs under an unprivileged uid.
+/// A body (body.h) confines the program: by namespaces, or by what else the kernel offers. A keeper
+/// process between the owner and the program enforces the limits on wall time and output, kills and
+/// reaps all processes, and ends with its owner or its sandbox. As root the program runs under an
+/// unprivileged uid.
 #pragma once
 
 #include <sys/types.h>
 
-#include <filesystem>
-#include <optional>
-#include <string>
-
 #include "framework/grading/sandbox/sandbox_job.h"
+#include "framework/grading/sandbox/sandbox_outcome.h"
 #include "framework/grading/sandbox/sandbox_user.h"
 
 namespace tumble::grading {
-
-struct SandboxOutcome {
-  enum class Ending {
-    kExited,        // code: of exit
-    kSignal,        // code: the signal; the limit on CPU time shows as SIGXCPU or SIGKILL
-    kWallLimit,
-    kStalled,       // slept past the limit
-    kOutputLimit,
-    kStopped,       // by its owner
-    kNotStarted,    // a fault of the grader; `printed` says why
-  };
-  Ending ending = Ending::kNotStarted;
-  int code = 0;
-  std::string printed;         // stdout and stderr, at most output_bytes
-  long peak_memory_kb = 0;
-  double cpu_s = 0.0;
-};
 
 /// A running sandbox. Destruction stops it.
 class Sandbox {
@@ -56,9 +37,7 @@ class Sandbox {
   pid_t keeper_ = -1;
   int hang_up_ = -1;   // closing it ends the sandbox
   int result_ = -1;
+  int generations_ = 1;   // from the keeper to the program
 };
-
-/// Why sandboxes do not work on this machine; nothing where they do.
-std::optional<std::string> why_no_sandbox(const std::filesystem::path& init);
 
 }  // namespace tumble::grading

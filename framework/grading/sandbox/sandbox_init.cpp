@@ -2,12 +2,14 @@
 // ended.
 //
 //   sandbox_init MAX_PROCESSES PROGRAM ARGUMENTS...
+//   sandbox_init --probe       the program that why_no_sandbox runs: does nothing
 //
 // It replaces bubblewrap's process 1, whose memory the program inside can write through
 // /proc/1/mem, to forge its exit status. This one is not dumpable, so no process inside can access
 // it or its descriptors. Linked statically, with plain C calls only.
 #include <errno.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -17,8 +19,6 @@
 
 namespace {
 
-constexpr int kCannotStart = 127;
-
 void report(const tumble::grading::InitReport& message) {
   while (write(tumble::grading::kStatusFd, &message, sizeof message) < 0 && errno == EINTR) {}
 }
@@ -27,6 +27,7 @@ void report(const tumble::grading::InitReport& message) {
 
 int main(int argc, char** argv) {
   using namespace tumble::grading;
+  if (argc == 2 && strcmp(argv[1], "--probe") == 0) return 0;
   if (argc < 3 || prctl(PR_SET_DUMPABLE, 0) != 0) return kCannotStart;
   const rlim_t processes = strtoul(argv[1], nullptr, 10);
   report({InitReport::kStarted, 0, 0, 0.0});

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "framework/grading/sandbox/sandbox_kind.h"
+
 namespace tumble::grading {
 
 struct SandboxLimits {
@@ -17,8 +19,8 @@ struct SandboxLimits {
   std::uint64_t cpu_s = 10;                      // per process; the wall limit bounds the sum
   std::uint64_t memory_bytes = 1ull << 30;       // of address space, per process
   std::uint64_t file_bytes = 64ull << 20;        // per file
-  std::uint64_t tmp_bytes = 64ull << 20;         // of /tmp; /dev/shm has a sixteenth of it
-  std::uint64_t processes = 12;                  // including threads; 0: not limited, for trusted programs
+  std::uint64_t tmp_bytes = 64ull << 20;         // of /tmp; 0: there is no folder to write to
+  std::uint64_t processes = 12;                  // including threads and process 1; 0: not limited, for trusted programs
   std::uint64_t open_files = 64;
   std::uint64_t output_bytes = 256ull << 10;     // printed; above it the program is killed
 };
@@ -26,16 +28,23 @@ struct SandboxLimits {
 /// A file or folder that is visible inside, read-only.
 struct Bind {
   std::filesystem::path from;   // accessible to the sandbox's user: see Stage
-  std::string to;
+  std::string to;               // its name inside; where the sandbox has no files of its own, it is read at `from`
 };
 
+/// Name inside of the folder that can be written to.
+inline constexpr const char* kTmpInside = "/tmp";
+
 struct SandboxJob {
-  std::vector<std::string> command;   // absolute path inside, then arguments
+  /// Absolute path inside, then arguments. A word that is Bind::to or kTmpInside, or a path below
+  /// one of them, is written as its name in the sandbox that runs it.
+  std::vector<std::string> command;
   std::vector<Bind> binds;            // beside /usr
   SandboxLimits limits;
+  bool is_alone = false;              // a submission: no further process or thread, no signal to another, no change to a file's attributes
   int channel = -1;                   // if >= 0, becomes descriptor 3 inside; the caller keeps its own copy
-  std::filesystem::path init;         // the program sandbox_init, accessible like Bind::from
+  std::filesystem::path init;         // the program sandbox_init, accessible like Bind::from; see SandboxTraits::needs_init
   std::optional<uid_t> uid;           // of SandboxUser
+  SandboxKind kind = SandboxKind::kNamespaces;   // chosen_sandbox(), unless one kind is examined
 };
 
 }  // namespace tumble::grading

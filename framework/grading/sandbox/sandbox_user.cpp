@@ -1,9 +1,11 @@
 // Uids and folders for sandboxes.
 #include <fcntl.h>
+#include <linux/capability.h>
 #include <pwd.h>
 #include <signal.h>
 #include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -20,7 +22,9 @@ namespace {
 
 // High in the range of ordinary users, where ids are usually free; an id in use is skipped.
 constexpr uid_t kFirstUid = 58100;
-constexpr uid_t kUids = 64;
+constexpr uid_t kUids = 64;                        // concurrent jobs
+constexpr uid_t kFirstRun = kFirstUid + kUids;
+constexpr uid_t kRuns = 128;                       // concurrent runs: while one of a job ends, its next one begins
 constexpr const char* kLockFolder = "/run/tumble";
 
 // A stage's name contains its maker's process id, so that stages of killed processes can be found
@@ -32,11 +36,24 @@ constexpr const char* kStageName = "tumble-stage-";
 
 void sweep_stages_of_the_dead() { sweep_folders_of_the_dead(kStageFolder, kStageName); }
 
-SandboxUser SandboxUser::lease() {
+bool can_change_user() {
+  if (::geteuid() != 0) return false;
+  __user_cap_header_struct head{_LINUX_CAPABILITY_VERSION_3, 0};
+  __user_cap_data_struct sets[2] = {};
+  if (::syscall(SYS_capget, &head, sets) != 0) return false;
+  for (const int needed : {CAP_CHOWN, CAP_DAC_OVERRIDE, CAP_FOWNER, CAP_KILL, CAP_SETGID, CAP_SETUID})
+    if ((sets[0].effective & (1u << needed)) == 0) return false;
+  return true;
+}
+
+SandboxUser SandboxUser::lease() { return lease_between(kFirstUid, kFirstUid + kUids); }
+SandboxUser SandboxUser::lease_for_run() { return lease_between(kFirstRun, kFirstRun + kRuns); }
+
+SandboxUser SandboxUser::lease_between(uid_t first, uid_t end) {
   SandboxUser user;
-  if (::geteuid() != 0) return user;
+  if (!can_change_user()) return user;
   ::mkdir(kLockFolder, 0700);
-  for (uid_t uid = kFirstUid; uid < kFirstUid + kUids; ++uid) {
+  for (uid_t uid = first; uid < end; ++uid) {
     if (::getpwuid(uid) != nullptr) continue;
     const std::string file = std::string(kLockFolder) + "/uid-" + std::to_string(uid);
     const int lock = ::open(file.c_str(), O_CREAT | O_RDWR | O_CLOEXEC | O_NOFOLLOW, 0600);
@@ -66,7 +83,7 @@ Stage::Stage(const SandboxUser* user) {
   path_ = name;
   alive_ = hold_folder(path_);
   if (user != nullptr) owner_ = user->uid();
-  hand_over(path_, user != nullptr ? 0700 : 0755);
+  hand_over(path_, owner_ ? 0750 : user != nullptr ? 0700 : 0755);
 }
 
 Stage::~Stage() {
@@ -84,7 +101,7 @@ std::filesystem::path Stage::add_file(const std::filesystem::path& from, const s
   const auto to = path_ / name;
   for (auto folder = std::filesystem::path(name).parent_path(); !folder.empty(); folder = folder.parent_path()) {
     std::filesystem::create_directories(path_ / folder);
-    hand_over(path_ / folder, owner_ ? 0700 : 0755);
+    hand_over(path_ / folder, owner_ ? 0750 : 0755);
   }
   std::error_code error;
   std::filesystem::copy_file(from, to, std::filesystem::copy_options::overwrite_existing, error);

@@ -9,21 +9,30 @@
 
 namespace tumble::grading {
 
-/// The user id of a sandboxed program outside its sandbox. As root: a separate uid for each
-/// concurrent job, leased until destruction. As an ordinary user: that user.
+/// Whether this process can give a program another user id: as root, unless its container has taken
+/// the capabilities for it.
+bool can_change_user();
+
+/// The user id of a sandboxed program outside its sandbox. Where the user can be changed: a separate
+/// uid for each concurrent job, leased until destruction. Else: this process's own user.
 class SandboxUser {
  public:
+  /// Of a job, whose files it may read.
   /// @throws UserError when all uids are in use
   static SandboxUser lease();
+  /// Of one run on the host, which shares it with no other process: so all processes of the run can
+  /// be counted and killed by their user.
+  static SandboxUser lease_for_run();
   SandboxUser(SandboxUser&& other) noexcept;
   SandboxUser& operator=(SandboxUser&&) = delete;
   ~SandboxUser();
 
-  /// Empty for an ordinary user, whose uid is kept.
+  /// Empty where the user is kept.
   std::optional<uid_t> uid() const { return uid_; }
 
  private:
   SandboxUser() = default;
+  static SandboxUser lease_between(uid_t first, uid_t end);
   std::optional<uid_t> uid_;
   int lock_ = -1;
 };
@@ -31,7 +40,8 @@ class SandboxUser {
 /// A folder that the sandbox's user can read, wherever the checkout is; removed at destruction.
 class Stage {
  public:
-  /// @param user  the only user that can read it; null: all users, for files that are not secret
+  /// @param user  the only user that can write to it, and the only group that can read it; null:
+  ///   all users can read it, for files that are not secret
   explicit Stage(const SandboxUser* user);
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;

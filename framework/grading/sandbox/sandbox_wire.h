@@ -1,11 +1,13 @@
-/// The protocol between process 1 of a sandbox and its keeper outside.
+/// The protocol between process 1 of a sandbox, or what becomes the program, and its keeper outside.
 #pragma once
 
 namespace tumble::grading {
 
 inline constexpr int kChannelFd = 3;   // of the program, where the job has a channel
-inline constexpr int kStatusFd = 4;    // of process 1 only
-inline constexpr int kFilterFd = 5;    // read and closed by bubblewrap
+inline constexpr int kStatusFd = 4;    // for InitReport; the program does not get it
+inline constexpr int kBodyFd = 5;      // SandboxBody::descriptor; bubblewrap reads its filter there
+
+inline constexpr int kCannotStart = 127;   // exit code where the program itself cannot be started, as in a shell
 
 struct InitReport {
   enum What : int { kStarted = 1, kEnded = 2 };

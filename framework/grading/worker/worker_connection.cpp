@@ -15,6 +15,7 @@
 
 #include "framework/grading/verdicts/call_log.h"
 #include "framework/grading/verdicts/death.h"
+#include "framework/grading/sandbox/protection.h"
 #include "framework/grading/sandbox/sandbox_wire.h"
 
 namespace tumble::grading {
@@ -80,16 +81,23 @@ WorkerConnection::WorkerConnection(WorkerOptions options) : options_(std::move(o
   const WorkerPrograms programs = worker_programs(options_.id, options_.programs);
   options_.module = std::filesystem::absolute(options_.module);
   if (!options_.sandboxed) return;
-  job_.init = stage_.add_file(programs.init, "init", true);
-  job_.binds = {{stage_.add_file(programs.worker, "worker", true), kWorkerInside}, {stage_.add_file(options_.module, "module.so", true), kModuleInside}};
-  job_.command = {kWorkerInside, kModuleInside};
+  job_.kind = chosen_sandbox();
+  if (traits_of(job_.kind).needs_init) job_.init = stage_.add_file(programs.init, "init", true);
+  if (traits_of(job_.kind).links_worker) {
+    job_.binds = {{stage_.add_file(options_.module, "worker", true), kWorkerInside}};
+    job_.command = {kWorkerInside};
+  } else {
+    job_.binds = {{stage_.add_file(programs.worker, "worker", true), kWorkerInside}, {stage_.add_file(options_.module, "module.so", true), kModuleInside}};
+    job_.command = {kWorkerInside, kModuleInside};
+  }
   job_.uid = user_.uid();
   job_.limits.wall_s = kPatience * options_.session_own_s + 5.0;  // the limits of calls are shorter; this one is for a judge that has died
   job_.limits.cpu_s = static_cast<std::uint64_t>(std::ceil(options_.session_own_s));
   job_.limits.memory_bytes = options_.memory_bytes;
-  // Process 1 and the worker: memory is limited per process, and a second process or thread would
-  // delay the worker like a busy machine (own_time.h).
-  job_.limits.processes = 2;
+  job_.limits.tmp_bytes = 0;
+  // Memory is limited per process, and a second process or thread would delay the worker like a busy
+  // machine (own_time.h).
+  job_.is_alone = true;
 }
 
 WorkerConnection::~WorkerConnection() { reset(); }
@@ -268,6 +276,8 @@ void WorkerConnection::explain_death(const char* function) {
     case Ending::kStalled:
     case Ending::kWallLimit:
       end(Verdict::kMachineBusy, busy_story(function));
+    case Ending::kDiskLimit:   // impossible: it has no folder to write to
+      end(Verdict::kGraderFault, std::string("a worker without a folder wrote files, in ") + function);
     case Ending::kOutputLimit:
       end(Verdict::kOutOfResources, "printed more than " + std::to_string(job_.limits.output_bytes / 1024) + " KiB, in " + function + asked_words(arguments_));
     case Ending::kStopped:

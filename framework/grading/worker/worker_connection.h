@@ -28,7 +28,7 @@ WorkerPrograms worker_programs(const std::string& id, const std::filesystem::pat
 
 struct WorkerOptions {
   std::string id;                       // of the module, "a1"
-  std::filesystem::path module;         // the shared object
+  std::filesystem::path module;         // what compile_submission made: a shared object, or a worker that is linked with the submission
   bool sandboxed = true;                // false: a plain process, for trusted code (known-wrong solutions)
   std::filesystem::path programs;       // folder of worker_ID and sandbox_init; empty: that of this program
   // Own time of the worker (own_time.h), without the time that it waits for a core or for a

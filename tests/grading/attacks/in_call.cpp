@@ -78,6 +78,7 @@ std::string environment() {
 std::string processes() {
   std::string all;
   DIR* folder = ::opendir("/proc");
+  if (folder == nullptr) return std::strerror(errno);
   while (const dirent* entry = ::readdir(folder))
     if (std::atoi(entry->d_name) > 0) all += std::string(entry->d_name) + " ";
   return all;
