@@ -84,7 +84,7 @@ TEST_F(CommandLine, CostShowsTheMethodsOfAModuleChosenByName) {
 TEST_F(CommandLine, CostReportsWhatItLeavesOut) {
   const Said said = type("cost bowl --modules reference --methods rk4,euler,midpoint --duration-s 0.1 --budget-s 0.01");
   EXPECT_EQ(said.code, 0) << said.err;
-  EXPECT_TRUE(holds(said.out, "Not run: ca: bodies that rest fall asleep")) << said.out;
+  EXPECT_TRUE(holds(said.out, "Not run: ca: bodies at rest fall asleep")) << said.out;
 }
 
 TEST_F(CommandLine, AChoiceIsReportedBeforeItsRun) {

@@ -103,7 +103,7 @@ TEST(LinkRefusals, FrictionDragAndStabilisationThatWouldDoNothing) {
   expect_words(R"("drag": [{ "body": "wall", "linear_n_s_m": 1 }])", {"/drag/0/body", "immovable"});
   expect_words(R"("drag": [{ "body": "ball" }])", {"/drag/0", "would do nothing"});
   expect_words(R"("repeat": [{ "counts": [2, 1, 1], "spacing_m": [1, 0, 0], "body": { "name": "b", "shape": { "sphere": { "radius_m": 0.1 } }, "mass_kg": 1, "friction": 0.5 } }])",
-               {"/repeat/0/body/friction", "lasting contact only", "Add \"contact\": {}"});
+               {"/repeat/0/body/friction", "persistent contact only", "Add \"contact\": {}"});
   expect_words(R"("repeat": [{ "counts": [2, 1, 1], "spacing_m": [1, 0, 0], "body": { "name": "b", "shape": { "sphere": { "radius_m": 0.1 } }, "mass_kg": 1, "friction": -0.5 } }])",
                {"/repeat/0/body/friction", "found -0.5", "at least 0"});
 }
