@@ -420,9 +420,9 @@ collision::SweptBox MovingWorld::swept_box(int body) {
     const scene::PrescribedMotion& m = world_.bodies[mover].motion;
     bulge = m.amplitude_m.cwiseAbs() * std::min(1.0, std::pow(m.angular_frequency_rad_s * h, 2) / 8);
   }
-  const double margin = built::kContact && world_.contact && std::isfinite(radius) ? kNegligible * radius : 0.0;
+  const double contact_margin = built::kContact && world_.contact && std::isfinite(radius) ? kNegligible * radius : 0.0;
   const Vector3d margin =
-      bulge + Vector3d::Constant(radius + margin) + kCoordinateRounding * (start.cwiseAbs() + end.cwiseAbs() + Vector3d::Constant(std::isfinite(radius) ? radius : 0.0));
+      bulge + Vector3d::Constant(radius + contact_margin) + kCoordinateRounding * (start.cwiseAbs() + end.cwiseAbs() + Vector3d::Constant(std::isfinite(radius) ? radius : 0.0));
   const collision::SweptBox box{start.cwiseMin(end) - margin, start.cwiseMax(end) + margin, can_move(body) || is_driven(body)};
   if (built::kContact && world_.contact && can_move(body) && !paths_[body].smooth) {   // contacts begin steps again
     paths_[body].box = box;
