@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "framework/cli/find_scene.h"
+#include "framework/cli/module_choice.h"
 #include "framework/engines/run.h"
 #include "framework/scene/effects.h"
 #include "framework/core/version.h"
