@@ -62,7 +62,7 @@ TEST(Ties, OfImpactsAlongThreeAxesEndTheSameInEveryOrder) {
     engines::RunOptions options;
     options.engine = "tw";
     options.threads = seed % 4 == 0 ? 2 : 1;
-    options.trial = {seed, true, 0.0, 0, 0.0};
+    options.faults = {seed, true, 0.0, 0, 0.0};
     options.frame_rate_hz = 5.0;
     const Trajectory run = run_as_told(std::move(options), scene, test_laws());
     EXPECT_EQ(difference(reference, run), "") << "seed " << seed;
@@ -120,7 +120,7 @@ TEST(Cradle, ThatTouchesPassesTheImpactOnInOneInstantByMicrosteps) {
         engines::RunOptions options;
         options.engine = "tw";
         options.threads = seed % 2 == 0 ? 2 : 1;
-        options.trial = {seed, true, 0.5, 0, 0.0};
+        options.faults = {seed, true, 0.5, 0, 0.0};
         expect_the_blow_to_pass(run_as_told(std::move(options), scene, test_laws()), n, from_the_end);
       }
     }
@@ -206,7 +206,7 @@ TEST(CommitSafety, NothingIsCommittedThatIsRolledBack) {
     engines::RunOptions options;
     options.engine = "tw";
     options.timewarp = engines::fast_timewarp();
-    options.trial = {seed, true, 0.3, 7, 0.2};
+    options.faults = {seed, true, 0.3, 7, 0.2};
     engines::run_scene(sized("gas", 100, 2.0), test_laws(), options, sink);
     EXPECT_GT(sink.taken, 400);
     EXPECT_EQ(sink.backward, 0) << "seed " << seed;
@@ -224,7 +224,7 @@ TEST(CommitSafety, GlobalVirtualTimeNeverFalls) {
       options.engine = "tw";
       options.timewarp = engines::fast_timewarp(&times);
       options.threads = threads;
-      options.trial = {seed, true, 0.3, 7, 0.2};
+      options.faults = {seed, true, 0.3, 7, 0.2};
       engines::run_scene(sized("gas", 60, 1.0), test_laws(), options, sink);
       ASSERT_GT(times.moves.size(), 500U);
       int back = 0, fallen = 0;

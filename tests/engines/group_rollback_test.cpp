@@ -165,7 +165,7 @@ TEST(TowerOfThree, WithASplitRolledBackByALateHitHasTheReferencesMembersInTheFas
   options.callbacks = late.callbacks;
   const Seen reference = run_and_look("ordered", late.scene, reference_laws(), options);
   ASSERT_NEAR(time_of_hit(reference.run), kHitBetween, 1e-3);
-  options.trial.late_callbacks = true;
+  options.faults.late_callbacks = true;
   const Seen seen = run_and_look("tw", late.scene, reference_laws(), options);
   expect_the_references_members(reference, seen);
   expect_the_split_was_taken_back(seen);
@@ -209,7 +209,7 @@ TEST(TowerOfThree, HitBelowItsBirthIsDissolvedInTheFastEngine) {
   engines::RunOptions options;
   options.callbacks = late.callbacks;
   const Seen reference = run_and_look("ordered", late.scene, reference_laws(), options);
-  options.trial.late_callbacks = true;
+  options.faults.late_callbacks = true;
   expect_the_group_was_dissolved(reference, run_and_look("tw", late.scene, reference_laws(), options));
 }
 

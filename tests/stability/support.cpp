@@ -112,7 +112,7 @@ void compare_with_truth(const Given& given, Findings& findings, const std::strin
     truths::Comparison comparison;
     truths::framework_families().at(truth.family)(truth, laws, comparison);
     const truths::Line* worst = nullptr;
-    const auto ratio = [](const truths::Line& line) { return line.error / line.pass_mark; };
+    const auto ratio = [](const truths::Line& line) { return line.error / line.tolerance; };
     for (const truths::Line& line : comparison.lines()) {
       if (exact_only && line.output.starts_with("rk4.")) continue;
       if (line.verdict == truths::Verdict::kNotAttempted) return findings.not_run("truth " + id, line.note);
@@ -121,7 +121,7 @@ void compare_with_truth(const Given& given, Findings& findings, const std::strin
       if (worst == nullptr || ratio(line) > ratio(*worst)) worst = &line;
     }
     require(worst != nullptr, "no output of truth " + id + " was compared");
-    findings.at_most("truth " + id + ": " + worst->output, worst->error, worst->pass_mark, "",
+    findings.at_most("truth " + id + ": " + worst->output, worst->error, worst->tolerance, "",
                      worst->note.empty() ? "100 floors of double precision; of all outputs the one closest to its mark" : worst->note);
   });
 }

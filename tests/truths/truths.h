@@ -60,7 +60,7 @@ inline std::string failures(const std::vector<truths::Line>& lines) {
   std::string text;
   for (const truths::Line& line : lines)
     if (line.verdict != truths::Verdict::kRight && line.verdict != truths::Verdict::kNotCompared)
-      text += "\n  " + line.output + ": error " + std::to_string(line.error) + ", mark " + std::to_string(line.pass_mark) + "  " + line.note;
+      text += "\n  " + line.output + ": error " + std::to_string(line.error) + ", mark " + std::to_string(line.tolerance) + "  " + line.note;
   return text;
 }
 
