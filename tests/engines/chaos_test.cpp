@@ -24,11 +24,11 @@ scene::Scene billiard() {
 TEST(Truth, OfChaosHoldsForAWhileAndIsRefusedForLonger) {
   CostOptions options;
   std::string why;
-  const auto truth = engines::try_reference(billiard(), test_laws(), options, why);
-  ASSERT_TRUE(truth) << why;
-  EXPECT_GT(truth->duration_s, 1.0);    // errors of 1e-16 grow by e per collision: some forty collisions, seconds
-  EXPECT_LT(truth->duration_s, 59.0);
-  EXPECT_LE(truth->floor_m, 1e-4 * truth->scale_m);
+  const auto reference = engines::try_reference(billiard(), test_laws(), options, why);
+  ASSERT_TRUE(reference) << why;
+  EXPECT_GT(reference->duration_s, 1.0);    // errors of 1e-16 grow by e per collision: some forty collisions, seconds
+  EXPECT_LT(reference->duration_s, 59.0);
+  EXPECT_LE(reference->floor_m, 1e-4 * reference->scale_m);
   options.least_share = 0.3;   // half of the scene's duration is tried; the reference holds for less
   EXPECT_FALSE(engines::try_reference(billiard(), test_laws(), options, why)) << "it holds for a part";
   options.least_share = 0.0;

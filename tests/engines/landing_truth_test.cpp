@@ -16,10 +16,10 @@ namespace {
 TEST(Truth, OfALandingLastsToTheEndAndThreeRunsAgreeOnIt) {
   const scene::Scene scene = scene::load_scene(TUMBLE_SOURCE_DIR "/assignments/a3_constraints/scenes/drop_a_box.json");
   std::string why;
-  const auto truth = engines::try_reference(scene, reference_laws(), {}, why);
-  ASSERT_TRUE(truth) << why;
-  EXPECT_EQ(truth->duration_s, scene.duration_s) << truth->shortened_by;
-  EXPECT_LE(truth->floor_m, 3e-4);   // error of the finest steps: 6e-5 m where there is time for 1/7680 s
+  const auto reference = engines::try_reference(scene, reference_laws(), {}, why);
+  ASSERT_TRUE(reference) << why;
+  EXPECT_EQ(reference->duration_s, scene.duration_s) << reference->shortened_by;
+  EXPECT_LE(reference->floor_m, 3e-4);   // error of the finest steps: 6e-5 m where there is time for 1/7680 s
 }
 
 TEST(CostReference, AReferenceWithImpactsIsAsAccurateAsTheRunsThatItJudges) {
@@ -41,9 +41,9 @@ TEST(CostReference, AReferenceWithImpactsIsAsAccurateAsTheRunsThatItJudges) {
   scene.effects.of<effects::SpringSpec>().push_back({"spring", {"ball", Vector3d::Zero()}, {"", Vector3d(3, 0, 0)}, 50.0, 0.0, 3.0});
   engines::CostOptions options;
   options.frame_rate_hz = 60.0;
-  const engines::CostReference truth = engines::find_reference(scene, reference_laws(), options);
-  EXPECT_EQ(truth.intervals, 90) << truth.shortened_by;
-  EXPECT_LE(truth.floor_m, 1e-10) << truth.what;
+  const engines::CostReference reference = engines::find_reference(scene, reference_laws(), options);
+  EXPECT_EQ(reference.intervals, 90) << reference.shortened_by;
+  EXPECT_LE(reference.floor_m, 1e-10) << reference.what;
 }
 
 }  // namespace
