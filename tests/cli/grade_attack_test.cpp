@@ -274,7 +274,7 @@ TEST_F(GradeAttack, ABuildThatTakesTheProgramsAwayDisturbsNoGrading) {
   for (const char* name : {"alice", "bob"}) EXPECT_EQ(results(name)["extra_data"]["final"], true) << name;
   const ProgramOutcome half = run_program(words, Output::kCaptured, 580.0);
   EXPECT_EQ(half.code, 2) << half.printed;
-  EXPECT_TRUE(says(half, "does not list its tests")) << half.printed;
+  EXPECT_TRUE(says(half, "sandbox_init: 1: half")) << half.printed;   // the first of them that it tries
 }
 
 }  // namespace
