@@ -41,7 +41,8 @@ std::optional<std::string> why_no_sandbox(SandboxKind kind) {
   job.uid = user.uid();
   const SandboxOutcome outcome = Sandbox::start(job).wait();
   if (outcome.ending == SandboxOutcome::Ending::kExited && outcome.code == 0) return std::nullopt;
-  return outcome.printed.empty() ? "the sandbox does not start" : outcome.printed;
+  const std::string said = outcome.printed.substr(0, outcome.printed.find_last_not_of('\n') + 1);
+  return said.empty() ? "the sandbox does not start" : said;
 }
 
 SandboxKind chosen_sandbox() {
