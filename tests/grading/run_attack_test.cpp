@@ -153,8 +153,11 @@ TEST_F(RunAttack, NothingOfTheProjectIsVisible) {
   const std::string source = TUMBLE_SOURCE_DIR, build = TUMBLE_BINARY_DIR;
   for (const std::string& path : {source, source + "/solutions_private", source + "/assignments/a1_impulse/a1_impulse.cpp", build,
                                   build + "/modules/waist_right.so", std::string("/etc/passwd"), std::string("/root"), std::string("/home"),
-                                  std::string("/proc/1/root/etc"), std::string("/run"), std::string("/var/log"), std::string("/sys")})
+                                  std::string("/proc/1/root/etc"), std::string("/run"), std::string("/var/log"), std::string("/sys")}) {
+    std::error_code error;   // a tree that students get has no solutions_private: Landlock tells what does not exist
+    if (!std::filesystem::exists(path, error) && !error) continue;
     EXPECT_EQ(reached("open:" + path), path.starts_with("/proc/1/") ? refused_in_sight() : refusal()) << path;
+  }
 }
 
 TEST_F(RunAttack, ProcessOneIsNotAccessible) {

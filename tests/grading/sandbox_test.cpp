@@ -112,8 +112,8 @@ TEST_F(SandboxEnds, ForkBombsOfToolsLeaveNoProcess) {
   Sandbox sandbox = Sandbox::start(job);
   ::close(ends[0]);
   ::usleep(1'000'000);
-  // 40, and 200 more where the user has other processes; some belong to the machine.
-  EXPECT_LT(processes_of_all() - before, can_change_user() || traits_of(chosen_sandbox()).generations > 1 ? 100 : 350);
+  // 40, and 200 more where the user has other processes; up to 100 come and go on the machine meanwhile.
+  EXPECT_LT(processes_of_all() - before, can_change_user() || traits_of(chosen_sandbox()).generations > 1 ? 140 : 350);
   sandbox.stop();
   EXPECT_EQ(descendants_left(), 0);
   ::close(ends[1]);
