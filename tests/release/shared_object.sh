@@ -31,7 +31,9 @@ is_shared() {
         [ -f "$file" ] || return 1
         case $file in *.gch) continue ;; esac   # shared by this script as well, or no object that uses it is
         [ "$(as_main "$(cat "$file")")" = "$(cat "$TUMBLE_MAIN_BUILD/$file")" ] || return 1 ;;
-      *) grep -qxF -- "${file#"$TUMBLE_MAIN/"}" "$TUMBLE_SHARED/same" || return 1 ;;
+      *) file=${file#"$TUMBLE_MAIN/"}
+         grep -qxF -- "$file" "$TUMBLE_SHARED/same" || return 1
+         case $file in assignments/*) cmp -s "$file" "$TUMBLE_MAIN/$file" || return 1 ;; esac ;;   # a student may have worked on it since
     esac
   done <"$TUMBLE_SHARED/read.$$"
 }
